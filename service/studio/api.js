@@ -131,6 +131,15 @@ export async function motion(id, design, steps, signal) {
   return (await patiently(() => ask(path, { signal }), signal)).json();
 }
 
+/**
+ * The motion of a design with its forces: by the block of its problem, or by one of the page's.
+ * @param {string} id @param {number} design @param {number} steps @param {any} block null for the problem's own @param {AbortSignal} signal
+ */
+export async function forces(id, design, steps, block, signal) {
+  const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/forces?steps=${steps}`;
+  return (await patiently(() => (block === null ? ask(path, { signal }) : post(path, { dynamics: block }, signal)), signal)).json();
+}
+
 /** @param {any} question @param {AbortSignal} signal */
 export async function analysis(question, signal) {
   return (await patiently(() => post("/v1/analyses", question, signal), signal)).json();

@@ -11,6 +11,7 @@ import { downloads } from "./downloads.js";
 import { Engine } from "./engine.js";
 import { Explorer } from "./explorer.js";
 import { Flywheel } from "./flywheel.js";
+import { Forces } from "./forces.js";
 import { Gears } from "./gears.js";
 import { checks, dimensions, figures, made, table } from "./figures.js";
 import { Mover, demanded } from "./mover.js";
@@ -43,6 +44,9 @@ export class Shown {
     this.moving = null;
     /** @type {Moving | null} */
     this.explorer = null;
+    /** @type {Forces | null} */
+    this.forces = null;
+    this.forced = el("div", {});
     this.title = el("h3", {});
     this.before = el("div", {});
     this.stage = el("div", { class: "moving" });
@@ -52,7 +56,7 @@ export class Shown {
     this.job = job;
     this.n = n;
     this.design = job.result.designs[n];
-    place.replaceChildren(this.title, this.before, this.stage, ...this.burmester(job, n), this.exploring, this.numbers);
+    place.replaceChildren(this.title, this.before, this.stage, this.forced, ...this.burmester(job, n), this.exploring, this.numbers);
     this.present(job, n, `Design ${n + 1}`);
   }
 
@@ -67,6 +71,7 @@ export class Shown {
     this.title.replaceChildren(`${title}: ${words(this.design.mechanism.type)}`);
     this.before.replaceChildren();
     this.exploring.replaceChildren(...this.explored(this.design));
+    this.forced.replaceChildren(...this.borne());
     this.numbers.replaceChildren(...this.tabulated());
     this.move(this.gone.signal);
     this.draw(this.gone.signal);
@@ -117,11 +122,18 @@ export class Shown {
     }
   }
 
-  /** @param {() => Moving} make */
-  show(make) {
+  /** @param {() => Moving} make @param {boolean} [own] whether it is the design that moves, and not a cognate of it */
+  show(make, own = true) {
     this.moving?.stop();
     this.moving = make();
+    this.forced.toggleAttribute("hidden", !own);
+    this.forces?.attach(this.mover);
     if (this.explorer) this.moving.pause?.();
+  }
+
+  /** The design in motion, where it is a linkage whose motion is shown. */
+  get mover() {
+    return this.moving instanceof Mover && !this.forced.hidden ? this.moving : null;
   }
 
   /**
@@ -138,7 +150,7 @@ export class Shown {
   offer(films) {
     const around = films.length < 2 ? [] : films.flatMap(({ motion }) => Object.values(motion.joints).flatMap((/** @type {any} */ track) =>
       track.x.map((/** @type {number | null} */ x, /** @type {number} */ k) => (x === null ? [NaN, NaN] : [x, track.y[k]]))));
-    const show = (/** @type {Film} */ film) => this.show(() => new Mover(this.stage, film.design, film.motion, this.job.problem, film.circuits, around));
+    const show = (/** @type {Film} */ film) => this.show(() => new Mover(this.stage, film.design, film.motion, this.job.problem, film.circuits, around), film === films[0]);
     show(films[0]);
     if (films.length > 1) {
       this.before.replaceChildren(picker(films.map((film) => film.choice), (choice) => {
@@ -166,6 +178,18 @@ export class Shown {
     return [details];
   }
 
+  /** The place of a linkage's forces: open where the problem states what it weighs and carries. */
+  borne() {
+    const { design, job, n } = this;
+    if (VIEWS[design.mechanism.type] || !design.mechanism.skeleton) return [];
+    const inside = el("div");
+    const details = el("details", { id: "forces", open: Boolean(job.problem.dynamics ?? design.dynamics), ontoggle: () => {
+      this.forces?.stop();
+      this.forces = details.open && details.isConnected ? new Forces(inside, job, n, this.mover) : null;
+    } }, el("summary", {}, "Forces: what it bears, and what drives it"), inside);
+    return [details];
+  }
+
   /** Burmester's curves, where the job has them. @param {api.Job} job @param {number} n */
   burmester(job, n) {
     const { mechanism } = job.result.designs[n];
@@ -189,6 +213,8 @@ export class Shown {
     this.moving?.stop();
     this.moving = null;
     this.leaveExplorer();
+    this.forces?.stop();
+    this.forces = null;
     if (this.url) URL.revokeObjectURL(this.url);
     this.url = "";
   }

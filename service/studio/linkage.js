@@ -18,6 +18,12 @@ export function drawn(skeleton) {
   return Object.keys(skeleton.joints).filter((name) => name !== "P" || !doubled);
 }
 
+/** Where the line of a slide points, radians, from the joints of its link. @param {{on: string[], lean: number}} slide @param {Places} places */
+export function slope({ on, lean }, places) {
+  const [a, b] = on.map((name) => places[name]);
+  return a && b ? lean + Math.atan2(b[1] - a[1], b[0] - a[0]) : lean;
+}
+
 export class Linkage {
   /** @param {View} view @param {any} skeleton @param {{names?: boolean, faint?: boolean, classes?: Record<string, string>}} [manner] classes of links by their names */
   constructor(view, skeleton, { names = true, faint = false, classes = {} } = {}) {
@@ -66,7 +72,7 @@ export class Linkage {
       block.toggleAttribute("hidden", !at);
       rail.toggleAttribute("hidden", !at);
       if (!at) continue;
-      const angle = b ? lean + Math.atan2(b[1] - a[1], b[0] - a[0]) : a ? Math.atan2(at[1] - a[1], at[0] - a[0]) : lean;
+      const angle = a && !b ? Math.atan2(at[1] - a[1], at[0] - a[0]) : slope({ on, lean }, places);
       const [u, v] = this.view.at(...at);
       const [c, s] = [900 * Math.cos(angle), -900 * Math.sin(angle)];
       for (const [name, value] of Object.entries({ x1: u - c, y1: v - s, x2: u + c, y2: v + s })) rail.setAttribute(name, String(value));

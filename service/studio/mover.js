@@ -19,6 +19,14 @@ const HEIGHT = 420;
 /** @typedef {{x: (number | null)[], y: (number | null)[]}} Track */
 /** @typedef {{x: number, y: number, angle?: number}} Target */
 
+/**
+ * What goes with the motion: a layer of the picture that is told the input.
+ * @typedef {object} Companion
+ * @property {SVGElement} node
+ * @property {number} beyond how far it reaches beyond the picture, pixels
+ * @property {(input: number, now: import("./linkage.js").Places) => void} show
+ */
+
 export class Mover {
   /**
    * @param {HTMLElement} place @param {any} design @param {any} motion @param {any} problem
@@ -43,12 +51,15 @@ export class Mover {
       reading: (at) => this.reading(at), show: (at) => this.show(at) });
     const range = rangeOf(motion, this.room.cycle ? null : design.metrics?.used_range ?? design.metrics?.used_stroke, closed);
     this.sweep = new Sweep(this.view, this.skeleton, this.room, (at) => jointsAt(motion, at), range, () => this.player.keep(this.sweep.on ? range : null));
-    this.planes = design.layout && problem.layout ? new Planes(this.view, design, problem, (input) => this.player.lead(within(placeOf(motion.input_angle, input, closed), this.count - 1))) : null;
+    this.closed = closed;
+    this.planes = design.layout && problem.layout ? new Planes(this.view, design, problem, (input) => this.lead(input)) : null;
     this.gauge = motion.transmission_angle?.some((/** @type {any} */ one) => one !== null)
       ? new Gauge("Transmission angle", motion.transmission_angle, {
         limit: problem.constraints?.min_transmission_angle, used: partly(design) ? design.metrics.min_transmission_angle : null }) : null;
     /** @type {{figure: HTMLElement, show: (at: number) => void}[]} */
     this.marks = [];
+    /** @type {Companion | null} */
+    this.companion = null;
     this.build(place, design, problem);
     this.player.begin();
   }
@@ -150,7 +161,26 @@ export class Mover {
     this.planes?.show(now);
     this.circuits.show(between(this.motion.input_angle, at));
     this.gauge?.show(between(this.motion.transmission_angle, at));
+    this.companion?.show(Number(between(this.motion.input_angle, at)), now);
     for (const mark of this.marks) mark.show(at);
+  }
+
+  /** Lead the motion to an input. @param {number} input */
+  lead(input) {
+    this.player.lead(within(placeOf(this.motion.input_angle, input, this.closed), this.count - 1));
+  }
+
+  /** Draw something into the picture that goes with the motion, or nothing any more. @param {Companion | null} companion */
+  accompany(companion) {
+    this.companion?.node.remove();
+    this.companion = companion;
+    if (companion) this.picture.append(companion.node);
+    const more = companion?.beyond ?? 0;
+    const frame = { x: -more, y: -more, width: WIDTH + 2 * more, height: HEIGHT + 2 * more };
+    this.picture.setAttribute("viewBox", Object.values(frame).join(" "));
+    for (const [name, value] of Object.entries(frame)) this.picture.firstElementChild.setAttribute(name, String(value));
+    this.planes?.widen(more);
+    this.show(this.player.at);
   }
 
   /** @param {number} at */

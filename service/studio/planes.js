@@ -54,6 +54,8 @@ export class Planes {
     this.bars = [];
     /** @type {{name: string, width: number, bar: SVGElement, text: SVGElement}[]} */
     this.pins = [];
+    /** @type {SVGElement | null} */
+    this.side = null;
     this.wheels = wheels(design.mechanism.skeleton);
     this.layout = design.layout;
     this.skeleton = design.mechanism.skeleton;
@@ -105,11 +107,19 @@ export class Planes {
       return { name, width, bar: svg("rect", { class: `shaft ${layout.stub_shafts.includes(name) ? "stub" : ""}`, y: top, height: bottom - top, width }),
         text: svg("text", { class: "joint", y: HEIGHT - (k % 2 ? 6 : 24) }, name) };
     });
-    return svg("svg", { viewBox: `0 0 ${view.width} ${HEIGHT}`, class: "canvas side", role: "img",
+    this.side = svg("svg", { viewBox: `0 0 ${view.width} ${HEIGHT}`, class: "canvas side", role: "img",
       "aria-label": `The linkage from the side: ${layout.count} planes${second ? " between two bases" : " on a base"}` },
     svg("rect", { class: "paper", width: view.width, height: HEIGHT }), base(this.floor), second && base(ceiling - BASE),
     ...Array.from({ length: layout.count }, (_, k) => svg("text", { class: "tick", x: 10, y: this.below(k + 1) - 0.5 * this.scale * stated.thickness + 4 }, k + 1)),
     ...this.bars.map(({ bar }) => bar), ...this.pins.flatMap(({ bar, text }) => [bar, text]));
+    return this.side;
+  }
+
+  /** Stay in line with the picture above where it shows more on either side. @param {number} more pixels */
+  widen(more) {
+    const frame = { x: -more, width: this.view.width + 2 * more };
+    this.side?.setAttribute("viewBox", `${frame.x} 0 ${frame.width} ${HEIGHT}`);
+    for (const [name, value] of Object.entries(frame)) this.side?.firstElementChild?.setAttribute(name, String(value));
   }
 
   /** Where a plane begins, pixels from above. @param {number} plane */

@@ -23,21 +23,23 @@ const STEEP = 8;
  * @property {Record<string, Series>} lines by name; one line needs none
  * @property {number | null} [limit] a line that is not to be passed
  * @property {boolean[]} [used] samples in the range that matters
+ * @property {boolean[]} [gaps] samples at which the quantity is not determined
  * @property {number} [least] differences below it are rounding: what the quantity is measured by
  */
 
 /**
  * @param {Plotted[]} wanted @param {number[] | undefined} input degrees, one for each sample
  * @param {(at: number) => void} lead leads the motion to a sample
+ * @param {string} [unit] of the input
  * @returns {{figure: HTMLElement, show: (at: number) => void}[]}
  */
-export function plots(wanted, input, lead) {
+export function plots(wanted, input, lead, unit = "°") {
   return wanted.filter(({ lines }) => Object.values(lines).some((series) => series.some(Number.isFinite)))
-    .map((one) => plot(one, input, lead));
+    .map((one) => plot(one, input, lead, unit));
 }
 
-/** @param {Plotted} plotted @param {number[] | undefined} input @param {(at: number) => void} lead */
-function plot({ title, lines, limit, used, least = 0 }, input, lead) {
+/** @param {Plotted} plotted @param {number[] | undefined} input @param {(at: number) => void} lead @param {string} unit */
+function plot({ title, lines, limit, used, gaps, least = 0 }, input, lead, unit) {
   const all = Object.values(lines);
   const known = /** @type {number[]} */ (all.flat().filter(Number.isFinite));
   const extremes = [known.reduce((a, b) => Math.min(a, b)), known.reduce((a, b) => Math.max(a, b))];
@@ -69,13 +71,14 @@ function plot({ title, lines, limit, used, least = 0 }, input, lead) {
   const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": `${title}: from ${shown(extremes[0])} to ${shown(extremes[1])}` },
     svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
     ...runs(used ?? []).map(([from, to]) => svg("rect", { class: "used", x: x(from), y: EDGE.top, width: x(to) - x(from), height: HEIGHT - EDGE.top - EDGE.bottom })),
+    ...runs(gaps ?? []).map(([from, to]) => svg("rect", { class: "gap", x: x(from) - 1, y: EDGE.top, width: x(to) - x(from) + 2, height: HEIGHT - EDGE.top - EDGE.bottom })),
     low < 0 && high > 0 && svg("line", { class: "zero", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(0), y2: y(0) }),
     ...ticks.map((value) => svg("g", {},
       svg("line", { class: "grid", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(value), y2: y(value) }),
       svg("text", { class: "tick", x: EDGE.left - 5, y: y(value) + 4, "text-anchor": "end" }, brief(value, 1e-6 * range)))),
     typeof limit === "number" && svg("line", { class: "limit", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(limit), y2: y(limit) }),
-    input && svg("text", { class: "tick", x: EDGE.left, y: HEIGHT - 5 }, `${Math.round(input[0])}°`),
-    input && svg("text", { class: "tick", x: WIDTH - EDGE.right, y: HEIGHT - 5, "text-anchor": "end" }, `${Math.round(input[last])}°`),
+    input && svg("text", { class: "tick", x: EDGE.left, y: HEIGHT - 5 }, `${Math.round(input[0])}${unit}`),
+    input && svg("text", { class: "tick", x: WIDTH - EDGE.right, y: HEIGHT - 5, "text-anchor": "end" }, `${Math.round(input[last])}${unit}`),
     ...all.map((series, k) => svg("path", { class: `series s${k}`, d: data(series) })), mark);
   const follow = (/** @type {PointerEvent} */ event) => {
     const box = picture.getBoundingClientRect();
@@ -108,7 +111,7 @@ function middle(known, extremes) {
 }
 
 /** First and last of every run of samples. @param {boolean[]} used @returns {[number, number][]} */
-function runs(used) {
+export function runs(used) {
   /** @type {[number, number][]} */
   const found = [];
   used.forEach((one, k) => {
@@ -120,7 +123,7 @@ function runs(used) {
 }
 
 /** Three digits; what is below `noise` is nothing. @param {number | null | undefined} value @param {number} [noise] */
-function brief(value, noise = 0) {
+export function brief(value, noise = 0) {
   if (value === null || value === undefined) return "–";
   return Math.abs(value) < noise ? "0" : shown(Number(value.toPrecision(3)));
 }

@@ -1,0 +1,132 @@
+/** Forces as arrows on the linkage that moves: at every pin and slide, with the length that a force has. */
+
+import { el, shown, svg } from "./dom.js";
+import { slope } from "./linkage.js";
+import { between } from "./player.js";
+
+/** @typedef {[number, number]} Point */
+/** @typedef {(number | null)[]} Series */
+/** @typedef {{joint: string, on: string, from: string, x: Series, y: Series}} Force what acts on a link at a joint, and which side it comes from */
+
+/** The greatest force is so much of the picture's height. */
+const SHARE = 0.2;
+
+/** Length and half the width of a head, pixels; a short arrow has a shorter one. */
+const HEAD = [11, 4.5];
+
+/** Every force in a joint of an answer: of its pin on each of its links, and of the lines of slides. @param {any} answer @param {any} skeleton @param {{joint: string, on: string[], lean: number}[]} slides @returns {Force[]} */
+export function forcesIn(answer, skeleton, slides) {
+  const { joints = {}, slides: lines = [] } = answer.dynamics;
+  const pins = Object.entries(joints ?? {}).flatMap(([joint, links]) => Object.entries(/** @type {any} */ (links)).map(([on, { x, y }]) =>
+    ({ joint, on, from: `pin ${joint}`, x, y })));
+  return [...pins, ...(lines ?? []).flatMap((/** @type {any} */ { joint, normal, friction }, /** @type {number} */ k) => {
+    /** @type {Point[]} */
+    const turned = normal.map((/** @type {number | null} */ across, /** @type {number} */ at) => {
+      const along = friction[at];
+      if (across === null || along === null) return [NaN, NaN];
+      const angle = slope(slides[k], Object.fromEntries(slides[k].on.map((name) => [name, [answer.joints[name].x[at], answer.joints[name].y[at]]])));
+      return [along * Math.cos(angle) - across * Math.sin(angle), along * Math.sin(angle) + across * Math.cos(angle)];
+    });
+    const series = (/** @type {number} */ axis, /** @type {number} */ sign) => turned.map((one) => (Number.isFinite(one[axis]) ? sign * one[axis] : null));
+    const line = skeleton.slides[k].link;
+    return [{ joint, on: `pin ${joint}`, from: `line of ${line}`, x: series(0, 1), y: series(1, 1) },
+      { joint, on: line, from: `pin ${joint}`, x: series(0, -1), y: series(1, -1) }];
+  })];
+}
+
+/** One force for each joint, on a moving link, and one for each slide, on its pin. @param {Force[]} forces */
+function once(forces) {
+  const pinned = forces.filter(({ on }) => on !== "ground" && !on.startsWith("pin "));
+  return [...pinned.filter(({ joint }, k) => pinned.findIndex((other) => other.joint === joint) === k), ...forces.filter(({ on }) => on.startsWith("pin "))];
+}
+
+export class ForceArrows {
+  /**
+   * @param {import("./view.js").View} view @param {Force[]} forces @param {string} unit of forces
+   * @param {Record<string, {x: Series, y: Series}>} tracks of the joints, over the same arrays as the forces
+   * @param {(input: number) => number | null} placeAt place of the forces' arrays at an input
+   */
+  constructor(view, forces, unit, tracks, placeAt) {
+    this.view = view;
+    this.placeAt = placeAt;
+    this.forces = forces;
+    this.peak = forces.reduce((most, { x, y }) => x.reduce((/** @type {number} */ high, one, k) => (one === null ? high : Math.max(high, Math.hypot(one, Number(y[k])))), most), 0);
+    /** Pixels for a unit of force. */
+    this.scale = this.peak > 0 ? (SHARE * view.height) / this.peak : 0;
+    this.beyond = this.reach(tracks);
+    /** @type {{force: Force, node: SVGElement, shaft: SVGElement, head: SVGElement}[]} */
+    this.arrows = [];
+    this.layer = svg("g", {});
+    this.input = NaN;
+    /** @type {import("./linkage.js").Places} */
+    this.now = {};
+    this.node = svg("g", { class: "forces" }, this.layer, this.legend(unit));
+    this.choice = el("select", { id: "force-on", onchange: () => this.choose(this.choice.value) },
+      el("option", { value: "" }, "a link of each joint"),
+      ...[...new Set(forces.map(({ on }) => on))].filter((on) => !on.startsWith("pin ")).map((on) => el("option", { value: on }, on.replaceAll("_", " "))));
+    this.choose("");
+  }
+
+  /** How far arrows reach beyond the picture, pixels. @param {Record<string, {x: Series, y: Series}>} tracks */
+  reach(tracks) {
+    const { width, height } = this.view;
+    let most = 0;
+    for (const { joint, x, y } of this.forces) {
+      x.forEach((one, k) => {
+        const [px, py] = [tracks[joint].x[k], tracks[joint].y[k]];
+        if (one === null || px === null || py === null) return;
+        const [u, v] = this.view.at(px, py);
+        const [tip, top] = [u + this.scale * one, v - this.scale * Number(y[k])];
+        most = Math.max(most, -tip, tip - width, -top, top - height);
+      });
+    }
+    return most > 0 ? Math.ceil(most) + HEAD[1] : 0;
+  }
+
+  /** Draw the forces on one link, or one for each joint. @param {string} link */
+  choose(link) {
+    const chosen = link ? this.forces.filter(({ on }) => on === link) : once(this.forces);
+    this.arrows = chosen.map((force) => {
+      const [shaft, head] = [svg("line", { class: "shaft-of-force" }), svg("path", { class: "head-of-force" })];
+      return { force, shaft, head, node: svg("g", { class: "force", "data-joint": force.joint, "data-on": force.on }, svg("title", {}, `Force of ${force.from} on ${force.on}`), shaft, head) };
+    });
+    this.layer.replaceChildren(...this.arrows.map(({ node }) => node));
+    if (Number.isFinite(this.input)) this.show(this.input, this.now);
+  }
+
+  /** An arrow of a round number, and what it stands for. @param {string} unit */
+  legend(unit) {
+    if (!this.peak) return svg("text", { class: "force-scale", x: 12, y: this.view.height - 12 }, "No joint bears a force.");
+    const power = 10 ** Math.floor(Math.log10(this.peak));
+    const value = power * ([5, 2, 1].find((one) => one * power <= this.peak) ?? 1);
+    const length = this.scale * value;
+    const [x, y] = [16 - this.beyond, this.view.height + this.beyond - 16];
+    const [shaft, head] = [svg("line", { class: "shaft-of-force" }), svg("path", { class: "head-of-force" })];
+    draw(shaft, head, [x, y], [length, 0]);
+    return svg("g", { class: "force-scale", "data-force": value, "data-length": length }, shaft, head, svg("text", { x: x + length + 10, y: y + 4 }, `${shown(value)} ${unit}`.trim()));
+  }
+
+  /** @param {number} input @param {import("./linkage.js").Places} now */
+  show(input, now) {
+    this.input = input;
+    this.now = now;
+    const at = this.placeAt(input);
+    for (const { force, node, shaft, head } of this.arrows) {
+      const place = now[force.joint];
+      const [x, y] = at === null ? [null, null] : [between(force.x, at), between(force.y, at)];
+      node.toggleAttribute("hidden", !place || x === null || y === null);
+      if (place && x !== null && y !== null) draw(shaft, head, this.view.at(...place), [this.scale * x, -this.scale * y]);
+    }
+  }
+}
+
+/** @param {SVGElement} shaft @param {SVGElement} head @param {Point} from @param {Point} by pixels */
+function draw(shaft, head, [u, v], [du, dv]) {
+  const length = Math.hypot(du, dv);
+  for (const [name, value] of Object.entries({ x1: u, y1: v, x2: u + du, y2: v + dv })) shaft.setAttribute(name, value.toFixed(2));
+  if (!(length > 1e-3)) return head.setAttribute("d", "");
+  const [long, half] = HEAD.map((one) => one * Math.min(1, length / HEAD[0]));
+  const [c, s] = [du / length, dv / length];
+  const corner = (/** @type {number} */ side) => `${(u + du - long * c - side * half * s).toFixed(2)} ${(v + dv - long * s + side * half * c).toFixed(2)}`;
+  head.setAttribute("d", `M${(u + du).toFixed(2)} ${(v + dv).toFixed(2)}L${corner(1)}L${corner(-1)}Z`);
+}

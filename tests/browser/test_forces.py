@@ -1,0 +1,181 @@
+"""Forces beside the motion: arrows, drive, plots, hodograph and peaks say what the service says."""
+
+import math
+import re
+from functools import partial
+
+import numpy as np
+import pytest
+
+from tests.browser import test_studio
+from tests.browser.test_studio import PLAIN
+
+pytestmark = pytest.mark.browser
+
+solved = partial(test_studio.solved, shown=".moving .force")
+
+STEEL = {"density": 7800.0, "thickness": 10.0, "width": 2.0}
+BLOCK = {
+    "gravity": {},
+    "speed_rpm": 120.0,
+    "links": STEEL,
+    "loads": [{"joint": "A", "force": {"constant": [3.0, -12.0]}}],
+}
+START = -113.99447906406018
+"""Input of the first position, degrees."""
+
+PLACE = 60
+"""Of 361 samples of the forces, where the motion is put."""
+
+LINES = "all => all.map(one => ['x1', 'y1', 'x2', 'y2'].map(name => +one.getAttribute(name)))"
+BOX = {"left": 46.0, "width": 300.0 - 56.0}
+
+
+def forces_of(studio, server, body=None):
+    job = re.search(r"#job=(\w+)", studio.page.url).group(1)
+    path, steps = f"/v1/jobs/{job}/designs/0/forces", {"steps": 360}
+    answer = (
+        server.client.get(path, params=steps) if body is None else server.client.post(path, params=steps, json=body)
+    )
+    assert answer.status_code == 200, answer.text
+    return answer.json()
+
+
+def number(text):
+    return float(re.match(r"[−\d.]+", text).group().replace("−", "-"))
+
+
+def lead(page, place):
+    """Put the motion, of 241 samples, to one of the 361 of the forces."""
+    page.locator("#scrub").evaluate(
+        "(scrub, at) => { scrub.value = at; scrub.dispatchEvent(new Event('input')); }", place * 240 / 360
+    )
+
+
+def arrows(page):
+    """By joint and link: where the arrow begins, and the force that its length and direction stand for."""
+    scale = page.locator(".force-scale")
+    per_newton = float(scale.get_attribute("data-length")) / float(scale.get_attribute("data-force"))
+    ((x1, _, x2, _),) = page.locator(".force-scale line").evaluate_all(LINES)
+    assert x2 - x1 == pytest.approx(float(scale.get_attribute("data-length")), abs=0.02)
+    assert scale.text_content() == f"{float(scale.get_attribute('data-force')):g} N"
+    lines = page.locator(".force line").evaluate_all(LINES)
+    names = page.locator(".force").evaluate_all("all => all.map(one => [one.dataset.joint, one.dataset.on])")
+    found = {
+        (joint, on): ((x1, y1), ((x2 - x1) / per_newton, (y1 - y2) / per_newton))
+        for (joint, on), (x1, y1, x2, y2) in zip(names, lines, strict=True)
+    }
+    return per_newton, found
+
+
+def test_arrows_and_cursors_say_what_the_service_says(open_studio, server):
+    studio = open_studio(reduced_motion="reduce")
+    page = studio.page
+    solved(studio, {**PLAIN, "dynamics": BLOCK})
+    answer = forces_of(studio, server)
+    told = answer["dynamics"]
+    largest = max(np.hypot(one["x"], one["y"]).max() for on in told["joints"].values() for one in on.values())
+    for place in (PLACE, 3 * PLACE):
+        lead(page, place)
+        per_newton, found = arrows(page)
+        assert per_newton * largest == pytest.approx(84.0), "the peak is a fifth of the drawing"
+        assert {joint for joint, _ in found} == set(told["joints"])
+        pins = page.locator(".moving .live .pin").evaluate_all(
+            "all => all.map(one => [+one.cx.baseVal.value, +one.cy.baseVal.value])"
+        )
+        for (joint, on), (begin, force) in found.items():
+            expected = told["joints"][joint][on]
+            assert force == pytest.approx((expected["x"][place], expected["y"][place]), abs=0.02 / per_newton)
+            assert min(math.dist(begin, pin) for pin in pins) < 0.02
+        assert number(page.inner_text(".drive-now output")) == pytest.approx(told["drive"][place], rel=6e-3)
+        assert page.inner_text(".drive-now output").endswith(" N·m")
+        marks = page.locator(".force-plots .mark").evaluate_all("all => all.map(one => +one.getAttribute('x1'))")
+        assert marks == pytest.approx([BOX["left"] + BOX["width"] * place / 360] * len(marks), abs=1e-6)
+        assert len(marks) == 4
+    # The free body of a link has the forces of both its pins.
+    page.select_option("#force-on", "ground")
+    _, found = arrows(page)
+    shaking = told["shaking"]["force"]
+    total = [sum(force[axis] for _, force in found.values()) for axis in (0, 1)]
+    assert total == pytest.approx((shaking["x"][3 * PLACE], shaking["y"][3 * PLACE]), abs=0.1)
+
+    # A click in a plot leads the motion there, and the hodograph goes along.
+    plot = page.locator(".force-plots svg").first
+    plot.scroll_into_view_if_needed()
+    box = plot.bounding_box()
+    page.mouse.click(box["x"] + box["width"] * (BOX["left"] + BOX["width"] * 0.25) / 300, box["y"] + box["height"] / 2)
+    assert float(page.input_value("#scrub")) == pytest.approx(60.0, abs=1.5)
+    lead(page, PLACE)
+    page.select_option("#hodograph-of", label="shaking force")
+    reach = np.hypot(shaking["x"], shaking["y"]).max()
+    dot = page.locator(".hodograph-now").evaluate("dot => [+dot.getAttribute('cx'), +dot.getAttribute('cy')]")
+    seen = [(dot[0] - 150.0) * reach / 120.0, (150.0 - dot[1]) * reach / 120.0]
+    assert seen == pytest.approx((shaking["x"][PLACE], shaking["y"][PLACE]), abs=1e-6 * reach)
+
+    # Peaks, with their units and the inputs at which they stand.
+    rows = page.locator(".peaks tbody tr").evaluate_all(
+        "all => all.map(row => [...row.cells].map(one => one.innerText.trim()))"
+    )
+    extremes = told["extremes"]
+    peaks = {
+        "Drive torque, greatest": (extremes["drive"]["max"], extremes["drive"]["at"], "N·m"),
+        "Drive torque, least": (extremes["drive"]["min"], extremes["drive"]["at_min"], "N·m"),
+        **{f"Pin force {name}": (one["max"], one["at"], "N") for name, one in extremes["joints"].items()},
+        "Shaking force": (*extremes["shaking_force"].values(), "N"),
+        "Shaking moment": (*extremes["shaking_moment"].values(), "N·m"),
+        "Power of the drive": (told["power"]["peak"], None, "W"),
+    }
+    assert [row[0] for row in rows] == list(peaks)
+    for name, value, at, _ in rows:
+        expected, where, unit = peaks[name]
+        assert number(value) == pytest.approx(expected, rel=1e-4)
+        assert value.split()[-1] == unit
+        assert at == "–" if where is None else number(at) == pytest.approx(where, abs=0.051)
+    page.locator(".peaks button").first.click()
+    assert number(page.inner_text(".moving .reading[for=scrub]")) == pytest.approx(extremes["drive"]["at"], abs=0.11)
+    assert page.locator(".gaps li").count() == 0
+    studio.screen("forces")
+    # A phone shows all of it, no wider than itself.
+    page.set_viewport_size({"width": 390, "height": 844})
+    assert page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth") <= 0
+    # Closed, it leaves the motion as it was.
+    page.locator("#forces summary").click()
+    page.wait_for_selector(".moving .force", state="detached")
+    assert page.get_attribute(".moving > .stage .canvas", "viewBox") == "0 0 640 420"
+
+
+def test_where_a_force_is_not_determined_there_is_a_gap_with_its_reason(open_studio, server):
+    studio = open_studio(reduced_motion="reduce")
+    page = studio.page
+    friction = {"pins": {name: {"mu": 0.5, "radius": 20.0} for name in ("O2", "O4", "A", "B")}}
+    solved(studio, {**PLAIN, "dynamics": {**BLOCK, "friction": friction}})
+    answer = forces_of(studio, server)
+    told, inputs = answer["dynamics"], answer["input_angle"]
+    jammed = [k for k, one in enumerate(told["status"]) if one != "ok"]
+    low, high = jammed[0], jammed[-1]
+    assert {told["status"][k] for k in range(low, high + 1)} == {"friction_jam"}
+    assert PLACE < low < high < 360, "one gap within the motion"
+    (gap,) = page.locator(".gaps li").all_inner_texts()
+    said = [float(one.replace("−", "-")) for one in re.findall(r"([−\d.]+)°", gap)]
+    assert said == pytest.approx([inputs[low], inputs[high]], abs=0.051)
+    reason = "it jams by friction"
+    assert gap.endswith(f"° {reason}")
+    lead(page, PLACE)
+    assert page.locator(".force:not([hidden])").count() == 4
+    assert number(page.inner_text(".drive-now output")) == pytest.approx(told["drive"][PLACE], rel=6e-3)
+    assert page.inner_text(".drive-now .note") == ""
+    page.locator(".gaps button").click()
+    assert page.inner_text(".drive-now output") == "–"
+    assert page.inner_text(".drive-now .note") == reason
+    assert page.locator(".force:not([hidden])").count() == 0
+    # Each plot has the gap, in its line too.
+    assert page.locator(".force-plots .plot").count() == page.locator(".force-plots .gap").count() == 4
+    path = page.locator(".force-plots .series").first.get_attribute("d")
+    assert [len(part.split("L")) for part in path.split("M")[1:]] == [low, 360 - high]
+
+
+def test_a_block_that_does_not_fit_a_design_is_told_so(studio):
+    page = studio.page
+    block = {**BLOCK, "point_masses": [{"joint": "Z", "mass": 1.0}]}
+    test_studio.solved(studio, {**PLAIN, "dynamics": block}, shown="#forces .error")
+    assert "/dynamics/point_masses/0/joint: no joint of the mechanism" in page.inner_text("#forces .error")
