@@ -47,6 +47,41 @@ def sixbar(rng: Rng, unit: float = 100.0) -> tuple[dict[str, complex], dict[str,
     return joints, links | {"connecting": ["C", "D"], "rocker": ["O6", "D"]}, at
 
 
+def across(one: complex, other: complex, first: float, second: float) -> complex:
+    """Where circles about two places meet, on the left of the line between them."""
+    apart = abs(other - one)
+    along = (first**2 - second**2 + apart**2) / (2.0 * apart)
+    return one + (other - one) / apart * complex(along, math.sqrt(first**2 - along**2))
+
+
+def crank_rocker(rng: Rng, unit: float = 100.0) -> tuple[dict[str, complex], dict[str, list[str]], float]:
+    """The same of a fourbar whose crank turns through, with room to spare."""
+    while True:
+        crank, *others = rng.uniform(0.3, 0.8), *rng.uniform(1.2, 3.5, 3)
+        if crank + max(others) < 0.9 * (sum(others) - max(others)):
+            break
+    crank, ground, coupler, output = (unit * float(length) for length in (crank, *others))
+    at = rng.uniform(-math.pi, math.pi)
+    a, o4 = cmath.rect(crank, at), complex(ground)
+    joints = {"O2": 0j, "O4": o4, "A": a, "B": across(a, o4, coupler, output)}
+    links = {"ground": ["O2", "O4"], "input": ["O2", "A"], "coupler": ["A", "B"], "output": ["O4", "B"]}
+    return joints, links, math.degrees(at)
+
+
+def turning_sixbar(rng: Rng, unit: float = 100.0) -> tuple[dict[str, complex], dict[str, list[str]], float]:
+    """The same of a crank-rocker with a dyad on its coupler, long enough for all of its curve."""
+    joints, links, at = crank_rocker(rng, unit)
+    c = joints["A"] + (joints["B"] - joints["A"]) * complex(rng.uniform(0.3, 1.0), rng.uniform(-0.4, 0.4))
+    o6 = joints["O4"] + unit * cmath.rect(rng.uniform(0.5, 1.5), rng.uniform(-math.pi, math.pi))
+    far = 2.5 * max(abs(c - o6), *(abs(z - o6) for z in joints.values()))
+    joints |= {"C": c, "O6": o6, "D": across(c, o6, far, 0.9 * far)}
+    links = {**links, "coupler": [*links["coupler"], "C"], "ground": [*links["ground"], "O6"]}
+    return joints, links | {"connecting": ["C", "D"], "rocker": ["O6", "D"]}, at
+
+
+TURNING = (crank_rocker, turning_sixbar)
+
+
 def bodies(rng: Rng, joints: dict[str, complex], links: dict[str, list[str]]) -> Statement:
     """Masses of all moving links, kg, with centres of gravity near them and what inertia such a link has."""
     stated = {}
@@ -76,7 +111,11 @@ def stated(rng: Rng, make: Any = fourbar, **more: Any) -> Statement:
                 "input_link": "input",
             },
         },
-        "motion": {"from": at - AROUND, "to": at + AROUND, "speed_rpm": 300.0},
+        "motion": {
+            "from": at - (0.0 if make in TURNING else AROUND),
+            "to": at + (360.0 if make in TURNING else AROUND),
+            "speed_rpm": 300.0,
+        },
         "dynamics": {"bodies": bodies(rng, joints, links)},
         **more,
     }

@@ -18,7 +18,7 @@ from synthesis.kinds.balancing.minimize import minimum, setting_of
 from synthesis.kinds.balancing.problem import BalancingProblem
 from synthesis.kinds.balancing.verify_minimum import verify_minimum
 from synthesis.numerics.conic import Rows, minimized
-from tests.synthesis.balanced_linkages import fourbar, sixbar, stated
+from tests.synthesis.balanced_linkages import crank_rocker, fourbar, sixbar, stated, turning_sixbar
 
 
 def problem_of(statement: dict[str, Any]) -> BalancingProblem:
@@ -73,7 +73,7 @@ def test_the_force_alone_is_balanced_as_the_exact_goal_balances_it() -> None:
 
 
 @pytest.mark.parametrize("norm", ["max", "rms"])
-@pytest.mark.parametrize("make", [fourbar, sixbar])
+@pytest.mark.parametrize("make", [fourbar, sixbar, crank_rocker, turning_sixbar])
 def test_no_weights_of_the_set_go_below_the_bound(make: Any, norm: str) -> None:
     rng = np.random.default_rng(5)
     statement = least(rng, make)

@@ -70,3 +70,10 @@ def test_places_that_lie_across_end_soon(monkeypatch: pytest.MonkeyPatch, most: 
     found = best_choices(100.0 + 0j, places, most)
     assert not found.proved
     assert abs(found.choices[-1].residual) < 1e-12
+
+
+def test_what_makes_no_difference_is_not_looked_for() -> None:
+    places = [1e-25 * np.exp(1j * (0.5 * n + np.arange(16))) for n in range(12)]
+    found = best_choices(100.0 + 0j, places, 12)
+    assert [choice.picks for choice in found.choices] == [{}]
+    assert found.bound <= abs(found.choices[0].residual) == 100.0

@@ -33,6 +33,10 @@ LEFT_OUT = 50
 """Looked-up sums that take as long as what a branch takes besides."""
 
 
+LOST = 1e-9
+"""All that the places can sum up to, as a share of the target, below which it makes no difference to be told."""
+
+
 class Choice(NamedTuple):
     """Places that are used, each with the number of its contribution; the sum's difference to the target."""
 
@@ -68,6 +72,9 @@ def best_choices(target: complex, places: Sequence[Complex], most: int) -> Chose
     most : int
         Most places that are used.
     """
+    if sum(float(np.abs(contributions).max()) for contributions in places) <= LOST * abs(target):
+        # All sums are one number beside the target.
+        return Chosen([Choice({}, target)], _outside(target, _support(places)), proved=False)
     first, second, rest = _split(range(len(places)), places, most)
     if rest:
         # Not all can be listed: those that reach farthest towards the target are.
