@@ -217,3 +217,12 @@ def test_what_is_balanced_already_is_said_to_be() -> None:
     assert result.search.complete
     assert result.designs[0].counterweights == []
     assert result.designs[0].metrics.value < 1e-12
+
+
+@pytest.mark.parametrize("radius", [10.0, 60.0, 200.0])
+def test_a_weight_that_is_allowed_and_of_no_use_is_left_out(radius: float) -> None:
+    weights = {"links": ["coupler", "input", "output"], "radius": radius}
+    result = solve(problem_of({**examples("balancing")[2], "counterweights": weights}))
+    (design,) = result.designs
+    assert [weight.link for weight in design.counterweights] == ["input", "output"]
+    assert design.metrics.value < 1e-12

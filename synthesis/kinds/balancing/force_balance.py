@@ -47,6 +47,9 @@ DEPENDENT = 1e-11
 NO_WEIGHT = 1e-12
 """Share of the largest first moment below which a weight is left out."""
 
+IDLE = 1e-6
+"""Share of the largest mass below which a weight on a link without a fixed pivot is tolerance of the program."""
+
 MOST_SETS = 200
 """Sets of links that are tried at most."""
 
@@ -159,6 +162,9 @@ class _System:
             if found is None:
                 return None
             moments, masses = found
+            used = [link for link in links if link not in loose or masses[link] > IDLE * max(masses.values())]
+            if len(used) < len(links) and (without := self.weights(used)) is not None:
+                return without
         else:
             carried = sum((self.stated.mass or 0.0) * self.carried[link] for link in loose)
             solved = self._solution(columns, self.total + carried)
