@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
@@ -192,3 +193,15 @@ def test_a_rotor_has_nothing_of_a_linkage(field: dict[str, Any]) -> None:
 def test_a_linkage_has_nothing_of_a_rotor(field: dict[str, Any]) -> None:
     problem = BalancingProblem.model_validate({**examples("balancing")[2], **field})
     assert [fault.path for fault in problem.contradictions()] == [f"/{next(iter(field))}"]
+
+
+def test_planes_that_need_little_have_no_hole_where_few_are_wanted() -> None:
+    """Against all pairs of the planes' own best: one hole in the plane that needs it keeps the grade."""
+    holes = {"angles": 12, "radius": 100.0, "step": 0.001, "max_per_hole": 0.1}
+    masses = [{"mass": 0.1, "radius": 100.0, "angle": 1.0}, {"mass": 0.003, "radius": 100.0, "angle": 40.0, "z": 100.0}]
+    fields = {"masses": masses, "planes": [0.0, 100.0], "correction": {"holes": holes}, "rank_by": "places"}
+    result = solve(stated(**fields, rpm=3000.0, rotor_mass=40.0, max_grade=5.0, max_designs=50))
+    assert [plane.places for plane in result.designs[0].metrics.planes] == [1, 0]
+    pairs = [(design.metrics.places, design.metrics.residual_unbalance) for design in result.designs]
+    assert all(less > more for (_, less), (_, more) in itertools.pairwise(pairs))
+    assert all(few < many for (few, _), (many, _) in itertools.pairwise(pairs))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import itertools
 import math
 from typing import NamedTuple
 
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.dynamics.rotor import influence_coefficients, plane_corrections, unbalances_by_influence
-from synthesis.kinds.balancing.places import best_choices
+from synthesis.kinds.balancing.places import Choice, Chosen, best_choices
 from synthesis.kinds.balancing.problem import BalancingProblem
 from synthesis.kinds.balancing.stated_rotor import Correction, Holes
 from synthesis.model.dynamics import METRES
@@ -99,7 +100,7 @@ def _single(plane: int, moment: complex, stated: Correction | None) -> Weight:
 
 
 def _placed(stated: Correction, needed: Complex) -> list[Balancing]:
-    """Holes or stock weights of each plane, by the most places that a plane uses."""
+    """Holes or stock weights of all planes: the Pareto set of places and residual."""
     placed = stated.placed
     assert placed is not None
     sign = -1.0 if stated.holes is not None else 1.0
@@ -115,13 +116,11 @@ def _placed(stated: Correction, needed: Complex) -> list[Balancing]:
     ]
     most = min(placed.max_places or len(axes), len(axes))
     chosen = [best_choices(complex(moment), contributions, most) for moment in needed]
-    counts = sorted({len(choice.picks) for plane in chosen for choice in plane.choices}, reverse=True)
     ways = []
-    for count in counts:
+    for together in _fronts(chosen):
         weights = []
-        for plane, found in enumerate(chosen):
-            fitting = [choice for choice in found.choices if len(choice.picks) <= count]
-            for axis, pick in sorted(fitting[-1].picks.items()):
+        for plane, choice in enumerate(together):
+            for axis, pick in sorted(choice.picks.items()):
                 angle, mass = options[axis][pick]
                 moment = complex(contributions[axis][pick])
                 weights.append(Weight(plane, moment, angle, mass, placed.radius, stated.holes is not None))
@@ -129,6 +128,22 @@ def _placed(stated: Correction, needed: Complex) -> list[Balancing]:
             Balancing(weights, needed, [plane.bound for plane in chosen], all(plane.proved for plane in chosen))
         )
     return ways
+
+
+def _fronts(chosen: list[Chosen]) -> list[tuple[Choice, ...]]:
+    """Choices of all planes that no others beat by places and residual in sum, the least residual first."""
+    combined = sorted(
+        itertools.product(*(plane.choices for plane in chosen)),
+        key=lambda choices: (sum(len(one.picks) for one in choices), sum(abs(one.residual) for one in choices)),
+    )
+    front: list[tuple[Choice, ...]] = []
+    least = math.inf
+    for choices in combined:
+        residual = sum(abs(one.residual) for one in choices)
+        if residual < least:
+            front.append(choices)
+            least = residual
+    return front[::-1]
 
 
 def _axes(directions: list[float]) -> list[list[float]]:
