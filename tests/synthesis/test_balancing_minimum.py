@@ -200,3 +200,25 @@ def test_gyration_is_limited_where_the_inertia_does_not_count(disc: dict[str, fl
     for weight in design.counterweights:
         about = weight.inertia * 1e6 + weight.mass * weight.radius**2
         assert about <= weight.mass * 20.0**2 * 1.002
+
+
+def test_forces_that_redundant_constraints_leave_open_are_no_objective() -> None:
+    joints = {"O2": [0, 0], "O4": [280, 0], "O6": [140, 0], "A": [60, 80], "B": [340, 80], "C": [200, 80]}
+    links = {"ground": ["O2", "O4", "O6"], "input": ["O2", "A"], "coupler": ["A", "B", "C"]}
+    links |= {"output": ["O4", "B"], "third": ["O6", "C"]}
+    listed = [{"name": name, "joints": of} for name, of in links.items()]
+    skeleton = {"joints": joints, "links": listed, "slides": [], "gears": [], "input_link": "input"}
+    statement = {
+        "kind": "balancing",
+        "object": "linkage",
+        "goal": "minimize",
+        "objective": {"joint_forces": {"C": 1.0}},
+        "mechanism": {"type": "skeleton", "skeleton": skeleton},
+        "motion": {"speed_rpm": 300.0, "start": 40.0, "end": 60.0},
+        "dynamics": {"bodies": {"coupler": {"mass": 1.0, "cg": [200, 90], "inertia": 0.01}}},
+        "counterweights": {"total_mass": 4.0},
+    }
+    result = solve(problem_of(statement))
+    assert not result.designs
+    assert not result.search.complete
+    assert "redundant constraints" in result.summary

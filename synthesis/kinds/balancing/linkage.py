@@ -7,7 +7,7 @@ from functools import partial
 from synthesis.kinds.balancing.design import BalancedDesign, BalancingResult
 from synthesis.kinds.balancing.driven import Task, placed, task_of
 from synthesis.kinds.balancing.force_balance import Weight, balanceable, force_balances, unpinned
-from synthesis.kinds.balancing.minimize import NothingToReduce, minimum, setting_of
+from synthesis.kinds.balancing.minimize import NothingToReduce, Undetermined, minimum, setting_of
 from synthesis.kinds.balancing.moment_balance import NoMomentBalance, moment_balance
 from synthesis.kinds.balancing.problem import BalancingProblem
 from synthesis.kinds.balancing.verify_linkage import verify_linkage
@@ -65,6 +65,11 @@ def _least(
         setting = setting_of(problem, task)
     except NothingToReduce as error:
         return _answer(problem, sifting, f"The {error} is zero without counterweights; leave it out.", complete=False)
+    except Undetermined:
+        summary = (
+            "Forces in joints that redundant constraints leave open cannot be minimized or capped; drop them."
+        )
+        return _answer(problem, sifting, summary, complete=False)
     progress(0.4, "solving the conic programs")
     found = minimum(setting, task)
     if found.violated:

@@ -73,6 +73,10 @@ class NothingToReduce(ValueError):
     """A quantity that counts and is zero without weights."""
 
 
+class Undetermined(ValueError):
+    """What counts or has a cap is known at no position: redundant constraints leave forces in joints open."""
+
+
 def setting_of(problem: BalancingProblem, task: Task) -> Setting:
     """Quantities over the grid, and the limits of the weights.
 
@@ -80,6 +84,8 @@ def setting_of(problem: BalancingProblem, task: Task) -> Setting:
     ------
     NothingToReduce
         Where a quantity that counts is zero.
+    Undetermined
+        Where the quantities are known at no position.
     """
     machine, stated = task.machine, problem.counterweights
     scale, mechanism = machine.scale, machine.mechanism
@@ -90,6 +96,8 @@ def setting_of(problem: BalancingProblem, task: Task) -> Setting:
     counted = {**problem.objective.joint_forces, **problem.caps.joint_forces}
     found = quantities(machine, now, links, list(counted))
     known = np.isfinite(np.concatenate([part.fixed[None] for parts in found.values() for part in parts])).all(axis=0)
+    if not known.any():
+        raise Undetermined
     mass = sum(float(part.mass) for part in machine.bodies.values()) + sum(map(float, machine.pin_masses.values()))
     places = np.array([scale * complex(z) for z in mechanism.joints.values()])
     size = float(np.abs(places[:, None] - places).max())
