@@ -66,9 +66,7 @@ def _least(
     except NothingToReduce as error:
         return _answer(problem, sifting, f"The {error} is zero without counterweights; leave it out.", complete=False)
     except Undetermined:
-        summary = (
-            "Forces in joints that redundant constraints leave open cannot be minimized or capped; drop them."
-        )
+        summary = "Forces in joints that redundant constraints leave open cannot be minimized or capped; drop them."
         return _answer(problem, sifting, summary, complete=False)
     progress(0.4, "solving the conic programs")
     found = minimum(setting, task)
