@@ -34,10 +34,15 @@ export function forcesIn(answer, skeleton, slides) {
   })];
 }
 
-/** One force for each joint, on a moving link, and one for each slide, on its pin. @param {Force[]} forces */
+/** One force for each joint, on the moving link that bears most there, and one for each slide, on its pin. @param {Force[]} forces */
 function once(forces) {
-  const pinned = forces.filter(({ on }) => on !== "ground" && !on.startsWith("pin "));
+  const pinned = forces.filter(({ on }) => on !== "ground" && !on.startsWith("pin ")).sort((one, other) => peakOf(other) - peakOf(one));
   return [...pinned.filter(({ joint }, k) => pinned.findIndex((other) => other.joint === joint) === k), ...forces.filter(({ on }) => on.startsWith("pin "))];
+}
+
+/** @param {Force} force */
+function peakOf({ x, y }) {
+  return x.reduce((/** @type {number} */ most, one, k) => (one === null ? most : Math.max(most, Math.hypot(one, Number(y[k])))), 0);
 }
 
 export class ForceArrows {
@@ -50,7 +55,7 @@ export class ForceArrows {
     this.view = view;
     this.placeAt = placeAt;
     this.forces = forces;
-    this.peak = forces.reduce((most, { x, y }) => x.reduce((/** @type {number} */ high, one, k) => (one === null ? high : Math.max(high, Math.hypot(one, Number(y[k])))), most), 0);
+    this.peak = Math.max(0, ...forces.map(peakOf));
     /** Pixels for a unit of force. */
     this.scale = this.peak > 0 ? (SHARE * view.height) / this.peak : 0;
     this.beyond = this.reach(tracks);

@@ -4,6 +4,7 @@ import * as api from "./api.js";
 import { el, shown, words } from "./dom.js";
 import { ForceArrows, forcesIn } from "./force_arrows.js";
 import { Hodograph } from "./hodograph.js";
+import { LoadEditor } from "./load_editor.js";
 import { between, within } from "./player.js";
 import { brief, plots, runs } from "./plots.js";
 import { placeOf } from "./sweep.js";
@@ -51,17 +52,21 @@ export class Forces {
     this.hodograph = el("div", { class: "plots" });
     this.outside = el("span", { class: "note" });
     this.pictures = el("div", { class: "borne" });
-    place.replaceChildren(this.pictures);
+    // What a design with masses of its own weighs is not for the page to say.
+    this.editor = this.design.dynamics ? null : new LoadEditor(this.design.mechanism.skeleton, job.problem, this.sliding, (block) => this.ask(block));
+    place.replaceChildren(...(this.editor ? [this.editor.node] : []), this.pictures);
+    this.editor?.attach(mover);
     const { forces } = this.design;
     // A remark that begins with a field says that the block does not fit the design, and there is nothing to ask for.
     if (forces?.remark?.startsWith("/")) this.pictures.replaceChildren(el("p", { class: "error" }, `The design has no forces: ${forces.remark}.`));
-    else if (job.problem.dynamics ?? this.design.dynamics) this.ask(null).catch((error) => this.fail(error));
-    else this.pictures.replaceChildren(el("p", { class: "note" }, "The problem does not state what the linkage weighs and carries: its forces are not known."));
+    else if (job.problem.dynamics ?? this.design.dynamics) {
+      this.pictures.replaceChildren(el("p", { class: "note" }, "The forces are being computed …"));
+      this.ask(null).catch((error) => this.fail(error));
+    } else this.pictures.replaceChildren(el("p", { class: "note" }, "The problem does not state what the linkage weighs and carries: its forces are not known until that is stated above."));
   }
 
   /** Ask for the forces and show them. @param {any} block null for that of the problem */
   async ask(block) {
-    if (!this.answer) this.pictures.replaceChildren(el("p", { class: "note" }, "The forces are being computed …"));
     const answer = await api.forces(this.job.id, this.n, STEPS, block, this.gone.signal);
     if (this.gone.signal.aborted) return;
     this.answer = answer;
@@ -77,6 +82,7 @@ export class Forces {
   /** Let the pictures go with a motion, or with none. @param {Mover | null} mover */
   attach(mover) {
     this.mover = mover;
+    this.editor?.attach(mover);
     this.put();
   }
 
@@ -243,6 +249,7 @@ export class Forces {
 
   stop() {
     this.gone.abort();
+    this.editor?.attach(null);
     this.mover?.accompany(null);
   }
 }

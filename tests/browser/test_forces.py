@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from tests.browser import test_studio
+from tests.browser.test_accessibility import serious
 from tests.browser.test_studio import PLAIN
+from tests.service.running import until
 
 pytestmark = pytest.mark.browser
 
@@ -139,7 +141,7 @@ def test_arrows_and_cursors_say_what_the_service_says(open_studio, server):
     page.set_viewport_size({"width": 390, "height": 844})
     assert page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth") <= 0
     # Closed, it leaves the motion as it was.
-    page.locator("#forces summary").click()
+    page.locator("#forces summary").first.click()
     page.wait_for_selector(".moving .force", state="detached")
     assert page.get_attribute(".moving > .stage .canvas", "viewBox") == "0 0 640 420"
 
@@ -177,5 +179,112 @@ def test_where_a_force_is_not_determined_there_is_a_gap_with_its_reason(open_stu
 def test_a_block_that_does_not_fit_a_design_is_told_so(studio):
     page = studio.page
     block = {**BLOCK, "point_masses": [{"joint": "Z", "mass": 1.0}]}
-    test_studio.solved(studio, {**PLAIN, "dynamics": block}, shown="#forces .error")
-    assert "/dynamics/point_masses/0/joint: no joint of the mechanism" in page.inner_text("#forces .error")
+    test_studio.solved(studio, {**PLAIN, "dynamics": block}, shown=".borne .error")
+    assert "/dynamics/point_masses/0/joint: no joint of the mechanism" in page.inner_text(".borne .error")
+
+
+def test_a_load_is_stated_on_the_drawing_and_a_fault_is_told_at_its_field(open_studio, server):
+    studio = open_studio(reduced_motion="reduce")
+    page = studio.page
+    test_studio.solved(studio, PLAIN, shown=".moving .live .link")
+    page.locator("#forces summary").first.press("Enter")
+    assert "not known until that is stated" in page.inner_text(".borne")
+    assert page.locator(".peaks").count() == 0, "nothing is shown that nobody has stated"
+    for path, value in {"speed_rpm": 60, "links/density": 7800, "links/thickness": 10, "links/width": 2}.items():
+        page.fill(f'[data-path="/dynamics/{path}"]', str(value))
+    block = {
+        "gravity": {"magnitude": 9.80665, "angle": 270.0},
+        "speed_rpm": 60.0,
+        "links": STEEL,
+        "point_masses": [],
+        "loads": [],
+    }
+
+    def torques():
+        page.wait_for_selector(".moving .force")
+        lead(page, PLACE)
+        told = forces_of(studio, server, {"dynamics": block})["dynamics"]["drive"][PLACE]
+        until(lambda: number(page.inner_text(".drive-now output")) == pytest.approx(told, rel=6e-3), what="the torque")
+        return told
+
+    page.press('[data-path="/dynamics/speed_rpm"]', "Enter")
+    bare = torques()
+
+    # A force where the drawing is clicked, and a mass at a joint from the list.
+    page.click("text=Add a force")
+    pins = page.locator(".moving .live .pin")
+    joints = page.locator(".moving .live text").all_text_contents()
+    pins.nth(joints.index("B")).scroll_into_view_if_needed()
+    box = pins.nth(joints.index("B")).bounding_box()
+    page.mouse.click(box["x"] + box["width"] / 2 + 3, box["y"] + box["height"] / 2)
+    assert page.input_value('[data-path="/dynamics/loads/0/joint"]') == "B"
+    assert page.locator('.load-editor [aria-pressed="true"]').count() == 0
+    page.fill('[data-path="/dynamics/loads/0/force/constant/1"]', "-50")
+    page.click("text=Add a point mass")
+    page.select_option('[data-path="/dynamics/point_masses/0/joint"]', "A")
+    page.fill('[data-path="/dynamics/point_masses/0/mass"]', "0.5")
+    page.click("text=Add a torque")
+    page.select_option('[data-path="/dynamics/loads/1/link"]', "output")
+    page.fill('[data-path="/dynamics/loads/1/torque/constant"]', "1.5")
+    block["loads"] = [
+        {"joint": "B", "force": {"constant": [0.0, -50.0]}},
+        {"link": "output", "torque": {"constant": 1.5}},
+    ]
+    block["point_masses"] = [{"joint": "A", "mass": 0.5}]
+    page.click("text=Show the forces")
+    loaded = torques()
+    assert abs(loaded - bare) > 0.1 * abs(bare)
+
+    # What is wrong is said at its field, in words, and the field has the focus.
+    page.fill('[data-path="/dynamics/point_masses/0/mass"]', "-1")
+    page.fill('[data-path="/dynamics/links/thickness"]', "")
+    page.click("text=Show the forces")
+    page.wait_for_selector('[data-path="/dynamics/links"][aria-invalid="true"]')
+    mass = page.locator(".field", has=page.locator('> [data-path="/dynamics/point_masses/0/mass"]'))
+    assert "greater than or equal to 0" in mass.locator("> .error").inner_text()
+    assert "has a thickness" in page.inner_text('[data-path="/dynamics/links"] > .error')
+    assert "what was stated before" in page.inner_text(".load-editor")
+    page.set_viewport_size({"width": 390, "height": 844})
+    assert page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth") <= 0
+    assert serious(page) == []
+    assert [text for text in studio.wrong if "422" not in text] == []
+    studio.wrong.clear()
+    studio.screen("forces-stated")
+
+
+QUICK_RETURN = {"kind": "quick_return", "time_ratio": 1.25, "stroke": 45.0, "max_designs": 1}
+PUSHED = {**PLAIN, "input_side": {"dyad": "PR"}, "output_side": {}, "max_designs": 1}
+"""Driven by a slide."""
+
+
+def test_the_line_of_a_slide_pushes_its_pin_as_the_pin_pushes_its_link(open_studio, server):
+    studio = open_studio(reduced_motion="reduce")
+    page = studio.page
+    solved(studio, {**QUICK_RETURN, "dynamics": {"links": STEEL, "speed_rpm": 600.0}})
+    told = forces_of(studio, server)["dynamics"]
+    for place in (PLACE, 3 * PLACE):
+        lead(page, place)
+        per_newton, found = arrows(page)
+        lines = {joint: force for (joint, on), (_, force) in found.items() if on == f"pin {joint}"}
+        assert set(lines) == {one["joint"] for one in told["slides"]} == {"A", "D"}
+        for joint, force in lines.items():
+            # Without mass a pin hands on what the line does to it; the rocker's line turns, and so does the force.
+            (other,) = [force for (at, on), (_, force) in found.items() if at == joint and on != f"pin {joint}"]
+            assert force == pytest.approx(other, abs=0.05 / per_newton)
+        assert math.hypot(*lines["A"]) * per_newton > 10.0, "an arrow that can be seen"
+
+
+def test_a_slide_that_drives_has_a_force_over_its_place(open_studio, server):
+    studio = open_studio(reduced_motion="reduce")
+    page = studio.page
+    solved(studio, {**PUSHED, "dynamics": {"links": STEEL, "speed": 500.0}})
+    extremes = forces_of(studio, server)["dynamics"]["extremes"]["drive"]
+    # The design moves beyond what it was verified along; there it has no forces.
+    page.keyboard.press("Home")
+    assert "the range that the design was verified along" in page.inner_text(".drive-now .note")
+    assert page.locator(".force:not([hidden])").count() == 0
+    page.locator(".peaks button").first.click()
+    assert number(page.inner_text(".drive-now output")) == pytest.approx(extremes["max"], rel=2e-2)
+    assert page.inner_text(".drive-now output").endswith(" N")
+    assert page.locator(".force:not([hidden])").count() > 0
+    assert {text.split()[-1] for text in page.locator(".peaks button").all_inner_texts()} == {"mm"}
