@@ -53,6 +53,22 @@ def test_third_crank_leads_through_the_change_point(pivot: complex) -> None:
     assert mechanism.counted_mobility == 0
 
 
+def test_parallel_cranks_stay_parallel_beside_their_change_points() -> None:
+    """Half a degree from it the dyad's other assembly misses the third crank by a millionth of the size only."""
+    joints = {"O2": 0.0, "O4": 140.0, "O6": 280.0, "A": 60 + 80j, "C": 200 + 80j, "B": 340 + 80j}
+    links = {"ground": ("O2", "O4", "O6"), "first": ("O2", "A"), "second": ("O4", "C"), "third": ("O6", "B")}
+    three = Mechanism(joints, {**links, "bar": ("A", "C", "B")}, "first")
+    beside = 180.0 + np.array([-0.5, -0.1, -0.02, 0.02, 0.1, 0.5])
+    inputs = np.radians(np.concatenate([np.arange(1.0, 360.0, 2.0), beside]))
+    motion = drive(three, inputs, order=2)
+    assert motion.smooth.all()
+    for crank in ("second", "third"):
+        angle, speed, acceleration = motion.angles[crank]
+        np.testing.assert_allclose(np.exp(1j * angle), np.exp(1j * inputs), atol=1e-9)
+        np.testing.assert_allclose(speed, 1.0, atol=1e-9)
+        np.testing.assert_allclose(acceleration, 0.0, atol=1e-4)  # rounding, over the square of the way to it
+
+
 def test_bar_on_three_parallel_slides() -> None:
     """It moves along them and does not turn, whatever its two assemblies at two of the slides are."""
     joints = {"A": 0j, "B": 2.0 + 0.5j, "C": 1.0 + 1.0j}

@@ -19,6 +19,16 @@ NEAR = 1e-2
 """Misfit of the constraints, as a share of the size, up to which a position is near: a dyad of rounded dimensions is
 off by their root at its change point."""
 
+EXACT = 1e-12
+"""Misfit of dimensions that agree to rounding: a position that has it needs no comparison with others."""
+
+OTHER = 1e-6
+"""Difference of two poses, as a share of the size or in radians, from which they are two."""
+
+CLEARLY = 1e-3
+"""Of two poses that both meet the constraints of rounded dimensions, as beside a change point, that with less than this
+share of the other's misfit is the true one. Otherwise it is not known which is."""
+
 Start = tuple[dict[str, Complex], dict[str, Real]]
 """Joints and angles by name, each of shape (1,) + S + (N,)."""
 
@@ -65,7 +75,7 @@ def settle(
         moved[0] += constraints.given(constraints.reference)[0]
     poses = Poses.unknown(length, len(constraints.links), len(each))
     closed = None
-    valid, least = np.zeros(len(each), np.bool_), np.full(len(each), np.nan)
+    best, rival, least = np.full(len(each), np.inf), np.full(len(each), np.inf), np.full(len(each), np.nan)
     for joints, angles in starts:
         near = Poses(
             np.stack([(joints[base].ravel() - origin) / size for base in constraints.bases])[None],
@@ -73,15 +83,22 @@ def settle(
         )
         misfit = constraints.misfit(near, moved[:1])
         closed = np.isfinite(misfit) if closed is None else closed
-        left = np.flatnonzero(~valid & closed & (misfit <= NEAR))
+        left = np.flatnonzero((best > EXACT) & closed & (misfit <= NEAR))
         if not len(left):
             continue
         found, misfit, smallest = mechanism.constraints(each[left]).settled(near.take(left), moved[:, left])
         met = misfit <= CONSISTENT
-        poses.put(left[met], found.take(met))
-        valid[left[met]], least[left[met]] = True, smallest[met]
-        if valid.all():
+        at, found, misfit, smallest = left[met], found.take(met), misfit[met], smallest[met]
+        nearer = misfit < best[at]
+        other = poses.apart(at, found) > OTHER
+        rival[at[other]] = np.minimum(rival[at], np.maximum(misfit, best[at]))[other]
+        poses.put(at[nearer], found.take(nearer))
+        best[at], least[at[nearer]] = np.minimum(misfit, best[at]), smallest[nearer]
+        if (best <= EXACT).all():
             break
+    valid = (best <= CONSISTENT) & ((rival > CONSISTENT) | (best <= np.maximum(CLEARLY * rival, EXACT)))
+    for jet in poses:
+        jet[:, :, ~valid] = np.nan
     smooth = valid & (least > SINGULAR)
     for jet in poses:
         jet[1:, :, ~smooth] = np.nan

@@ -1,10 +1,10 @@
-"""Balancing: corrections of rotors."""
+"""Balancing: corrections of rotors, and counterweights of linkages."""
 
 from __future__ import annotations
 
 from synthesis.kinds.balancing.design import BalancingResult
 from synthesis.kinds.balancing.problem import BalancingProblem
-from synthesis.model.kind import Kind, Progress, always
+from synthesis.model.kind import Kind, Progress
 
 __all__ = ["KIND"]
 
@@ -15,4 +15,10 @@ def _solve(problem: BalancingProblem, progress: Progress) -> BalancingResult:
     return solve_balancing(problem, progress)
 
 
-KIND = Kind("balancing", BalancingProblem, BalancingResult, _solve, brief=always)
+def _brief(problem: BalancingProblem) -> bool:
+    """Holes and weights in stock are searched among."""
+    correction = problem.correction
+    return correction is None or (correction.holes is None and correction.stock is None)
+
+
+KIND = Kind("balancing", BalancingProblem, BalancingResult, _solve, brief=_brief)
