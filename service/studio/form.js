@@ -96,8 +96,13 @@ function field(sheet, schema, name, owner, path, required) {
       return labelled(name, unit, `${note} As in 20, 24 × 3, 30.`, path, required, stockBox(value, set));
     case "table":
       return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () => {
-        if (!Array.isArray(owner[name])) owner[name] = [];
-        return [table(sheet, what.item ?? {}, owner[name], path, what.count)];
+        // A list that is only looked at is not stated: it becomes part of the problem with its first row.
+        const rows = Array.isArray(owner[name]) ? owner[name] : [];
+        const rebuild = () => {
+          if (rows.length) owner[name] = rows;
+          sheet.rebuild();
+        };
+        return [table({ ...sheet, rebuild }, what.item ?? {}, rows, path, what.count)];
       });
     case "object":
       return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () => {

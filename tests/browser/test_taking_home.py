@@ -38,12 +38,13 @@ FIELDS = {
     "layshaft_gearbox": ("ratios", "3.4, 2.2, 1.5, 1", [3.4, 2.2, 1.5, 1]),
     "function": ("input_range", "85", 85),
     "cam": ("follower/roller_radius", "9", 9),
+    "balancing": ("rpm", "900", 900),
     "flywheel": ("coefficient", "0.06", 0.06),
     "engine": ("stroke", "74", 74),
 }
 
 # What has no motion over a cycle: of several speeds one is engaged at a time, and shafts just turn.
-STILL = {"gearbox", "layshaft_gearbox", "flywheel", "engine"}
+STILL = {"gearbox", "layshaft_gearbox", "balancing", "flywheel", "engine"}
 
 
 def reveal(page, path):
