@@ -19,6 +19,7 @@ import math
 import statistics
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -220,8 +221,8 @@ def dyads(count: int, seed: int) -> None:
         rates = [
             one.size / cpu_of(work)
             for one, work in (
-                (inputs, lambda: dyad_forces(machine, inputs, SPEED)),  # noqa: B023
-                (inputs[:100], lambda: Twin(some, inputs[:100], SPEED)),  # noqa: B023
+                (inputs, partial(dyad_forces, machine, inputs, SPEED)),
+                (inputs[:100], partial(Twin, some, inputs[:100], SPEED)),
                 (inputs[:100], by_equations),
             )
         ]

@@ -283,10 +283,7 @@ _DWELLS: dict[str, Make] = {f"dwell_{output}": partial(_dwell, output) for outpu
 CHAINS = 30
 """Makes of dyad chains that are drawn."""
 
-CHAIN: dict[str, Make] = {
-    f"dyad chain {k}": lambda rng, n, k=k: dyad_chain(rng, n, 4 + k % 7)  # type: ignore[misc]
-    for k in range(CHAINS)
-}
+CHAIN: dict[str, Make] = {f"dyad chain {k}": partial(dyad_chain, links=4 + k % 7) for k in range(CHAINS)}
 """Dyad chains of four to ten links."""
 
 EVERY = DYADIC | CLASS_THREE | _DWELLS

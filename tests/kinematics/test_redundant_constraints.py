@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -153,9 +155,9 @@ def test_designs_of_one_make_are_driven_together() -> None:
         (lambda: geared(1.1), "do not agree"),
     ],
 )
-def test_dimensions_that_do_not_agree_are_no_mechanism(make: object, told: str) -> None:
+def test_dimensions_that_do_not_agree_are_no_mechanism(make: Callable[[], Mechanism], told: str) -> None:
     with pytest.raises(TopologyError, match=told):
-        make()  # type: ignore[operator]
+        make()
 
 
 def test_circuits_are_not_listed() -> None:

@@ -37,9 +37,10 @@ def stated(count: int, layout: Statement, strokes: int = 4, **changes: Any) -> S
 
 
 def answered(count: int, layout: Statement, strokes: int = 4, **changes: Any) -> EngineResult:
-    problem: Any = parse_problem(stated(count, layout, strokes, **changes))
-    result: Any = solve(problem, lambda fraction, message: None)
-    return result  # type: ignore[no-any-return]
+    problem = parse_problem(stated(count, layout, strokes, **changes))
+    result = solve(problem, lambda fraction, message: None)
+    assert isinstance(result, EngineResult)
+    return result
 
 
 def only(count: int, layout: Statement, strokes: int = 4, **changes: Any) -> EngineDesign:
@@ -318,7 +319,8 @@ def book_engine(given: dict[str, Any], **changes: Any) -> EngineProblem:
         }
         | changes
     )
-    return problem  # type: ignore[no-any-return]
+    assert isinstance(problem, EngineProblem)
+    return problem
 
 
 BALANCES = cases("engine_balance", "dynamics")

@@ -81,7 +81,7 @@ def test_a_trapezium_by_hand() -> None:
 def test_a_torque_that_repeats_after_two_turns() -> None:
     """At every angle as before, but seen over twice the angle: all areas are twice as large."""
     once = asked()
-    wide = {"table": [[2.0 * angle, torque] for angle, torque in SINE["table"]], "interpolation": "periodic_cubic"}  # type: ignore[misc]
+    wide = {"table": [[2.0 * angle, torque] for angle, torque in SINE["table"]], "interpolation": "periodic_cubic"}
     twice = asked(torque={**wide, "turns": 2})
     assert twice.energy == pytest.approx(2.0 * once.energy, rel=1e-9)
     assert twice.inertia == pytest.approx(2.0 * once.inertia, rel=1e-6)
