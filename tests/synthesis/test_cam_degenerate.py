@@ -40,8 +40,8 @@ def polynomial(*values):
 REST = {"v": 0.0, "a": 0.0}
 
 REFUSED = {
-    "lift zero": (cam(0.0), "/segments/1/rise/lift"),
-    "lift not a number": (cam(math.nan), "/segments/1/rise/lift"),
+    "lift zero": (cam(0.0), "/segments/1/lift"),
+    "lift not a number": (cam(math.nan), "/segments/1/lift"),
     "one dwell": (cam(segments=[{"motion": "dwell", "angle": 360.0}]), "/segments"),
     "dwells": (cam(segments=[{"motion": "dwell", "angle": 180.0}] * 2), "/segments"),
     "level polynomial": (polynomial((0.0, {"s": 5.0})), "/segments"),
@@ -52,7 +52,7 @@ REFUSED = {
     ),
     "one rise": (cam(segments=[{"motion": "rise", "angle": 360.0, "lift": 5.0, "law": "cycloidal"}]), "/segments/0"),
     "359.999 degrees": (cam(angles=(90.0, 90.0, 90.0, 89.999)), "/segments"),
-    "an instant": (cam(angles=(90.0, 1e-9, 90.0, 180.0 - 1e-9)), "/segments/1/rise/angle"),
+    "an instant": (cam(angles=(90.0, 1e-9, 90.0, 180.0 - 1e-9)), "/segments/1/angle"),
     "roller larger than prime circle": (cam(follower=ROLLER | {"prime_radius": 9.0}), "/follower/prime_radius"),
     "offset beyond prime circle": (
         cam(follower=ROLLER | {"prime_radius": 40.0, "offset": -50.0}),
@@ -67,14 +67,23 @@ REFUSED = {
 }
 
 
+def stated_at(location, value):
+    """The pointer of a fault: of its location the steps that the statement has, not the members of unions tried."""
+    pointer = ""
+    for step in location:
+        if isinstance(step, int) or (isinstance(value, dict) and step in value):
+            pointer, value = f"{pointer}/{step}", value[step]
+    return pointer
+
+
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_makes_no_sense_is_refused_with_its_field(name):
     statement, path = REFUSED[name]
     try:
         found = [contradiction.path for contradiction in parse_problem(statement).contradictions()]
     except ValidationError as error:
-        found = ["/" + "/".join(str(part) for part in one["loc"][1:]) for one in error.errors()]
-    assert any(f"{one}/".startswith(f"{path}/") for one in found)  # a member of a union is named after its field
+        found = [stated_at(one["loc"][1:], statement) for one in error.errors()]
+    assert path in found
 
 
 ANSWERED = {
