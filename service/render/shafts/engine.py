@@ -82,6 +82,8 @@ def _tables(design: EngineDesign, problem: EngineProblem) -> list[blocks.Block]:
         ("radius of the crank", f"{length(mechanism.crank)} {unit}"),
         ("rod", f"{length(mechanism.rod)} {unit}"),
         ("throws", ", ".join(angle(phase) for phase in mechanism.throws)),
+        ("moments of harmonics, forces", f"about the {problem.moment_about.replace('_', ' ')}"),
+        ("moments of metrics", "about the middle"),
     ]
     orders = [
         (f"order {k}", "-".join(map(str, order.order))) for k, order in enumerate(firing.orders[:SHOWN_ORDERS], 1)
