@@ -64,6 +64,7 @@ def test_parallel_cranks_stay_parallel_beside_their_change_points() -> None:
     inputs = np.radians(np.concatenate([np.arange(1.0, 360.0, 2.0), beside]))
     motion = drive(three, inputs, order=2)
     assert motion.smooth.all()
+    assert not drive(three, np.radians([180.001]), order=2).smooth.any(), "rounding alone would be an acceleration"
     for crank in ("second", "third"):
         angle, speed, acceleration = motion.angles[crank]
         np.testing.assert_allclose(np.exp(1j * angle), np.exp(1j * inputs), atol=1e-9)

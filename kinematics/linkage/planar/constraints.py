@@ -49,8 +49,9 @@ with the root of the distance. At an end where constraints disagree it is what i
 MOST_TURN = 0.5
 """Rotation of a link in one step, radians, beyond which another assembly might have been come upon."""
 
-SINGULAR = 1e-7
-"""Least singular value, as a share of the largest, below which rates are undefined."""
+SINGULAR = 1e-6
+"""Least singular value, as a share of the largest, below which rates are undefined: accelerations go with rounding over
+its square, and are known to a hundred-thousandth above it."""
 
 PASSES = 60
 """Steps of Gauss's and Newton's method at most. From a dyad's position two do as a rule; near a change point every step
