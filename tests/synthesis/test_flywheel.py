@@ -96,6 +96,16 @@ def test_what_an_engine_gives_is_what_a_machine_takes_negative() -> None:
     assert same_side.inertia != pytest.approx(demand.inertia, rel=1e-7)
 
 
+def test_the_summary_has_units_where_the_statement_has() -> None:
+    _, result = answered()
+    metrics = result.designs[0].metrics
+    told = f"mass {metrics.mass:.6g} kg and inertia {metrics.inertia:.6g} kg·m²;"
+    assert told in result.summary
+    assert f"by {asked().energy:.6g} J over" in result.summary
+    _, plain = answered(units="consistent")
+    assert not any(unit in plain.summary for unit in (" J", " kg", "m²"))
+
+
 def test_what_the_shaft_has_is_not_built_again() -> None:
     bare = asked().inertia
     assert asked(existing_inertia=0.1).inertia == pytest.approx(bare - 0.1)

@@ -103,7 +103,8 @@ def _wheel(
 
 
 def _summary(problem: FlywheelProblem, asked: Fluctuation, sifting: Sifting[FlywheelDesign]) -> str:
-    text = [f"The energy fluctuates by {asked.energy:.6g} over a cycle."]
+    joule, kilogram, inertia = (" J", " kg", " kg·m²") if problem.units == "si" else ("", "", "")
+    text = [f"The energy fluctuates by {asked.energy:.6g}{joule} over a cycle."]
     if asked.mean_torque < 0.0:
         text.append("The mean torque is negative: on average the shaft is driven from the other side.")
     if asked.inertia == 0.0:
@@ -112,7 +113,7 @@ def _summary(problem: FlywheelProblem, asked: Fluctuation, sifting: Sifting[Flyw
         best = min(sifting.passed, key=lambda design: design.metrics.mass)
         limits = ", ".join(best.metrics.at_limits).replace("_", " ")
         text.append(
-            f"The lightest wheel is a {best.mechanism.form} of mass {best.metrics.mass:.6g} "
-            f"and inertia {best.metrics.inertia:.6g}; it stands at its limits of {limits}."
+            f"The lightest wheel is a {best.mechanism.form} of mass {best.metrics.mass:.6g}{kilogram} "
+            f"and inertia {best.metrics.inertia:.6g}{inertia}; it stands at its limits of {limits}."
         )
     return " ".join(text) + sifting.reasons()
