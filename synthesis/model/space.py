@@ -90,6 +90,11 @@ class Space(Statement):
         zoned = any(side is not None and (side.input or side.output) for side in sides)
         return self.swept or zoned
 
+    @property
+    def empty(self) -> bool:
+        """Whether there is nothing that a linkage would be held against."""
+        return not self.swept and self.fixed_pivots is None and self.moving_pivots is None
+
     def carried(self, first: complex, place: complex, turn: complex) -> Self:
         """The same room where the body is elsewhere in its first position: what is drawn on the body goes with it.
 

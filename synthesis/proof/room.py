@@ -28,7 +28,7 @@ def judged_by_room(problem: StatedProblem, design: Design) -> Design | None:
     -------
     The design, or None where no mechanism can be built from what it states.
     """
-    if not isinstance(problem, LinkageProblem) or problem.space is None:
+    if not isinstance(problem, LinkageProblem) or problem.space is None or problem.space.empty:
         return design
     verified: Any = design
     if any(check.name in ROOM for check in verified.verification.checks):
