@@ -26,7 +26,6 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from kinematics.cam.follower import Follower, OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
@@ -44,6 +43,7 @@ from kinematics.cam.local_curves import (
 )
 from kinematics.cam.profile import Rotation
 from kinematics.cam.program import TURN
+from kinematics.compiling import njit
 from kinematics.errors import DimensionError, ShapeError
 
 Real = NDArray[np.float64]

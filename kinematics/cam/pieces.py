@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from kinematics.compiling import njit
 from kinematics.errors import DimensionError
 
 Real = NDArray[np.float64]

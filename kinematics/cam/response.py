@@ -18,10 +18,10 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from kinematics.cam.program import TURN, Program
+from kinematics.compiling import njit
 from kinematics.errors import DimensionError
 
 Real = NDArray[np.float64]

@@ -17,7 +17,6 @@ from functools import cached_property
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from kinematics.cam.contact import CUSP, FEWEST, GOLDEN, NARROW, NARROWINGS
@@ -33,6 +32,7 @@ from kinematics.cam.local_curves import (
     unit_tangents,
 )
 from kinematics.cam.program import TURN
+from kinematics.compiling import njit
 from kinematics.errors import DimensionError, ShapeError
 
 Real = NDArray[np.float64]

@@ -27,9 +27,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from kinematics.linkage.planar.drive_kernels import GEAR, JOINT, KIND, LINK, OTHER, OTHER_PIN, PIN, RRP, RRR, SLIDE
 
 Real = NDArray[np.float64]

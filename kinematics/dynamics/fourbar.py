@@ -21,9 +21,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from kinematics.dynamics.kernels import OPTIONS
 from kinematics.linkage.planar.mechanism import Complex, Real
 

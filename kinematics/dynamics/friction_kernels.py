@@ -15,9 +15,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from kinematics.dynamics.kernels import OPTIONS, Complex, Real, Rows, factor, fill, forward, inverse_norm, norm_of
 
 PASSES = 200

@@ -15,9 +15,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.fit.chart import FOURBAR, GEARED_FIVEBAR, OPTIONS, natural
 
 Real = NDArray[np.float64]

@@ -26,9 +26,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.fit.chart import FOURBAR, LENGTHS, OPTIONS, POINT
 from synthesis.fit.coupler_curve import place_with_slopes
 

@@ -17,9 +17,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.fit.chart import LENGTHS, OPTIONS, POINT
 from synthesis.fit.coupler_curve import crank_range, two_bars, unit
 from synthesis.fit.room import BOXED, CYCLE, GROUPS, O2, O4, PLACES, TURN, A, B, P

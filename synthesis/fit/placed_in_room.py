@@ -13,9 +13,9 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.fit.fourbar_room import NO_BODY, stands, way_of
 from synthesis.fit.room import O2, O4, PLACES, A, B, packed, zones_alone
 from synthesis.fit.room_margins import ROW, margins_of, room_margins, steps_of

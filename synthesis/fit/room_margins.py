@@ -16,9 +16,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.fit.chart import OPTIONS
 from synthesis.fit.room import (
     BODY_AT,

@@ -19,9 +19,10 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit, types
+from numba import types
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.numerics.levenberg import MATRIX, ROWS, VECTOR, descend, half_square
 from synthesis.numerics.status import Status
 

@@ -27,9 +27,10 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit, types
+from numba import types
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.numerics.double_double import add
 
 Complex = NDArray[np.complex128]

@@ -6,7 +6,7 @@ of complex numbers, ``low`` being what ``high`` rounded off. What is far smaller
 
 from __future__ import annotations
 
-from numba import njit
+from kinematics.compiling import njit
 
 _SPLITTER = 134217729.0
 """2²⁷ + 1: splits a double into two halves whose products are exact."""

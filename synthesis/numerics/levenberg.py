@@ -24,9 +24,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit, types
+from numba import types
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.numerics.cholesky import solve_positive
 from synthesis.numerics.status import Status
 

@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from kinematics.compiling import njit
 from synthesis.outcome.sifting import Verified
 
 Ranked = TypeVar("Ranked", bound=Verified)

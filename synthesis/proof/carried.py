@@ -15,8 +15,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from kinematics.compiling import njit
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -16,10 +16,10 @@ from itertools import combinations
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
+from kinematics.compiling import njit
 from kinematics.linkage.fourbar import Fourbar, barker_class
 from kinematics.linkage.fourbar.classification import BarkerClass
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism

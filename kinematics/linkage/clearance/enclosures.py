@@ -28,9 +28,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from kinematics.linkage.clearance.outlines import OPTIONS, Complex, Indices, Real
 from kinematics.linkage.planar.drive_kernels import (
     CARRIED,

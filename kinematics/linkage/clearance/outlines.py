@@ -10,8 +10,9 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from kinematics.compiling import njit
 
 Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from kinematics.linkage.kernels import OPTIONS, Complex, Mask, Real
 
 Integers = NDArray[np.int64]

@@ -28,9 +28,9 @@ from functools import cached_property
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from kinematics.linkage.planar.closures import Decomposition, Step
 from kinematics.linkage.planar.drive import drive_one, margins_of_one
 from kinematics.linkage.planar.mechanism import Mechanism, TopologyError

@@ -22,9 +22,9 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from kinematics.linkage.kernels import ON_TOGGLE
 
 Real = NDArray[np.float64]

@@ -25,9 +25,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism, TopologyError
 
 Real = NDArray[np.float64]

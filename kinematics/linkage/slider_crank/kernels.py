@@ -16,8 +16,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from kinematics.compiling import njit
 from kinematics.linkage.kernels import (
     ON_TOGGLE,
     OPTIONS,

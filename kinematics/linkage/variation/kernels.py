@@ -15,8 +15,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from kinematics.compiling import njit
 from kinematics.linkage.kernels import OPTIONS, Real, direction
 from kinematics.linkage.variation.loops import OUTPUTS, Drive, closed, misses, on_branch, sound
 

@@ -15,8 +15,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from numba import njit
-
+from kinematics.compiling import njit
 from kinematics.linkage.kernels import ON_TOGGLE, OPTIONS, Real, direction
 
 POSES, POINTS, OUTPUTS = 0, 1, 2

@@ -14,8 +14,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from kinematics.compiling import njit
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -11,9 +11,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from kinematics.linkage.fourbar import OPEN, Fourbar, coupler_points
 from synthesis.kinds.dwell.arcs import arcs, lines
 from synthesis.kinds.dwell.outputs import CYCLE, Kind

@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.kinds.dwell.outputs import NEAREST
 
 Real = NDArray[np.float64]

@@ -14,9 +14,9 @@ could enter one of the two.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.kinds.gear_train.pairing import MOST_STAGES, Integers, Rule, foremost, pair_up, within_limits
 from synthesis.kinds.gear_train.shortlist import SAME, Floats, Found, enter, worth
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.kinds.gear_train.pairing import MOST_STAGES, Integers
 
 Floats = NDArray[np.float64]

@@ -27,8 +27,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from kinematics.compiling import njit
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -16,9 +16,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from kinematics.linkage.fourbar import positions
 from synthesis.kinds.motion.driver_joints import ROOM, coupler_driven, diagonal
 from synthesis.kinds.motion.stated_dyads import DriverDyad

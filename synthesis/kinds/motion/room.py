@@ -11,9 +11,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from kinematics.linkage.clearance.outlines import OPTIONS, distance
 from kinematics.linkage.fourbar import Fourbar, positions
 from synthesis.kinds.motion.problem import MotionProblem

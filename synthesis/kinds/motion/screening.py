@@ -23,9 +23,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.kinds.motion.dyads import Dyads
 from synthesis.kinds.motion.task import MotionTask
 from synthesis.model.linkage_statement import Constraints

@@ -12,9 +12,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.fit.chart import LENGTHS, OPTIONS, POINT
 from synthesis.fit.coupler_curve import two_bars, unit
 from synthesis.fit.fourbar_room import LINKAGE, fourbar_margins, room_rows

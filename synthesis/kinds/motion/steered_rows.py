@@ -31,9 +31,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.fit.room_margins import margins_of
 from synthesis.kinds.motion.steered_room import steered_room_rows
 from synthesis.numerics.augmented_lagrangian import limit_rows

@@ -7,8 +7,9 @@ best way to have met point k at sample j or before is the best of the ways befor
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from kinematics.compiling import njit
 
 Real = NDArray[np.float64]
 Whole = NDArray[np.int64]

@@ -16,10 +16,10 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from kinematics.compiling import njit
 from synthesis.proof.closer import least_near
 
 Real = NDArray[np.float64]

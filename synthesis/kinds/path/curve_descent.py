@@ -17,9 +17,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.fit.chart import FOURBAR, GEARED_FIVEBAR, MAX_LOG, MIN_LOG, OPTIONS, natural
 from synthesis.fit.coupler_curve import place, place_with_slopes, second_angle, unit
 from synthesis.numerics.cholesky import solve_positive

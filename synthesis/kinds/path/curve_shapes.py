@@ -22,10 +22,10 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy import fft
 
+from kinematics.compiling import njit
 from synthesis.fit.chart import FOURBAR, GEARED_FIVEBAR, OPTIONS, SLIDER_CRANK, SLIDER_ROCKER, natural
 from synthesis.fit.coupler_curve import sweep
 from synthesis.kinds.path.curve_candidates import Draw, cycle_of, draw

@@ -14,9 +14,9 @@ doi:10.1115/1.2912641); for general points and pivots there are as many, none si
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.numerics.continuation import SYSTEM
 from synthesis.numerics.elimination import factor, solve
 

@@ -24,9 +24,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.numerics.continuation import SYSTEM
 from synthesis.numerics.double_double import add, multiply, reciprocal
 from synthesis.numerics.elimination import reduce

@@ -19,9 +19,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from kinematics.linkage.fourbar import full_rotation, positions, same_circuit, toggle_angles
 from synthesis.model.linkages import DrivenFourbar
 

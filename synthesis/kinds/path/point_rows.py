@@ -15,9 +15,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.fit.chart import FOURBAR, LENGTHS, natural
 from synthesis.fit.coupler_curve import fourbar_velocity, place_with_slopes
 from synthesis.fit.demands import EQUATIONS, FAMILY, LIMITS, SIGN, WHOLE, margins

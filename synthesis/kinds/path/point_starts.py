@@ -17,9 +17,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.fit.chart import FOURBAR, LENGTHS, POINT, from_lengths, natural
 from synthesis.fit.coupler_curve import crank_range, place, rocking_range, two_bars, unit
 from synthesis.fit.demands import FAMILY, GIVEN, SIGN, WHOLE

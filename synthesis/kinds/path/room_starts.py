@@ -11,9 +11,9 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.fit.chart import FOURBAR, POINT, from_lengths
 from synthesis.fit.demands import SIGN, WHOLE
 from synthesis.fit.room import packed

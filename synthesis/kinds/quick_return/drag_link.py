@@ -20,9 +20,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from scipy.optimize import brentq, minimize_scalar
 
+from kinematics.compiling import njit
 from synthesis.kinds.quick_return.design import DragLinkMechanism, RatioRange
 from synthesis.kinds.quick_return.problem import QuickReturnProblem
 from synthesis.model.linkages import skeleton, slide, to_point

@@ -1,0 +1,113 @@
+"""Compilation of kernels, and when a compiled kernel on disk is still the one of the sources.
+
+`numba` keeps compiled kernels beside their sources and compiles again when the file of the kernel changes. A kernel
+also contains the code of the kernels that it calls and the constants that it reads, which may stand in other files:
+after an upgrade in place it would go on with their old code. Here a kernel's sources are its own file and every file
+of the project that it imports, directly or through others. Kernels take `njit` from this module.
+"""
+
+import re
+from collections.abc import Callable
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numba
+import numba.core.config
+from numba.core.caching import InTreeCacheLocator, UserProvidedCacheLocator, UserWideCacheLocator
+
+_OURS = rb"(?:kinematics|synthesis)[\w.]*"
+_IMPORT = re.compile(rb"^ *(?:from (%b) import (\([^)]*\)|.*)|import (%b))" % (_OURS, _OURS), re.MULTILINE)
+
+
+@cache
+def _text(source: Path) -> bytes:
+    return source.read_bytes()
+
+
+@cache
+def _imports(root: Path, source: Path) -> frozenset[Path]:
+    """Files of the project below `root` that `source` imports, packages by their `__init__`."""
+    files = set()
+    for module, names, whole in _IMPORT.findall(_text(source)):
+        place = root.joinpath(*(module or whole).decode().split("."))
+        if place.is_dir():
+            files.add(place / "__init__.py")
+            files.update(place / f"{name.decode()}.py" for name in re.findall(rb"\w+", names))
+        else:
+            files.add(place.with_suffix(".py"))
+    return frozenset(file for file in files if file.is_file())
+
+
+@cache
+def sources(root: Path, source: Path) -> tuple[Path, ...]:
+    """`source` and all files of the project that it imports, directly or through others, in the order of their paths.
+
+    `root` is the folder of the top-level packages.
+    """
+    reached = {source}
+    waiting = [source]
+    while waiting:
+        further = _imports(root, waiting.pop()) - reached
+        reached |= further
+        waiting.extend(further)
+    return tuple(sorted(reached))
+
+
+@cache
+def digest(root: Path, source: Path) -> str:
+    """A digest of the text of `sources`: equal where a kernel compiled before is still the one of the sources."""
+    return sha256(b"".join(sha256(_text(file)).digest() for file in sources(root, source))).hexdigest()
+
+
+class _BySources:
+    """What a locator of `numba`'s cache says of a kernel's sources."""
+
+    _root: Path
+    _source: Path
+
+    def __init__(self, kernel: Any, file: str) -> None:
+        super().__init__(kernel, file)  # type: ignore[call-arg]  # of the locator beside it
+        self._source = Path(file).resolve()
+        self._root = self._source.parents[kernel.__module__.count(".")]
+
+    def get_source_stamp(self) -> str:
+        return digest(self._root, self._source)
+
+
+class InStatedFolder(_BySources, UserProvidedCacheLocator):
+    """Kernels in the folder that `NUMBA_CACHE_DIR` names, where it is set."""
+
+
+class BesideSources(_BySources, InTreeCacheLocator):
+    """Kernels in the `__pycache__` beside their sources, where that can be written."""
+
+
+class OfUser(_BySources, UserWideCacheLocator):
+    """Kernels in the user's cache folder."""
+
+
+_LOCATORS = ",".join(f"{__name__}.{locator.__name__}" for locator in (InStatedFolder, BesideSources, OfUser))
+
+
+def _njit(*signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """`numba.njit`, its cache held against all sources of the kernel."""
+    compile_kernel = numba.njit(*signature, **options)
+
+    def decorate(function: Callable[..., Any]) -> Any:
+        config: Any = numba.core.config
+        before = config.CACHE_LOCATOR_CLASSES
+        config.CACHE_LOCATOR_CLASSES = _LOCATORS
+        try:
+            return compile_kernel(function)
+        finally:
+            config.CACHE_LOCATOR_CLASSES = before
+
+    return decorate
+
+
+if TYPE_CHECKING:
+    from numba import njit as njit  # a kernel keeps the annotations of its function
+else:
+    njit = _njit
