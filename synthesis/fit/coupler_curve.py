@@ -34,6 +34,18 @@ def unit(angle: float) -> complex:
 
 
 @njit(**OPTIONS)
+def scaled(z: complex, factor: float) -> complex:
+    """z times a real factor: a compiler that keeps to the letter of IEEE 754 multiplies by its zero imaginary part."""
+    return complex(factor * z.real, factor * z.imag)
+
+
+@njit(**OPTIONS)
+def turned(z: complex) -> complex:
+    """z by a right angle anticlockwise, iz."""
+    return complex(-z.imag, z.real)
+
+
+@njit(**OPTIONS)
 def second_angle(family: int, x: Real, ratio: float, theta: float) -> float:
     """The angle that stands beside the crank's in the loop: of the ground line, the slide, or the geared output."""
     angle: float = ratio * theta + x[8] if family == GEARED_FIVEBAR else x[2]
@@ -48,7 +60,7 @@ def two_bars(base: complex, b: float, c: float, sign: float) -> tuple[bool, comp
     under = b * b * square - half * half
     if not under > TOGGLE_TOLERANCE * TOGGLE_TOLERANCE * b * b * c * c:
         return False, 1.0 + 0j
-    return True, base * complex(half, sign * math.sqrt(under)) * (1.0 / (square * b))
+    return True, scaled(base * complex(half, sign * math.sqrt(under)), 1.0 / (square * b))
 
 
 @njit(**OPTIONS)
@@ -58,12 +70,12 @@ def _coupler(
     """Whether the loop closes, P, and the coupler's unit vector, from those of the crank and of the second angle."""
     o2 = complex(x[0], x[1])
     if family <= FOURBAR:
-        pin = lengths[1] * crank
-        closes, along = two_bars(lengths[0] * second - pin, lengths[2], lengths[3], sign)
+        pin = scaled(crank, lengths[1])
+        closes, along = two_bars(scaled(second, lengths[0]) - pin, lengths[2], lengths[3], sign)
         return closes, o2 + pin + complex(x[7], x[8]) * along, along
-    pin = lengths[0] * crank
+    pin = scaled(crank, lengths[0])
     if family == GEARED_FIVEBAR:
-        base = complex(x[2] - x[0], x[3] - x[1]) + lengths[3] * second - pin
+        base = complex(x[2] - x[0], x[3] - x[1]) + scaled(second, lengths[3]) - pin
         closes, along = two_bars(base, lengths[1], lengths[2], sign)
         return closes, o2 + pin + complex(x[9], x[10]) * along, along
     across = (lengths[2] - (pin * second.conjugate()).imag) / lengths[1]
@@ -103,15 +115,17 @@ def _turn(f: complex, change: complex, per_turn: float) -> float:
 
 
 @njit(**OPTIONS)
-def fourbar_velocity(x: Real, lengths: Real, sign: float, theta: float) -> tuple[bool, complex, complex]:
-    """Whether a fourbar closes, P, and P's derivative by θ alone."""
-    crank, ground = unit(theta), unit(x[2])
+def fourbar_velocity(
+    x: Real, lengths: Real, sign: float, ground: complex, theta: float
+) -> tuple[bool, complex, complex]:
+    """Whether a fourbar closes, P, and P's derivative by θ alone; ``ground`` is the unit vector of the ground line."""
+    crank = unit(theta)
     closes, z, along = _coupler(FOURBAR, x, lengths, sign, crank, ground)
-    f = lengths[1] * crank + lengths[2] * along - lengths[0] * ground
-    g = 1j * lengths[2] * along
-    moved = 1j * lengths[1] * crank
-    swing = 1j * complex(x[7], x[8]) * along
-    return closes, z, moved + swing * _turn(f, moved, f.real * g.real + f.imag * g.imag)
+    arm, bar = scaled(crank, lengths[1]), scaled(along, lengths[2])
+    f = arm + bar - scaled(ground, lengths[0])
+    g, moved = turned(bar), turned(arm)
+    swing = turned(complex(x[7], x[8]) * along)
+    return closes, z, moved + scaled(swing, _turn(f, moved, f.real * g.real + f.imag * g.imag))
 
 
 @njit(**OPTIONS)
@@ -131,53 +145,59 @@ def place_with_slopes(
     if not closes:
         return False, z
     m = len(slopes) - 1
-    swing = 1j * complex(x[m - 2], x[m - 1]) * along
+    swing = turned(complex(x[m - 2], x[m - 1]) * along)
     slopes[0], slopes[1] = 1.0 + 0j, 1j
-    slopes[m - 2], slopes[m - 1] = along, 1j * along
+    slopes[m - 2], slopes[m - 1] = along, turned(along)
     if family <= FOURBAR:
-        d, a, b, c = lengths[0], lengths[1], lengths[2], lengths[3]
-        f = a * crank + b * along - d * second
-        g = 1j * b * along
+        c = lengths[3]
+        side, arm, bar = scaled(second, lengths[0]), scaled(crank, lengths[1]), scaled(along, lengths[2])
+        f, g, moved = arm + bar - side, turned(bar), turned(arm)
         per = f.real * g.real + f.imag * g.imag
-        slopes[2] = swing * _turn(f, -1j * d * second, per)
-        raw_d = swing * _turn(f, -second, per)
-        raw_a = crank + swing * _turn(f, crank, per)
-        raw_b = swing * _turn(f, along, per)
-        raw_c = swing * (c / per)
+        slopes[2] = scaled(swing, _turn(f, -turned(side), per))
+        raw_d = scaled(swing, _turn(f, -second, per))
+        raw_a = crank + scaled(swing, _turn(f, crank, per))
+        raw_b = scaled(swing, _turn(f, along, per))
+        raw_c = scaled(swing, c / per)
         for k in range(4):
-            slopes[3 + k] = raw_d * chart[0, k] + raw_a * chart[1, k] + raw_b * chart[2, k] + raw_c * chart[3, k]
-        slopes[m] = 1j * a * crank + swing * _turn(f, 1j * a * crank, per)
+            slopes[3 + k] = (
+                scaled(raw_d, chart[0, k]) + scaled(raw_a, chart[1, k]) + scaled(raw_b, chart[2, k])
+                + scaled(raw_c, chart[3, k])
+            )  # fmt: skip
+        slopes[m] = moved + scaled(swing, _turn(f, moved, per))
         return True, z
     if family == GEARED_FIVEBAR:
-        a, b, c, e = lengths[0], lengths[1], lengths[2], lengths[3]
-        f = a * crank + b * along - complex(x[2] - x[0], x[3] - x[1]) - e * second
-        g = 1j * b * along
+        c = lengths[2]
+        arm, bar, end = scaled(crank, lengths[0]), scaled(along, lengths[1]), scaled(second, lengths[3])
+        f, g = arm + bar - complex(x[2] - x[0], x[3] - x[1]) - end, turned(bar)
         per = f.real * g.real + f.imag * g.imag
         # O5 moves the far end, O2 the near one.
         for k in range(2):
             one = 1.0 + 0j if k == 0 else 1j
-            slopes[k] = one + swing * _turn(f, one, per)
-            slopes[2 + k] = swing * _turn(f, -one, per)
-        raw_a = crank + swing * _turn(f, crank, per)
-        raw_b = swing * _turn(f, along, per)
-        raw_c = swing * (c / per)
-        raw_e = swing * _turn(f, -second, per)
+            slopes[k] = one + scaled(swing, _turn(f, one, per))
+            slopes[2 + k] = scaled(swing, _turn(f, -one, per))
+        raw_a = crank + scaled(swing, _turn(f, crank, per))
+        raw_b = scaled(swing, _turn(f, along, per))
+        raw_c = scaled(swing, c / per)
+        raw_e = scaled(swing, _turn(f, -second, per))
         for k in range(4):
-            slopes[4 + k] = raw_a * chart[0, k] + raw_b * chart[1, k] + raw_c * chart[2, k] + raw_e * chart[3, k]
-        slopes[8] = swing * _turn(f, -1j * e * second, per)
-        moved = 1j * a * crank
-        slopes[m] = moved + swing * _turn(f, moved - ratio * 1j * e * second, per)
+            slopes[4 + k] = (
+                scaled(raw_a, chart[0, k]) + scaled(raw_b, chart[1, k]) + scaled(raw_c, chart[2, k])
+                + scaled(raw_e, chart[3, k])
+            )  # fmt: skip
+        slopes[8] = scaled(swing, _turn(f, -turned(end), per))
+        moved = turned(arm)
+        slopes[m] = moved + scaled(swing, _turn(f, moved - scaled(turned(end), ratio), per))
         return True, z
     a, b = lengths[0], lengths[1]
     local, bent = crank * second.conjugate(), along * second.conjugate()
     reach = b * bent.real
-    raw_a = crank + swing * (-local.imag / reach)
-    raw_b = swing * (-bent.imag / reach)
-    raw_c = swing / reach
-    slopes[2] = swing * (1.0 + a * local.real / reach)
+    raw_a = crank + scaled(swing, -local.imag / reach)
+    raw_b = scaled(swing, -bent.imag / reach)
+    raw_c = scaled(swing, 1.0 / reach)
+    slopes[2] = scaled(swing, 1.0 + a * local.real / reach)
     for k in range(3):
-        slopes[3 + k] = raw_a * chart[0, k] + raw_b * chart[1, k] + raw_c * chart[2, k]
-    slopes[m] = 1j * a * crank + swing * (-a * local.real / reach)
+        slopes[3 + k] = scaled(raw_a, chart[0, k]) + scaled(raw_b, chart[1, k]) + scaled(raw_c, chart[2, k])
+    slopes[m] = turned(scaled(crank, a)) + scaled(swing, -a * local.real / reach)
     return True, z
 
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numba import njit
 
-from kinematics.compiling import njit
 from kinematics.linkage.fourbar import (
     Fourbar,
     barker_type,

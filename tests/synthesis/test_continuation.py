@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from numba import njit
 
-from kinematics.compiling import njit
 from synthesis.numerics.continuation import REACHED, SYSTEM, follow, refine
 from synthesis.numerics.double_double import add, multiply, reciprocal
 from synthesis.numerics.elimination import factor, reduce, solve

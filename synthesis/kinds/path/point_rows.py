@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from kinematics.compiling import njit
 from synthesis.fit.chart import FOURBAR, LENGTHS, natural
-from synthesis.fit.coupler_curve import fourbar_velocity, place_with_slopes
+from synthesis.fit.coupler_curve import fourbar_velocity, place_with_slopes, unit
 from synthesis.fit.demands import EQUATIONS, FAMILY, LIMITS, SIGN, WHOLE, margins
 from synthesis.fit.fourbar_room import NO_BODY, room_rows
 from synthesis.fit.room_margins import margins_of
@@ -85,15 +85,16 @@ def settle(x: Real, lengths: Real, setting: Real, points: Real, angles: Real, bl
     """
     n, sign = len(points), setting[SIGN]
     way = 1.0 if angles[n - 1] >= angles[0] else -1.0
+    ground = unit(x[2])
     values, weights = np.empty(n), np.empty(n)
     for _ in range(NEWTON_STEPS):
         for k in range(n):
-            good, p, t = fourbar_velocity(x, lengths, sign, x[2] + angles[k])
+            good, p, t = fourbar_velocity(x, lengths, sign, ground, x[2] + angles[k])
             if not good:
                 return False
             square = t.real * t.real + t.imag * t.imag
             # The second derivative of half the squared distance, its part from the curvature by a difference.
-            good, _, ahead = fourbar_velocity(x, lengths, sign, x[2] + angles[k] + DIFFERENCE)
+            good, _, ahead = fourbar_velocity(x, lengths, sign, ground, x[2] + angles[k] + DIFFERENCE)
             gx, gy = p.real - points[k, 0], p.imag - points[k, 1]
             curved = square
             if good:

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from numba import njit
 
-from kinematics.compiling import njit
 from synthesis.numerics.augmented_lagrangian import MAX_ROUNDS, MAX_STEPS, hold, limit_rows
 from synthesis.numerics.cholesky import solve_positive
 from synthesis.numerics.levenberg import ROWS, descend
