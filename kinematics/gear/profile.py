@@ -19,13 +19,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.errors import DimensionError
+from kinematics.gear.flanks import corner_rounding
 from kinematics.gear.teeth import Gear
 
 Outline = NDArray[np.complex128]
-
-TIP_ROUNDING = 0.38
-"""Radius of the rack's rounded tip in modules (ISO 53, profile A); less where the tip is not wide enough for it."""
 
 FLANK, FILLET, ARC = 24, 20, 4
 """Points on a flank, a fillet, and half of a tip or root arc: chords within about 1e-4 of a module of the curve."""
@@ -102,10 +99,8 @@ def _beyond(gear: Gear, fillet: Outline) -> NDArray[np.float64]:
 def _fillet(gear: Gear, psi: NDArray[np.float64]) -> Outline:
     """Points of the trochoid of the rack's corner, from the root circle up."""
     phi, m = gear.pressure_angle, gear.module
+    rounding = m * corner_rounding(phi, gear.dedendum)
     wide = 0.25 * math.pi - gear.dedendum * math.tan(phi)
-    if wide < 0.0:
-        raise DimensionError("dedendum", "no deeper than the point of the rack's tooth", gear.dedendum)
-    rounding = m * min(TIP_ROUNDING, wide * math.cos(phi) / (1.0 - math.sin(phi)))
     beside = m * wide + rounding * (math.tan(phi) - 1.0 / math.cos(phi))
     below = m * (gear.dedendum - gear.shift) - rounding
     r = gear.pitch_radius

@@ -8,27 +8,58 @@ and a share η of it passed on by every mesh, the torque on a shaft is P/ω time
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 
 from kinematics.errors import DimensionError
-from kinematics.gear.teeth import PRESSURE_ANGLE, Mesh
+from kinematics.gear.flanks import shortened_tips
+from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, PRESSURE_ANGLE, Gear, Mesh
 
 
 @dataclass(frozen=True)
 class TrainStage:
-    """Gears in line from the driver over any idlers to the driven gear, of one module."""
+    """Gears in line from the driver over any idlers to the driven gear, of one module.
+
+    ``shifts`` are the profile shifts of driver and driven gear, modules; idlers have none. The tips of a shifted pair
+    are shortened so that the clearance stays.
+    """
 
     driver: int
     driven: int
     module: float = 1.0
     idlers: tuple[int, ...] = ()
+    shifts: tuple[float, float] = (0.0, 0.0)
 
     @property
     def gears(self) -> tuple[int, ...]:
         """Teeth of all gears in the order in which they mesh."""
         return (self.driver, *self.idlers, self.driven)
+
+    def meshes(self, pressure_angle: float) -> tuple[Mesh, ...]:
+        """The meshes without play, the smaller gear as the pinion, of equal ones the first.
+
+        Raises
+        ------
+        DimensionError
+            For gears that do not exist, or shifts of a stage with idlers.
+        """
+        pairs = itertools.pairwise(self.gears)
+        if self.shifts == (0.0, 0.0):
+            return tuple(Mesh.standard((min(pair), max(pair)), self.module, pressure_angle) for pair in pairs)
+        if self.idlers:
+            raise DimensionError("shifts", "none in a stage with idlers", self.shifts)
+        ends = sorted(zip((self.driver, self.driven), self.shifts, strict=True), key=lambda end: end[0])
+        pinion, gear = (Gear(teeth, self.module, pressure_angle, shift=shift) for teeth, shift in ends)
+        addendum = FULL_DEPTH_ADDENDUM - shortened_tips(Mesh(pinion, gear))
+        return (Mesh(replace(pinion, addendum=addendum), replace(gear, addendum=addendum)),)
+
+    def cut_gears(self, pressure_angle: float) -> tuple[Gear, ...]:
+        """All gears in the order in which they mesh, with their shifts and tips."""
+        if self.shifts == (0.0, 0.0):
+            return tuple(Gear(teeth, self.module, pressure_angle) for teeth in self.gears)
+        mesh = self.meshes(pressure_angle)[0]
+        return (mesh.pinion, mesh.gear) if self.driver <= self.driven else (mesh.gear, mesh.pinion)
 
 
 @dataclass(frozen=True)
@@ -52,14 +83,8 @@ class OrdinaryTrain:
 
     @cached_property
     def meshes(self) -> tuple[tuple[Mesh, ...], ...]:
-        """The meshes of each stage at standard distance, the smaller gear as the pinion."""
-        return tuple(
-            tuple(
-                Mesh.standard((min(pair), max(pair)), stage.module, self.pressure_angle)
-                for pair in itertools.pairwise(stage.gears)
-            )
-            for stage in self.stages
-        )
+        """The meshes of each stage without play, the smaller gear as the pinion."""
+        return tuple(stage.meshes(self.pressure_angle) for stage in self.stages)
 
     @cached_property
     def speeds(self) -> tuple[tuple[Fraction, ...], ...]:

@@ -21,6 +21,7 @@ from synthesis.analyses import (
     linkage,
     planetary_train,
     rotor,
+    running_pair,
     universal_joint,
 )
 from synthesis.analyses.base import AnalysisRequest, Family
@@ -43,6 +44,7 @@ FAMILIES: dict[str, Family] = {
         gearbox.LAYSHAFT_FAMILY,
         planetary_train.FAMILY,
         rotor.FAMILY,
+        running_pair.FAMILY,
         universal_joint.FAMILY,
     )
     for name in mechanism_types(family.request)

@@ -8,24 +8,36 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, Field
 
-from kinematics.gear.teeth import Gear, Mesh
+from kinematics.errors import DimensionError
+from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, Mesh
 from kinematics.gear.train import OrdinaryTrain, TrainStage
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
 from synthesis.model.answer import Answer
 from synthesis.model.gear_answer import MeshGeometry, Ratio, mesh_geometries
-from synthesis.model.gear_statement import PressureAngle, ToothNumber
+from synthesis.model.gear_statement import PressureAngle, ShiftCoefficient, ToothNumber
 from synthesis.model.statement import Number, PositiveNumber, Statement
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 
+SAME_DISTANCE = 1e-6
+"""Share of a centre distance by which a stated one may differ from that of the teeth."""
+
 FRICTION = 0.05
 """Friction coefficient of lubricated steel teeth, where none is stated."""
+
+
+class GivenShifts(Statement):
+    """Profile shifts of a stage, modules, positive outwards; the tips are shortened so that the clearance stays."""
+
+    driver: ShiftCoefficient
+    driven: ShiftCoefficient
 
 
 class GivenStage(Statement):
@@ -34,6 +46,15 @@ class GivenStage(Statement):
     driver: ToothNumber
     driven: ToothNumber
     module: PositiveNumber = Field(default=1.0, description="Module in length units.")
+    shift: GivenShifts | None = None
+    centre_distance: PositiveNumber | None = Field(
+        default=None, description="As in a design: it has to be that of the teeth without play."
+    )
+
+    @property
+    def shifts(self) -> tuple[float, float]:
+        """Profile shifts of driver and driven gear."""
+        return (0.0, 0.0) if self.shift is None else (self.shift.driver, self.shift.driven)
 
 
 class GivenIdler(Statement):
@@ -63,7 +84,9 @@ class GivenGearTrain(Statement):
     def train(self) -> OrdinaryTrain:
         """The train for the analysis core."""
         idlers = {k: tuple(i.teeth for i in self.idlers if i.stage == k) for k in range(1, len(self.stages) + 1)}
-        stages = tuple(TrainStage(s.driver, s.driven, s.module, idlers[k]) for k, s in enumerate(self.stages, 1))
+        stages = tuple(
+            TrainStage(s.driver, s.driven, s.module, idlers[k], s.shifts) for k, s in enumerate(self.stages, 1)
+        )
         return OrdinaryTrain(stages, math.radians(self.pressure_angle))
 
 
@@ -105,11 +128,27 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         for number, idler in enumerate(self.mechanism.idlers):
             if idler.stage > len(self.mechanism.stages):
                 faults.append((f"/mechanism/idlers/{number}/stage", "there is no such stage"))
+        for number, stage in enumerate(self.mechanism.stages):
+            if stage.shift is not None and any(idler.stage == number + 1 for idler in self.mechanism.idlers):
+                faults.append((f"/mechanism/stages/{number}/shift", "a stage with an idler has no shift"))
+        if not faults:
+            faults += self._wrong_distances()
         if not faults and self.mechanism.ratio is not None:
             ratio, stated = self.mechanism.train().ratio, self.mechanism.ratio
             if stated.numerator != ratio * stated.denominator:
                 faults.append(("/mechanism/ratio", f"the teeth have the ratio {ratio}; leave the ratio out"))
         return faults
+
+    def _wrong_distances(self) -> list[tuple[str, str]]:
+        try:
+            distances = self.mechanism.train().centre_distances
+        except DimensionError:
+            return []
+        return [
+            (f"/mechanism/stages/{number}/centre_distance", f"the teeth have the distance {has:.9g}; leave it out")
+            for number, (stage, has) in enumerate(zip(self.mechanism.stages, distances, strict=True))
+            if stage.centre_distance is not None and abs(stage.centre_distance - has) > SAME_DISTANCE * has
+        ]
 
     def answer(self) -> dict[str, Any]:
         """Everything about the train, in the shape of :class:`GearTrainAnalysis`."""
@@ -201,8 +240,9 @@ def _gears(
     gears = []
     for number, (stage, speeds) in enumerate(zip(train.stages, train.speeds, strict=True), 1):
         roles = ["driver", *("idler" for _ in stage.idlers), "driven"]
-        for role, teeth, share in zip(roles, stage.gears, speeds, strict=True):
-            gear, turns = Gear(teeth, stage.module, train.pressure_angle), float(share)
+        cut = stage.cut_gears(train.pressure_angle)
+        for role, teeth, gear, share in zip(roles, stage.gears, cut, speeds, strict=True):
+            turns = float(share)
             gears.append(
                 {
                     "stage": number,
@@ -214,7 +254,7 @@ def _gears(
                     "root_diameter": 2.0 * gear.root_radius,
                     "base_diameter": 2.0 * gear.base_radius,
                     "tooth_thickness": gear.tooth_thickness,
-                    "undercut": gear.is_undercut,
+                    "undercut": replace(gear, addendum=FULL_DEPTH_ADDENDUM).is_undercut,
                     "speed_ratio": turns,
                     **request.motion.geared(turns, at, speed),
                 }
@@ -236,7 +276,10 @@ def _meshes(
         train.stages, train.meshes, shares, train.speeds, torques[:-1], strict=True
     ):
         # The tangential force passes through an idler; each mesh takes its losses from it.
-        force = abs(torque) / (0.5 * stage.module * stage.driver * METRES[request.length_unit])
+        radius = 0.5 * stage.module * stage.driver
+        if stage.shifts != (0.0, 0.0):
+            radius *= meshes[0].centre_distance / meshes[0].standard_distance
+        force = abs(torque) / (radius * METRES[request.length_unit])
         for (driver, driven), mesh, share, turn in zip(
             itertools.pairwise(stage.gears), meshes, efficiencies, turns[:-1], strict=True
         ):
@@ -250,7 +293,8 @@ def _meshes(
                     "recess": recess,
                     "clearance": mesh.clearance,
                     "efficiency": share,
-                    "pitch_line_velocity": abs(float(turn) * speed) * 0.5 * stage.module * driver,
+                    "pitch_line_velocity": abs(float(turn) * speed)
+                    * (radius if stage.shifts != (0.0, 0.0) else 0.5 * stage.module * driver),
                     "tangential_force": force,
                     "radial_force": force * math.tan(mesh.pressure_angle),
                 }

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import itertools
+import math
 from fractions import Fraction
 from typing import Self
 
 from pydantic import Field
 
-from kinematics.gear.teeth import Mesh, saving_shift
+from kinematics.gear.flanks import Contact, rack_cut_form, straight_depth
+from kinematics.gear.teeth import FULL_DEPTH_DEDENDUM, Gear, Mesh, saving_shift
 from kinematics.gear.train import OrdinaryTrain
-from synthesis.model.answer import Answer
-from synthesis.model.dimension import Length
+from synthesis.model.answer import Answer, optional
+from synthesis.model.dimension import Angle, Length
+
+ON_LIMIT = 1e-9
+"""Share of the centre distance by which contact may reach beyond an involute: rounding, of teeth on the limit."""
 
 
 class Ratio(Answer):
@@ -39,6 +44,20 @@ class GearPairTeeth(Answer):
     driven: int
 
 
+class OfGears(Answer):
+    """A pure number of both gears of a mesh."""
+
+    driver: float
+    driven: float
+
+
+class LengthOfGears(Answer):
+    """A length of both gears of a mesh."""
+
+    driver: Length
+    driven: Length
+
+
 class SuggestedShift(Answer):
     """Profile shift, in modules, that would make a mesh sound; nothing of it is in the mechanism."""
 
@@ -49,7 +68,7 @@ class SuggestedShift(Answer):
 
 
 class MeshGeometry(Answer):
-    """One mesh of full-depth teeth at the distance of the pitch circles."""
+    """One mesh of full-depth teeth at the distance of the pitch circles, or fitted by a profile shift."""
 
     stage: int
     driver: int = Field(description="Teeth; of an idler where one lies between.")
@@ -61,12 +80,62 @@ class MeshGeometry(Answer):
     suggested_shift: SuggestedShift | None = Field(
         default=None, description="Where the mesh interferes or is undercut and a profile shift would save it."
     )
+    working_pressure_angle: Angle | None = optional("Degrees; from here on where teeth are fitted.")
+    tip_diameter: LengthOfGears | None = optional()
+    tip_shortening: Length | None = optional("What the tips of shifted gears lose so that the clearance stays.")
+    tip_thickness: LengthOfGears | None = optional()
+    specific_sliding: OfGears | None = optional("Sliding over rolling where it is greatest on each flank; negative.")
+    backlash: Length | None = optional("Play on the working pitch circles.")
 
 
-def mesh_geometries(train: OrdinaryTrain) -> list[MeshGeometry]:
-    """Geometry of every mesh, with a shift that would save it where it is not sound."""
+def rack_contact(mesh: Mesh, depths: tuple[float, float] | None = None) -> Contact:
+    """A mesh of external gears with the involutes that the rack of full-depth teeth leaves.
+
+    ``depths``: how far below its reference line the straight flank of the rack reaches, modules, where it is another.
+    """
+    gears = mesh.pinion, mesh.gear
+    if depths is None:
+        depth = straight_depth(mesh.pinion.pressure_angle, FULL_DEPTH_DEDENDUM)
+        depths = depth, depth
+    one, two = (rack_cut_form(gear, depth) for gear, depth in zip(gears, depths, strict=True))
+    return Contact(mesh, (one, two))
+
+
+def fitted_geometry(stage: int, driver: int, driven: int, mesh: Mesh) -> MeshGeometry:
+    """Geometry of a mesh whose teeth are fitted; contact in a fillet is interference too."""
+    contact, slack = rack_contact(mesh), ON_LIMIT * mesh.centre_distance
+    one, two = (mesh.pinion, mesh.gear) if driver <= driven else (mesh.gear, mesh.pinion)
+    sliding = contact.specific_sliding if driver <= driven else contact.specific_sliding[::-1]
+    return MeshGeometry(
+        stage=stage,
+        driver=driver,
+        driven=driven,
+        centre_distance=mesh.centre_distance,
+        contact_ratio=mesh.contact_ratio,
+        interferes=min(*contact.margins, *contact.reaches) < -slack,
+        undercut=min(contact.forms) < -slack,
+        working_pressure_angle=math.degrees(mesh.pressure_angle),
+        tip_diameter=LengthOfGears(driver=2.0 * one.tip_radius, driven=2.0 * two.tip_radius),
+        tip_shortening=(1.0 - one.addendum) * one.module,
+        tip_thickness=LengthOfGears(driver=_tip_thickness(one), driven=_tip_thickness(two)),
+        specific_sliding=OfGears(driver=sliding[0], driven=sliding[1]),
+        backlash=contact.backlash,
+    )
+
+
+def _tip_thickness(gear: Gear) -> float:
+    return gear.thickness_at(gear.tip_radius)
+
+
+def mesh_geometries(train: OrdinaryTrain, fitted: bool = False) -> list[MeshGeometry]:
+    """Geometry of every mesh, with a shift that would save it where it is not sound.
+
+    Of shifted stages, and of all where teeth are ``fitted``, more is told, and no shift is suggested.
+    """
     return [
-        MeshGeometry(
+        fitted_geometry(number, driver, driven, mesh)
+        if fitted or stage.shifts != (0.0, 0.0)
+        else MeshGeometry(
             stage=number,
             driver=driver,
             driven=driven,

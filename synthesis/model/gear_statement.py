@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Self
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, model_validator
 
 from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.model.ratio_target import LONGEST, parse_target
-from synthesis.model.statement import Contradiction, Count, Number, Statement
+from synthesis.model.statement import Contradiction, Count, Number, PositiveLength, Statement
 
 FEWEST_TEETH = 3
 """Full-depth gears with fewer have no root circle."""
@@ -46,6 +46,42 @@ PressureAngle = Annotated[float, ANGLE, Field(strict=True, ge=10.0, le=30.0)]
 
 CommonPressureAngle = Annotated[float, ANGLE, Field(strict=True, ge=14.0, le=30.0)]
 """Degrees; of planetary trains and gearboxes, whose bounds on tooth numbers hold from 14° on."""
+
+
+ShiftCoefficient = Annotated[float, Field(strict=True, ge=-2.0, le=2.0)]
+"""A profile shift in modules, positive outwards, on rings too."""
+
+ContactRatio = Annotated[float, Field(strict=True, ge=1.0, le=2.5)]
+"""The least mean number of pairs of teeth in contact."""
+
+TipThickness = Annotated[float, Field(strict=True, ge=0.0, le=1.5)]
+"""Least thickness of a tooth at its tip, in modules."""
+
+
+class ShiftRange(Statement):
+    """Least and greatest profile shift of a gear, in modules; equal to fix it."""
+
+    min: ShiftCoefficient
+    max: ShiftCoefficient
+
+    @model_validator(mode="after")
+    def _min_below_max(self) -> Self:
+        if self.min > self.max:
+            raise ValueError("min must not be above max")
+        return self
+
+
+class DistanceRange(Statement):
+    """Least and greatest centre distance."""
+
+    min: PositiveLength
+    max: PositiveLength
+
+    @model_validator(mode="after")
+    def _min_below_max(self) -> Self:
+        if self.min > self.max:
+            raise ValueError("min must not be above max")
+        return self
 
 
 class ToothRange(Statement):

@@ -63,7 +63,7 @@ PURE = {
     "Overbalance": {"share"},
     "StatedGear": {"ratio"},
     "GearTrainMetrics": {"error", "relative_error", "largest_stage_ratio"},
-    "GearTrainProblem": {"ratio", "max_stage_ratio", "tolerance"},
+    "GearTrainProblem": {"ratio", "max_stage_ratio", "tolerance", "min_contact_ratio", "min_tip_thickness"},
     "GearTrainSearch": {"least_error"},
     "GearboxMetrics": {"max_error", "torque"},  # times that of the input
     "GearboxProblem": {"tolerance"},
@@ -77,6 +77,7 @@ PURE = {
     "MeshContact": {"contact_ratio"},
     "MeshGeometry": {"contact_ratio"},
     "Optimality": {"value", "bound", "gap"},  # of its criterion
+    "OfGears": {"driver", "driven"},
     "OutputDial": {"at"},
     "ParallelMotionMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
     "ParetoLayshaft": {"max_error"},
@@ -101,6 +102,7 @@ PURE = {
     "Sensitivity": {"x", "y", "travel", "share"},  # length by length
     "RotorMetrics": {"residual_vibration"},  # in the unit of the readings
     "RoundingCost": {"rms_residual"},
+    "ShiftRange": {"min", "max"},  # in modules
     "SpindleSpeed": {"error"},
     "SpindleSpeeds": {"ratio"},
     "SecondMetrics": {"curvature_ratio"},

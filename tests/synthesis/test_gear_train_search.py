@@ -132,7 +132,7 @@ def brute(
     pairings: dict[tuple[object, ...], Fraction] = {}
     limit = stated.max_stage_ratio and Fraction(str(stated.max_stage_ratio))
     stock = stated.stocked()
-    modules = stated.modules()
+    modules = stated.exact_modules()
     for k in stages:
         meshes = [
             [(a, b, m) for a in ranges[2 * i] for b in ranges[2 * i + 1] for m in range(len(modules))]
@@ -278,6 +278,6 @@ def test_every_demand_against_plain_search(
         if stated.hunting_tooth == "require":
             assert all(math.gcd(*mesh) == 1 for mesh in train.meshes)
         if stated.reverted:
-            modules = stated.modules()
+            modules = stated.exact_modules()
             marks = zip(train.meshes, train.marks, strict=True)
             assert len({modules[mark] * sum(mesh) for mesh, mark in marks}) == 1

@@ -17,9 +17,10 @@ from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 
 
 def gear_train_table(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
-    """Stage, role, teeth, module, circles, shaft centre and speed of every gear."""
+    """Stage, role, teeth, module, circles, shaft centre and speed of every gear; of fitted ones the profile shift."""
+    fitted = ["profile_shift"] if problem.is_fitted else []
     return table(
-        ["stage", "role", "teeth", *_lengths("outside", problem.length_unit), "speed_over_input"],
+        ["stage", "role", "teeth", *_lengths("outside", problem.length_unit), "speed_over_input", *fitted],
         (
             [
                 placed.stage,
@@ -27,6 +28,7 @@ def gear_train_table(design: GearTrainDesign, problem: GearTrainProblem, title: 
                 placed.gear.teeth,
                 *_sizes(placed.gear, placed.centre),
                 f"{placed.speed.numerator}/{placed.speed.denominator}",
+                *([placed.gear.shift] if fitted else []),
             ]
             for placed in placed_gears(design, problem.reverted)
         ),

@@ -6,7 +6,7 @@ layer                  what is on it (n: number of the stage; PLANE_n of a plane
 STAGE_n_PITCH          pitch circles
 STAGE_n_TEETH          closed outlines of all teeth: involutes, fillets, tips, roots
 CENTRES                crosses at the shafts; points at the axes of a planetary train
-TEXT                   tooth numbers and modules, of ordinary trains
+TEXT                   tooth numbers, modules and profile shifts, of ordinary trains
 =====================  ==============================================================
 
 Stages lie one above the other in the plane as their shafts do; the input shaft is at the origin, and so is the axis of
@@ -67,7 +67,8 @@ def gear_train_drawing(design: GearTrainDesign, problem: GearTrainProblem, title
         dxf.add_cross(space, at, CROSS * size, "CENTRES")
         # Gears on one shaft are written below one another.
         below = at - 1j * height * (1.5 + LINE_STEP * (2 * placed.stage + (placed.role == "driven")))
-        dxf.add_words(space, below, f"stage {placed.stage} {placed.role}: z={gear.teeth} m={gear.module:.6g}", height)
+        words = f"stage {placed.stage} {placed.role}: z={gear.teeth} m={gear.module:.6g}"
+        dxf.add_words(space, below, f"{words} x={gear.shift:.6g}" if problem.is_fitted else words, height)
     return dxf.written(document)
 
 

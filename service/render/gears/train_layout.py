@@ -42,10 +42,13 @@ def placed_gears(design: GearTrainDesign, reverted: bool) -> list[TrainGear]:
         roles = ["driver", *("idler" for _ in stage.idlers), "driven"]
         centre, tooth_at = shaft, cmath.phase(ahead)
         previous: Gear | None = None
-        for role, teeth, speed in zip(roles, stage.gears, speeds, strict=True):
-            gear = Gear(teeth, stage.module, train.pressure_angle)
+        # Shifted gears stand apart by more, or by less, than their pitch circles.
+        wide = 1.0
+        if stage.shifts != (0.0, 0.0):
+            wide = distances[number] / sum(mesh.standard_distance for mesh in train.meshes[number])
+        for role, gear, speed in zip(roles, stage.cut_gears(train.pressure_angle), speeds, strict=True):
             if previous is not None:
-                centre += ahead * (previous.pitch_radius + gear.pitch_radius)
+                centre += ahead * (previous.pitch_radius + gear.pitch_radius) * wide
                 tooth_at = facing(previous, tooth_at, gear, cmath.phase(ahead))
             placed.append(TrainGear(gear, centre, tooth_at, number + 1, role, speed))
             previous = gear

@@ -146,6 +146,13 @@ def _tables(design: GearTrainDesign, problem: GearTrainProblem, gears: list[Trai
             ("shaft distance", f"{length(metrics.centre_distances[number - 1])} {unit}"),
             ("contact ratio", ", ".join(f"{mesh.contact_ratio:.3f}" for mesh in meshes)),
         ]
+        if problem.is_fitted:
+            cut = [placed.gear for placed in gears if placed.stage == number]
+            rows += [
+                ("profile shifts", ", ".join(f"{gear.shift:.5f}".replace("-", "−") for gear in cut)),
+                ("tip circles", ", ".join(f"⌀ {length(2.0 * gear.tip_radius)} {unit}" for gear in cut)),
+                ("working pressure angle", ", ".join(f"{mesh.working_pressure_angle:.4f}°" for mesh in meshes)),
+            ]
         if any(mesh.interferes for mesh in meshes):
             rows.append(("interference", "yes; see suggested shift"))
         tables.append(blocks.rows(f"Stage {number}", rows))

@@ -164,7 +164,10 @@ def _half(task: Task, values: tuple[Integers, ...]) -> _Half:
 
 @dataclass(frozen=True, eq=False)
 class Meshes:
-    """Trains of one mesh for each of k stages; all from one group."""
+    """Trains of one mesh for each of k stages; all from one group.
+
+    Between ``nearest`` and ``farthest`` are the distances that a mesh can have, where coaxial meshes have to agree.
+    """
 
     k: int
     a: Integers
@@ -173,6 +176,8 @@ class Meshes:
     ratio: Floats
     groups: Integers
     least_size: Integers
+    nearest: Floats
+    farthest: Floats
     coaxial: bool
     combinations: int
 
@@ -201,13 +206,14 @@ class Meshes:
         return int(shortlist.ties[0])
 
     def _combine(self, first: int, last: int, rule: Rule, shortlist: Found, tied: Integers) -> None:
-        lists = self.a, self.b, self.mark, self.ratio, self.groups, self.least_size
+        lists = self.a, self.b, self.mark, self.ratio, self.groups, self.least_size, self.nearest, self.farthest
         kernels.combine(self.k, *lists, first, last, self.coaxial, rule, shortlist, tied)
 
 
 def coaxial_meshes(task: Task, k: int) -> Meshes:
-    """Reverted trains: groups of equal centre distance, that is of equal pitch × (a + b)."""
-    return _grouped(task, k, [_meshes(task, i, len(task.pitches), task.allowed) for i in range(k)], coaxial=True)
+    """Reverted trains: groups of equal centre distance, of equal pitch × (a + b); of fitted meshes one group."""
+    pitches = len(task.pitches) if task.fit is None or task.fit.shares_distance else 1
+    return _grouped(task, k, [_meshes(task, i, pitches, task.meshes(i)) for i in range(k)], coaxial=True)
 
 
 def few_meshes(task: Task, k: int, reach: tuple[float, float], tolerance: float) -> Meshes | None:
@@ -215,6 +221,8 @@ def few_meshes(task: Task, k: int, reach: tuple[float, float], tolerance: float)
 
     If every stage ratio is within ``reach``, a stage of a train near enough has at least T (1 − t) / reach₁^(k−1).
     """
+    if task.fit is not None:
+        return _few_fitted(task, k)
     if not task.by_mesh or task.ordered or k in task.idler_counts:
         return None
     low, high = reach
@@ -228,11 +236,19 @@ def few_meshes(task: Task, k: int, reach: tuple[float, float], tolerance: float)
     return _grouped(task, k, [(a[kept], b[kept], mark[kept])] * k, coaxial=False)
 
 
+def _few_fitted(task: Task, k: int) -> Meshes | None:
+    """Trains of fitted meshes, where all stages but one have few choices."""
+    stages = [_meshes(task, i, 1, task.meshes(i)) for i in range(k)]
+    counts = [len(stage[0]) for stage in stages]
+    choices = math.prod(counts[:-1]) if task.ordered else math.comb(counts[0] + k - 2, k - 1)
+    return _grouped(task, k, stages, coaxial=False) if choices <= FEW_TRAINS else None
+
+
 def stage_reach(task: Task, k: int) -> list[tuple[Fraction, Fraction]]:
     """Least and greatest ratio of each stage's allowed meshes; empty where a stage has none."""
     reaches = []
     for i in range(k):
-        a, b, _ = _meshes(task, i, 1, task.stages(k))
+        a, b, _ = _meshes(task, i, 1, task.stages(k, i))
         if not len(a):
             return []
         ratio = b / a
@@ -255,9 +271,15 @@ def _grouped(task: Task, k: int, stages: list[tuple[Integers, Integers, Integers
     listed = stages if task.ordered else stages[:1]
     a, b, mark = (np.concatenate([stage[column] for stage in listed]) for column in range(3))
     stage = np.repeat(np.arange(len(listed)), [len(one[0]) for one in listed])
+    ends: Floats = np.stack([np.zeros(len(a)), np.full(len(a), np.inf)])
+    if coaxial and task.fit is not None and task.fit.shares_distance:
+        ends = np.moveaxis(task.fit.ends[mark, a, b], -1, 0)
+        fits = np.isfinite(ends[0])
+        a, b, mark, stage, ends = a[fits], b[fits], mark[fits], stage[fits], ends[:, fits]
     key = task.pitches[mark] * (a + b) if coaxial else np.zeros(len(a), np.int64)
     order = np.lexsort((b / a, stage, key))
     a, b, mark, stage, key = (column[order] for column in (a, b, mark, stage, key))
+    near, far = np.ascontiguousarray(ends[:, order])
     ratio = b / a
     keys = np.unique(key)
     places = np.arange(len(listed) + 1)
@@ -276,7 +298,7 @@ def _grouped(task: Task, k: int, stages: list[tuple[Integers, Integers, Integers
         combinations = sum(math.prod(int(n) for n in row) for row in counts)
     else:
         combinations = sum(math.comb(int(n) + k - 1, k) for n in counts[:, 0])
-    return Meshes(k, a, b, mark, ratio, groups, least[rising], coaxial, combinations)
+    return Meshes(k, a, b, mark, ratio, groups, least[rising], near, far, coaxial, combinations)
 
 
 def _least_size(size: Integers, group: Integers, largest: bool, k: int) -> int:

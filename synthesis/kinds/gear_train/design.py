@@ -6,9 +6,9 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Result, Search, Verification
+from synthesis.model.answer import Answer, Result, Search, Verification, optional
 from synthesis.model.dimension import Angle, Length
-from synthesis.model.gear_answer import MeshGeometry, Ratio
+from synthesis.model.gear_answer import MeshGeometry, OfGears, Ratio
 
 
 class Stage(Answer):
@@ -17,6 +17,8 @@ class Stage(Answer):
     driver: int = Field(description="Teeth of the driving gear.")
     driven: int = Field(description="Teeth of the driven gear.")
     module: Length = Field(description="Module in length units.")
+    shift: OfGears | None = optional("Profile shift of both gears in modules, where teeth are fitted.")
+    centre_distance: Length | None = optional("Distance of the shafts without play, where teeth are fitted.")
 
 
 class Idler(Answer):

@@ -25,6 +25,9 @@ Gears = NDArray[np.int16]
 SPLITTER = 134217729.0
 """2²⁷ + 1: times a float of 53 bits it parts it into two of 26 bits, whose products are exact (Veltkamp, Dekker)."""
 
+AGREED = 1e-13
+"""Share of a distance by which the ranges of coaxial meshes may miss one another in rounding."""
+
 WINDOW_MARGIN = 1e-12
 """Share by which the window of errors is widened: rounding must not lose a train, and the order is exact later."""
 
@@ -253,6 +256,8 @@ def combine(
     ratio: Floats,
     groups: Integers,
     least_size: Integers,
+    nearest: Floats,
+    farthest: Floats,
     first: int,
     last: int,
     coaxial: bool,
@@ -264,7 +269,8 @@ def combine(
 
     In a group the stages' lists are ``groups[g, i]`` to ``groups[g, i + 1]``, in the order of the ratio b/a; without
     ``rule.ordered`` they are one list, and every multiset is met once. All stages but one are enumerated and the
-    fitting meshes of the last are found by bisection. ``least_size`` of the groups must not fall. ``coaxial``: the
+    fitting meshes of the last are found by bisection. ``least_size`` of the groups must not fall. The meshes of a train
+    agree on a distance between ``nearest`` and ``farthest`` of each. ``coaxial``: the
     pairing is what it is, and of the places of the meshes one choice counts; else only the pairing that ``pair_up``
     would choose counts, so that gears are met once.
 
@@ -335,7 +341,10 @@ def combine(
                         for i in range(k):
                             teeth[i], teeth[MOST_STAGES + i] = a[place[i]], b[place[i]]
                             teeth[2 * MOST_STAGES + i] = mark[place[i]]
-                        sound = within_limits(teeth, k, rule)
+                        near, far = nearest[j], farthest[j]
+                        for i in range(k - 1):
+                            near, far = max(near, nearest[place[i]]), min(far, farthest[place[i]])
+                        sound = near <= far * (1.0 + AGREED) and within_limits(teeth, k, rule)
                         if sound and not coaxial and not rule.ordered:
                             for i in range(2 * MOST_STAGES):
                                 canonical[i] = teeth[i]

@@ -21,10 +21,10 @@ class Rule(NamedTuple):
     """What makes a train a candidate and how candidates are ranked.
 
     ``allowed[a, b]`` tells which meshes may be, where ``by_mesh``; ``stock[t]`` how many gears of t teeth there are,
-    where ``by_stock``. ``with_idler``: in one stage, of the pairs ``idled``, an idler stands between the gears, and has
-    to mesh soundly (``sound``) with both; of a stock it takes one more gear. ``most_total`` bounds the sum of all
-    teeth. ``ordered``: stages have ranges of their own, of the place i of a train's teeth from ``least[i]`` to
-    ``most[i]``. ``by_size``: the smallest trains first,
+    where ``by_stock``; where ``by_stage``, stage i may have only those of ``of_stage[i]``. ``with_idler``: in one
+    stage, of the pairs ``idled``, an idler stands between the gears, and has to mesh soundly (``sound``) with both; of
+    a stock it takes one more gear. ``most_total`` bounds the sum of all teeth. ``ordered``: stages have ranges of their
+    own, of the place i of a train's teeth from ``least[i]`` to ``most[i]``. ``by_size``: the smallest trains first,
     else the nearest. ``largest``: the size of a train is its largest gear, else the sum of all teeth.
     """
 
@@ -38,6 +38,8 @@ class Rule(NamedTuple):
     most: Integers
     by_mesh: bool
     allowed: NDArray[np.bool_]
+    by_stage: bool
+    of_stage: NDArray[np.bool_]
     with_idler: bool
     sound: NDArray[np.bool_]
     idled: NDArray[np.bool_]
@@ -96,6 +98,8 @@ def may_be(teeth: Integers, k: int, rule: Rule) -> bool:
     for i in range(k):
         a, b = teeth[i], teeth[MOST_STAGES + i]
         if not (rule.allowed[a, b] or (rule.with_idler and rule.idled[a, b])):
+            return False
+        if rule.by_stage and not rule.of_stage[i, a, b]:
             return False
     return not rule.with_idler or takes_idler(teeth, k, rule)
 

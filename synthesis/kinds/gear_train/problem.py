@@ -9,9 +9,20 @@ from typing import Annotated, Literal, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from synthesis.model.dimension import INVERSE_LENGTH
-from synthesis.model.gear_statement import MOST_TEETH, ExactRatio, Module, Pitch, PressureAngle, ToothNumber
+from synthesis.model.gear_statement import (
+    MOST_TEETH,
+    ContactRatio,
+    DistanceRange,
+    ExactRatio,
+    Module,
+    Pitch,
+    PressureAngle,
+    ShiftRange,
+    TipThickness,
+    ToothNumber,
+)
 from synthesis.model.ratio_target import Target, decimal, parse_target
-from synthesis.model.statement import Contradiction, Count, Flag, StatedProblem, Statement
+from synthesis.model.statement import Contradiction, Count, Flag, PositiveLength, StatedProblem, Statement
 
 MOST_HALVES = 10_000_000
 """Choices of the drivers (or of the driven gears) of all stages that a search holds at most; about 200 MB."""
@@ -30,6 +41,15 @@ NEAR = Fraction(1, 100)
 among which the smallest are sought. Of all trains whatever their error the smallest would be no answer to a ratio."""
 
 DEFAULT_MOST_TEETH = 100
+
+USUAL_SHIFT = (-0.5, 1.0)
+"""Profile shifts, in modules, that a stated centre distance may call for where no limits are stated."""
+
+USUAL_CONTACT_RATIO, USUAL_TIP_THICKNESS = 1.2, 0.25
+"""Least contact ratio, and least thickness of the tips in modules, of teeth that are fitted to a distance."""
+
+MOST_FITTED = 500
+"""Tooth numbers of which pairs are fitted to a range of distances; some 10⁵ pairs."""
 
 
 class TeethRange(Statement):
@@ -80,6 +100,17 @@ class GearTrainProblem(StatedProblem):
                     "reverted": True,
                     "tolerance": 0.0,
                 },
+                {
+                    "kind": "gear_train",
+                    "ratio": "pi",
+                    "max_stages": 2,
+                    "teeth": {"min": 17, "max": 100},
+                    "reverted": True,
+                    "modules": [1.0, 1.25, 1.5, 2.0],
+                    "centre_distance": 120.0,
+                    "tolerance": 1e-5,
+                    "max_designs": 3,
+                },
             ]
         },
     )
@@ -128,6 +159,32 @@ class GearTrainProblem(StatedProblem):
     )
     diametral_pitch: Annotated[Pitch, INVERSE_LENGTH] | None = Field(
         default=None, description="Teeth per length unit of pitch diameter, in place of the module."
+    )
+    modules: list[Module] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=8,
+        description="Modules from which every stage may choose, reverted or not, in place of `module`. With this field "
+        "or one of the four that follow, the teeth of every mesh are fitted: only meshes count that a profile shift "
+        "within its limits makes sound.",
+    )
+    centre_distance: PositiveLength | DistanceRange | Annotated[list[PositiveLength], Field(max_length=4)] | None = (
+        Field(
+            default=None,
+            description="Of every stage: one distance, or the least and the greatest; or a list of the distances of "
+            "stage 1, 2, ... The profile shifts give it without play. Such trains have no idlers.",
+        )
+    )
+    shift: ShiftRange | None = Field(
+        default=None,
+        description=f"Profile shift of every gear, in modules. Left out: {USUAL_SHIFT[0]} to {USUAL_SHIFT[1]} with a "
+        "stated centre distance, none without.",
+    )
+    min_contact_ratio: ContactRatio | None = Field(
+        default=None, description=f"Of every mesh; {USUAL_CONTACT_RATIO} where teeth are fitted."
+    )
+    min_tip_thickness: TipThickness | None = Field(
+        default=None, description=f"Of every gear, in modules; {USUAL_TIP_THICKNESS} where teeth are fitted."
     )
     pressure_angle: PressureAngle = Field(default=20.0, description="Degrees.")
     interference: Literal["report", "refuse"] = Field(
@@ -189,8 +246,58 @@ class GearTrainProblem(StatedProblem):
             counts[teeth] = counts.get(teeth, 0) + count
         return counts
 
-    def modules(self) -> list[Fraction]:
+    @property
+    def is_fitted(self) -> bool:
+        """Whether the teeth of every mesh are fitted to a distance, or have to be sound without."""
+        stated = self.modules, self.centre_distance, self.shift, self.min_contact_ratio, self.min_tip_thickness
+        return any(field is not None for field in stated)
+
+    @property
+    def shift_limits(self) -> tuple[float, float]:
+        """Least and greatest profile shift, modules."""
+        if self.shift is not None:
+            return self.shift.min, self.shift.max
+        return USUAL_SHIFT if self.centre_distance is not None else (0.0, 0.0)
+
+    @property
+    def least_contact_ratio(self) -> float:
+        """The contact ratio that a fitted mesh has at least."""
+        return USUAL_CONTACT_RATIO if self.min_contact_ratio is None else self.min_contact_ratio
+
+    @property
+    def least_tip_thickness(self) -> float:
+        """The thickness that the tips of a fitted mesh have at least, modules."""
+        return USUAL_TIP_THICKNESS if self.min_tip_thickness is None else self.min_tip_thickness
+
+    def distance_limits(self, stage: int) -> tuple[float, float]:
+        """Least and greatest centre distance of a stage, counted from 0; 0 and infinity where none is stated."""
+        stated = self.centre_distance
+        if isinstance(stated, DistanceRange):
+            return stated.min, stated.max
+        if stated is None:
+            return 0.0, math.inf
+        distance = stated[stage] if isinstance(stated, list) else stated
+        return distance, distance
+
+    @property
+    def has_own_modules(self) -> bool:
+        """Whether the list of modules is one for each stage, not a choice."""
+        return isinstance(self.module, list) and not self.reverted
+
+    def modules_of(self, stage: int) -> list[float]:
+        """The modules that a stage, counted from 0, may have."""
+        listed = [float(module) for module in self.exact_modules()]
+        return [listed[stage]] if self.has_own_modules else listed
+
+    @property
+    def shares_distance(self) -> bool:
+        """Whether fitted stages have to agree on a distance that is not stated as one number."""
+        return self.is_fitted and self.reverted and not isinstance(self.centre_distance, float)
+
+    def exact_modules(self) -> list[Fraction]:
         """The stated modules, exact."""
+        if self.modules is not None:
+            return [decimal(module) for module in self.modules]
         if self.diametral_pitch is not None:
             return [1 / decimal(self.diametral_pitch)]
         stated = [1.0] if self.module is None else self.module if isinstance(self.module, list) else [self.module]
@@ -198,14 +305,14 @@ class GearTrainProblem(StatedProblem):
 
     def pitches(self) -> list[int]:
         """The modules as the smallest whole numbers that are in proportion to them."""
-        modules = self.modules()
+        modules = self.exact_modules()
         unit = math.lcm(*(module.denominator for module in modules))
         whole = [int(module * unit) for module in modules]
         return [pitch // math.gcd(*whole) for pitch in whole]
 
     def contradictions(self) -> list[Contradiction]:
         """Faults that no single field shows."""
-        return [*self._contradicting_fields(), *self._wrong_lists(), *self._too_much()]
+        return [*self._contradicting_fields(), *self._wrong_lists(), *self._wrong_fit(), *self._too_much()]
 
     def _contradicting_fields(self) -> list[Contradiction]:
         contradictions = []
@@ -257,8 +364,28 @@ class GearTrainProblem(StatedProblem):
                 )
         return contradictions
 
+    def _wrong_fit(self) -> list[Contradiction]:
+        contradictions = []
+        if self.modules is not None:
+            for name, stated in (("module", self.module), ("diametral_pitch", self.diametral_pitch)):
+                if stated is not None:
+                    contradictions.append(Contradiction("/modules", f"drop {name}, or state it alone"))
+            if len(set(self.modules)) < len(self.modules):
+                contradictions.append(Contradiction("/modules", "lists a module twice; each is a choice"))
+        if isinstance(self.centre_distance, list):
+            if self.reverted:
+                contradictions.append(
+                    Contradiction(
+                        "/centre_distance", "a reverted train has one distance for all stages; state a number"
+                    )
+                )
+            elif len(self.centre_distance) != self.max_stages:
+                expected = f"expected the distances of {self.max_stages} stages, got {len(self.centre_distance)}"
+                contradictions.append(Contradiction("/centre_distance", expected))
+        return contradictions
+
     def _too_much(self) -> list[Contradiction]:
-        if self._wrong_lists():
+        if self._wrong_lists() or self._wrong_fit():
             return []
         k = self.max_stages
         field = "/teeth"
@@ -266,9 +393,18 @@ class GearTrainProblem(StatedProblem):
             widths, field = [len(self.stocked())] * (2 * k), "/stock"
         else:
             widths = [high - low + 1 for low, high in self.position_ranges()]
+        if self.shares_distance and max(widths) > MOST_FITTED:
+            detail = f"{max(widths)} tooth numbers are more than the {MOST_FITTED} whose pairs are fitted to a distance"
+            return [Contradiction(field, f"{detail} that is left open; narrow them or state the distance")]
         if self.reverted:
-            meshes = max(widths) * len(self.modules())
-            half = 2 * max(widths) * len(self.modules()) * math.comb(meshes + k - 2, k - 1)
+            meshes = max(widths) * len(self.exact_modules())
+            if self.is_fitted:
+                # At one distance the sums of teeth that a shift takes up; at an open one all pairs.
+                low, high = self.shift_limits
+                meshes *= max(widths) if self.shares_distance else math.ceil(4.0 * (high - low)) + 1
+                half = math.comb(meshes + k - 2, k - 1)
+            else:
+                half = 2 * max(widths) * len(self.exact_modules()) * math.comb(meshes + k - 2, k - 1)
             most, what = MOST_COAXIAL, "combinations of meshes"
         else:
             most, what = MOST_HALVES, "choices of drivers or driven gears"

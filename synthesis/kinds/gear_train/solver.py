@@ -19,7 +19,7 @@ from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.search import Outcome, Train, order, search
 from synthesis.kinds.gear_train.task import Task, gear_train_task, needs_idler
 from synthesis.kinds.gear_train.verification import verify
-from synthesis.model.gear_answer import Ratio
+from synthesis.model.gear_answer import OfGears, Ratio
 from synthesis.model.kind import Progress
 from synthesis.outcome.sifting import Sifting
 
@@ -76,7 +76,18 @@ def _least_error(task: Task, outcome: Outcome) -> float | None:
 
 
 def _stages(problem: GearTrainProblem, task: Task, train: Train) -> list[Stage]:
-    """The meshes with their modules."""
+    """The meshes with their modules, and with their shifts where teeth are fitted."""
+    if task.fit is not None:
+        return [
+            Stage(
+                driver=driver,
+                driven=driven,
+                module=task.fit.modules[made.module],
+                shift=OfGears(driver=made.shifts[0], driven=made.shifts[1]),
+                centre_distance=made.distance,
+            )
+            for (driver, driven), made in zip(train.meshes, task.fit.fitted(*train), strict=True)
+        ]
     stages = []
     for number, ((driver, driven), mark) in enumerate(zip(train.meshes, train.marks, strict=True)):
         place = mark if problem.reverted else min(number, len(task.modules) - 1)

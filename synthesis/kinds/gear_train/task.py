@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.gear.teeth import largest_gear
+from synthesis.kinds.gear_train.fitting import Fit, fit_meshes
 from synthesis.kinds.gear_train.pairing import MOST_STAGES, Integers, Rule
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.model.gear_statement import MOST_TEETH
@@ -25,7 +26,7 @@ class Task:
 
     ``drivers[i]``, ``driven[i]`` are the tooth numbers of stage i, rising; where stages are ``ordered`` they have their
     own, else the same. ``stock[t]`` is empty without a stock. ``pitches`` are the modules
-    in a unit in which all are whole numbers.
+    in a unit in which all are whole numbers. ``fit`` tells of meshes whose teeth are fitted to their distances.
 
     Trains of ``idler_counts`` stages need one of the ``idlers`` in a stage. Its driver and driven gear do not mesh with
     one another, only with the idler: ``sound[a, b]`` tells which gears may mesh, ``idled[a, b]`` between which an idler
@@ -50,20 +51,29 @@ class Task:
     most_total: int | None
     by_size: bool
     largest: bool
+    fit: Fit | None
 
     @property
     def most_teeth(self) -> int:
         """The largest tooth number."""
         return len(self.allowed) - 1
 
-    def stages(self, k: int) -> NDArray[np.bool_]:
-        """Driver and driven gear of the stages that a train of k stages may have."""
-        return self.allowed | self.idled if k in self.idler_counts else self.allowed
+    def meshes(self, stage: int) -> NDArray[np.bool_]:
+        """Which gears may mesh in a stage, counted from 0."""
+        if self.fit is None:
+            return self.allowed
+        return np.asarray(self.allowed & (self.fit.module[self.fit.stage(stage)] >= 0))
+
+    def stages(self, k: int, stage: int) -> NDArray[np.bool_]:
+        """Driver and driven gear that a stage, counted from 0, of a train of k stages may have."""
+        return self.allowed | self.idled if k in self.idler_counts else self.meshes(stage)
 
     def rule(self, tolerance: float, k: int) -> Rule:
         """The task for the compiled loops over trains of k stages."""
         head, rest = self.target.parts()
         stocked = len(self.stock) > 0
+        by_stage = self.fit is not None and self.fit.by_stage
+        of_stage = [self.meshes(stage) for stage in range(len(self.drivers))] if by_stage else [np.zeros((1, 1), bool)]
         return Rule(
             target=head,
             target_rest=rest,
@@ -75,6 +85,8 @@ class Task:
             most=_in_places([values.max(initial=0) for values in (*self.drivers, *self.driven)]),
             by_mesh=self.by_mesh,
             allowed=self.allowed,
+            by_stage=by_stage,
+            of_stage=np.array(of_stage),
             with_idler=k in self.idler_counts,
             sound=self.sound,
             idled=self.idled,
@@ -105,8 +117,12 @@ def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
     for teeth, count in counts.items():
         stock[teeth] = count
     drivers, driven = tuple(positions[0::2]), tuple(positions[1::2])
-    by_mesh = coprime or problem.max_stage_ratio is not None or problem.interference == "refuse"
+    fit = fit_meshes(problem, np.unique(np.concatenate(positions))) if problem.is_fitted else None
+    demanding = problem.max_stage_ratio is not None or problem.interference == "refuse"
+    by_mesh = coprime or demanding or fit is not None
     sound = _sound_meshes(problem, most, coprime)
+    if fit is not None:
+        sound &= fit.allowed
     limited = _within_stage_ratio(problem, most)
     stage_counts = _stage_counts(problem, sum(counts.values()) if counts else None)
     idler_counts = tuple(k for k in stage_counts if needs_idler(problem, k))
@@ -117,12 +133,13 @@ def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
         before, after = sound[:, idlers].astype(np.float32), sound[idlers].astype(np.float32)
         idled = (before @ after > 0.0) & limited
     stages = allowed | idled
-    modules = tuple(problem.modules())
+    modules = tuple(problem.exact_modules())
+    apart = any(not np.array_equal(v, positions[k % 2]) for k, v in enumerate(positions))
     return Task(
         target=problem.target,
         drivers=tuple(_usable(values, stages.T, mates) for values, mates in zip(drivers, driven, strict=True)),
         driven=tuple(_usable(values, stages, mates) for values, mates in zip(driven, drivers, strict=True)),
-        ordered=any(not np.array_equal(v, positions[k % 2]) for k, v in enumerate(positions)),
+        ordered=apart or (fit is not None and fit.by_stage),
         allowed=allowed,
         by_mesh=by_mesh,
         sound=sound,
@@ -132,11 +149,13 @@ def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
         stock=stock,
         reverted=problem.reverted,
         modules=modules,
-        pitches=np.array(problem.pitches(), np.int64),
+        # Fitted meshes are not told apart by their pitch circles: all are in one group.
+        pitches=np.array(problem.pitches() if fit is None else [0] * len(modules), np.int64),
         stage_counts=stage_counts,
         most_total=problem.max_total_teeth,
         by_size=problem.rank_by == "size",
         largest=problem.size == "largest_gear",
+        fit=fit,
     )
 
 
@@ -150,8 +169,8 @@ def _stage_counts(problem: GearTrainProblem, stocked: int | None) -> tuple[int, 
     counts = []
     for k in range(2 if problem.reverted else 1, problem.max_stages + 1):
         idler = needs_idler(problem, k)
-        # An idler in one stage of a reverted train would spread its shafts.
-        if (idler and problem.reverted) or (stocked is not None and stocked < 2 * k + idler):
+        # An idler in one stage of a reverted train would spread its shafts, and stages with a distance have no room.
+        if (idler and (problem.reverted or problem.is_fitted)) or (stocked is not None and stocked < 2 * k + idler):
             continue
         counts.append(k)
     return tuple(counts)
@@ -163,7 +182,7 @@ def _sound_meshes(problem: GearTrainProblem, most: int, coprime: bool) -> NDArra
     sound = np.minimum(a, b) > 0
     if coprime:
         sound &= np.gcd(a, b) == 1
-    if problem.interference == "refuse":
+    if problem.interference == "refuse" and not problem.is_fitted:
         largest = [largest_gear(n, math.radians(problem.pressure_angle)) if n else 0 for n in range(most + 1)]
         bound = np.array([most if n is None else n for n in largest])
         sound &= np.maximum(a, b) <= bound[np.minimum(a, b)]

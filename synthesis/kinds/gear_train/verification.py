@@ -23,6 +23,9 @@ from synthesis.proof.checks import tolerated
 DISTANCE_TOLERANCE = 1e-12
 """Share of a centre distance by which equal ones may differ in rounding."""
 
+FITTED = 1e-9
+"""Share of a module, or of a contact ratio, by which a fitted mesh may miss a demand in rounding."""
+
 ENCLOSURE_BITS = 256
 """Width of the target's enclosure; errors of trains are told to some sixty digits."""
 
@@ -34,7 +37,13 @@ def driven_train(mechanism: GearTrainMechanism) -> OrdinaryTrain:
         idlers.setdefault(idler.stage, []).append(idler.teeth)
     return OrdinaryTrain(
         tuple(
-            TrainStage(stage.driver, stage.driven, stage.module, tuple(idlers.get(number, ())))
+            TrainStage(
+                stage.driver,
+                stage.driven,
+                stage.module,
+                tuple(idlers.get(number, ())),
+                (0.0, 0.0) if stage.shift is None else (stage.shift.driver, stage.shift.driven),
+            )
             for number, stage in enumerate(mechanism.stages, 1)
         ),
         math.radians(mechanism.pressure_angle),
@@ -48,7 +57,7 @@ def verify(problem: GearTrainProblem, mechanism: GearTrainMechanism) -> GearTrai
     except DimensionError:
         return None
     errors = _errors(problem, abs(train.ratio))
-    meshes = mesh_geometries(train)
+    meshes = mesh_geometries(train, problem.is_fitted)
     gears = [n for stage in train.stages for n in (stage.driver, stage.driven)]
     pairs = [pair for stage in train.stages for pair in zip(stage.gears[:-1], stage.gears[1:], strict=True)]
     metrics = GearTrainMetrics(
@@ -65,6 +74,7 @@ def verify(problem: GearTrainProblem, mechanism: GearTrainMechanism) -> GearTrai
         *_ratio_checks(problem, mechanism, train, errors),
         *_gear_checks(problem, mechanism, train, metrics),
         *_mesh_checks(problem, metrics),
+        *(_fit_checks(problem, mechanism, metrics) if problem.is_fitted else []),
     ]
     return GearTrainDesign(
         mechanism=mechanism,
@@ -137,3 +147,32 @@ def _mesh_checks(problem: GearTrainProblem, metrics: GearTrainMetrics) -> list[C
     if problem.interference == "refuse":
         checks.append(Check(name="interference", passed=not any(mesh.interferes for mesh in metrics.meshes)))
     return checks
+
+
+def _fit_checks(problem: GearTrainProblem, mechanism: GearTrainMechanism, metrics: GearTrainMetrics) -> list[Check]:
+    """What fitted teeth have to keep, from the geometry of the meshes at the distance that the shifts make."""
+    least_shift, most_shift = problem.shift_limits
+    shifts = [x for stage in mechanism.stages if stage.shift for x in (stage.shift.driver, stage.shift.driven)]
+    tips, apart, chosen = [], [], []
+    for number, (mesh, stage) in enumerate(zip(metrics.meshes, mechanism.stages, strict=True)):
+        low, high = problem.distance_limits(number)
+        distance, stated = mesh.centre_distance, stage.centre_distance or math.nan
+        apart.append(max(low - distance, distance - high, abs(distance - stated)) / distance)
+        if mesh.tip_thickness is not None:
+            tips += [mesh.tip_thickness.driver / stage.module, mesh.tip_thickness.driven / stage.module]
+        chosen.append(stage.module in problem.modules_of(number))
+    ratio = min(mesh.contact_ratio for mesh in metrics.meshes)
+    return [
+        Check(name="module", passed=all(chosen)),
+        tolerated("centre_distance", max(apart), FITTED),
+        Check(name="least_shift", passed=min(shifts) >= least_shift - FITTED, value=min(shifts), limit=least_shift),
+        Check(name="greatest_shift", passed=max(shifts) <= most_shift + FITTED, value=max(shifts), limit=most_shift),
+        Check(name="undercut", passed=not any(mesh.undercut for mesh in metrics.meshes)),
+        Check(name="fillet_interference", passed=not any(mesh.interferes for mesh in metrics.meshes)),
+        _fitted("contact_ratio", ratio, problem.least_contact_ratio),
+        _fitted("tip_thickness", min(tips), problem.least_tip_thickness),
+    ]
+
+
+def _fitted(name: str, value: float, limit: float) -> Check:
+    return Check(name=name, passed=value >= limit - FITTED, value=value, limit=limit)

@@ -17,6 +17,7 @@ PLACES = {
     "ratio": "6",
     "teeth": [{"min": 15, "max": 20}, {"min": 30, "max": 60}, {"min": 15, "max": 20}, {"min": 30, "max": 60}],
 }
+DISTANCE = {"centre_distance": 45.0, "modules": [1.0, 1.5]}
 STOCK = {"teeth": None, "stock": [{"teeth": 20, "count": 1}, 20, 25, 30, 50, 51, 60]}
 
 TRAIN_ROWS: dict[str, Any] = {
@@ -40,6 +41,15 @@ TRAIN_ROWS: dict[str, Any] = {
     "reverted": True,
     "module": 2.0,
     "diametral_pitch": 2.0,
+    "modules": Row([1.25, 2.0], DISTANCE),
+    "centre_distance": Row(46.0, DISTANCE),
+    "centre_distance.min": Row(44.9, {"modules": [1.0, 1.5], "centre_distance": {"min": 40.0, "max": 45.0}}),
+    "centre_distance.max": Row(41.0, {"modules": [1.0, 1.5], "centre_distance": {"min": 40.0, "max": 45.0}}),
+    "shift": Row({"min": -0.1, "max": 0.1}, DISTANCE),
+    "shift.min": Row(0.35, {**DISTANCE, "shift": {"min": -0.5, "max": 1.0}}),
+    "shift.max": Row(0.1, {**DISTANCE, "shift": {"min": -0.5, "max": 1.0}}),
+    "min_contact_ratio": Row(1.6, DISTANCE),
+    "min_tip_thickness": Row(0.7, DISTANCE),
     "pressure_angle": 25.0,
     "interference": Row("refuse", {"teeth": {"min": 10, "max": 40}}),
     "tolerance": 1e-9,

@@ -1,0 +1,184 @@
+"""Gears that are cut and turned against what the analysis says of them, and fitted trains against a brute force.
+
+    python -m benchmarks.gears [--pairs 500] [--trains 100] [--seed 0]
+
+Pairs, external and internal, are drawn at random and stated to the analysis `gear_pair`. The same gears are cut by a
+rack, and rings by a cutter, point by point, and turned (`benchmarks.independent.cut_gears`): undercut, contact in
+fillets, and of pairs without such faults play, contact ratio and tip thickness. Trains with centre distances and
+profile shifts are searched by the solver and by a loop over all gears (`benchmarks.independent.fitted_trains`).
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import resource
+import time
+from dataclasses import dataclass, field
+from random import Random
+from typing import Any
+
+from benchmarks.independent.cut_gears import Run, external, is_undercut, rack, ring, run
+from benchmarks.independent.fitted_trains import Best, best_train, same_answer, statements
+from synthesis.analyses import parse_request
+from synthesis.dispatch import solve
+from synthesis.kinds.gear_train.design import GearTrainResult
+from synthesis.mechanisms.base import MechanismError
+from synthesis.registry import parse_problem
+
+EQUAL = 1e-6
+"""Modules, or a contact ratio, within which the two have to agree."""
+
+NEAR_LIMIT = 1e-4
+"""Modules from a limit within which verdicts may differ."""
+
+ANGLES = (17.5, 20.0, 22.5, 25.0)
+
+
+@dataclass
+class Compared:
+    """What a comparison of pairs found; ``faults`` are pairs about which the two do not agree."""
+
+    pairs: int = 0
+    sound: int = 0
+    measured: int = 0
+    undercut: int = 0
+    in_fillet: int = 0
+    largest: dict[str, float] = field(default_factory=dict)
+    faults: list[str] = field(default_factory=list)
+
+    def differ(self, name: str, by: float, pair: dict[str, Any]) -> None:
+        """Take note of a difference."""
+        self.largest[name] = max(self.largest.get(name, 0.0), abs(by))
+        if not abs(by) <= EQUAL:
+            self.faults.append(f"{name} differs by {by:.3g}: {pair}")
+
+
+def drawn_pair(rng: Random, internal: bool) -> dict[str, Any]:
+    """A pair at random, as it is stated, at the tight distance."""
+    pinion = rng.randint(8, 60)
+    pair: dict[str, Any] = {
+        "type": "gear_pair",
+        "internal": internal,
+        "pressure_angle": rng.choice(ANGLES),
+        "shift": [round(rng.uniform(-0.5, 1.0), 3) for _ in range(2)],
+    }
+    if internal:
+        wheel = rng.randint(pinion + 5, pinion + 90)
+        pair["cutter_teeth"] = rng.randint(12, max(12, min(40, wheel - 6)))
+        pair["addendum"] = [1.0, round(rng.uniform(0.5, 1.0), 2)]
+        # The sum of shifts decides over the distance: rings are shifted about as much as their pinions.
+        pair["shift"][1] = round(pair["shift"][0] + rng.uniform(-0.3, 0.3), 3)
+    else:
+        wheel = rng.randint(8, 140)
+    return {**pair, "teeth": [pinion, wheel]}
+
+
+def analysed(pair: dict[str, Any]) -> dict[str, Any] | None:
+    """What the analysis says; None where there is no such pair."""
+    request = parse_request({"mechanism": pair})
+    if request.faults():
+        return None
+    try:
+        return request.answer()
+    except MechanismError:
+        return None
+
+
+def compare_pairs(number: int, seed: int) -> Compared:
+    """Cut, turn and compare as many random pairs, every other one internal, every third one with play."""
+    rng, found = Random(seed), Compared()
+    while found.pairs < number:
+        pair = drawn_pair(rng, found.pairs % 2 == 1)
+        said = analysed(pair)
+        if said is not None and found.pairs % 3 == 0:
+            inwards = -1.0 if pair["internal"] else 1.0
+            pair["centre_distance"] = said["tight_distance"] + inwards * rng.uniform(0.01, 0.2)
+            said = analysed(pair)
+        if said is not None:
+            found.pairs += 1
+            compare_pair(pair, said, found)
+    return found
+
+
+def compare_pair(pair: dict[str, Any], said: dict[str, Any], found: Compared) -> None:
+    """One pair: verdicts wherever they mean something, numbers where the teeth have no faults."""
+    tool = rack(math.radians(pair["pressure_angle"]))
+    addenda = [a - said["tip_shortening"] for a in pair.get("addendum", [1.0, 1.0])]
+    bodies = [external(pair["teeth"][0], pair["shift"][0], addenda[0], tool)]
+    if pair["internal"]:
+        bodies.append(ring(pair["teeth"][1], pair["shift"][1], addenda[1], tool, pair["cutter_teeth"]))
+    else:
+        bodies.append(external(pair["teeth"][1], pair["shift"][1], addenda[1], tool))
+    for gear, body in zip(said["gears"], bodies, strict=True):
+        if gear["least_shift"] is None or abs(gear["shift"] - gear["least_shift"]) < 10.0 * NEAR_LIMIT:
+            continue
+        if gear["undercut"] != is_undercut(body):
+            found.faults.append(f"undercut of {gear['teeth']} teeth: {pair}")
+        found.undercut += gear["undercut"]
+    thin = any(gear["tip_thickness"] is None or gear["tip_thickness"] <= 0.0 for gear in said["gears"])
+    cut = any(gear["undercut"] for gear in said["gears"])
+    if thin or cut or said["interference"] or said["tips_foul"] or said["ring_trimmed"]:
+        return
+    turned = run(said["centre_distance"], *bodies)
+    for gear, fillet in zip(said["gears"], turned.in_fillet, strict=True):
+        if abs(gear["involute_left"]) > NEAR_LIMIT and gear["fillet_interference"] != fillet:
+            found.faults.append(f"fillet of {gear['teeth']} teeth: {pair}")
+    found.sound += said["sound"]
+    if said["sound"] and any(turned.in_fillet):
+        found.faults.append(f"an accepted pair has contact in a fillet: {pair}")
+    if any(gear["fillet_interference"] for gear in said["gears"]):
+        found.in_fillet += 1
+        return
+    compare_numbers(pair, said, turned, found)
+
+
+def compare_numbers(pair: dict[str, Any], said: dict[str, Any], turned: Run, found: Compared) -> None:
+    """Play, contact ratio and tips of a pair without faults."""
+    found.measured += 1
+    found.differ("backlash", said["backlash"] - turned.backlash, pair)
+    found.differ("backlash", said["backlash"] - turned.other_backlash, pair)
+    found.differ("contact_ratio", said["contact_ratio"] - turned.contact_ratio, pair)
+    for gear, thickness in zip(said["gears"], turned.tip_thickness, strict=True):
+        found.differ("tip_thickness", gear["tip_thickness"] - thickness, pair)
+
+
+def compare_trains(number: int, seed: int) -> tuple[int, int, list[str], float]:
+    """Solve as many random tasks and look through them by brute force: with an answer, without, faults, CPU seconds."""
+    some, none, spent, faults = 0, 0, 0.0, []
+    for statement in statements(number, seed):
+        problem = parse_problem(statement)
+        started = time.process_time()
+        result = solve(problem, lambda fraction, message: None)
+        spent += time.process_time() - started
+        assert isinstance(result, GearTrainResult)
+        best: Best | None = best_train(statement)
+        some, none = (some + 1, none) if best else (some, none + 1)
+        fault = same_answer(result.model_dump(), best)
+        if fault is not None:
+            faults.append(f"{fault}: {statement}")
+    return some, none, faults, spent
+
+
+def main() -> None:
+    """Print both comparisons."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--pairs", type=int, default=500)
+    parser.add_argument("--trains", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=0)
+    options = parser.parse_args()
+    found = compare_pairs(options.pairs, options.seed)
+    print(f"{found.pairs} pairs cut and turned: {found.sound} sound, {found.measured} measured, "
+          f"{found.undercut} gears undercut, {found.in_fillet} pairs with contact in a fillet")  # fmt: skip
+    for name, by in found.largest.items():
+        print(f"  {name}: they differ by {by:.1e} at most")
+    some, none, faults, spent = compare_trains(options.trains, options.seed)
+    print(f"{some + none} trains by brute force: {some} with an answer, {none} without; solved in {spent:.1f} s of CPU")
+    for fault in found.faults + faults:
+        print("  FAULT", fault)
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+    print(f"peak memory {peak:.0f} MiB")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,327 @@
+"""Profile shifts of external pairs, compiled: which sums of shifts a pair can have, and how a sum is best split.
+
+All lengths are in modules. At the working pressure angle φ_w a pair of z₁, z₂ teeth without play has the shifts
+
+    Σ = (z₁ + z₂) (inv φ_w − inv φ) / (2 tan φ),        C = (z₁ + z₂) cos φ / (2 cos φ_w),
+
+and its tips are shortened by Σ − (C − C₀), so that the clearance stays. Of a split x₁ + x₂ = Σ the *margin* is the
+least of what is left of its demands: flank above the base circle (undercut) and below the mate's tip (fillet
+interference) of both gears, path of contact, tip thickness, addendum. For a given sum each of them is a concave or a
+monotonic function of x₁ as long as both gears keep an addendum: so the splits that keep all demands are an interval,
+and their margin has one maximum, which golden sections find. The balanced split has the same greatest specific sliding
+on both flanks, a difference that falls with x₁: the split nearest to it is that split or an end of the interval.
+
+Of a range of sums the margin of the best split is taken to have one maximum too; the sums that suit are an interval.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+KEPT = 1e-10
+"""Margin by which a demand may be missed, in modules: rounding must not condemn pairs that are on a limit."""
+
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+
+SECTIONS = 52
+"""Golden sections of an interval: 1e-11 of it remains."""
+
+STEEP = 6.0
+"""A bound of how fast a margin changes with a shift is 2 / sin φ of the ends of involutes, and this of thick tips."""
+
+SUMS = 24
+"""Parts into which a range of sums is divided in search of one that suits."""
+
+HALVINGS = 36
+"""Halvings of an interval of sums at whose one end no split suits."""
+
+
+class Demands(NamedTuple):
+    """What a pair has to keep; shifts, depth and thickness in modules, the angle in radians.
+
+    ``depth``: how far below its reference line the straight flank of the cutting rack reaches.
+    """
+
+    pressure_angle: float
+    depth: float
+    least_shift: float
+    most_shift: float
+    contact_ratio: float
+    tip_thickness: float
+
+
+class Working(NamedTuple):
+    """A pair at its distance: the sum of shifts, distance, shortening of the tips, and the line of action C sin φ_w."""
+
+    total: float
+    distance: float
+    shortening: float
+    line: float
+
+
+@njit(cache=True, nogil=True)
+def inv(angle: float) -> float:
+    """The involute function tan φ − φ."""
+    return math.tan(angle) - angle
+
+
+@njit(cache=True, nogil=True)
+def at_distance(teeth: int, mate: int, distance: float, demands: Demands) -> Working:
+    """The pair at a centre distance; a sum of nan where the base circles do not part."""
+    phi = demands.pressure_angle
+    standard = 0.5 * (teeth + mate)
+    if not standard * math.cos(phi) < distance:
+        return Working(math.nan, distance, math.nan, math.nan)
+    cosine = standard * math.cos(phi) / distance
+    working = math.acos(cosine)
+    total = (teeth + mate) * (inv(working) - inv(phi)) / (2.0 * math.tan(phi))
+    return Working(total, distance, max(0.0, total - (distance - standard)), distance * math.sin(working))
+
+
+@njit(cache=True, nogil=True)
+def with_sum(teeth: int, mate: int, total: float, demands: Demands) -> Working:
+    """The pair of a sum of shifts; a distance of nan where no distance takes it up."""
+    phi = demands.pressure_angle
+    value = inv(phi) + 2.0 * math.tan(phi) * total / (teeth + mate)
+    if not value > 0.0:
+        return Working(total, math.nan, math.nan, math.nan)
+    # t − atan t is convex and increasing in t = tan φ_w: from above Newton falls onto the root.
+    t = min(value + 0.5 * math.pi, 1.2 * (3.0 * value) ** (1.0 / 3.0) + value)
+    for _ in range(60):
+        step = (t - math.atan(t) - value) * (1.0 + t * t) / (t * t)
+        t -= step
+        if abs(step) <= 4e-16 * t:
+            break
+    standard = 0.5 * (teeth + mate)
+    distance = standard * math.cos(phi) * math.sqrt(1.0 + t * t)
+    return Working(total, distance, max(0.0, total - (distance - standard)), standard * math.cos(phi) * t)
+
+
+@njit(cache=True, nogil=True)
+def margin(teeth: int, mate: int, working: Working, shift: float, demands: Demands) -> float:
+    """The margin of a split; ``shift`` is that of the first gear."""
+    phi, other = demands.pressure_angle, working.total - shift
+    sine, cosine = math.sin(phi), math.cos(phi)
+    base, mate_base = 0.5 * teeth * cosine, 0.5 * mate * cosine
+    heads = 1.0 + shift - working.shortening, 1.0 + other - working.shortening
+    tip, mate_tip = 0.5 * teeth + heads[0], 0.5 * mate + heads[1]
+    least = min(heads[0], heads[1])
+    if not least >= -KEPT:
+        return least
+    # From the tangent points on: where the involutes begin, and how far out the tips are.
+    form = 0.5 * teeth * sine - (demands.depth - shift) / sine
+    mate_form = 0.5 * mate * sine - (demands.depth - other) / sine
+    reach = math.sqrt(max(tip * tip - base * base, 0.0))
+    mate_reach = math.sqrt(max(mate_tip * mate_tip - mate_base * mate_base, 0.0))
+    least = min(least, form, mate_form, working.line - mate_reach - form, working.line - reach - mate_form)
+    least = min(least, reach + mate_reach - working.line - demands.contact_ratio * math.pi * cosine)
+    # inv φ at a tip is reach / base − atan(reach / base).
+    slope = 4.0 * math.tan(phi)
+    sharper = inv(phi) - reach / base + math.atan(reach / base)
+    mate_sharper = inv(phi) - mate_reach / mate_base + math.atan(mate_reach / mate_base)
+    thick = tip * ((math.pi + slope * shift) / teeth + 2.0 * sharper)
+    mate_thick = mate_tip * ((math.pi + slope * other) / mate + 2.0 * mate_sharper)
+    return min(least, thick - demands.tip_thickness, mate_thick - demands.tip_thickness)
+
+
+@njit(cache=True, nogil=True)
+def _span(working: Working, demands: Demands) -> tuple[float, float]:
+    """The shifts of the first gear at which both are within the limits and keep an addendum; nan: none are."""
+    total, head = working.total, working.shortening - 1.0
+    low = max(demands.least_shift, total - demands.most_shift, head)
+    high = min(demands.most_shift, total - demands.least_shift, total - head)
+    if not low <= high + 2.0 * KEPT:
+        return math.nan, math.nan
+    return min(low, high), max(low, high)
+
+
+@njit(cache=True, nogil=True)
+def best_split(teeth: int, mate: int, working: Working, demands: Demands, enough: float) -> tuple[float, float]:
+    """The shift of the first gear with the greatest margin, and that margin.
+
+    It is looked for until a margin is ``enough``, or no split can be sound; with an infinite ``enough`` to the end.
+    """
+    low, high = _span(working, demands)
+    if not low <= high:
+        return math.nan, -math.inf
+    steepest = 2.0 / math.sin(demands.pressure_angle) + STEEP if enough < math.inf else math.inf
+    one, other = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    left = margin(teeth, mate, working, one, demands)
+    right = margin(teeth, mate, working, other, demands)
+    for _ in range(SECTIONS):
+        if max(left, right) >= enough or max(left, right) + steepest * (high - low) < -KEPT:
+            break
+        if left < right:
+            low, one, left = one, other, right
+            other = low + GOLDEN * (high - low)
+            right = margin(teeth, mate, working, other, demands)
+        else:
+            high, other, right = other, one, left
+            one = high - GOLDEN * (high - low)
+            left = margin(teeth, mate, working, one, demands)
+    return (one, left) if left > right else (other, right)
+
+
+@njit(cache=True, nogil=True)
+def suits(teeth: int, mate: int, working: Working, demands: Demands) -> bool:
+    """Whether a split of the sum keeps all demands."""
+    return best_split(teeth, mate, working, demands, -KEPT)[1] >= -KEPT
+
+
+@njit(cache=True, nogil=True)
+def _excess(teeth: int, mate: int, working: Working, shift: float, cosine: float) -> float:
+    """By how much the first flank's greatest specific sliding is larger; it falls with the shift of the first gear."""
+    base, mate_base = 0.5 * teeth * cosine, 0.5 * mate * cosine
+    tip = 0.5 * teeth + 1.0 + shift - working.shortening
+    mate_tip = 0.5 * mate + 1.0 + working.total - shift - working.shortening
+    reach = math.sqrt(max(tip * tip - base * base, 0.0))
+    mate_reach = math.sqrt(max(mate_tip * mate_tip - mate_base * mate_base, 0.0))
+    # u₂ z₁ / (u₁ z₂) against u₁ z₂ / (u₂ z₁), multiplied out: beyond the tangent points it goes on in the same sense.
+    own, other = working.line - mate_reach, working.line - reach
+    return mate_reach * other * teeth * teeth - reach * own * mate * mate
+
+
+@njit(cache=True, nogil=True)
+def balanced_split(teeth: int, mate: int, working: Working, demands: Demands) -> float:
+    """Of the splits that keep all demands the one nearest to balanced specific sliding; nan: none keeps them.
+
+    Returns
+    -------
+    float
+        The shift of the first gear; the second has the rest of the sum.
+    """
+    sound, most = best_split(teeth, mate, working, demands, 1e-6)
+    if not most >= -KEPT:
+        return math.nan
+    low, high = _span(working, demands)
+    cosine = math.cos(demands.pressure_angle)
+    if _excess(teeth, mate, working, low, cosine) <= 0.0:
+        wanted = low
+    elif _excess(teeth, mate, working, high, cosine) >= 0.0:
+        wanted = high
+    else:
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            if _excess(teeth, mate, working, middle, cosine) > 0.0:
+                low = middle
+            else:
+                high = middle
+        wanted = 0.5 * (low + high)
+    if margin(teeth, mate, working, wanted, demands) >= -KEPT:
+        return wanted
+    for _ in range(60):
+        middle = 0.5 * (sound + wanted)
+        if margin(teeth, mate, working, middle, demands) >= -KEPT:
+            sound = middle
+        else:
+            wanted = middle
+    return sound
+
+
+@njit(cache=True, nogil=True)
+def _of_sum(teeth: int, mate: int, total: float, demands: Demands, enough: float) -> float:
+    working = with_sum(teeth, mate, total, demands)
+    if not working.distance > 0.0:
+        return -math.inf
+    return best_split(teeth, mate, working, demands, enough)[1]
+
+
+@njit(cache=True, nogil=True)
+def sum_that_suits(teeth: int, mate: int, low: float, high: float, demands: Demands) -> float:
+    """A sum of shifts between ``low`` and ``high`` that suits a pair; nan: none does."""
+    # From no shift on, where most pairs are sound, then all over the range.
+    at = min(max(0.0, low), high)
+    most = _of_sum(teeth, mate, at, demands, -KEPT)
+    for i in range(SUMS + 1):
+        if most >= -KEPT:
+            return at
+        total = low + (high - low) * i / SUMS
+        found = _of_sum(teeth, mate, total, demands, -KEPT)
+        if found > most:
+            at, most = total, found
+    step = (high - low) / SUMS
+    left, right = max(low, at - step), min(high, at + step)
+    one, other = right - GOLDEN * (right - left), left + GOLDEN * (right - left)
+    first, second = _of_sum(teeth, mate, one, demands, math.inf), _of_sum(teeth, mate, other, demands, math.inf)
+    for _ in range(SECTIONS):
+        if max(first, second) >= -KEPT:
+            break
+        if first < second:
+            left, one, first = one, other, second
+            other = left + GOLDEN * (right - left)
+            second = _of_sum(teeth, mate, other, demands, math.inf)
+        else:
+            right, other, second = other, one, first
+            one = right - GOLDEN * (right - left)
+            first = _of_sum(teeth, mate, one, demands, math.inf)
+    at, most = (one, first) if first > second else (other, second)
+    return at if most >= -KEPT else math.nan
+
+
+@njit(cache=True, nogil=True)
+def last_sum(teeth: int, mate: int, sound: float, end: float, demands: Demands) -> float:
+    """The last sum from one that suits towards an end of the range."""
+    if _of_sum(teeth, mate, end, demands, -KEPT) >= -KEPT:
+        return end
+    for _ in range(HALVINGS):
+        middle = 0.5 * (sound + end)
+        if _of_sum(teeth, mate, middle, demands, -KEPT) >= -KEPT:
+            sound = middle
+        else:
+            end = middle
+    return sound
+
+
+@njit(cache=True, nogil=True)
+def sound_between(
+    least: NDArray[np.float64], most: NDArray[np.float64], ends: bool, demands: Demands
+) -> NDArray[np.float64]:
+    """Between which distances every pair suits, of those from ``least[a, b]`` to ``most[a, b]``; nan: it does not.
+
+    Parameters
+    ----------
+    least, most : array of shape (n, n)
+        Symmetric, in modules; equal for one distance, 0 and infinity for any; nan where a pair is not asked for.
+    ends : bool
+        Whether the least and the greatest distance that suit are wanted; otherwise it is one that suits, twice.
+
+    Returns
+    -------
+    array of shape (n, n, 2)
+    """
+    n = len(least)
+    found = np.full((n, n, 2), np.nan)
+    for a in range(n):
+        for b in range(a, n):
+            near, far = least[a, b], most[a, b]
+            if not near <= far:
+                continue
+            if near == far:
+                working = at_distance(a, b, near, demands)
+                if not (working.shortening >= 0.0 and suits(a, b, working, demands)):
+                    continue
+            else:
+                low, high = 2.0 * demands.least_shift, 2.0 * demands.most_shift
+                first = at_distance(a, b, near, demands)
+                if first.shortening >= 0.0:
+                    low = max(low, first.total)
+                if far < math.inf:
+                    last = at_distance(a, b, far, demands)
+                    high = min(high, last.total) if last.shortening >= 0.0 else -math.inf
+                if not low <= high:
+                    continue
+                total = sum_that_suits(a, b, low, high, demands)
+                if not total >= low:
+                    continue
+                nearest = last_sum(a, b, total, low, demands) if ends else total
+                farthest = last_sum(a, b, total, high, demands) if ends else total
+                near = with_sum(a, b, nearest, demands).distance
+                far = with_sum(a, b, farthest, demands).distance
+            found[a, b, 0], found[a, b, 1] = near, far
+            found[b, a, 0], found[b, a, 1] = near, far
+    return found

@@ -1,0 +1,306 @@
+"""The analysis of two cylindrical gears as they run: shifted, helical or spur, with an external gear or a ring.
+
+Everything is told in the plane of rotation. External gears are cut by the rack of full-depth teeth, a ring is shaped by
+a cutter; both decide where an involute begins, and so whether contact reaches into a fillet. Lengths are in the unit of
+the module.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, Literal
+
+from pydantic import ConfigDict, Field
+
+from kinematics.errors import DimensionError
+from kinematics.gear.flanks import Contact, ShapedRing, rack_cut_form, shortened_tips, straight_depth
+from kinematics.gear.helical import HelicalGear
+from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, FULL_DEPTH_DEDENDUM, Gear, Mesh
+from synthesis.analyses.base import AnalysisRequest, Family
+from synthesis.analyses.gear_pair import RPM
+from synthesis.mechanisms.base import MechanismError
+from synthesis.model.answer import Answer
+from synthesis.model.gear_statement import PressureAngle, ShiftCoefficient, ToothNumber
+from synthesis.model.statement import Flag, Number, PositiveNumber, Statement
+
+USUAL_CUTTER = 20
+"""Teeth of the cutter that shapes a ring where none is stated; half of the ring's where that is less."""
+
+Addendum = Annotated[float, Field(strict=True, ge=0.3, le=1.25)]
+
+ON_LIMIT = 1e-9
+"""Share of the module within which a limit counts as kept."""
+
+
+@dataclass(frozen=True)
+class RunningPair:
+    """Two gears in the plane of rotation, where their involutes begin, and the cutter of a ring."""
+
+    contact: Contact
+    tight: Mesh
+    shortening: float
+    ring: ShapedRing | None
+
+    @property
+    def gears(self) -> tuple[Gear, Gear]:
+        """Both gears as they are cut."""
+        return self.contact.mesh.pinion, self.contact.mesh.gear
+
+    @property
+    def root_radii(self) -> tuple[float, float]:
+        """Radii of the circles that the tools reach."""
+        one, two = self.gears
+        return one.root_radius, two.root_radius if self.ring is None else self.ring.root_radius
+
+    @property
+    def undercut(self) -> tuple[bool, bool]:
+        """Whether the rack takes away from the flanks above the base circles; a ring is shaped."""
+        one, two = (form < -ON_LIMIT * self.gears[0].module for form in self.contact.forms)
+        return one, two and self.ring is None
+
+    @property
+    def form_radii(self) -> tuple[float | None, float | None]:
+        """Radii at which the involutes begin (of a ring: end); None of an undercut gear."""
+        one, two = (
+            None if cut else math.hypot(gear.base_radius, form)
+            for gear, form, cut in zip(self.gears, self.contact.forms, self.undercut, strict=True)
+        )
+        return one, two
+
+    @property
+    def clearance(self) -> float:
+        """The smaller room between a tip and the mate's root."""
+        distance, (one, two), roots = self.contact.mesh.centre_distance, self.gears, self.root_radii
+        if two.internal:
+            return min(roots[1] - distance - one.tip_radius, two.tip_radius - distance - roots[0])
+        return min(distance - one.tip_radius - roots[1], distance - two.tip_radius - roots[0])
+
+
+class GivenGearPair(Statement):
+    """Two gears on parallel shafts, the second of them external or a ring."""
+
+    type: Literal["gear_pair"]
+    teeth: tuple[ToothNumber, ToothNumber]
+    module: PositiveNumber = Field(default=1.0, description="In the normal plane where teeth are helical.")
+    shift: tuple[ShiftCoefficient, ShiftCoefficient] = Field(
+        default=(0.0, 0.0), description="Profile shifts in modules, positive outwards, of a ring too."
+    )
+    addendum: tuple[Addendum, Addendum] = Field(
+        default=(FULL_DEPTH_ADDENDUM, FULL_DEPTH_ADDENDUM),
+        description="Of both gears, modules. Full-depth teeth of a ring reach below the involute that a rack leaves on "
+        "the pinion; rings are made with less.",
+    )
+    internal: Flag = Field(default=False, description="The second gear is a ring.")
+    helix_angle: Annotated[float, Field(strict=True, gt=-60.0, lt=60.0)] = Field(default=0.0, description="Degrees.")
+    pressure_angle: PressureAngle = Field(default=20.0, description="In the normal plane, degrees.")
+    centre_distance: PositiveNumber | None = Field(
+        default=None, description="Left out: the distance at which the gears run without play."
+    )
+    face_width: PositiveNumber | None = None
+    cutter_teeth: ToothNumber | None = Field(
+        default=None,
+        description=f"Of the cutter that shapes a ring; {USUAL_CUTTER}, or half of the ring's where that is less, "
+        "where left out. It has no shift, an addendum of 1.25 modules and sharp corners.",
+    )
+
+    def pair(self) -> RunningPair:
+        """The gears in mesh.
+
+        Raises
+        ------
+        MechanismError
+            For teeth that do not make a pair.
+        """
+        try:
+            return self._pair()
+        except DimensionError as error:
+            raise MechanismError(self._where(error), str(error)) from error
+
+    def _where(self, error: DimensionError) -> str:
+        named = {"centre distance": "/centre_distance", "dedendum": "/pressure_angle"}
+        return named.get(error.name, "/teeth")
+
+    def _pair(self) -> RunningPair:
+        angle, phi = math.radians(self.helix_angle), math.radians(self.pressure_angle)
+        full = self._gear(0, angle, phi), self._gear(1, angle, phi)
+        tight = Mesh(full[0], full[1])
+        shortening = shortened_tips(Mesh(full[0], full[1], self.centre_distance))
+        one, two = (replace(gear, addendum=gear.addendum - shortening) for gear in full)
+        depth = straight_depth(phi, FULL_DEPTH_DEDENDUM) * math.cos(angle)
+        ring = ShapedRing(two, self._cutter_teeth) if self.internal else None
+        forms = rack_cut_form(one, depth), rack_cut_form(two, depth) if ring is None else ring.form
+        return RunningPair(Contact(Mesh(one, two, self.centre_distance), forms), tight, shortening, ring)
+
+    def _gear(self, place: int, angle: float, phi: float) -> Gear:
+        plain = HelicalGear(self.teeth[place], self.module, angle, phi).transverse_gear
+        shift, ring = self.shift[place] * math.cos(angle), self.internal and place == 1
+        addendum = self.addendum[place] * math.cos(angle)
+        return replace(plain, addendum=addendum, shift=shift, internal=ring)
+
+    @property
+    def _cutter_teeth(self) -> int:
+        return min(USUAL_CUTTER, self.teeth[1] // 2) if self.cutter_teeth is None else self.cutter_teeth
+
+
+class RunningGear(Answer):
+    """One gear of a pair; lengths in the module's unit, thicknesses in the plane of rotation."""
+
+    teeth: int
+    shift: float = Field(description="Modules.")
+    speed: float = Field(description="rad/s; of two external gears the second turns the other way.")
+    pitch_diameter: float
+    working_pitch_diameter: float
+    base_diameter: float
+    tip_diameter: float
+    root_diameter: float = Field(description="As the rack, or the cutter of a ring, leaves it.")
+    form_diameter: float | None = Field(description="Where the involute ends; null where the gear is undercut.")
+    tooth_thickness: float = Field(description="On the pitch circle.")
+    tip_thickness: float | None = Field(description="Null where a ring's tips lie below its base circle.")
+    least_shift: float | None = Field(description="Below which the rack undercuts; null for a ring.")
+    undercut: bool
+    involute_left: float = Field(
+        description="Length of the line of action between the deepest contact and the fillet; negative: contact in it."
+    )
+    fillet_interference: bool = Field(description="Whether the mate's tip reaches below the involute of this gear.")
+    specific_sliding: float | None = Field(
+        description="Sliding over rolling at the deepest contact; null where that is at or below the base circle."
+    )
+
+
+class RunningPairAnalysis(Answer):
+    """How two gears run with one another; degrees, lengths in the module's unit."""
+
+    ratio: float = Field(description="Speed of the first over the second, without sign.")
+    centre_distance: float
+    standard_distance: float = Field(description="Of the pitch circles.")
+    tight_distance: float = Field(description="At which there is no play.")
+    working_pressure_angle: float = Field(description="In the plane of rotation.")
+    backlash: float = Field(description="Play on the working pitch circles; negative: the teeth would overlap.")
+    contact_ratio: float = Field(description="In the plane of rotation, as the tips give it.")
+    overlap_ratio: float | None = Field(description="Face width over axial pitch of helical teeth.")
+    tip_shortening: float = Field(description="What the tips of shifted external gears lose so that clearance stays.")
+    clearance: float = Field(description="The smaller room between a tip and the mate's root.")
+    interference: bool = Field(description="Whether a tip meets the mate where it has no involute at all.")
+    tips_foul: bool = Field(description="Whether the tips of an internal pair meet outside the line of action.")
+    cutter_teeth: int | None = Field(description="Of the cutter that shapes a ring.")
+    ring_trimmed: bool | None = Field(description="Whether that cutter takes off tips of the ring.")
+    sound: bool = Field(
+        description="No undercut, no contact in a fillet, no fouling or pointed tips, no overlap, and at least one "
+        "pair of teeth in contact."
+    )
+    gears: list[RunningGear]
+
+
+class RunningPairRequest(AnalysisRequest):
+    """Two gears, and how fast the first one turns."""
+
+    model_config = ConfigDict(
+        title="Pair of gears as it runs",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {
+                        "type": "gear_pair", "teeth": [20, 50], "module": 2.0, "shift": [0.4, 0.1], "face_width": 20.0
+                    },
+                    "speed_rpm": 1450.0,
+                }
+            ]
+        },
+    )  # fmt: skip
+
+    mechanism: GivenGearPair
+    speed_rpm: Number = Field(default=1.0, description="Speed of the first gear, revolutions a minute.")
+
+    @classmethod
+    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+        """The same at any input; such a pair is no design that a job returns."""
+        return cls.model_validate({"mechanism": mechanism}).answer()
+
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        given, faults = self.mechanism, []
+        if given.internal and given.teeth[1] <= given.teeth[0]:
+            faults.append(("/mechanism/teeth", "a ring has more teeth than its pinion; state the ring second"))
+        if given.cutter_teeth is not None and not given.internal:
+            faults.append(("/mechanism/cutter_teeth", "only a ring is shaped by a cutter; leave it out"))
+        if given.cutter_teeth is not None and given.cutter_teeth >= given.teeth[1]:
+            faults.append(("/mechanism/cutter_teeth", "a cutter has fewer teeth than the ring that it shapes"))
+        return faults
+
+    def answer(self) -> dict[str, Any]:
+        """Everything about the pair, in the shape of :class:`RunningPairAnalysis`."""
+        given, pair = self.mechanism, self.mechanism.pair()
+        mesh, angle = pair.contact.mesh, math.radians(given.helix_angle)
+        slack = ON_LIMIT * mesh.pinion.module
+        gears = _gears(given, pair, self.speed_rpm * RPM)
+        deepest = pair.contact.reaches
+        interferes = deepest[0] < -slack or (deepest[1] < -slack and not given.internal)
+        if given.internal:
+            interferes = interferes or mesh.gear.tip_radius < mesh.gear.base_radius
+        thin = any(gear["tip_thickness"] is None or gear["tip_thickness"] <= 0.0 for gear in gears)
+        faulty = any(gear["undercut"] or gear["fillet_interference"] for gear in gears)
+        trimmed = None if pair.ring is None else pair.ring.is_trimmed
+        backlash = pair.contact.backlash
+        bad = interferes or thin or faulty or mesh.tips_foul or bool(trimmed) or pair.clearance < -slack
+        return {
+            "ratio": given.teeth[1] / given.teeth[0],
+            "centre_distance": mesh.centre_distance,
+            "standard_distance": mesh.standard_distance,
+            "tight_distance": pair.tight.centre_distance,
+            "working_pressure_angle": math.degrees(mesh.pressure_angle),
+            "backlash": backlash,
+            "contact_ratio": mesh.contact_ratio,
+            "overlap_ratio": _overlap(given, angle),
+            "tip_shortening": pair.shortening * mesh.pinion.module,
+            "clearance": pair.clearance,
+            "interference": interferes,
+            "tips_foul": mesh.tips_foul,
+            "cutter_teeth": None if pair.ring is None else pair.ring.cutter_teeth,
+            "ring_trimmed": trimmed,
+            "sound": not bad and backlash >= -slack and mesh.contact_ratio >= 1.0,
+            "gears": gears,
+        }
+
+
+def _overlap(given: GivenGearPair, angle: float) -> float | None:
+    if given.face_width is None or angle == 0.0:
+        return None
+    return given.face_width * math.sin(abs(angle)) / (math.pi * given.module)
+
+
+def _gears(given: GivenGearPair, pair: RunningPair, speed: float) -> list[dict[str, Any]]:
+    contact, mesh = pair.contact, pair.contact.mesh
+    wide = math.cos(mesh.pinion.pressure_angle) / math.cos(mesh.pressure_angle)
+    turns = speed, speed * given.teeth[0] / given.teeth[1] * (1.0 if given.internal else -1.0)
+    depth = straight_depth(math.radians(given.pressure_angle), FULL_DEPTH_DEDENDUM)
+    gears = []
+    for place, gear in enumerate(pair.gears):
+        left, sliding = contact.margins[place], contact.specific_sliding[place]
+        tip, form = gear.thickness_at(gear.tip_radius), pair.form_radii[place]
+        sine = math.sin(gear.pressure_angle)
+        least = depth - gear.pitch_radius * sine**2 / given.module
+        gears.append(
+            {
+                "teeth": given.teeth[place],
+                "shift": given.shift[place],
+                "speed": turns[place],
+                "pitch_diameter": 2.0 * gear.pitch_radius,
+                "working_pitch_diameter": 2.0 * gear.pitch_radius * wide,
+                "base_diameter": 2.0 * gear.base_radius,
+                "tip_diameter": 2.0 * gear.tip_radius,
+                "root_diameter": 2.0 * pair.root_radii[place],
+                "form_diameter": None if form is None else 2.0 * form,
+                "tooth_thickness": gear.tooth_thickness,
+                "tip_thickness": None if math.isnan(tip) else tip,
+                "least_shift": None if gear.internal else least,
+                "undercut": pair.undercut[place],
+                "involute_left": left,
+                "fillet_interference": left < -ON_LIMIT * gear.module,
+                "specific_sliding": sliding if math.isfinite(sliding) else None,
+            }
+        )
+    return gears
+
+
+FAMILY = Family(RunningPairRequest, RunningPairAnalysis)

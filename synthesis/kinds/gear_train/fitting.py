@@ -1,0 +1,180 @@
+"""Which meshes of a train can be fitted to its centre distances by a profile shift, with which module and which shifts.
+
+What a pair of tooth numbers can take up is known in modules, whatever train it is part of
+(:mod:`kinematics.gear.shifting`). Stages that have a distance of their own choose for every pair the module whose pitch
+circles are nearest to it, of equally near ones the smallest; the search then meets every pair of gears once. Coaxial
+stages that have to agree on a distance keep the range of distances of every pair with every module.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.gear import shifting
+from kinematics.gear.flanks import least_shift_of_rack, straight_depth
+from kinematics.gear.shifting import Demands
+from kinematics.gear.teeth import FULL_DEPTH_DEDENDUM
+from synthesis.kinds.gear_train.kernels import AGREED
+from synthesis.kinds.gear_train.pairing import Integers
+from synthesis.kinds.gear_train.problem import GearTrainProblem
+
+
+class FittedStage(NamedTuple):
+    """A mesh as it is made; the module by its place in the list, shifts in modules."""
+
+    module: int
+    shifts: tuple[float, float]
+    distance: float
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """The meshes that can be fitted.
+
+    ``module[s, a, b]`` is the place of the module that a pair has in stage s (one row for all stages where they are
+    alike), −1 where none fits. ``ends[m, a, b]`` are least and greatest distance of a pair with module m where stages
+    have to agree on one, empty otherwise. ``modules`` are lengths.
+    """
+
+    demands: Demands
+    modules: tuple[float, ...]
+    limits: tuple[tuple[float, float], ...]
+    module: NDArray[np.int8]
+    ends: NDArray[np.float64]
+
+    @property
+    def by_stage(self) -> bool:
+        """Whether stages differ in the meshes that they may have."""
+        return len(self.module) > 1
+
+    @property
+    def shares_distance(self) -> bool:
+        """Whether the meshes of a train have to agree on a distance."""
+        return len(self.ends) > 0
+
+    @property
+    def allowed(self) -> NDArray[np.bool_]:
+        """Which pairs some stage may have."""
+        return np.asarray((self.module >= 0).any(axis=0))
+
+    def stage(self, number: int) -> int:
+        """The row of a stage, counted from 0."""
+        return min(number, len(self.module) - 1)
+
+    def fitted(self, drivers: tuple[int, ...], driven: tuple[int, ...], marks: tuple[int, ...]) -> list[FittedStage]:
+        """The stages of a train: modules, shifts nearest to balanced specific sliding, and distances.
+
+        Within a range of distances it is the one nearest to that of the pitch circles, of coaxial stages to their mean.
+        """
+        meshes = list(zip(drivers, driven, strict=True))
+        if self.shares_distance:
+            spans = [tuple(self.ends[mark, a, b]) for (a, b), mark in zip(meshes, marks, strict=True)]
+            low, high = max(span[0] for span in spans), min(span[1] for span in spans)
+            wanted = sum(0.5 * self.modules[m] * (a + b) for (a, b), m in zip(meshes, marks, strict=True)) / len(meshes)
+            shared = wanted if low * (1.0 - AGREED) <= wanted <= high * (1.0 + AGREED) else min(max(wanted, low), high)
+            return [self._fitted(a, b, mark, shared) for (a, b), mark in zip(meshes, marks, strict=True)]
+        stages = []
+        for number, (a, b) in enumerate(meshes):
+            row = self.stage(number)
+            place = int(self.module[row, a, b])
+            stages.append(self._fitted(a, b, place, self._own_distance(a, b, place, self.limits[row])))
+        return stages
+
+    def _own_distance(self, a: int, b: int, place: int, limits: tuple[float, float]) -> float:
+        if limits[0] == limits[1]:
+            return limits[0]
+        module = self.modules[place]
+        pair, standard = (min(a, b), max(a, b)), 0.5 * (a + b)
+        low = max(2.0 * self.demands.least_shift, self._sum_at(pair, limits[0] / module, -math.inf))
+        high = min(2.0 * self.demands.most_shift, self._sum_at(pair, limits[1] / module, math.inf))
+        sound = shifting.sum_that_suits(*pair, low, high, self.demands)
+        total = shifting.last_sum(*pair, sound, min(max(0.0, low), high), self.demands)
+        if total == 0.0:
+            return module * standard
+        distance = module * float(shifting.with_sum(*pair, total, self.demands).distance)
+        return min(max(distance, limits[0]), limits[1])
+
+    def _sum_at(self, pair: tuple[int, int], distance: float, beyond: float) -> float:
+        """The sum of shifts at a distance in modules, ``beyond`` where there is none."""
+        total = float(shifting.at_distance(*pair, distance, self.demands).total) if math.isfinite(distance) else beyond
+        return total if math.isfinite(total) else beyond
+
+    def _fitted(self, a: int, b: int, place: int, distance: float) -> FittedStage:
+        """A mesh at its distance; the smaller gear is looked at first, whichever drives."""
+        small, large = min(a, b), max(a, b)
+        working = shifting.at_distance(small, large, distance / self.modules[place], self.demands)
+        shift = float(shifting.balanced_split(small, large, working, self.demands))
+        shifts = self._within(shift), self._within(float(working.total) - shift)
+        return FittedStage(place, shifts if a <= b else shifts[::-1], distance)
+
+    def _within(self, shift: float) -> float:
+        """A shift without what rounding took it beyond its limits."""
+        return min(max(shift, self.demands.least_shift), self.demands.most_shift)
+
+
+def fit_meshes(problem: GearTrainProblem, numbers: Integers) -> Fit:
+    """The meshes of a problem whose teeth are fitted; ``numbers`` are the tooth numbers that there are."""
+    demands = demands_of(problem)
+    modules = tuple(float(module) for module in problem.exact_modules())
+    n = int(numbers.max()) + 1
+    present = np.zeros(n, np.bool_)
+    present[numbers] = True
+    asked = present[:, None] & present[None, :]
+    # Gears that a rack undercuts at every shift are not asked for.
+    least = [least_shift_of_rack(z, demands.pressure_angle, demands.depth) for z in range(n)]
+    makeable = np.array(least) <= demands.most_shift + shifting.KEPT
+    asked &= makeable[:, None] & makeable[None, :]
+    standard = 0.5 * np.add.outer(np.arange(n), np.arange(n))
+    if problem.shares_distance:
+        low, high = problem.distance_limits(0)
+        if math.isfinite(high):
+            spans = [_between(asked, low / m, high / m, True, demands) for m in modules]
+        else:
+            spans = [_between(asked, 0.0, math.inf, True, demands)] * len(modules)
+        ends = np.stack([m * span for m, span in zip(modules, spans, strict=True)])
+        found = np.isfinite(ends[..., 0])
+        chosen = np.where(found.any(axis=0), found.argmax(axis=0), -1).astype(np.int8)
+        return Fit(demands, modules, ((low, high),), chosen[None], ends)
+    rows = _stages_apart(problem)
+    limits = tuple(problem.distance_limits(stage) for stage in range(rows))
+    chosen = np.full((rows, n, n), -1, np.int8)
+    for row, (low, high) in enumerate(limits):
+        nearest = np.full((n, n), math.inf)
+        # Of equally near modules the smallest: they are tried in rising order.
+        for place in sorted(_choices(problem, row, modules), key=modules.__getitem__):
+            module = modules[place]
+            fits = np.isfinite(_between(asked, low / module, high / module, False, demands)[..., 0])
+            apart = np.maximum(0.0, np.maximum(low - module * standard, module * standard - high))
+            better = fits & (apart < nearest)
+            chosen[row][better], nearest[better] = place, apart[better]
+    return Fit(demands, modules, limits, chosen, np.zeros((0, 0, 0, 2)))
+
+
+def demands_of(problem: GearTrainProblem) -> Demands:
+    """What every mesh of a problem has to keep."""
+    phi = math.radians(problem.pressure_angle)
+    depth = straight_depth(phi, FULL_DEPTH_DEDENDUM)
+    return Demands(phi, depth, *problem.shift_limits, problem.least_contact_ratio, problem.least_tip_thickness)
+
+
+def _between(asked: NDArray[np.bool_], low: float, high: float, ends: bool, demands: Demands) -> NDArray[np.float64]:
+    """Between which distances, in modules, pairs suit that are asked for."""
+    least, most = (np.where(asked, end, math.nan) for end in (low, high))
+    return np.asarray(shifting.sound_between(least, most, ends, demands))
+
+
+def _stages_apart(problem: GearTrainProblem) -> int:
+    """How many stages have meshes of their own: one stands for all where they are alike."""
+    return problem.max_stages if isinstance(problem.centre_distance, list) or problem.has_own_modules else 1
+
+
+def _choices(problem: GearTrainProblem, stage: int, modules: tuple[float, ...]) -> list[int]:
+    """Places of the modules from which a stage chooses."""
+    if problem.has_own_modules:
+        return [stage]
+    return list(range(len(modules)))
