@@ -31,9 +31,13 @@ function ordinary(motion, problem) {
     const ahead = !back ? 0 : stages === 3 ? (2 * Math.PI * (stage - 1)) / 3 : Math.PI * ((stage - 1) % 2);
     /** @type {Wheel | null} */
     let before = null;
-    for (const gear of motion.gears.filter((/** @type {any} */ one) => one.stage === stage)) {
+    const gears = motion.gears.filter((/** @type {any} */ one) => one.stage === stage);
+    // Shifted gears are shown by their working pitch circles, which touch; an idler's stage has none.
+    const apart = gears.length === 2 ? distances[stage - 1] / (0.5 * gears[0].module * (gears[0].teeth + gears[1].teeth)) : 1;
+    const wide = Math.abs(apart - 1) > 1e-9 ? apart : 1;
+    for (const gear of gears) {
       /** @type {Wheel} */
-      const wheel = { name: `Stage ${stage} ${gear.role}`, teeth: gear.teeth, module: gear.module, centre: shaft, tooth: ahead, speed: gear.speed_ratio, tone: stage - 1 };
+      const wheel = { name: `Stage ${stage} ${gear.role}`, teeth: gear.teeth, module: gear.module * wide, centre: shaft, tooth: ahead, speed: gear.speed_ratio, tone: stage - 1 };
       if (before) {
         const far = radius(before) + radius(wheel);
         wheel.centre = [before.centre[0] + far * Math.cos(ahead), before.centre[1] + far * Math.sin(ahead)];

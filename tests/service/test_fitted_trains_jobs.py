@@ -107,7 +107,7 @@ def test_a_design_is_analysed_as_it_is(client: httpx.Client) -> None:
     wrong["stages"] = [{**wrong["stages"][0], "centre_distance": 121.0}, wrong["stages"][1]]
     refused = client.post("/v1/analyses", json={"mechanism": wrong})
     assert refused.status_code == 422
-    assert refused.json()["errors"][0]["pointer"].endswith("/mechanism/stages/0/centre_distance")
+    assert refused.json()["errors"][0]["path"].endswith("/mechanism/stages/0/centre_distance")
 
 
 PAIR: Statement = {"type": "gear_pair", "teeth": [20, 50]}
@@ -166,4 +166,4 @@ def test_face_width_and_cutter_count(client: httpx.Client) -> None:
 def test_what_is_refused_is_told_by_its_place(client: httpx.Client, changes: Statement, path: str) -> None:
     answer = client.post("/v1/jobs", json={"problem": {**AT_120, **changes}})
     assert answer.status_code == 422, answer.text
-    assert any(path in error["pointer"] for error in answer.json()["errors"])
+    assert any(path in error["path"] for error in answer.json()["errors"])
