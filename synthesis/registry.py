@@ -18,6 +18,7 @@ from synthesis.kinds import (
     function,
     gear_train,
     gearbox,
+    indexing,
     layshaft_gearbox,
     motion,
     parallel_motion,
@@ -49,6 +50,7 @@ KINDS: dict[str, Kind[Any, Any]] = {
         balancing,
         flywheel,
         engine,
+        indexing,
     )
 }
 """Every kind of problem by its name, in the order in which they are offered."""

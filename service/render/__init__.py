@@ -18,6 +18,9 @@ Maker = Callable[[Any, Any, str], str | bytes]
 LINKAGE = "linkage"
 """The makers that serve every linkage; what its kind shows is in :mod:`service.render.linkage.kind_tables`."""
 
+GENEVA = ("geneva_external", "geneva_internal", "geneva_spherical")
+"""The Geneva drives, whose files have one maker."""
+
 FILES: dict[str, tuple[Form, ...]] = {
     "cam": ("svg", "gif", "dxf", "csv"),
     "barrel_cam": ("svg", "gif", "dxf", "csv"),
@@ -28,6 +31,7 @@ FILES: dict[str, tuple[Form, ...]] = {
     "rotor": ("svg", "dxf", "csv"),
     "flywheel": ("svg", "dxf", "csv"),
     "engine": ("svg", "dxf", "csv"),
+    **dict.fromkeys(GENEVA, ("svg", "gif", "dxf", "csv")),
 }
 """The forms of files of the types of mechanism that are not linkages; linkages have all forms."""
 
@@ -52,6 +56,7 @@ def _sheets() -> dict[str, Maker]:
     from service.render.rotor.sheet import rotor_sheet
     from service.render.shafts.engine import engine_sheet
     from service.render.shafts.flywheel import flywheel_sheet
+    from service.render.shafts.indexing import indexing_sheet
 
     return {
         LINKAGE: linkage_sheet,
@@ -64,6 +69,7 @@ def _sheets() -> dict[str, Maker]:
         "rotor": rotor_sheet,
         "flywheel": flywheel_sheet,
         "engine": engine_sheet,
+        **dict.fromkeys(GENEVA, indexing_sheet),
     }
 
 
@@ -71,12 +77,14 @@ def _animations() -> dict[str, Maker]:
     from service.render.cam.animation import barrel_animation, cam_animation
     from service.render.gears.train_animation import gear_train_animation
     from service.render.linkage.animation import linkage_animation
+    from service.render.shafts.indexing import indexing_animation
 
     return {
         LINKAGE: linkage_animation,
         "cam": cam_animation,
         "barrel_cam": barrel_animation,
         "gear_train": gear_train_animation,
+        **dict.fromkeys(GENEVA, indexing_animation),
     }
 
 
@@ -88,6 +96,7 @@ def _drawings() -> dict[str, Maker]:
     from service.render.rotor.dxf import rotor_drawing
     from service.render.shafts.engine import engine_drawing
     from service.render.shafts.flywheel import flywheel_drawing
+    from service.render.shafts.indexing import indexing_drawing
 
     return {
         LINKAGE: linkage_drawing,
@@ -100,6 +109,7 @@ def _drawings() -> dict[str, Maker]:
         "rotor": rotor_drawing,
         "flywheel": flywheel_drawing,
         "engine": engine_drawing,
+        **dict.fromkeys(GENEVA, indexing_drawing),
     }
 
 
@@ -110,6 +120,7 @@ def _tables() -> dict[str, Maker]:
     from service.render.rotor.csv import rotor_table
     from service.render.shafts.engine import engine_table
     from service.render.shafts.flywheel import flywheel_table
+    from service.render.shafts.indexing import indexing_table
 
     return {
         LINKAGE: linkage_table,
@@ -123,6 +134,7 @@ def _tables() -> dict[str, Maker]:
         "rotor": rotor_table,
         "flywheel": flywheel_table,
         "engine": engine_table,
+        **dict.fromkeys(GENEVA, indexing_table),
     }
 
 

@@ -13,6 +13,7 @@ import { Explorer } from "./explorer.js";
 import { Flywheel } from "./flywheel.js";
 import { Forces } from "./forces.js";
 import { Gears } from "./gears.js";
+import { Geneva } from "./geneva.js";
 import { checks, dimensions, figures, made, table } from "./figures.js";
 import { Mover, demanded } from "./mover.js";
 import { Rotor } from "./rotor.js";
@@ -26,7 +27,7 @@ const TURN_STEPS = 360;
 /** What shows a mechanism that is no linkage. @type {Record<string, new (place: HTMLElement, design: any, motion: any, problem: any) => Moving>} */
 const VIEWS = {
   cam: Disc, barrel_cam: Barrel, gear_train: Gears, planetary_train: Gears, gearbox: Gears, layshaft_gearbox: Gears, rotor: Rotor,
-  flywheel: Flywheel, engine: Engine,
+  flywheel: Flywheel, engine: Engine, geneva_external: Geneva, geneva_internal: Geneva, geneva_spherical: Geneva,
 };
 
 /** @typedef {{stop: () => void, pause?: () => void}} Moving */

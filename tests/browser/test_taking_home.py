@@ -41,6 +41,7 @@ FIELDS = {
     "balancing": ("rpm", "900", 900),
     "flywheel": ("coefficient", "0.06", 0.06),
     "engine": ("stroke", "74", 74),
+    "indexing": ("roller_diameter", "11", 11),
 }
 
 # What has no motion over a cycle: of several speeds one is engaged at a time, and shafts just turn.

@@ -70,6 +70,9 @@ PURE = {
     "GearboxResult": {"progression_ratio"},
     "GearedFivebarMechanism": {"gear_ratio"},
     "GivenPivotSolutions": {"largest_residual"},
+    "DwellShare": {"min", "max"},
+    "IndexingDesign": {"dwell_share"},
+    "IndexingMetrics": {"entry_speed"},  # over the crank's
     "InputDial": {"at"},
     "LayshaftMetrics": {"max_error", "errors", "contact_ratios"},
     "LayshaftProblem": {"ratios", "reverse", "tolerance"},

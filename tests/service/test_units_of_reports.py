@@ -25,6 +25,7 @@ from synthesis.model.dimension import (
     OUTPUT,
     PERCENT,
     SPEED,
+    TORQUE,
     VELOCITY,
     dimensions,
 )
@@ -82,6 +83,12 @@ MEASURING = {
     "rim_speed": SPEED,
     "fires_at_top": ANGLE,
     "even_firing": ANGLE,
+    "roller_in_slot": LENGTH,
+    "web": LENGTH,
+    "bore": LENGTH,
+    "crank_shaft": LENGTH,
+    "pin_force": FORCE,
+    "drive_torque": TORQUE,
 }
 
 

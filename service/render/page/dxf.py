@@ -63,6 +63,12 @@ def add_circle(space: Modelspace, at: complex, radius: float, layer: str) -> Non
     space.add_circle((at.real, at.imag), radius, dxfattribs={"layer": layer})
 
 
+def add_arc(space: Modelspace, at: complex, radius: float, start: complex, end: complex, layer: str) -> None:
+    """An arc about a point, counter-clockwise from the direction of one point to that of another."""
+    first, last = (float(np.degrees(np.angle(z - at))) for z in (start, end))
+    space.add_arc((at.real, at.imag), radius, first, last, dxfattribs={"layer": layer})
+
+
 def add_outline(space: Modelspace, corners: Iterable[complex], layer: str) -> None:
     """A closed polygon."""
     space.add_lwpolyline([(z.real, z.imag) for z in corners], close=True, dxfattribs={"layer": layer})

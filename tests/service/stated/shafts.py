@@ -1,4 +1,4 @@
-"""Flywheels and engines: of every field a value with which the answer is another one."""
+"""Flywheels, engines and indexing drives: of every field a value with which the answer is another one."""
 
 from __future__ import annotations
 
@@ -149,4 +149,50 @@ ENGINE_ROWS: dict[str, Any] = {
     "flywheel.coefficient": 0.04,
     "flywheel.existing_inertia": 0.01,
     "flywheel.speed_rpm": 700.0,
+}
+
+INDEXING: dict[str, Any] = {
+    "kind": "indexing",
+    "drive": "geneva_external",
+    "stations": 6,
+    "center_distance": 80.0,
+    "roller_diameter": 12.0,
+    "speed_rpm": 60.0,
+    "load_inertia": 0.02,
+    "load_torque": 1.0,
+}
+LARGER_CRANK: dict[str, Any] = {"crank_radius": 41.0, "rollers": 1, "wall_thickness": 2.0}
+INDEXING_ROWS: dict[str, Any] = {
+    "length_unit": Row("in", {"units": "consistent"}, file="dxf"),
+    "max_designs": 1,
+    "include_failed": Row(True, {"constraints": {"pin_force": 1.0}}),
+    "seed": 7,
+    "units": "consistent",
+    "drive": "geneva_internal",
+    "stations": 5,
+    "rollers": 1,
+    "center_distance": 90.0,
+    "sphere_radius": Row(50.0, {"drive": "geneva_spherical", "center_distance": None}),
+    "crank_radius": Row(41.0, LARGER_CRANK | {"constraints": {"shock_free": False}, "crank_radius": 40.5}),
+    "roller_diameter": 11.0,
+    "wall_thickness": 5.0,
+    "wheel_shaft_diameter": 20.0,
+    "crank_shaft_diameter": 5.0,
+    "clearances": {"slot": 0.1},
+    "clearances.slot": 0.1,
+    "clearances.locking": 0.1,
+    "clearances.slot_end": 1.0,
+    "clearances.relief": 1.0,
+    "speed_rpm": 70.0,
+    "load_inertia": 0.03,
+    "load_torque": 2.0,
+    "constraints": {"size": 200.0},
+    "constraints.dwell_share": {"min": 0.5},
+    "constraints.dwell_share.min": Row(0.5, {"constraints": {"dwell_share": {"min": 0.1}}}),
+    "constraints.dwell_share.max": Row(0.5, {"constraints": {"dwell_share": {"max": 0.9}}}),
+    "constraints.peak_acceleration": 1.3,
+    "constraints.drive_torque": 1.0,
+    "constraints.pin_force": 20.0,
+    "constraints.size": 150.0,
+    "constraints.shock_free": Row(False, LARGER_CRANK),
 }

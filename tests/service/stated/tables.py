@@ -23,6 +23,7 @@ TABLES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "balancing": (balancing.ROTOR, balancing.ROTOR_ROWS),
     "flywheel": (shafts.FLYWHEEL, shafts.FLYWHEEL_ROWS),
     "engine": (shafts.ENGINE, shafts.ENGINE_ROWS),
+    "indexing": (shafts.INDEXING, shafts.INDEXING_ROWS),
 }
 
 EXHAUSTIVE = "an exhaustive search returns nothing that fails"

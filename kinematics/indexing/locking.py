@@ -1,0 +1,198 @@
+"""The locking disc of a plane Geneva drive: an arc that fills the wheel's locking arcs, and the relief beside it.
+
+While the wheel turns its horns sweep over the disc. In the crank's frame the disc may fill, in each direction from the
+crank's axis, what no position of the wheel comes to during the index. Rays are cut with the circles and lines that the
+wheel is made of, so that its material is that of :mod:`kinematics.indexing.wheel` without any polygon between.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.indexing.geneva import Geneva
+from kinematics.indexing.wheel import Complex, Real, Wheel
+
+POSITIONS, RAYS = 121, 181
+"""Positions of the index, and directions over half a turn, for which distances are taken."""
+
+CORNER_POSITIONS = 4001
+"""Positions of the corners of slots and arcs, which may pass between two rays."""
+
+INWARD = 1e-9
+"""Share of the center distance behind a cut at which is asked whether the ray has come into material."""
+
+SAME = 1e-9
+"""Radians between two rays that are one."""
+
+EDGE = 1e-6
+"""Radians between the end of the locking arc and the beginning of its relief."""
+
+Mask = NDArray[np.bool_]
+
+
+def material(wheel: Wheel, points: Complex) -> Mask:
+    """Whether points of the wheel's frame lie in it; the outside of a ring has no end here."""
+    far = np.abs(points)
+    body = far > wheel.reach if wheel.internal else far < wheel.reach
+    slot = _folded(points, wheel.step, 0.0)
+    beyond = slot.real < wheel.slot_end if wheel.internal else slot.real > wheel.slot_end
+    in_slot = (np.abs(slot.imag) < wheel.half_slot) & beyond | (np.abs(slot - wheel.slot_end) < wheel.half_slot)
+    lock = _folded(points, wheel.step, wheel.step)
+    return np.asarray(body & ~in_slot & (np.abs(lock - wheel.center_distance) > wheel.lock))
+
+
+def _folded(points: Complex, step: float, axis: float) -> Complex:
+    """Points turned about the wheel's axis into the sector about the x axis, from those about an axis and its like."""
+    turned = np.round((np.angle(points) - axis) / (2.0 * step)) * 2.0 * step + axis
+    return np.asarray(points * np.exp(-1j * turned))
+
+
+def swept(wheel: Wheel, drive: Geneva, directions: Real) -> tuple[Real, Real]:
+    """Where along rays from the crank's axis the wheel passes during an index, within the circle of its locking arcs.
+
+    Parameters
+    ----------
+    wheel : Wheel
+    drive : Geneva
+        The same drive, of one roller.
+    directions : float, shape (k,)
+        Radians in the crank's frame, counter-clockwise from the roller as seen with the crank turning that way.
+
+    Returns
+    -------
+    nearest, farthest : float, shape (k,)
+        The least and the greatest distance of the wheel's material; the radius of the locking arcs and 0 where none of
+        it comes within that.
+    """
+    c = wheel.center_distance
+    alpha = np.linspace(-drive.half, drive.half, POSITIONS)
+    sense = math.copysign(1.0, drive.signed)
+    turned = sense * -drive.motion(alpha).s
+    # Into the wheel's frame, where the roller's slot is slot 0.
+    start = (c * np.exp(-1j * turned))[:, None]
+    ray = -sense * np.exp(1j * (directions[None, :] + alpha[:, None] - turned[:, None]))
+    nearest, farthest = np.full(ray.shape, wheel.lock), np.zeros(ray.shape)
+    within, behind = wheel.lock * (1.0 - INWARD), INWARD * c
+    for found in _cuts(wheel, start, ray):
+        which = np.nonzero((found > 0.0) & (found < within))
+        cut, at, along = found[which], start[which[0], 0], ray[which]
+        first, last = nearest[which], farthest[which]
+        nearest[which] = np.where(material(wheel, at + (cut + behind) * along), np.minimum(first, cut), first)
+        farthest[which] = np.where(material(wheel, at + (cut - behind) * along), np.maximum(last, cut), last)
+    nearest = np.where(material(wheel, start + 0.0 * ray), 0.0, nearest)
+    farthest = np.where(material(wheel, start + within * (1.0 - INWARD) * ray), wheel.lock, farthest)
+    return np.asarray(nearest.min(axis=0)), np.asarray(farthest.max(axis=0))
+
+
+def corners_swept(wheel: Wheel, drive: Geneva) -> tuple[Real, Real]:
+    """Directions and distances, in the crank's frame, of corners near the crank during an index, (m,) each."""
+    land = (wheel.mouth, wheel.step - wheel.lock_half)
+    beside = np.array([side * angle + 2.0 * k * wheel.step for k in (-1, 0, 1) for side in (-1, 1) for angle in land])
+    alpha = np.linspace(-drive.half, drive.half, CORNER_POSITIONS)[:, None]
+    sense = math.copysign(1.0, drive.signed)
+    turned = sense * -drive.motion(alpha).s
+    corners = wheel.reach * np.exp(1j * (beside + turned))
+    seen = ((corners - wheel.center_distance) * -sense * np.exp(-1j * alpha)).ravel()
+    near = np.abs(seen) < wheel.lock * (1.0 - INWARD)
+    return np.asarray(np.angle(seen[near])), np.asarray(np.abs(seen[near]))
+
+
+def _both_sides(angle: Real, at: Real) -> list[NDArray[np.intp]]:
+    """For directions the rays before and after them, of rays in ascending order round a turn."""
+    after = np.searchsorted(angle, np.mod(at, 2.0 * math.pi))
+    return [(after - 1) % len(angle), after % len(angle)]
+
+
+def _cuts(wheel: Wheel, start: Complex, ray: Complex) -> list[Real]:
+    """Distances along rays at which they cut the circles and lines of the wheel; NaN where they do not."""
+    found = _circle(start, ray, 0j, wheel.reach)
+    for k in (-3, -1, 1, 3):
+        found += _circle(start, ray, wheel.center_distance * np.exp(1j * k * wheel.step), wheel.lock)
+    for k in (-2, 0, 2):
+        back = np.exp(-1j * k * wheel.step)
+        at, along = start * back, ray * back
+        found += _circle(start, ray, wheel.slot_end / back, wheel.half_slot)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found += [(side * wheel.half_slot - at.imag) / along.imag for side in (-1.0, 1.0)]
+    return found
+
+
+def _circle(start: Complex, ray: Complex, center: complex, radius: float) -> list[Real]:
+    apart = start - center
+    along = (apart * ray.conj()).real
+    with np.errstate(invalid="ignore"):
+        root = np.sqrt(along * along - np.abs(apart) ** 2 + radius * radius)
+    return [-along - root, -along + root]
+
+
+@dataclass(frozen=True)
+class Disc:
+    """The locking disc in the crank's frame: between two radii in each direction.
+
+    Attributes
+    ----------
+    angle : float, shape (k,)
+        Ascending, radians from the first roller; over a whole turn of a disc, over its arc where it is a crescent.
+    outer, inner : float, shape (k,)
+        Of a disc about the crank's axis the inner radius is 0; an internal drive's horns pass that axis, and leave a
+        crescent, which is fastened to the arm beside the wheel's plane.
+    """
+
+    angle: Real
+    outer: Real
+    inner: Real
+
+
+def crescent(wheel: Wheel, drive: Geneva, gap: float, relief: float, rays: int = RAYS) -> Disc:
+    """The locking disc of an internal drive, which the wheel's horns leave of it."""
+    angle = np.linspace(drive.half, 2.0 * math.pi - drive.half, rays)
+    farthest = swept(wheel, drive, angle)[1]
+    at, distance = corners_swept(wheel, drive)
+    at = np.mod(at, 2.0 * math.pi)
+    beside = (at >= angle[0]) & (at <= angle[-1])
+    for ray in _both_sides(angle, at[beside]):
+        np.maximum.at(farthest, ray, distance[beside])
+    arc = wheel.lock - gap
+    return Disc(angle, np.full(rays, arc), np.minimum(farthest + relief, arc))
+
+
+def disc(wheel: Wheel, drive: Geneva, rollers: int, gap: float, relief: float) -> Disc:
+    """The locking disc of a drive.
+
+    Parameters
+    ----------
+    wheel : Wheel
+    drive : Geneva
+    rollers : int
+        1 of an internal drive.
+    gap : float
+        By how much the disc's radius is below that of the wheel's locking arcs.
+    relief : float
+        Least distance to the wheel beside the locking arc.
+    """
+    arc = wheel.lock - gap
+    if wheel.internal:
+        return crescent(wheel, drive, gap, relief)
+    pitch = 2.0 * math.pi / rollers
+    ends = np.array([drive.half, -drive.half])
+    # The same rays about every roller.
+    evenly = np.linspace(0.0, pitch, math.ceil(2 * RAYS / rollers), endpoint=False)
+    one = np.sort(np.mod(np.concatenate([evenly, ends, ends + np.array([-EDGE, EDGE])]), pitch))
+    one = one[np.append(True, np.diff(one) > SAME)]
+    angle = (one + pitch * np.arange(rollers)[:, None]).ravel()
+    outer = np.full(len(angle), arc)
+    at, distance = corners_swept(wheel, drive)
+    from_first = swept(wheel, drive, angle)[0]
+    for roller in range(rollers):
+        # The rays lie alike about every roller.
+        nearest = np.roll(from_first, roller * len(one))
+        for ray in _both_sides(angle, at + pitch * roller):
+            np.minimum.at(nearest, ray, distance)
+        # On the arc itself the wheel comes as near as the gap, by design.
+        free = np.where(nearest < wheel.lock, nearest - relief, arc)
+        outer = np.minimum(outer, np.maximum(free, 0.0))
+    return Disc(angle, outer, np.zeros(len(angle)))

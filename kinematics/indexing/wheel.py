@@ -1,0 +1,126 @@
+"""The outline of a plane Geneva wheel: slots, locking arcs and the lands between them.
+
+The wheel's axis is the origin and slot 0 lies along x; the axes of the locking arcs stand half a step beside the slots,
+at the center distance c. All arcs about a slot's axis and about a locking arc's axis are symmetric, so that half of a
+sector, from the slot's axis to that of the locking arc, tells the whole wheel. The wheel of an internal drive is a
+ring with its slots and arcs inside; its outside is a circle of its own.
+
+The wheel reaches to ρ = √(R² + r_r²), where a roller of radius r_r touches the slot's side as it enters at R
+(Bickford, *Mechanisms for Intermittent Motion*, 1972, ch. 6).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
+
+QUARTER, LAND, LOCK = 10, 4, 18
+"""Steps of the outline over a quarter of a slot's end, over a land, and over half a locking arc."""
+
+
+@dataclass(frozen=True)
+class Wheel:
+    """A plane Geneva wheel by its dimensions, in any one unit of length.
+
+    Attributes
+    ----------
+    internal : bool
+        Whether it is a ring about the crank.
+    stations : int
+    center_distance : float
+    reach : float
+        Radius to which it comes towards the crank: outside, or inside of a ring.
+    half_slot : float
+        Half the width of a slot.
+    slot_end : float
+        From the axis to the center of a slot's rounded end.
+    lock : float
+        Radius of the locking arcs.
+    """
+
+    internal: bool
+    stations: int
+    center_distance: float
+    reach: float
+    half_slot: float
+    slot_end: float
+    lock: float
+
+    @property
+    def step(self) -> float:
+        """Half the angle from slot to slot."""
+        return math.pi / self.stations
+
+    @property
+    def lock_half(self) -> float:
+        """Half the angle, about the wheel's axis, over which a locking arc cuts its circle; NaN where it does not."""
+        c, reach, lock = self.center_distance, self.reach, self.lock
+        cosine = (reach * reach + c * c - lock * lock) / (2.0 * reach * c)
+        return math.acos(cosine) if abs(cosine) <= 1.0 else math.nan
+
+    @property
+    def mouth(self) -> float:
+        """Angle of a slot's corner from the slot's axis."""
+        return math.asin(self.half_slot / self.reach)
+
+    @property
+    def land(self) -> float:
+        """Angle of the wheel's circle that is left between a slot and a locking arc; negative or NaN where none is."""
+        return self.step - self.mouth - self.lock_half
+
+    @property
+    def wall(self) -> float:
+        """Least thickness between a slot and a locking arc; NaN where the arc does not cut the wheel.
+
+        It is at the corner of the locking arc, or at the foot of the perpendicular from the crank's axis where that
+        lies in the wheel.
+        """
+        foot = self.center_distance * math.sin(self.step) - self.half_slot - self.lock
+        corner = self.reach * math.sin(self.step - self.lock_half) - self.half_slot
+        inside = math.hypot(self.center_distance * math.cos(self.step), foot + self.half_slot) <= self.reach
+        return foot if inside != self.internal else corner
+
+    @property
+    def web(self) -> float:
+        """Least distance between neighbouring slots; negative where they run into one another."""
+        if self.internal:
+            return 2.0 * self.reach * math.sin(self.step - self.mouth)
+        return 2.0 * (self.slot_end * math.sin(self.step) - self.half_slot)
+
+    @cached_property
+    def half_sector(self) -> Complex:
+        """From the end of slot 0 to the middle of the locking arc after it, shape (m,)."""
+        turn = np.linspace(0.0, 0.5 * math.pi, QUARTER + 1)
+        # Where the end comes nearest to the next slot's there is a point.
+        turn = np.unique(np.append(turn, 0.5 * math.pi - self.step))
+        outward = -1.0 if not self.internal else 1.0
+        end = self.slot_end + self.half_slot * (outward * np.cos(turn) + 1j * np.sin(turn))
+        first = self.mouth
+        land = self.reach * np.exp(1j * np.linspace(first, self.step - self.lock_half, LAND + 1))
+        center = self.center_distance * np.exp(1j * self.step)
+        # As seen from the crank's axis: from the land's corner to the farthest place along the arc's own axis.
+        corner = np.angle((land[-1] - center) * np.exp(-1j * self.step))
+        if self.internal:
+            # The foot of the perpendicular to the slot is one of the points: the wall is thinnest there.
+            foot = -(0.5 * math.pi + self.step)
+            before = np.linspace(corner, foot, LOCK // 2 + 1)[:-1] if corner < foot else np.empty(0)
+            turned = np.concatenate([before, np.linspace(max(corner, foot), 0.0, LOCK + 1)])
+        else:
+            turned = np.linspace(corner % (2.0 * math.pi), math.pi, LOCK + 1)
+        arc = center + self.lock * np.exp(1j * (turned + self.step))
+        return np.asarray(np.concatenate([end, land, arc[1:]]), np.complex128)
+
+    @cached_property
+    def outline(self) -> Complex:
+        """All around, counter-clockwise from the middle of the locking arc before slot 0; closed by its first point."""
+        half = self.half_sector
+        sector = np.concatenate([half[::-1].conj(), half[1:-1]])
+        turns = np.exp(2j * self.step * np.arange(self.stations))
+        return np.asarray((turns[:, None] * sector).ravel())

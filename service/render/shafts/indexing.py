@@ -1,0 +1,266 @@
+"""Geneva drives: the sheet with wheel, crank and program; the DXF drawing with true arcs; the animation; the table.
+
+=========  ===================================================================
+layer      what is on it
+=========  ===================================================================
+WHEEL      outline of the wheel: slots, locking arcs, lands, bore, a ring's outside
+CRANK      locking disc and rollers
+CENTRES    crosses at both axes, the circle of the rollers, axes of slots
+TEXT       the dimensions
+=========  ===================================================================
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from ezdxf.layouts.layout import Modelspace
+from numpy.typing import NDArray
+
+from kinematics.indexing.geneva import Geneva
+from service.render.checks import checks, verdict
+from service.render.outline import entries
+from service.render.page import blocks, dxf
+from service.render.page.animation import Stroke, animated, ring
+from service.render.page.diagrams import Diagram
+from service.render.page.numbers import angle, length
+from service.render.page.sheet import EDGE, TOP, beside, framed, sheet, stacked
+from service.render.page.svg import Box, Element, Viewport, circle, line, path, polygon
+from service.render.page.symbols import COUPLER, GREY, GROUND, INPUT, OUTPUT, scale_bar
+from service.render.page.table import table
+from service.units import symbols
+from synthesis.kinds.indexing.design import GenevaMechanism, IndexingDesign, SphericalGenevaMechanism
+from synthesis.kinds.indexing.problem import IndexingProblem
+from synthesis.model.dimension import ACCELERATION, FORCE, JERK, TORQUE, VELOCITY
+
+Complex = NDArray[np.complex128]
+
+PANEL, DIAGRAM, MARGIN = 380.0, 150.0, 24.0
+"""Heights of the panel and of each diagram, and room around what is shown, pixels."""
+
+FILL, DISC = "#dfe7ef", "#f3e7d3"
+"""Of the wheel and of the disc."""
+
+FRAMES = 72
+"""Of a turn of the crank."""
+
+AROUND = 73
+"""Points of a drawn circle."""
+
+LETTERS = 0.03
+"""Height of letters in the drawing, in sizes of the drive."""
+
+
+def indexing_sheet(design: IndexingDesign, problem: IndexingProblem, title: str) -> str:
+    """Wheel and crank as a roller enters, the program, torque and pin force, and tables, as an SVG document."""
+    units, program, course = symbols(problem), design.program, design.course
+    parts = [_panel(design, problem)]
+    at = np.array(program.angle)
+    low = TOP + PANEL + 10.0
+    for heading, name, unit, values, colour in (
+        ("Velocity v", "v", units[VELOCITY], program.v, INPUT),
+        ("Acceleration a", "a", units[ACCELERATION], program.a, OUTPUT),
+        ("Jerk j", "j", units[JERK], program.j, COUPLER),
+        ("Drive torque", "torque", units[TORQUE], course.drive_torque, INPUT),
+        ("Pin force", "force", units[FORCE], course.pin_force, OUTPUT),
+    ):
+        headed = f"{heading} ({unit})" if unit else heading
+        diagram = Diagram(headed, name, at, np.array(values), colour)
+        parts.append(diagram.draw(Box(EDGE, low, EDGE + beside(), low + DIAGRAM)))
+        low += DIAGRAM
+    tables, bottom = stacked(
+        [
+            blocks.rows("Drive", _dimensions(design, problem)),
+            checks(design.verification, problem),
+            blocks.rows("Metrics", entries(design.metrics, problem)),
+        ]
+    )
+    words = f"{_name(design)} of {design.mechanism.stations} stations; {verdict(design.verification)}"
+    described = "Wheel and crank of a Geneva drive, and the motion of the wheel over an index of the crank."
+    return sheet(title or "Indexing drive", words, described, [*parts, *tables], max(low, bottom))
+
+
+def _name(design: IndexingDesign) -> str:
+    return f"{design.mechanism.type.removeprefix('geneva_').capitalize()} Geneva drive"
+
+
+def _dimensions(design: IndexingDesign, problem: IndexingProblem) -> list[tuple[str, str]]:
+    rows = entries(design.mechanism, problem, {"type", "profile", "disc"})
+    share = f"{length(100.0 * design.dwell_share, digits=4)} %"
+    return [*rows, ("index", angle(design.index_angle)), ("rest, of the time", share)]
+
+
+def _ring(radius: float, center: complex = 0j) -> Complex:
+    return np.asarray(center + radius * np.exp(2j * math.pi * np.arange(AROUND) / (AROUND - 1)))
+
+
+def _wheel(design: IndexingDesign) -> Complex:
+    """The wheel in the crank's picture, as a roller enters: the crank stands at +x."""
+    profile = design.mechanism.profile
+    sense = 1.0 if design.mechanism.type == "geneva_external" else -1.0
+    turned = sense * math.pi / design.mechanism.stations
+    return np.asarray((np.array(profile.x) + 1j * np.array(profile.y)) * np.exp(1j * turned))
+
+
+def _plane_crank(mechanism: GenevaMechanism, half: float) -> tuple[Complex, list[complex]]:
+    """The disc as a polygon, and the rollers, as the first of them enters."""
+    sense = 1.0 if mechanism.type == "geneva_external" else -1.0
+    way = -sense * np.exp(-1j * half)
+    at = np.exp(1j * np.radians(mechanism.disc.angle))
+    outer, inner = np.array(mechanism.disc.outer_radius) * at, np.array(mechanism.disc.inner_radius) * at
+    corners = np.concatenate([outer, inner[::-1]]) if inner.any() else outer
+    turns = np.exp(2j * math.pi * np.arange(mechanism.rollers) / mechanism.rollers)
+    rollers = mechanism.center_distance + way * mechanism.crank_radius * turns
+    return np.asarray(mechanism.center_distance + way * corners), [complex(roller) for roller in rollers]
+
+
+def _cap(mechanism: SphericalGenevaMechanism) -> tuple[Complex, complex]:
+    """The cap and the roller seen along the crank's axis from outside, beside the wheel; the roller stands up."""
+    center = 2.4 * mechanism.sphere_radius
+    radius = mechanism.sphere_radius * math.sin(math.radians(mechanism.cap_angle))
+    share = min(1.0, mechanism.cap_offset / radius)
+    ends = math.asin(share)
+    arc = radius * np.exp(1j * np.linspace(math.pi + ends, 2.0 * math.pi - ends, AROUND))
+    roller = center + 1j * mechanism.sphere_radius * math.sin(math.radians(mechanism.cone_angle))
+    return np.asarray(center + arc), roller
+
+
+def _crank(design: IndexingDesign) -> tuple[Complex, list[complex], complex, float]:
+    """Disc, rollers, the crank's axis and the radius of the rollers' circle."""
+    mechanism = design.mechanism
+    if isinstance(mechanism, GenevaMechanism):
+        disc, rollers = _plane_crank(mechanism, math.radians(0.5 * design.index_angle))
+        return disc, rollers, complex(mechanism.center_distance), mechanism.crank_radius
+    cap, roller = _cap(mechanism)
+    center = complex(2.4 * mechanism.sphere_radius)
+    return cap, [roller], center, abs(roller - center)
+
+
+def _outside(design: IndexingDesign) -> Complex:
+    ring = getattr(design.mechanism, "ring_radius", None)
+    return np.empty(0, np.complex128) if ring is None else _ring(ring)
+
+
+def _panel(design: IndexingDesign, problem: IndexingProblem) -> Element:
+    wheel, outside = _wheel(design), _outside(design)
+    disc, rollers, center, reach = _crank(design)
+    size = 0.5 * design.mechanism.roller_diameter
+    around = np.concatenate([wheel, outside, disc, _ring(reach + size, center)])
+    view = Viewport.fit(Box.around(around), Box(EDGE, TOP, EDGE + beside(), TOP + PANEL), MARGIN, MARGIN)
+    group = framed(view.panel, "indexing")
+
+    def shape(corners: Complex, fill: str, stroke: str, name: str) -> Element:
+        return polygon([view.point(z) for z in corners], fill=fill, stroke=stroke, stroke_width=1.4, data_part=name)
+
+    if len(outside):
+        group.add(shape(outside, FILL, OUTPUT, "ring"))
+    group.add(shape(wheel, "#fff" if len(outside) else FILL, OUTPUT, "wheel"))
+    if design.mechanism.bore > 0.0:
+        group.add(circle(view.point(0j), 0.5 * view.scale * design.mechanism.bore, fill="#fff", stroke=OUTPUT))
+    group.add(path([np.array([view.point(z) for z in _ring(reach, center)])], stroke=GREY, stroke_dasharray="9 3 2 3"))
+    group.add(shape(disc, DISC, INPUT, "disc"))
+    for roller in rollers:
+        group.add(line(view.point(center), view.point(roller), stroke=INPUT, stroke_width=3.0, stroke_opacity=0.4))
+        group.add(circle(view.point(roller), view.scale * size, fill="#fff", stroke=INPUT, stroke_width=1.6))
+    for axis in (0j, center):
+        group.add(circle(view.point(axis), 3.0, fill=GROUND))
+    return group.add(scale_bar(view, problem.length_unit)[0])
+
+
+def indexing_drawing(design: IndexingDesign, problem: IndexingProblem, title: str) -> str:
+    """Wheel and crank as a DXF document (R2010): a plane wheel of true lines and arcs."""
+    mechanism, letters = design.mechanism, LETTERS * design.metrics.size
+    layers = {"WHEEL": (5, "CONTINUOUS"), "CRANK": (3, "CONTINUOUS"), "CENTRES": (7, "CENTER")}
+    document = dxf.new_drawing(title or _name(design), problem.length_unit, layers | {"TEXT": (7, "CONTINUOUS")})
+    space = document.modelspace()
+    disc, rollers, center, reach = _crank(design)
+    if isinstance(mechanism, GenevaMechanism):
+        _true_wheel(space, mechanism)
+    else:
+        dxf.add_outline(space, (complex(z) for z in _wheel(design)), "WHEEL")
+    if mechanism.bore > 0.0:
+        dxf.add_circle(space, 0j, 0.5 * mechanism.bore, "WHEEL")
+    outside = _outside(design)
+    if len(outside):
+        dxf.add_circle(space, 0j, float(abs(outside[0])), "WHEEL")
+    dxf.add_outline(space, (complex(z) for z in disc), "CRANK")
+    for roller in rollers:
+        dxf.add_circle(space, roller, 0.5 * mechanism.roller_diameter, "CRANK")
+    dxf.add_circle(space, center, reach, "CENTRES")
+    dxf.add_cross(space, 0j, 2.0 * letters, "CENTRES")
+    for n, (name, value) in enumerate(_dimensions(design, problem)):
+        dxf.add_words(space, complex(0.0, -0.7 * design.metrics.size - 1.6 * n * letters), f"{name} {value}", letters)
+    return dxf.written(document)
+
+
+def _true_wheel(space: Modelspace, mechanism: GenevaMechanism) -> None:
+    """A plane wheel by the lines and arcs that it is made of, as a roller enters."""
+    internal = mechanism.type == "geneva_internal"
+    step, half_slot, reach = math.pi / mechanism.stations, 0.5 * mechanism.slot_width, mechanism.wheel_radius
+    mouth = complex(math.sqrt(reach**2 - half_slot**2), half_slot)
+    end = complex(mechanism.slot_end_radius)
+    c, lock = mechanism.center_distance, mechanism.locking_arc_radius
+    beside = step - math.acos((reach**2 + c**2 - lock**2) / (2.0 * reach * c))
+    corner = reach * np.exp(1j * beside)
+    for k in range(mechanism.stations):
+        turn = complex(np.exp(1j * step * (2 * k + (-1.0 if internal else 1.0))))
+        for side in (mouth, mouth.conjugate()):
+            dxf.add_line(space, turn * complex(end.real, side.imag), turn * side, "WHEEL")
+        ends = (
+            (end - 1j * half_slot, end + 1j * half_slot) if internal else (end + 1j * half_slot, end - 1j * half_slot)
+        )
+        dxf.add_arc(space, turn * end, half_slot, turn * ends[0], turn * ends[1], "WHEEL")
+        dxf.add_arc(space, 0j, reach, turn * mouth, turn * corner, "WHEEL")
+        dxf.add_arc(space, 0j, reach, turn * corner.conjugate(), turn * mouth.conjugate(), "WHEEL")
+        # A ring's arc is the far side of its circle, from the corner of this slot on; another wheel's is the near side.
+        ends = corner, corner.conjugate() * np.exp(2j * step)
+        first, last = ends if internal else ends[::-1]
+        dxf.add_arc(space, turn * c * np.exp(1j * step), lock, turn * first, turn * last, "WHEEL")
+
+
+def indexing_animation(design: IndexingDesign, problem: IndexingProblem, title: str) -> bytes:
+    """One turn of the crank as GIF."""
+    mechanism = design.mechanism
+    drive = Geneva.shock_free(mechanism.type, mechanism.stations)
+    if isinstance(mechanism, GenevaMechanism):
+        drive = Geneva(
+            mechanism.type, mechanism.stations, max(drive.ratio, mechanism.crank_radius / mechanism.center_distance)
+        )
+    wheel, outside = _wheel(design), _outside(design)
+    disc, rollers, center, reach = _crank(design)
+    sense = -1.0 if mechanism.type == "geneva_external" else 1.0
+    turns = 2.0 * math.pi * np.arange(FRAMES) / FRAMES
+    turned = drive.turned(turns, mechanism.rollers).s
+    size = 0.5 * mechanism.roller_diameter
+
+    def frames() -> Iterator[list[Stroke]]:
+        for crank, by in zip(turns, turned, strict=True):
+            arm = np.exp(1j * crank)
+            strokes = [Stroke(outside, OUTPUT, 1.4, True, FILL)] if len(outside) else []
+            inside = "#ffffff" if len(outside) else FILL
+            strokes.append(Stroke(wheel * np.exp(1j * sense * by), OUTPUT, 1.4, True, inside))
+            strokes.append(Stroke(center + (disc - center) * arm, INPUT, 1.4, True, DISC))
+            for one in rollers:
+                strokes.append(Stroke(ring(complex(center + (one - center) * arm), size), INPUT, 1.6, True, "#ffffff"))
+            yield strokes
+
+    around = np.concatenate([_ring(float(np.abs(wheel).max())), outside, _ring(reach + size, center)])
+    return animated(frames(), Box.around(around))
+
+
+def indexing_table(design: IndexingDesign, problem: IndexingProblem, title: str) -> str:
+    """The program of an index with torque and pin force."""
+    program, course = design.program, design.course
+    columns = {
+        "crank_deg": program.angle,
+        "s_deg": program.s,
+        "v": program.v,
+        "a": program.a,
+        "j": program.j,
+        "wheel_torque": course.wheel_torque,
+        "drive_torque": course.drive_torque,
+        "pin_force": course.pin_force,
+    }
+    return table(columns, (list(row) for row in zip(*columns.values(), strict=True)))

@@ -1,0 +1,117 @@
+/** A Geneva drive that turns: its wheel by steps, the crank with its locking disc and rollers steadily. */
+
+import { el, shown, svg } from "./dom.js";
+import { Player, between } from "./player.js";
+import { plots } from "./plots.js";
+import { View } from "./view.js";
+
+const WIDTH = 640;
+const HEIGHT = 420;
+
+/** Steps of a drawn arc. */
+const STEPS = 48;
+
+/** From the wheel's axis to where the crank of a spherical drive is shown, in radii of the sphere. */
+const BESIDE = 2.4;
+
+/** @typedef {[number, number]} Point */
+
+export class Geneva {
+  /** @param {HTMLElement} place @param {any} design @param {any} motion */
+  constructor(place, design, motion) {
+    const { mechanism, index_angle: index } = design;
+    this.motion = motion;
+    const external = mechanism.type === "geneva_external";
+    const spherical = mechanism.type === "geneva_spherical";
+    /** The wheel turns against the crank, or with it. */
+    this.sense = external ? -1 : 1;
+    // As the first roller enters a slot, the crank turning counter-clockwise; that of a sphere is seen along its own axis.
+    this.begin = { wheel: (-this.sense * 180) / mechanism.stations, crank: (external ? 180 : spherical ? 90 : 0) - index / 2 };
+    const { disc, rollers, reach, centre } = spherical ? cap(mechanism) : crank(mechanism);
+    const wheel = ring(mechanism.profile);
+    const outside = mechanism.ring_radius ?? Math.max(...wheel.map(([x, y]) => Math.hypot(x, y)));
+    const far = reach + mechanism.roller_diameter / 2;
+    const view = new View([[-outside, -outside], [outside, outside], [centre - far, -far], [centre + far, far]], WIDTH, HEIGHT, 12);
+    this.axes = [view.at(0, 0), view.at(centre, 0)];
+    const [[u, v]] = this.axes;
+    this.wheel = svg("path", { class: "pitch", d: `${view.path(wheel)}Z` });
+    this.crank = svg("g", {}, svg("path", { class: "pitch", d: `${view.path(disc.map(([x, y]) => /** @type {Point} */ ([x + centre, y])))}Z` }),
+      ...rollers.map(([x, y]) => {
+        const [across, down] = view.at(x + centre, y);
+        return svg("circle", { class: "pin", cx: across, cy: down, r: (view.scale * mechanism.roller_diameter) / 2 });
+      }));
+    const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": "The Geneva drive, turning" },
+      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
+      mechanism.ring_radius && svg("g", { class: "wheel t0" }, svg("circle", { class: "pitch", cx: u, cy: v, r: view.scale * mechanism.ring_radius })),
+      svg("g", { class: "wheel t0" }, this.wheel), svg("g", { class: "wheel t1" }, this.crank),
+      ...this.axes.map(([cx, cy]) => svg("circle", { class: "pin", cx, cy, r: 3.5 })));
+    this.angle = el("dd", {});
+    this.state = el("dd", {});
+    this.player = new Player({ count: motion.input_angle.length, closed: true, endless: true, label: "Crank",
+      reading: (at) => `${shown(Math.round(10 * this.over(motion.input_angle, at)) / 10)}°`, show: (at) => this.show(at) });
+    this.marks = plots([
+      { title: "Wheel turned (°)", lines: { "": motion.angle } },
+      { title: "Velocity v (rad by rad)", lines: { "": motion.omega } },
+      { title: "Acceleration a (rad by rad²)", lines: { "": motion.alpha } },
+    ], motion.input_angle, (at) => this.player.lead(at));
+    place.replaceChildren(el("div", { class: "stage" }, picture,
+      el("dl", { class: "facts speeds" }, el("dt", {}, "Wheel"), this.angle, el("dt", {}, "State"), this.state)),
+    this.player.row, el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure)));
+    this.player.begin();
+  }
+
+  /** A value that grows turn after turn by as much as over one. @param {number[]} series @param {number} at */
+  over(series, at) {
+    const last = series.length - 1;
+    const turns = Math.floor(at / last);
+    return turns * (series[last] - series[0]) + Number(between(series, at - turns * last));
+  }
+
+  /** @param {number} at */
+  show(at) {
+    const { motion, begin, sense } = this;
+    const last = motion.input_angle.length - 1;
+    const within = at - last * Math.floor(at / last);
+    const turned = this.over(motion.angle, at);
+    const turns = [begin.wheel + sense * turned, begin.crank + this.over(motion.input_angle, at)];
+    [this.wheel, this.crank].forEach((part, k) => {
+      part.setAttribute("transform", `rotate(${(-turns[k]).toFixed(3)} ${this.axes[k][0].toFixed(2)} ${this.axes[k][1].toFixed(2)})`);
+    });
+    this.angle.textContent = `${shown(Math.round(10 * turned) / 10)}°`;
+    this.state.textContent = motion.moves[Math.round(within)] ? "turns" : "rests, locked";
+    for (const mark of this.marks) mark.show(within);
+  }
+
+  stop() {
+    this.player.stop();
+  }
+}
+
+/** Disc and rollers of a plane drive, about the crank's axis, with the first roller along x. @param {any} mechanism */
+function crank(mechanism) {
+  const { angle, outer_radius: outer, inner_radius: inner } = mechanism.disc;
+  const edge = (/** @type {number[]} */ radii) => radii.map((radius, k) => polar(radius, angle[k]));
+  const rollers = Array.from({ length: mechanism.rollers }, (_, k) => polar(mechanism.crank_radius, (360 * k) / mechanism.rollers));
+  const disc = inner.some((/** @type {number} */ radius) => radius > 0) ? [...edge(outer), ...edge(inner).reverse()] : edge(outer);
+  return { disc, rollers, reach: mechanism.crank_radius, centre: mechanism.center_distance };
+}
+
+/** Cap and roller of a spherical drive, seen along the crank's axis, with the roller along x. @param {any} mechanism */
+function cap(mechanism) {
+  const radius = mechanism.sphere_radius * Math.sin((mechanism.cap_angle * Math.PI) / 180);
+  const end = 90 + (Math.asin(Math.min(1, mechanism.cap_offset / radius)) * 180) / Math.PI;
+  const disc = Array.from({ length: STEPS + 1 }, (_, k) => polar(radius, end + ((360 - 2 * end) * k) / STEPS));
+  const reach = mechanism.sphere_radius * Math.sin((mechanism.cone_angle * Math.PI) / 180);
+  return { disc, rollers: [/** @type {Point} */ ([reach, 0])], reach, centre: BESIDE * mechanism.sphere_radius };
+}
+
+/** @param {number} radius @param {number} degrees @returns {Point} */
+function polar(radius, degrees) {
+  const angle = (degrees * Math.PI) / 180;
+  return [radius * Math.cos(angle), radius * Math.sin(angle)];
+}
+
+/** @param {{x: number[], y: number[]}} curve @returns {Point[]} */
+function ring({ x, y }) {
+  return x.map((one, k) => [one, y[k]]);
+}

@@ -1,0 +1,116 @@
+"""The analysis of a Geneva drive: where its wheel stands while the crank turns, and how it moves."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import ConfigDict, Field
+
+from kinematics.indexing.geneva import Geneva
+from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
+from synthesis.model.statement import Count, Degrees, PositiveLength, Statement
+
+ENTERS = 1e-9
+"""Share by which a crank may be below the radius at which its roller reaches a slot: rounding."""
+
+
+class GivenGeneva(Statement):
+    """A Geneva drive; of a design's other fields none is needed."""
+
+    type: Literal["geneva_external", "geneva_internal", "geneva_spherical"]
+    stations: Annotated[Count, Field(ge=3, le=1000)]
+    rollers: Annotated[Count, Field(ge=1, le=5)] = 1
+    center_distance: PositiveLength | None = Field(default=None, description="Of a drive in the plane.")
+    crank_radius: PositiveLength | None = Field(
+        default=None, description="Of a drive in the plane; that of shock-free entry where it is left out."
+    )
+    cone_angle: Degrees | None = Field(
+        default=None, description="Of a spherical drive; that of shock-free entry where it is left out."
+    )
+    sphere_radius: Any = None
+    roller_diameter: Any = None
+    wheel_radius: Any = None
+    ring_radius: Any = None
+    slot_width: Any = None
+    slot_end_radius: Any = None
+    slot_end_angle: Any = None
+    locking_radius: Any = None
+    locking_arc_radius: Any = None
+    cap_angle: Any = None
+    cap_offset: Any = None
+    locking_arc_angle: Any = None
+    bore: Any = None
+    profile: Any = None
+    disc: Any = None
+
+
+class GenevaAnalysis(DrivenAnalysis):
+    """What is known of a Geneva drive in motion."""
+
+    valid: list[bool]
+    moves: list[bool] = Field(description="Whether a roller is in a slot.")
+    angle: list[float] = Field(description="Of the wheel, degrees, since the entry of a roller at input angle 0.")
+    omega: list[float] = Field(description="rad/s")
+    alpha: list[float] = Field(description="rad/s²")
+
+
+class GenevaAnalysisRequest(DrivenRequest[GivenGeneva]):
+    """A Geneva drive and how its crank turns; at input angle 0 the first roller enters a slot."""
+
+    model_config = ConfigDict(
+        title="Geneva drive, how its crank turns",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {"type": "geneva_external", "stations": 4, "center_distance": 100.0},
+                    "motion": {"at": 45.0, "speed_rpm": 60.0},
+                }
+            ]
+        },
+    )
+
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        faults, given = super().faults(), self.mechanism
+        step = math.pi / given.stations
+        if given.type == "geneva_spherical":
+            if given.cone_angle is not None and not math.degrees(step) * (1.0 - ENTERS) <= given.cone_angle < 90.0:
+                faults.append(("/mechanism/cone_angle", f"must be from {math.degrees(step):.9g} to below 90 degrees"))
+        elif given.crank_radius is not None:
+            if given.center_distance is None:
+                faults.append(("/mechanism/center_distance", "state it with the crank's radius"))
+            elif not math.sin(step) * (1.0 - ENTERS) <= given.crank_radius / given.center_distance < 1.0:
+                least = given.center_distance * math.sin(step)
+                faults.append(("/mechanism/crank_radius", f"must be from {least:.9g} to below the center distance"))
+        return faults
+
+    def answer(self) -> dict[str, Any]:
+        """Everything about the drive, in the shape of :class:`GenevaAnalysis`."""
+        at, speed, time = self.motion.inputs()
+        drive = self._drive()
+        motion = drive.turned(np.radians(at), self.mechanism.rollers)
+        return {
+            "input_angle": at.tolist(),
+            "time": None if time is None else time.tolist(),
+            "valid": [True] * len(at),
+            "moves": drive.engaged(np.radians(at), self.mechanism.rollers).tolist(),
+            "angle": np.degrees(motion.s).tolist(),
+            "omega": (motion.v * speed).tolist(),
+            "alpha": (motion.a * speed**2 + motion.v * self.motion.acceleration).tolist(),
+        }
+
+    def _drive(self) -> Geneva:
+        given = self.mechanism
+        drive = Geneva.shock_free(given.type, given.stations)
+        if given.type == "geneva_spherical":
+            ratio = drive.ratio if given.cone_angle is None else math.tan(math.radians(given.cone_angle))
+        elif given.crank_radius is not None and given.center_distance is not None:
+            ratio = given.crank_radius / given.center_distance
+        else:
+            ratio = drive.ratio
+        return Geneva(given.type, given.stations, max(ratio, drive.ratio))
+
+
+FAMILY = Family(GenevaAnalysisRequest, GenevaAnalysis)

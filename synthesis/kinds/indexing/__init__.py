@@ -1,0 +1,18 @@
+"""Indexing drives: Geneva drives in the plane and on the sphere, sized, drawn, and proved by driving their geometry."""
+
+from __future__ import annotations
+
+from synthesis.kinds.indexing.design import IndexingResult
+from synthesis.kinds.indexing.problem import IndexingProblem
+from synthesis.model.kind import Kind, Progress, always
+
+__all__ = ["KIND"]
+
+
+def _solve(problem: IndexingProblem, progress: Progress) -> IndexingResult:
+    from synthesis.kinds.indexing.solver import solve_indexing
+
+    return solve_indexing(problem, progress)
+
+
+KIND = Kind("indexing", IndexingProblem, IndexingResult, _solve, brief=always)

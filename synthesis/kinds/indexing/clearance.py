@@ -1,0 +1,129 @@
+"""Distances of a finished drive, measured on its outlines over an index and a rest."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.indexing.design import GenevaMechanism, IndexingDesign
+from synthesis.kinds.indexing.on_sphere import measured_on_sphere
+from synthesis.kinds.indexing.polygons import closed, depth, distance, play_of, split
+
+Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
+
+MOVING, RESTING = 173, 61
+"""Positions of an index, none of them those of which the disc was made, and of a rest."""
+
+FINE = 1.0 / 60.0
+"""Longest straight piece of an outline, in center distances."""
+
+TRIED = 0.005
+"""Angle, radians, by which a resting wheel is turned to see whether the disc holds it, beside its play."""
+
+ON_SIDE = 1e-9
+"""Share of a length within which a corner lies on a line or a circle."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What the outlines of a drive have, in length units but for ``locked``.
+
+    Attributes
+    ----------
+    roller : float
+        Least distance of the roller's center from the wheel over an index.
+    overlap : float
+        Greatest depth of the wheel in the disc over an index and a rest; 0 where they stay apart.
+    locked : float
+        Share of the rest over which the wheel cannot turn either way.
+    locked_angle : float
+        The same in degrees of the crank.
+    play : float
+        Degrees by which the wheel can be turned in the middle of a rest.
+    wall, web : float
+        From a slot to a locking arc; between neighbouring slots.
+    inmost : float
+        From the wheel's axis to the nearest point of a slot.
+    neck : float
+        Least radius of the disc about the crank's axis.
+    size : float
+        Extent of the wheel and the crank along the line of both axes, or diameter.
+    """
+
+    roller: float
+    overlap: float
+    locked: float
+    locked_angle: float
+    play: float
+    wall: float
+    web: float
+    inmost: float
+    neck: float
+    size: float
+
+
+def measured(design: IndexingDesign, half: float) -> Measured:
+    """Measure a drive; ``half`` is half of its index, radians of the crank."""
+    mechanism = design.mechanism
+    if not isinstance(mechanism, GenevaMechanism):
+        return Measured(**measured_on_sphere(mechanism))
+    c, sense = mechanism.center_distance, 1.0 if mechanism.type == "geneva_external" else -1.0
+    outline = np.array(mechanism.profile.x) + 1j * np.array(mechanism.profile.y)
+    stations = np.arange(mechanism.stations)
+    arcs = c * np.exp(1j * math.pi * (2 * stations + 1) / mechanism.stations)
+    points = split(outline, FINE * c, arcs, mechanism.locking_arc_radius)
+    alpha = np.linspace(-half, half, MOVING)
+    roller = c - sense * mechanism.crank_radius * np.exp(1j * alpha)
+    turn = np.angle(roller)
+
+    def deepest(crank: Real, wheel: Real) -> Real:
+        """Greatest depth in each position: crank angles from the middle of an index, directions of slot 0."""
+        seen = (points * np.exp(1j * wheel)[:, None] - c) * (-sense * np.exp(-1j * crank))[:, None]
+        return np.asarray(depth(mechanism.disc, seen).max(axis=1))
+
+    rest = np.linspace(half, 2.0 * math.pi / mechanism.rollers - half, RESTING)
+    still = np.full(RESTING, turn[-1])
+    play = play_of(lambda by: float(deepest(rest[RESTING // 2 :][:1], still[:1] + by)[0]))
+    tried = TRIED + 2.0 * play
+    held = (deepest(rest, still + tried) > 0.0) & (deepest(rest, still - tried) > 0.0)
+    overlap = max(float(deepest(alpha, turn).max()), float(deepest(rest, still).max()), 0.0)
+    locked = float(held.mean())
+    return Measured(
+        roller=distance(outline, np.asarray(roller * np.exp(-1j * turn))),
+        overlap=overlap,
+        locked=locked,
+        play=math.degrees(play),
+        locked_angle=locked * math.degrees(float(rest[-1] - rest[0])),
+        **_walls(mechanism, outline, arcs),
+        neck=min(mechanism.disc.outer_radius),
+        size=_extent(mechanism, outline, sense),
+    )
+
+
+def _walls(mechanism: GenevaMechanism, outline: Complex, arcs: Complex) -> dict[str, float]:
+    """Wall, web and inmost point, by the corners of the outline."""
+    half_slot, step = 0.5 * mechanism.slot_width, math.pi / mechanism.stations
+    on_arc = np.abs(np.abs(outline - arcs[0]) - mechanism.locking_arc_radius) < ON_SIDE * mechanism.locking_arc_radius
+    from_slot = np.abs(outline.imag)
+    # Slot 0, of which all points are within half its width of its axis; and the one after it.
+    near = (from_slot <= half_slot * (1.0 + ON_SIDE)) & (outline.real > 0.0)
+    slot = outline[near]
+    if not (on_arc.any() and near.any()):
+        # An outline without slots or arcs where they are told to be.
+        return {"wall": 0.0, "web": 0.0, "inmost": 0.0}
+    return {
+        "wall": float(from_slot[on_arc].min()) - half_slot,
+        "web": float(np.abs(slot[:, None] - slot * np.exp(2j * step)).min()),
+        "inmost": float(np.abs(slot).min()),
+    }
+
+
+def _extent(mechanism: GenevaMechanism, outline: Complex, sense: float) -> float:
+    if mechanism.ring_radius is not None:
+        return 2.0 * mechanism.ring_radius
+    far = float(np.abs(closed(outline)).max())
+    return far + mechanism.center_distance + mechanism.crank_radius + 0.5 * mechanism.roller_diameter * sense

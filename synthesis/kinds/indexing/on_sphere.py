@@ -1,0 +1,104 @@
+"""Distances of a finished spherical drive, measured in space: the wheel's edges against the cap of the crank.
+
+The crank's axis is x, the wheel's z; in the middle of an index the roller stands above x, at the angle of its cone.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.indexing.design import SphericalGenevaMechanism
+from synthesis.kinds.indexing.polygons import play_of
+
+Real = NDArray[np.float64]
+
+MOVING, RESTING, AROUND = 173, 61, 97
+"""Positions of an index and of a rest, and points of each edge of the wheel."""
+
+TRIED = 0.005
+"""Angle, radians, by which a resting wheel is turned to see whether the cap holds it, beside its play."""
+
+
+def measured_on_sphere(mechanism: SphericalGenevaMechanism) -> dict[str, float]:
+    """The quantities of :class:`synthesis.kinds.indexing.clearance.Measured`, by name."""
+    radius, cone = mechanism.sphere_radius, math.radians(mechanism.cone_angle)
+    half_slot, step = 0.5 * mechanism.slot_width, math.pi / mechanism.stations
+    edges = _edges(mechanism)
+    alpha = np.linspace(-0.5 * math.pi, 0.5 * math.pi, MOVING)
+    roller = np.stack(
+        [np.full(MOVING, math.cos(cone)), math.sin(cone) * np.sin(alpha), math.sin(cone) * np.cos(alpha)], -1
+    )
+    turn = np.arctan2(roller[:, 1], roller[:, 0])
+    rest = np.linspace(0.5 * math.pi, 1.5 * math.pi, RESTING)
+    still = np.full(RESTING, turn[-1])
+    cap = math.radians(mechanism.cap_angle)
+    offset = mechanism.cap_offset / radius
+
+    def inside(crank: Real, wheel: Real) -> Real:
+        return _depth(edges, crank, wheel, cap, offset)
+
+    play = play_of(lambda by: float(inside(rest[RESTING // 2 :][:1], still[:1] + by)[0]))
+    tried = TRIED + 2.0 * play
+    held = (inside(rest, still + tried) > 0.0) & (inside(rest, still - tried) > 0.0)
+    apart = max(float(inside(alpha, turn).max()), float(inside(rest, still).max()), 0.0)
+    locked = float(held.mean())
+    end = math.radians(mechanism.slot_end_angle)
+    # The roller is a cylinder about a radius: in the middle of the slot, and before its end.
+    above = radius * math.tan(end - float(np.arcsin(roller[:, 2]).max())) + half_slot
+    middles = radius * np.array([[math.cos(end) * math.cos(k), math.cos(end) * math.sin(k)] for k in (0.0, 2.0 * step)])
+    hollows = radius * _hollow(mechanism, 0)
+    rim = np.linspace(0.0, 2.0 * math.pi, AROUND)
+    floor = radius * math.cos(end) - half_slot * math.sin(end) * np.cos(rim)
+    return {
+        "roller": min(half_slot, above),
+        "overlap": apart * radius,
+        "locked": locked,
+        "play": math.degrees(play),
+        "locked_angle": locked * 180.0,
+        "wall": float(np.abs(hollows[:, 1]).min()) - half_slot,
+        "web": float(np.hypot(*(middles[1] - middles[0]))) - 2.0 * half_slot,
+        "inmost": float(np.hypot(floor, half_slot * np.sin(rim)).min()),
+        "neck": 0.0,
+        "size": 2.0 * radius,
+    }
+
+
+def _hollow(mechanism: SphericalGenevaMechanism, station: int) -> Real:
+    """The edge of the hollow after a slot, unit vectors above the rim in the wheel's frame, shape (AROUND, 3)."""
+    angle = math.radians(mechanism.locking_arc_angle)
+    around = np.linspace(0.0, math.pi, AROUND)
+    axis = math.pi * (2 * station + 1) / mechanism.stations
+    x, y, z = math.cos(angle), math.sin(angle) * np.cos(around), math.sin(angle) * np.sin(around)
+    turned = [x * math.cos(axis) - y * math.sin(axis), x * math.sin(axis) + y * math.cos(axis), z]
+    return np.stack(turned, -1)
+
+
+def _edges(mechanism: SphericalGenevaMechanism) -> Real:
+    """Points of the wheel's edges on the sphere: hollows, the sides of slots, the rim between; unit vectors."""
+    half_slot = 0.5 * mechanism.slot_width / mechanism.sphere_radius
+    up = np.linspace(0.0, math.radians(mechanism.slot_end_angle), AROUND)
+    listed = []
+    step, hollow = math.pi / mechanism.stations, math.radians(mechanism.locking_arc_angle)
+    for k in range(mechanism.stations):
+        listed.append(_hollow(mechanism, k))
+        for side in (-1.0, 1.0):
+            x, y = np.sqrt(np.maximum(np.cos(up) ** 2 - half_slot**2, 0.0)), np.full(AROUND, side * half_slot)
+            rim = side * np.linspace(math.asin(half_slot), step - hollow, AROUND)
+            at = 2.0 * step * k
+            across, along = x * math.sin(at) + y * math.cos(at), x * math.cos(at) - y * math.sin(at)
+            listed.append(np.stack([along, across, np.sin(up)], -1))
+            listed.append(np.stack([np.cos(rim + at), np.sin(rim + at), np.zeros(AROUND)], -1))
+    return np.concatenate(listed)
+
+
+def _depth(edges: Real, crank: Real, wheel: Real, cap: float, offset: float) -> Real:
+    """Greatest depth, radians, of the wheel's edges in the cap, in each position: negative where they are apart."""
+    cosine, sine = np.cos(wheel)[:, None], np.sin(wheel)[:, None]
+    x, y = cosine * edges[:, 0] - sine * edges[:, 1], sine * edges[:, 0] + cosine * edges[:, 1]
+    from_axis = np.arccos(np.clip(x, -1.0, 1.0))
+    # The roller stands at (sin α, cos α) of (y, z); the cap is on the other side, beyond its plane.
+    towards = np.sin(crank)[:, None] * y + np.cos(crank)[:, None] * edges[:, 2]
+    return np.asarray(np.minimum(cap - from_axis, -towards - offset).max(axis=1))

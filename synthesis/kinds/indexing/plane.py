@@ -1,0 +1,116 @@
+"""Geneva drives in the plane: their dimensions from a center distance, and what keeps that from being smaller."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from kinematics.indexing.geneva import Geneva
+from kinematics.indexing.locking import Disc, crescent, disc
+from kinematics.indexing.wheel import Wheel
+from synthesis.kinds.indexing.design import GenevaMechanism, LockingDisc, Profile
+from synthesis.kinds.indexing.problem import IndexingProblem
+
+FEW = 9
+"""Rays in which a crescent is measured to size it."""
+
+
+def wheel_of(problem: IndexingProblem, drive: Geneva, center_distance: float) -> Wheel:
+    """The wheel of a drive; its locking arc is NaN where the wall leaves none."""
+    internal = problem.drive == "geneva_internal"
+    step, radius = math.pi / problem.stations, drive.ratio * center_distance
+    half_slot = 0.5 * (problem.roller_diameter + problem.clearances.slot)
+    entry = center_distance * abs(1.0 - drive.signed * complex(math.cos(drive.half), math.sin(drive.half)))
+    reach = math.hypot(entry, 0.5 * problem.roller_diameter)
+    end = center_distance + radius + problem.slot_room if internal else center_distance - radius - problem.slot_room
+    lock = _lock(internal, step, center_distance, reach, half_slot + problem.wall)
+    return Wheel(internal, problem.stations, center_distance, reach, half_slot, end, lock)
+
+
+def _lock(internal: bool, step: float, center_distance: float, reach: float, apart: float) -> float:
+    """Radius of locking arcs that come as near as ``apart`` to the axes of the slots."""
+    foot = math.hypot(center_distance * math.cos(step), apart)
+    if (foot <= reach) != internal:
+        lock = center_distance * math.sin(step) - apart
+        return lock if lock > 0.0 else math.nan
+    if apart >= reach * math.sin(step):
+        return math.nan
+    beside = step - math.asin(apart / reach)
+    return math.sqrt(reach**2 + center_distance**2 - 2.0 * reach * center_distance * math.cos(beside))
+
+
+def margins(problem: IndexingProblem, drive: Geneva, center_distance: float) -> dict[str, float]:
+    """By how much a drive is larger than each of its walls asks; NaN or negative where it is too small.
+
+    The disc is at least as large as the roller.
+    """
+    wheel = wheel_of(problem, drive, center_distance)
+    shaft = 0.5 * problem.crank_shaft_diameter
+    disc = wheel.lock - problem.clearances.locking
+    found = {
+        # Not a number where any of them is.
+        "locking_disc": float(np.min([disc - shaft, disc - 0.5 * problem.roller_diameter, wheel.land])),
+        "web": wheel.web - problem.wall,
+    }
+    if wheel.internal:
+        found["crescent"] = _thickness(problem, drive, wheel)
+    else:
+        found["bore"] = wheel.slot_end - wheel.half_slot - 0.5 * problem.wheel_shaft_diameter - problem.wall
+        if shaft > 0.0:
+            found["crank_shaft"] = center_distance - wheel.reach - problem.relief - shaft
+    return found
+
+
+def _thickness(problem: IndexingProblem, drive: Geneva, wheel: Wheel) -> float:
+    """By how much the crescent of an internal drive is thicker than a wall where it is thinnest."""
+    if not drawable(wheel, problem.clearances.locking):
+        return math.nan
+    found = crescent(wheel, drive, problem.clearances.locking, problem.relief, FEW)
+    return float((found.outer - found.inner).min()) - problem.wall
+
+
+def drawable(wheel: Wheel, gap: float) -> bool:
+    """Whether the outline exists: arcs that cut the wheel between the slots, and slots that end before its axis."""
+    return wheel.lock > gap and wheel.land > 0.0 and wheel.slot_end > wheel.half_slot and wheel.web > 0.0
+
+
+def size_of(problem: IndexingProblem, wheel: Wheel, crank_radius: float) -> float:
+    """The extent: of an external drive along the line of both axes, of a ring its diameter."""
+    if wheel.internal:
+        return 2.0 * ring_radius(problem, wheel)
+    return wheel.reach + wheel.center_distance + crank_radius + 0.5 * problem.roller_diameter
+
+
+def ring_radius(problem: IndexingProblem, wheel: Wheel) -> float:
+    """The outside of a ring, a wall beyond the ends of its slots."""
+    return wheel.slot_end + wheel.half_slot + problem.wall
+
+
+def mechanism_of(problem: IndexingProblem, drive: Geneva, wheel: Wheel, rollers: int) -> GenevaMechanism:
+    """All dimensions and outlines of a drive that can be drawn."""
+    assert drive.drive != "geneva_spherical"
+    gap = problem.clearances.locking
+    return GenevaMechanism(
+        type=drive.drive,
+        stations=problem.stations,
+        rollers=rollers,
+        center_distance=wheel.center_distance,
+        crank_radius=drive.ratio * wheel.center_distance,
+        roller_diameter=problem.roller_diameter,
+        wheel_radius=wheel.reach,
+        ring_radius=ring_radius(problem, wheel) if wheel.internal else None,
+        slot_width=2.0 * wheel.half_slot,
+        slot_end_radius=wheel.slot_end,
+        locking_radius=wheel.lock - gap,
+        locking_arc_radius=wheel.lock,
+        bore=problem.wheel_shaft_diameter,
+        profile=Profile(x=wheel.outline.real.tolist(), y=wheel.outline.imag.tolist()),
+        disc=_listed(disc(wheel, drive, rollers, gap, problem.relief)),
+    )
+
+
+def _listed(found: Disc) -> LockingDisc:
+    return LockingDisc(
+        angle=np.degrees(found.angle).tolist(), outer_radius=found.outer.tolist(), inner_radius=found.inner.tolist()
+    )

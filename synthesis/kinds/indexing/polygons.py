@@ -1,0 +1,92 @@
+"""What is measured on outlines alone: how deep a wheel is in a disc, and how near points come to a polygon."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.indexing.design import LockingDisc
+
+Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
+
+
+ON_ARC = 1e-9
+"""Share of a radius within which a corner lies on an arc."""
+
+HALVINGS = 24
+"""Of an eighth of a turn, for the play of a locked wheel."""
+
+
+def closed(outline: Complex) -> Complex:
+    """An outline with its first corner again at its end."""
+    return np.append(outline, outline[:1])
+
+
+def split(outline: Complex, longest: float, arcs: Complex, radius: float) -> Complex:
+    """The corners of a closed outline, with points between on its edges that are longer than ``longest``.
+
+    Edges of arcs of a radius about given centers are left alone: the points between would not be on the arc.
+    """
+    corners = closed(outline)
+    on_arc = np.any(np.abs(np.abs(corners[:, None] - arcs) - radius) < ON_ARC * radius, axis=1)
+    start, edge = corners[:-1], np.diff(corners)
+    counts = np.ceil(np.abs(edge) / longest).astype(int)
+    counts = np.where(on_arc[:-1] & on_arc[1:], 1, np.maximum(counts, 1))
+    of_edge = np.repeat(np.arange(len(edge)), counts)
+    within = np.arange(len(of_edge)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return np.asarray(start[of_edge] + edge[of_edge] * (within / counts[of_edge]))
+
+
+def depth(disc: LockingDisc, points: Complex) -> Real:
+    """How far points of the crank's frame are inside a disc, along the ray from its axis; negative outside."""
+    angle = np.radians(disc.angle)
+    outer, inner = np.array(disc.outer_radius), np.array(disc.inner_radius)
+    whole = not inner.any()
+    if whole:
+        angle = np.append(angle, angle[0] + 2.0 * math.pi)
+        outer, inner = np.append(outer, outer[0]), np.append(inner, inner[0])
+    at = np.mod(np.angle(points) - angle[0], 2.0 * math.pi) + angle[0]
+    within = at <= angle[-1]
+    k = np.clip(np.searchsorted(angle, at, side="right") - 1, 0, len(angle) - 2)
+    before, after = at - angle[k], angle[k + 1] - at
+    far = np.abs(points)
+    found = _edge(outer[k], outer[k + 1], before, after) - far
+    if not whole:
+        found = np.minimum(found, far - _edge(inner[k], inner[k + 1], before, after))
+    return np.where(within, found, -far)
+
+
+def _edge(first: Real, second: Real, before: Real, after: Real) -> Real:
+    """Distance of the edge between two corners along rays between them."""
+    whole = first * np.sin(before) + second * np.sin(after)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(whole > 0.0, first * second * np.sin(before + after) / whole, 0.0)
+
+
+def play_of(deepest: Callable[[float], float]) -> float:
+    """By how much a locked wheel can be turned, radians; ``deepest`` tells how deep it then is in the disc.
+
+    An eighth of a turn where nothing holds it.
+    """
+    free, held = 0.0, 0.25 * math.pi
+    for _ in range(HALVINGS):
+        middle = 0.5 * (free + held)
+        if deepest(middle) > 0.0:
+            held = middle
+        else:
+            free = middle
+    return held
+
+
+def distance(outline: Complex, points: Complex) -> float:
+    """The least distance of points, shape (m,), from the edges of a closed outline."""
+    start = outline
+    edge = np.roll(outline, -1) - outline
+    apart = points[:, None] - start
+    square = np.maximum(np.abs(edge) ** 2, np.finfo(np.float64).tiny)
+    share = np.clip((apart * edge.conj()).real / square, 0.0, 1.0)
+    return float(np.abs(apart - share * edge).min())

@@ -1,0 +1,269 @@
+"""Indexing: a wheel that is turned from station to station and held between, by one drive or another."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal, Self
+
+from pydantic import ConfigDict, Field, model_validator
+
+from synthesis.model.dimension import (
+    ACCELERATION,
+    FORCE,
+    INERTIA,
+    LENGTH,
+    ROTATIONAL_SPEED,
+    TORQUE,
+)
+from synthesis.model.dynamics import METRES
+from synthesis.model.statement import (
+    Contradiction,
+    Count,
+    Flag,
+    NonNegative,
+    PositiveLength,
+    PositiveNumber,
+    StatedProblem,
+    Statement,
+)
+
+MOST_STATIONS = 48
+"""Beyond these a Geneva wheel is all slots."""
+
+NEAR_ONE = 0.999
+"""Crank radius over center distance up to which a plane drive is taken: at 1 the roller comes to the wheel's axis."""
+
+LEAST_ROOM = 0.01
+"""Least clearance at the end of a slot, and beside the disc, in roller diameters."""
+
+Share = Annotated[float, Field(strict=True, gt=0.0, lt=1.0, allow_inf_nan=False)]
+
+
+class DwellShare(Statement):
+    """Least and greatest share of the time in which the wheel rests."""
+
+    min: Share | None = None
+    max: Share | None = None
+
+    @model_validator(mode="after")
+    def _min_to_max(self) -> Self:
+        if self.min is None and self.max is None:
+            raise ValueError("give min, max or both")
+        if self.min is not None and self.max is not None and self.min > self.max:
+            raise ValueError("min must not be above max")
+        return self
+
+
+class IndexingConstraints(Statement):
+    """What a drive must keep."""
+
+    dwell_share: DwellShare | None = None
+    peak_acceleration: Annotated[PositiveNumber, ACCELERATION] | None = Field(
+        default=None, description="The wheel's greatest, by the crank's angle."
+    )
+    drive_torque: Annotated[PositiveNumber, TORQUE] | None = Field(
+        default=None, description="The greatest torque on the crank, either way."
+    )
+    pin_force: Annotated[PositiveNumber, FORCE] | None = Field(
+        default=None, description="The greatest force between roller and slot."
+    )
+    size: PositiveLength | None = Field(
+        default=None,
+        description="The greatest extent: along the line of both axes, or the diameter of a ring or sphere.",
+    )
+    shock_free: Flag = Field(default=True, description="The roller must enter along the slot, the wheel being at rest.")
+
+
+class Clearances(Statement):
+    """Room between the parts."""
+
+    slot: Annotated[NonNegative, LENGTH] = Field(default=0.0, description="Width of the slot beyond the roller's.")
+    locking: Annotated[NonNegative, LENGTH] = Field(
+        default=0.0, description="Radius of the wheel's locking arcs beyond the disc's."
+    )
+    slot_end: PositiveLength | None = Field(
+        default=None, description="Of the roller at its deepest from the end of the slot; a twentieth of its diameter."
+    )
+    relief: PositiveLength | None = Field(
+        default=None,
+        description="Of the disc from the passing wheel, beside the locking arc; a twentieth of the roller's diameter.",
+    )
+
+
+class IndexingProblem(StatedProblem):
+    """Indexing: a wheel turned from station to station by a crank's roller, and locked between.
+
+    External, internal and spherical Geneva drives. Motion, torque and pin force follow in closed form; without a center
+    distance the smallest drive is found whose walls and forces keep what is stated. Every answer is proved by its own
+    outlines: the roller is driven through the slots, the disc past the wheel, and forces follow from reactions and
+    energy.
+    """
+
+    model_config = ConfigDict(
+        title="Indexing drive",
+        json_schema_extra={
+            "examples": [
+                {
+                    "kind": "indexing",
+                    "drive": "geneva_external",
+                    "stations": 6,
+                    "center_distance": 80.0,
+                    "roller_diameter": 12.0,
+                    "speed_rpm": 60.0,
+                    "load_inertia": 0.02,
+                },
+                {
+                    "kind": "indexing",
+                    "drive": "geneva_external",
+                    "stations": 8,
+                    "roller_diameter": 10.0,
+                    "wall_thickness": 4.0,
+                    "wheel_shaft_diameter": 25.0,
+                    "crank_shaft_diameter": 6.0,
+                    "speed_rpm": 90.0,
+                    "load_inertia": 0.05,
+                    "load_torque": 2.0,
+                    "constraints": {"pin_force": 60.0, "dwell_share": {"min": 0.2, "max": 0.7}},
+                },
+                {
+                    "kind": "indexing",
+                    "drive": "geneva_internal",
+                    "stations": 4,
+                    "center_distance": 70.0,
+                    "roller_diameter": 10.0,
+                    "wall_thickness": 5.0,
+                    "clearances": {"slot": 0.05, "locking": 0.05},
+                    "speed_rpm": 120.0,
+                    "load_inertia": 0.03,
+                },
+                {
+                    "kind": "indexing",
+                    "drive": "geneva_spherical",
+                    "stations": 4,
+                    "roller_diameter": 10.0,
+                    "wheel_shaft_diameter": 20.0,
+                    "speed_rpm": 100.0,
+                    "load_inertia": 0.01,
+                    "constraints": {"pin_force": 40.0},
+                },
+            ]
+        },
+    )
+
+    kind: Literal["indexing"]
+    units: Literal["si", "consistent"] = Field(
+        default="si", description="`si`: N, N·m, kg·m², and lengths in the length unit; `consistent`: no conversion."
+    )
+    drive: Literal["geneva_external", "geneva_internal", "geneva_spherical"] = Field(
+        description="Wheel beside the crank, ring about it, or a hemisphere whose axis crosses the crank's at a right "
+        "angle."
+    )
+    stations: Annotated[Count, Field(ge=3, le=MOST_STATIONS)]
+    rollers: Annotated[Count, Field(ge=1, le=5)] | None = Field(
+        default=None,
+        description="On the crank, in equal steps; left out, one design for each number with which the wheel rests.",
+    )
+    center_distance: PositiveLength | None = Field(
+        default=None, description="Of a drive in the plane; left out, the smallest is found."
+    )
+    sphere_radius: PositiveLength | None = Field(
+        default=None, description="Of a spherical drive, to the middle of the roller; left out, the smallest is found."
+    )
+    crank_radius: PositiveLength | None = Field(
+        default=None, description="Of a drive in the plane; left out, that of shock-free entry."
+    )
+    roller_diameter: PositiveLength
+    wall_thickness: PositiveLength | None = Field(
+        default=None,
+        description="Between slot and locking arc; between the ends of slots, and of these from the bore, it is the "
+        "least. Half of the roller's diameter where it is not stated.",
+    )
+    wheel_shaft_diameter: Annotated[NonNegative, LENGTH] = Field(default=0.0, description="The bore of the wheel.")
+    crank_shaft_diameter: Annotated[NonNegative, LENGTH] = Field(
+        default=0.0, description="Of what passes through the wheel's plane beside an external wheel; 0: overhung."
+    )
+    clearances: Clearances = Clearances()
+    speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] = Field(description="Of the crank, steady.")
+    load_inertia: Annotated[NonNegative, INERTIA] = Field(
+        default=0.0, description="About the wheel's axis, with the wheel's own."
+    )
+    load_torque: Annotated[NonNegative, TORQUE] = Field(
+        default=0.0, description="Against the wheel's motion, while it moves."
+    )
+    constraints: IndexingConstraints = IndexingConstraints()
+
+    @property
+    def force_units(self) -> Literal["si", "consistent"]:
+        """Those that are stated."""
+        return self.units
+
+    @property
+    def oscillating(self) -> bool:
+        """Displacements are angles of the wheel."""
+        return True
+
+    @property
+    def scale(self) -> float:
+        """The length unit in that of torque over force."""
+        return METRES[self.length_unit] if self.units == "si" else 1.0
+
+    @property
+    def spherical(self) -> bool:
+        """Whether the axes cross."""
+        return self.drive == "geneva_spherical"
+
+    @property
+    def wall(self) -> float:
+        """The thickness of walls."""
+        return 0.5 * self.roller_diameter if self.wall_thickness is None else self.wall_thickness
+
+    @property
+    def slot_room(self) -> float:
+        """Clearance at the end of a slot."""
+        stated = self.clearances.slot_end
+        return 0.05 * self.roller_diameter if stated is None else stated
+
+    @property
+    def relief(self) -> float:
+        """Clearance of the disc from the passing wheel."""
+        stated = self.clearances.relief
+        return 0.05 * self.roller_diameter if stated is None else stated
+
+    def contradictions(self) -> list[Contradiction]:
+        """Fields of another drive, rollers that leave no rest, and cranks that reach no slot."""
+        found: list[Contradiction] = []
+        foreign = ("center_distance", "crank_radius") if self.spherical else ("sphere_radius",)
+        found += [
+            Contradiction(f"/{name}", f"{self.drive} has none; leave it out")
+            for name in foreign
+            if getattr(self, name) is not None
+        ]
+        most = self.most_rollers
+        if self.rollers is not None and self.rollers > most:
+            detail = f"with {self.stations} stations the wheel rests with at most {most} of them"
+            found.append(Contradiction("/rollers", detail))
+        if self.drive != "geneva_external" and self.crank_shaft_diameter > 0.0:
+            detail = f"slots of {self.drive} pass the crank's axis: its crank is overhung; leave it out"
+            found.append(Contradiction("/crank_shaft_diameter", detail))
+        for name in ("slot_end", "relief"):
+            stated = getattr(self.clearances, name)
+            if stated is not None and stated < LEAST_ROOM * self.roller_diameter:
+                detail = f"must be at least {LEAST_ROOM:g} roller diameters, which outlines of finite steps tell apart"
+                found.append(Contradiction(f"/clearances/{name}", detail))
+        return found + ([] if self.crank_radius is None or self.spherical else self._crank_faults(self.crank_radius))
+
+    @property
+    def most_rollers(self) -> int:
+        """How many rollers leave the wheel a rest."""
+        index = {"geneva_external": 0.5 - 1.0 / self.stations}.get(self.drive, 0.5)
+        return max(1, math.ceil(1.0 / index - 1e-9) - 1)
+
+    def _crank_faults(self, radius: float) -> list[Contradiction]:
+        if self.center_distance is None:
+            return [Contradiction("/crank_radius", "state the center distance with it, or leave both to be found")]
+        least = self.center_distance * math.sin(math.pi / self.stations)
+        most = NEAR_ONE * self.center_distance
+        if not least * (1.0 - 1e-9) <= radius <= most:
+            detail = f"must be from {least:.9g}, where it enters without shock, to {most:.9g}: a smaller crank reaches"
+            return [Contradiction("/crank_radius", f"{detail} no slot, a larger one the wheel's axis")]
+        return []

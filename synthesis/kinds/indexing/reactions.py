@@ -1,0 +1,87 @@
+"""The motion and forces of an index by another route than the closed forms: by the path of the roller.
+
+Seen along the wheel's axis the roller is a point z(α) of the complex plane about that axis, and the slot is the ray
+through it, so that the wheel's angle is arg z: φ' = Im(z'/z), and so on for higher derivatives of log z. The force on
+the slot's side is square to the ray, with a moment about the wheel's axis that is the wheel's torque; its moment about
+the crank's axis is the drive torque.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.indexing.geneva import Motion
+from synthesis.kinds.indexing.design import GenevaMechanism, SphericalGenevaMechanism
+from synthesis.kinds.indexing.forces import Load
+
+Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Driven:
+    """A drive over crank angles from the middle of an index.
+
+    Attributes
+    ----------
+    place : complex128, shape (n,)
+        The roller seen along the wheel's axis, which is the origin; the crank stands at +x.
+    turn : float, shape (n,)
+        Direction of the slot, radians.
+    motion : Motion
+        The wheel's angle from the middle, positive the way it turns, and its derivatives.
+    wheel_torque, pin_force, drive_torque : float, shape (n,)
+    """
+
+    place: Complex
+    turn: Real
+    motion: Motion
+    wheel_torque: Real
+    pin_force: Real
+    drive_torque: Real
+
+
+def driven(mechanism: GenevaMechanism | SphericalGenevaMechanism, load: Load, scale: float, alpha: Real) -> Driven:
+    """Drive the roller of a mechanism through its slot.
+
+    Parameters
+    ----------
+    mechanism : GenevaMechanism or SphericalGenevaMechanism
+        Its dimensions only.
+    load : Load
+    scale : float
+        The length unit in that of torque over force.
+    alpha : float, shape (n,)
+    """
+    place, rates = _path(mechanism, alpha)
+    first, second, third = (rate / place for rate in rates)
+    sense = -1.0 if mechanism.type == "geneva_external" else 1.0
+    motion = Motion(
+        sense * np.angle(place),
+        sense * first.imag,
+        sense * (second - first**2).imag,
+        sense * (third - 3.0 * first * second + 2.0 * first**3).imag,
+    )
+    torque = load.inertia * load.speed**2 * motion.a + load.torque
+    force = torque / (scale * np.abs(place))
+    # The unit square to the slot, the way the wheel turns.
+    along = sense * 1j * place / np.abs(place)
+    # Power of the force at the roller's own velocity; the component along the slot does nothing.
+    drive = force * scale * (along.conj() * rates[0]).real
+    return Driven(place, np.angle(place), motion, torque, force, drive)
+
+
+def _path(mechanism: GenevaMechanism | SphericalGenevaMechanism, alpha: Real) -> tuple[Complex, list[Complex]]:
+    """The roller seen along the wheel's axis, and its three derivatives by the crank's angle."""
+    if isinstance(mechanism, SphericalGenevaMechanism):
+        cone = math.radians(mechanism.cone_angle)
+        near, aside = mechanism.sphere_radius * math.cos(cone), mechanism.sphere_radius * math.sin(cone)
+        sine, cosine = 1j * aside * np.sin(alpha), 1j * aside * np.cos(alpha)
+        return near + sine, [cosine, -sine, -cosine]
+    sense = 1.0 if mechanism.type == "geneva_external" else -1.0
+    arm = -sense * mechanism.crank_radius * np.exp(1j * alpha)
+    return mechanism.center_distance + arm, [1j * arm, -arm, -1j * arm]

@@ -1,0 +1,137 @@
+"""Geneva drives on a sphere: their dimensions from its radius, and what keeps that from being smaller.
+
+The wheel's axis is z and its rim lies in the plane z = 0; the crank's axis is a direction of that plane. Slots lie on
+meridians, from the rim up to the latitude that the roller comes to, π/n and some room. A locking hollow is what a cone
+about the crank's axis cuts off; its edge lies in a plane, which seen along z is a chord of the rim.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.indexing.design import Profile, SphericalGenevaMechanism
+from synthesis.kinds.indexing.problem import IndexingProblem
+
+Complex = NDArray[np.complex128]
+
+PASSES = 4001
+"""Positions of half an index in which it is asked how far the rim comes."""
+
+LEAST_CAP = 0.15
+"""Of the cap's radius the least share at which it ends, so that it locks over a rest but for its ends."""
+
+STEPS = 12
+"""Steps of the outline over half a slot's end, and over a land."""
+
+
+@dataclass(frozen=True)
+class Hemisphere:
+    """The wheel by its dimensions: lengths in one unit, angles in radians.
+
+    Attributes
+    ----------
+    stations : int
+    radius, half_slot : float
+    slot_end : float
+        Latitude of the center of a slot's end.
+    lock : float
+        Angle from the crank's axis to the edge of a locking hollow; NaN where the wall leaves none.
+    """
+
+    stations: int
+    radius: float
+    half_slot: float
+    slot_end: float
+    lock: float
+
+    @property
+    def step(self) -> float:
+        """Half the angle from slot to slot."""
+        return math.pi / self.stations
+
+    @property
+    def wall(self) -> float:
+        """From a hollow to the side of a slot: they are nearest at the rim."""
+        return self.radius * math.sin(self.step - self.lock) - self.half_slot
+
+    @property
+    def web(self) -> float:
+        """Between the ends of neighbouring slots."""
+        return 2.0 * (self.radius * math.cos(self.slot_end) * math.sin(self.step) - self.half_slot)
+
+    @property
+    def rim_passes(self) -> float:
+        """How far the rim comes into the half of a cap that is opposite the roller, from the crank's axis.
+
+        Before the middle of an index the corner between rim and hollow, at the azimuth η, is in it by sin η sin(−α).
+        """
+        alpha = np.linspace(-0.5 * math.pi, 0.0, PASSES)
+        corner = np.arctan(math.tan(self.step) * np.sin(alpha)) + self.step - self.lock
+        return self.radius * max(0.0, float((-np.sin(alpha) * np.sin(corner)).max()))
+
+    @property
+    def inmost(self) -> float:
+        """Least distance of a slot from the wheel's axis."""
+        return self.radius * math.cos(self.slot_end) - self.half_slot * math.sin(self.slot_end)
+
+    @property
+    def outline(self) -> Complex:
+        """The wheel seen along its axis, slot 0 along x; closed by its first point."""
+        turn = np.linspace(0.0, 0.5 * math.pi, STEPS + 1)
+        flat = math.sin(self.slot_end)
+        middle = self.radius * math.cos(self.slot_end)
+        end = middle + self.half_slot * (-flat * np.cos(turn) + 1j * np.sin(turn))
+        mouth = math.asin(self.half_slot / self.radius)
+        land = self.radius * np.exp(1j * np.linspace(mouth, self.step - self.lock, STEPS))
+        chord = self.radius * math.cos(self.lock) * np.exp(1j * self.step)
+        half = np.concatenate([end, land, [chord]])
+        sector = np.concatenate([half[::-1].conj(), half[1:-1]])
+        return np.asarray((np.exp(2j * self.step * np.arange(self.stations))[:, None] * sector).ravel())
+
+
+def hemisphere_of(problem: IndexingProblem, radius: float) -> Hemisphere:
+    """The wheel of a sphere's radius."""
+    step, half_slot = math.pi / problem.stations, 0.5 * (problem.roller_diameter + problem.clearances.slot)
+    apart = (half_slot + problem.wall) / radius
+    lock = step - math.asin(apart) if apart < 1.0 else math.nan
+    return Hemisphere(problem.stations, radius, half_slot, step + problem.slot_room / radius, lock)
+
+
+def margins(problem: IndexingProblem, radius: float) -> dict[str, float]:
+    """By how much a sphere is larger than each of its walls asks; NaN or negative where it is too small."""
+    wheel = hemisphere_of(problem, radius)
+    cap = wheel.lock - problem.clearances.locking / radius
+    return {
+        "locking_disc": LEAST_CAP * radius * math.sin(cap) - wheel.rim_passes - problem.relief,
+        "web": wheel.web - problem.wall,
+        "bore": wheel.inmost - 0.5 * problem.wheel_shaft_diameter - problem.wall,
+    }
+
+
+def drawable(problem: IndexingProblem, wheel: Hemisphere) -> bool:
+    """Whether the outline exists."""
+    gap = problem.clearances.locking / wheel.radius
+    return wheel.lock > gap and wheel.inmost > 0.0 and wheel.web > 0.0 and wheel.slot_end < 0.5 * math.pi
+
+
+def mechanism_of(problem: IndexingProblem, wheel: Hemisphere) -> SphericalGenevaMechanism:
+    """All dimensions and the outline of a drive that can be drawn."""
+    outline = wheel.outline
+    return SphericalGenevaMechanism(
+        stations=problem.stations,
+        rollers=1,
+        sphere_radius=wheel.radius,
+        cone_angle=math.degrees(wheel.step),
+        roller_diameter=problem.roller_diameter,
+        slot_width=2.0 * wheel.half_slot,
+        slot_end_angle=math.degrees(wheel.slot_end),
+        cap_angle=math.degrees(wheel.lock - problem.clearances.locking / wheel.radius),
+        cap_offset=wheel.rim_passes + problem.relief,
+        locking_arc_angle=math.degrees(wheel.lock),
+        bore=problem.wheel_shaft_diameter,
+        profile=Profile(x=outline.real.tolist(), y=outline.imag.tolist()),
+    )

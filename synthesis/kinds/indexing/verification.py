@@ -1,0 +1,176 @@
+"""The proof of a Geneva drive: its roller is driven through its slots, its disc past its wheel.
+
+Nothing is taken over from the solver but the answer: motion and forces follow from the roller's path
+(:mod:`synthesis.kinds.indexing.reactions`), walls and distances from the outlines, the work of the crank from an
+integral.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.indexing.clearance import Measured, measured
+from synthesis.kinds.indexing.design import IndexingDesign, SphericalGenevaMechanism
+from synthesis.kinds.indexing.forces import RAD_PER_S, Load
+from synthesis.kinds.indexing.problem import IndexingProblem
+from synthesis.kinds.indexing.reactions import Driven, driven
+from synthesis.model.answer import Check, Verification
+from synthesis.model.dimension import ACCELERATION, FORCE, LENGTH, TORQUE
+from synthesis.proof.checks import at_least, at_most, tolerated
+
+Real = NDArray[np.float64]
+
+AGREES = 1e-9
+"""Relative difference of closed forms from the driven geometry: rounding."""
+
+NODES = 96
+"""Of Gauss's rule over half an index, for the work of the crank."""
+
+SAMPLED = 4001
+"""Positions at which peaks are looked for."""
+
+BELOW = 1e-5
+"""Share by which a peak may be above the greatest sample."""
+
+LOCKED = 0.5
+"""Share of a rest over which the disc must hold the wheel both ways; at the ends of a rest one side is about to free
+it."""
+
+
+def verify_indexing(problem: IndexingProblem, design: IndexingDesign) -> IndexingDesign:
+    """Measure a drive against its problem.
+
+    Parameters
+    ----------
+    problem : IndexingProblem
+        What was asked.
+    design : IndexingDesign
+        The answer; its checks are replaced.
+
+    Returns
+    -------
+    IndexingDesign
+        With the checks of what was measured, and the angle over which the wheel is held.
+    """
+    load = Load(problem.load_inertia, problem.load_torque, problem.speed_rpm * RAD_PER_S)
+    half = math.radians(0.5 * design.index_angle)
+    alpha = np.radians(design.program.angle) - half
+    drive = driven(design.mechanism, load, problem.scale, alpha)
+    outlines = measured(design, half)
+    checks = [
+        tolerated("reaches_next_station", _station_error(design, drive), AGREES),
+        *_agreement(design, drive),
+        *_energy(problem, design, load, half),
+        *_peaks(problem, design, load, half),
+        *_walls(problem, design, outlines),
+        *_constraints(problem, design, drive),
+    ]
+    metrics = design.metrics.model_copy(update={"locking_angle": outlines.locked_angle, "play": outlines.play})
+    return design.model_copy(update={"verification": Verification.of(checks), "metrics": metrics})
+
+
+def _station_error(design: IndexingDesign, drive: Driven) -> float:
+    """By how much the wheel's turn differs from the angle between stations, radians."""
+    return abs(float(drive.motion.s[-1] - drive.motion.s[0]) - 2.0 * math.pi / design.mechanism.stations)
+
+
+def _off(told: list[float], found: Real) -> float:
+    """Greatest difference as a share of the greatest value; 0 where all is 0."""
+    size = max(float(np.abs(found).max()), float(np.abs(told).max()))
+    return float(np.abs(np.array(told) - found).max()) / size if size > 0.0 else 0.0
+
+
+def _agreement(design: IndexingDesign, drive: Driven) -> list[Check]:
+    program, course, motion = design.program, design.course, drive.motion
+    turned = np.degrees(motion.s - motion.s[0])
+    motion_off = [_off(program.s, turned), _off(program.v, motion.v), _off(program.a, motion.a)]
+    forces_off = [
+        _off(course.wheel_torque, drive.wheel_torque),
+        _off(course.drive_torque, drive.drive_torque),
+        _off(course.pin_force, drive.pin_force),
+    ]
+    return [
+        tolerated("program_is_driven", max(*motion_off, _off(program.j, motion.j)), AGREES),
+        tolerated("forces_by_reactions", max(forces_off), AGREES),
+    ]
+
+
+def _energy(problem: IndexingProblem, design: IndexingDesign, load: Load, half: float) -> list[Check]:
+    """The crank's work over the first half of an index is the wheel's energy and the work against its load."""
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    through = driven(design.mechanism, load, problem.scale, 0.5 * half * (nodes - 1.0))
+    work = 0.5 * half * float(weights @ through.drive_torque)
+    ends = driven(design.mechanism, load, problem.scale, np.array([-half, 0.0])).motion
+    gained = 0.5 * load.inertia * load.speed**2 * float(ends.v[1] ** 2 - ends.v[0] ** 2)
+    gained += load.torque * float(ends.s[1] - ends.s[0])
+    size = max(abs(work), abs(gained))
+    return [tolerated("energy_balance", abs(work - gained) / size if size > 0.0 else 0.0, AGREES)]
+
+
+def _peaks(problem: IndexingProblem, design: IndexingDesign, load: Load, half: float) -> list[Check]:
+    """No sample is above a peak, and the greatest is nearly as high."""
+    metrics = design.metrics
+    # Closer where the wheel is fastest, in the middle.
+    places = half * np.linspace(-1.0, 1.0, SAMPLED)
+    found = driven(design.mechanism, load, problem.scale, places)
+    beside = [
+        (metrics.peak_velocity, found.motion.v),
+        (metrics.peak_acceleration, found.motion.a),
+        (metrics.peak_jerk, found.motion.j),
+        (metrics.peak_wheel_torque, found.wheel_torque),
+        (metrics.peak_drive_torque, found.drive_torque),
+        (metrics.peak_pin_force, found.pin_force),
+    ]
+    worst = 0.0
+    for peak, values in beside:
+        most = float(np.abs(values).max())
+        if peak > 0.0:
+            above = (most - peak) / peak
+            worst = max(worst, above / AGREES, -above / BELOW)
+    return [at_most("peaks", worst, 1.0)]
+
+
+def _walls(problem: IndexingProblem, design: IndexingDesign, found: Measured) -> list[Check]:
+    mechanism, metrics = design.mechanism, design.metrics
+    size = metrics.size
+    told = max(abs(found.wall - metrics.wall), abs(found.web - metrics.web)) / size
+    checks = [
+        tolerated("walls_as_told", told, AGREES),
+        at_least("roller_in_slot", found.roller, 0.5 * mechanism.roller_diameter, LENGTH, AGREES),
+        tolerated("disc_clears_wheel", found.overlap / size, AGREES),
+        at_least("locked_at_rest", found.locked, LOCKED),
+        at_least("wall", found.wall, problem.wall, LENGTH),
+        at_least("web", found.web, problem.wall, LENGTH),
+    ]
+    if mechanism.type != "geneva_internal":
+        checks.append(at_least("bore", found.inmost - 0.5 * problem.wheel_shaft_diameter, problem.wall, LENGTH))
+    if problem.crank_shaft_diameter > 0.0:
+        checks.append(at_least("crank_shaft", found.neck, 0.5 * problem.crank_shaft_diameter, LENGTH))
+    if not isinstance(mechanism, SphericalGenevaMechanism):
+        checks.append(tolerated("size_as_told", abs(found.size - size) / size, AGREES))
+    return checks
+
+
+def _constraints(problem: IndexingProblem, design: IndexingDesign, drive: Driven) -> list[Check]:
+    stated, metrics, checks = problem.constraints, design.metrics, []
+    if stated.shock_free:
+        checks.append(tolerated("shock_free_entry", abs(float(drive.motion.v[0])), AGREES))
+    if stated.dwell_share is not None:
+        share = 1.0 - design.mechanism.rollers * design.index_angle / 360.0
+        if stated.dwell_share.min is not None:
+            checks.append(at_least("min_dwell_share", share, stated.dwell_share.min))
+        if stated.dwell_share.max is not None:
+            checks.append(at_most("max_dwell_share", share, stated.dwell_share.max))
+    if stated.peak_acceleration is not None:
+        limit = stated.peak_acceleration
+        checks.append(at_most("peak_acceleration", metrics.peak_acceleration, limit, ACCELERATION))
+    if stated.drive_torque is not None:
+        checks.append(at_most("drive_torque", metrics.peak_drive_torque, stated.drive_torque, TORQUE))
+    if stated.pin_force is not None:
+        checks.append(at_most("pin_force", metrics.peak_pin_force, stated.pin_force, FORCE))
+    if stated.size is not None:
+        checks.append(at_most("size", metrics.size, stated.size, LENGTH))
+    return checks

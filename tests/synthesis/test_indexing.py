@@ -1,0 +1,225 @@
+"""Geneva drives: values of the literature, laws of the closed forms, and a proof that notices what is changed."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from kinematics.indexing.geneva import Geneva
+from kinematics.linkage.planar.catalogue import quick_return
+from kinematics.linkage.planar.drive import drive as core_drive
+from synthesis.dispatch import solve
+from synthesis.kinds.indexing.forces import Load, peaks
+from synthesis.kinds.indexing.plane import margins
+from synthesis.kinds.indexing.verification import verify_indexing
+from synthesis.registry import examples, parse_problem
+
+DRIVES = ("geneva_external", "geneva_internal", "geneva_spherical")
+
+# The handbooks' table of external drives by stations (Johnson 1956, Rothbart 1956, reprinted since): index (degrees of
+# the crank), greatest velocity and acceleration, and the acceleration as the roller enters; per radian of the crank.
+# Of 3 stations 31.44 and of 4 stations 5.409 are printed, where the closed forms have 31.392 and 5.407.
+EXTERNAL = [
+    (3, 60.0, 6.46, 31.44, 1.732),
+    (4, 90.0, 2.41, 5.409, 1.000),
+    (5, 108.0, 1.43, 2.299, 0.727),
+    (6, 120.0, 1.00, 1.350, 0.577),
+    (7, 128.57, 0.766, 0.928, 0.482),
+    (8, 135.0, 0.620, 0.700, 0.414),
+    (9, 140.0, 0.520, 0.559, 0.364),
+    (10, 144.0, 0.447, 0.465, 0.325),
+    (11, 147.27, 0.392, 0.398, 0.294),
+    (12, 150.0, 0.349, 0.348, 0.268),
+]
+
+# The same of internal drives: greatest velocity λ/(1 + λ), acceleration tan(π/n), at the ends.
+INTERNAL = [
+    (3, 300.0, 0.464, 1.732),
+    (4, 270.0, 0.414, 1.000),
+    (5, 252.0, 0.370, 0.727),
+    (6, 240.0, 0.333, 0.577),
+    (8, 225.0, 0.277, 0.414),
+    (10, 216.0, 0.236, 0.325),
+    (12, 210.0, 0.206, 0.268),
+]
+
+
+def solved(**changes: Any) -> Any:
+    base = {"kind": "indexing", "drive": "geneva_external", "stations": 6, "roller_diameter": 10.0, "speed_rpm": 60.0}
+    return solve(parse_problem(base | changes), lambda fraction, message: None)
+
+
+def at(drive: Geneva, angle: float) -> Any:
+    return drive.motion(np.array(angle))
+
+
+@pytest.mark.parametrize(("stations", "index", "velocity", "acceleration", "entry"), EXTERNAL)
+def test_published_external_drives(
+    stations: int, index: float, velocity: float, acceleration: float, entry: float
+) -> None:
+    drive = Geneva.shock_free("geneva_external", stations)
+    assert math.degrees(2.0 * drive.half) == pytest.approx(index, abs=0.005)
+    assert float(at(drive, 0.0).v) == pytest.approx(velocity, abs=0.005 if velocity > 1.0 else 5.1e-4)
+    peak = abs(float(at(drive, drive.peak_angle).a))
+    assert peak == pytest.approx(acceleration, rel=2e-3 if stations < 5 else 1e-3)
+    assert float(at(drive, -drive.half).a) == pytest.approx(entry, abs=5.1e-4)
+    assert float(at(drive, 0.0).a) == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(("stations", "index", "velocity", "acceleration"), INTERNAL)
+def test_published_internal_drives(stations: int, index: float, velocity: float, acceleration: float) -> None:
+    drive = Geneva.shock_free("geneva_internal", stations)
+    assert math.degrees(2.0 * drive.half) == pytest.approx(index, abs=0.005)
+    assert float(at(drive, 0.0).v) == pytest.approx(velocity, abs=5.1e-4)
+    assert abs(float(at(drive, drive.peak_angle).a)) == pytest.approx(acceleration, abs=5.1e-4)
+    assert drive.peak_angle == drive.half
+
+
+def test_four_stations_as_textbooks_have_them() -> None:
+    # Norton, Design of Machinery, section 3.10; the middle's jerk is -sqrt2 (4 + ...) = -48.04.
+    drive = Geneva.shock_free("geneva_external", 4)
+    assert float(at(drive, 0.0).v) == pytest.approx(1.0 + math.sqrt(2.0), rel=1e-12)
+    assert math.degrees(drive.peak_angle) == pytest.approx(11.0 + 28.0 / 60.0, abs=0.01)
+    assert float(at(drive, 0.0).j) == pytest.approx(-48.04, abs=5e-3)
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize("stations", range(3, 13))
+def test_closed_forms_are_the_derivatives_of_the_geometry(drive: str, stations: int) -> None:
+    form = Geneva.shock_free(drive, stations)  # type: ignore[arg-type]
+    # Differentiated by Chebyshev's polynomials on short pieces, where rounding leaves third derivatives ten digits.
+    for centre in np.linspace(-0.9, 0.9, 7) * form.half:
+        width = 0.12 * form.half
+        nodes = np.cos(np.pi * (np.arange(24) + 0.5) / 24)
+        alpha = centre + width * nodes
+        if drive == "geneva_spherical":
+            cone = math.pi / stations
+            place = math.cos(cone) + 1j * math.sin(cone) * np.sin(alpha)
+        else:
+            side = -1.0 if drive == "geneva_external" else 1.0
+            place = 1.0 + side * math.sin(math.pi / stations) * np.exp(1j * alpha)
+        turned = np.angle(place) * (-1.0 if drive == "geneva_external" else 1.0)
+        fitted = np.polynomial.Chebyshev.fit(alpha, turned, 16, domain=[centre - width, centre + width])
+        found = at(form, float(centre))
+        size = max(1.0, float(abs(found.j)))
+        assert fitted(centre) == pytest.approx(float(found.s), abs=1e-12)
+        assert fitted.deriv(1)(centre) == pytest.approx(float(found.v), rel=1e-9, abs=1e-10)
+        assert fitted.deriv(2)(centre) == pytest.approx(float(found.a), rel=1e-8, abs=1e-8 * size)
+        assert fitted.deriv(3)(centre) == pytest.approx(float(found.j), rel=1e-6, abs=1e-6 * size)
+
+
+@pytest.mark.parametrize("stations", [3, 4, 5, 6, 8, 12])
+def test_a_driven_slotted_link_is_an_external_drive(stations: int) -> None:
+    """The roller in its slot is an inverted slider: the analysis core drives one with the same crank and ground."""
+    drive = Geneva.shock_free("geneva_external", stations)
+    ratio = drive.ratio
+    # A crank shaper with its crank at 1 and its link about 0; its ram is not looked at.
+    alpha = np.linspace(-0.95, 0.95, 65) * drive.half
+    mechanism = quick_return(1.0 + 0j, 0j, ratio, 2.0, 9.0, 1.0j, 0.0, math.pi + float(alpha[0]))
+    moved = core_drive(mechanism, math.pi + alpha)
+    assert moved.valid.all()
+    link = moved.angles["rocker"]
+    found = drive.motion(alpha)
+    for order, told in enumerate(found):
+        off = -(link[order] - link[order, 32] * (order == 0)) - told
+        assert np.abs(off).max() < 1e-9 * max(1.0, np.abs(told).max())
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+def test_a_turn_of_the_crank_is_one_station_for_each_roller(drive: str) -> None:
+    form = Geneva.shock_free(drive, 5)  # type: ignore[arg-type]
+    rollers = 3 if drive == "geneva_external" else 1
+    turned = form.turned(np.array([0.0, 2.0 * math.pi, 20.0 * math.pi]), rollers)
+    assert turned.s == pytest.approx(np.array([0.0, 1.0, 10.0]) * rollers * 2.0 * math.pi / 5.0)
+    resting = form.turned(np.array([2.0 * form.half + 0.01]), rollers)
+    assert (float(resting.v[0]), float(resting.a[0])) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("example", examples("indexing"))
+def test_a_changed_dimension_is_noticed(example: dict[str, Any]) -> None:
+    problem = parse_problem(example)
+    design = solve(problem, lambda fraction, message: None).designs[0]
+    assert verify_indexing(problem, design).verification.passed  # type: ignore[arg-type]
+    mechanism = design.mechanism
+    changes: list[tuple[str, dict[str, Any]]] = [
+        ("roller_in_slot", {"roller_diameter": 1.05 * mechanism.roller_diameter})
+    ]
+    if mechanism.type == "geneva_spherical":
+        changes += [
+            ("reaches_next_station", {"cone_angle": mechanism.cone_angle + 0.01}),
+            ("disc_clears_wheel", {"cap_offset": 0.0}),
+            ("wall", {"locking_arc_angle": mechanism.locking_arc_angle + 0.5}),
+        ]
+    else:
+        disc = mechanism.disc
+        larger = disc.model_copy(update={"outer_radius": [1.02 * radius for radius in disc.outer_radius]})
+        profile = mechanism.profile
+        thinner = profile.model_copy(update={"y": [1.01 * y for y in profile.y]})
+        changes += [
+            ("reaches_next_station", {"crank_radius": 1.0001 * mechanism.crank_radius}),
+            ("disc_clears_wheel", {"disc": larger}),
+            ("walls_as_told", {"profile": thinner}),
+        ]
+    for name, change in changes:
+        broken = design.model_copy(update={"mechanism": mechanism.model_copy(update=change)})
+        failed = [check.name for check in verify_indexing(problem, broken).verification.checks if not check.passed]  # type: ignore[arg-type]
+        assert name in failed, (name, failed)
+
+
+def test_forces_that_are_told_wrong_are_noticed() -> None:
+    problem = parse_problem(examples("indexing")[0])
+    design = solve(problem, lambda fraction, message: None).designs[0]
+    doubled = design.course.model_copy(update={"pin_force": [2.0 * force for force in design.course.pin_force]})
+    peaky = design.metrics.model_copy(update={"peak_pin_force": 0.99 * design.metrics.peak_pin_force})
+    for change, name in (({"course": doubled}, "forces_by_reactions"), ({"metrics": peaky}, "peaks")):
+        checked = verify_indexing(problem, design.model_copy(update=change))  # type: ignore[arg-type]
+        assert name in [check.name for check in checked.verification.checks if not check.passed]
+
+
+def test_the_smallest_drive_stands_at_its_demand() -> None:
+    wanted = {"stations": 8, "wall_thickness": 4.0, "wheel_shaft_diameter": 25.0, "rollers": 1}
+    design = solved(**wanted).designs[0]
+    assert design.verification.passed
+    assert design.metrics.sized_by in ("locking_disc", "web", "bore")
+    problem = parse_problem(
+        {**wanted, "kind": "indexing", "drive": "geneva_external", "roller_diameter": 10.0, "speed_rpm": 60.0}
+    )
+    drive = Geneva.shock_free("geneva_external", 8)
+    size = design.mechanism.center_distance
+    assert min(margins(problem, drive, 1.000001 * size).values()) > 0.0  # type: ignore[arg-type]
+    assert min(margins(problem, drive, 0.99999 * size).values()) < 0.0  # type: ignore[arg-type]
+
+
+def test_a_pin_force_sets_the_size_and_is_met() -> None:
+    (design,) = solved(load_inertia=0.05, rollers=1, constraints={"pin_force": 20.0}).designs
+    assert design.metrics.sized_by == "pin_force"
+    assert design.metrics.peak_pin_force == pytest.approx(20.0, rel=1e-9)
+    load, drive = Load(0.05, 0.0, 2.0 * math.pi), Geneva.shock_free("geneva_external", 6)
+    assert peaks(drive, load, 1.0).pin_force / 20.0 == pytest.approx(design.mechanism.center_distance / 1000.0)
+
+
+def test_rollers_shorten_the_rest() -> None:
+    result = solved(stations=4, center_distance=100.0)
+    assert [design.mechanism.rollers for design in result.designs] == [1, 2, 3]
+    assert [design.dwell_share for design in result.designs] == pytest.approx([0.75, 0.5, 0.25])
+    assert result.search.complete
+
+
+def test_an_entry_with_a_shock_is_refused_unless_it_is_allowed() -> None:
+    wanted = {"center_distance": 80.0, "crank_radius": 41.0, "wall_thickness": 2.0, "rollers": 1}
+    refused = solved(**wanted)
+    assert not refused.designs
+    assert refused.search.rejected == {"shock_free_entry": 1}
+    (design,) = solved(**wanted, constraints={"shock_free": False}).designs
+    assert design.metrics.entry_speed > 0.01
+    # tan of the angle between slot and the roller's path, by the sine rule.
+    assert design.index_angle < 120.0
+
+
+def test_no_room_for_walls() -> None:
+    result = solved(stations=24, center_distance=40.0)
+    assert not result.designs
+    assert result.search.rejected == {"no_room_for_walls": 2}
