@@ -19,8 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.dynamics.reactions import reactions
+from synthesis.analyses.driven import Task, placed
 from synthesis.dispatch import solve
-from synthesis.kinds.balancing.driven import Task, placed, task_of
+from synthesis.kinds.balancing.driven import task_of
 from synthesis.kinds.balancing.effects import PARAMETERS, Linear
 from synthesis.kinds.balancing.minimize import Minimum, Setting, minimum, setting_of
 from synthesis.kinds.balancing.problem import BalancingProblem

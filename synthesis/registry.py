@@ -25,6 +25,7 @@ from synthesis.kinds import (
     path,
     planetary_train,
     quick_return,
+    spring_balancing,
     steering,
     straight_line,
 )
@@ -48,6 +49,7 @@ KINDS: dict[str, Kind[Any, Any]] = {
         function,
         cam,
         balancing,
+        spring_balancing,
         flywheel,
         engine,
         indexing,

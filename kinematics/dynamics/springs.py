@@ -100,12 +100,17 @@ class TorsionSpring:
     damping: float = 0.0
     near: Callable[[Real], Real] | None = None
 
-    def _torque(self, now: Places) -> Real:
+    def rotation(self, now: Places) -> Real:
+        """The rotation over positions, of shape S + (N,)."""
         first, second = (now.spins[link] for link in self.links)
         rotation = second[0] - first[0]
         if self.near is not None:
             rotation = rotation + TURN * np.round((self.near(now.input[0]) - rotation) / TURN)
-        return np.asarray(-self.rate * (rotation - self.free) - self.damping * (second[1] - first[1]))
+        return np.asarray(rotation)
+
+    def _torque(self, now: Places) -> Real:
+        first, second = (now.spins[link] for link in self.links)
+        return np.asarray(-self.rate * (self.rotation(now) - self.free) - self.damping * (second[1] - first[1]))
 
     def efforts(self, now: Places) -> list[Effort]:
         """See :class:`kinematics.dynamics.loads.Load`."""

@@ -124,6 +124,8 @@ def _with_its_own(problem: Any, design: Any, steps: int) -> dict[str, Any]:
     from synthesis.analyses import parse_request
 
     motion = problem.motion.model_copy(update={"steps": steps}).model_dump(exclude_unset=True, by_alias=True)
+    if "speed_rpm" not in motion:
+        motion["speed"] = problem.motion.rate  # that of the kind, where none is stated
     stated = {"mechanism": design.mechanism.model_dump(), "motion": motion, "dynamics": design.dynamics}
     return parse_request({**stated, "length_unit": problem.length_unit}).answer()
 

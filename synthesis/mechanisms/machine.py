@@ -200,6 +200,22 @@ def first_fixed(mechanism: Mechanism) -> complex:
     return complex(mechanism.joints[ground[0]] if ground else mechanism.slides[0].point)
 
 
+def place_on(mechanism: Mechanism, link: str, stated: Place, scale: float = 1.0) -> complex:
+    """A place on a link in the reference configuration, in the unit that ``scale`` makes of the mechanism's."""
+    return _Reader(mechanism, scale).place(link, stated)
+
+
+def torsion_spring(mechanism: Mechanism, links: tuple[str, str]) -> TorsionSpring:
+    """A torsion spring of a unit rate between two links.
+
+    Raises
+    ------
+    BlockError
+        Where it cannot be told how far it is wound.
+    """
+    return TorsionSpring(links, 1.0, near=_Reader(mechanism, 1.0).rotation("/springs", links))
+
+
 class _Reader(LinkBodies):
     """Places, bodies, loads and springs of one mechanism in the unit of its forces."""
 
@@ -243,7 +259,7 @@ class _Reader(LinkBodies):
         if stated.ends is None:
             links = stated.links or (GROUND, GROUND)
             rate, free = stated.torsion or 0.0, math.radians(stated.free_angle)
-            return TorsionSpring(links, rate, free, stated.damping, self._rotation(path, links))
+            return TorsionSpring(links, rate, free, stated.damping, self.rotation(path, links))
         first, second = (np.asarray(self.place(end.link, end.point)) for end in stated.ends)
         size = self.scale * max(
             abs(complex(a - b)) for a in self.mechanism.joints.values() for b in self.mechanism.joints.values()
@@ -260,7 +276,8 @@ class _Reader(LinkBodies):
             stated.one_sided or None,
         )
 
-    def _rotation(self, path: str, links: tuple[str, str]) -> Callable[[Real], Real]:
+    def rotation(self, path: str, links: tuple[str, str]) -> Callable[[Real], Real]:
+        """How far one link is turned against another, roughly; ``path`` is the spring's below the request."""
         try:
             period = math.inf if self.mechanism.driven_by_slide else cycle(self.mechanism)
         except KinematicsError as error:

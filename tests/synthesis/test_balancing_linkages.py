@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from synthesis.analyses.driven import placed
 from synthesis.dispatch import solve
-from synthesis.kinds.balancing.driven import placed, task_of
+from synthesis.kinds.balancing.driven import task_of
 from synthesis.kinds.balancing.force_balance import balanceable, force_balances, unpinned
 from synthesis.kinds.balancing.problem import BalancingProblem
 from synthesis.kinds.balancing.verify_linkage import machine_of_answer, verify_linkage

@@ -11,8 +11,9 @@ import pytest
 
 from kinematics.dynamics.bodies import body, joined
 from kinematics.dynamics.reactions import reactions
+from synthesis.analyses.driven import placed
 from synthesis.dispatch import solve
-from synthesis.kinds.balancing.driven import placed, task_of
+from synthesis.kinds.balancing.driven import task_of
 from synthesis.kinds.balancing.effects import quantities
 from synthesis.kinds.balancing.minimize import minimum, setting_of
 from synthesis.kinds.balancing.problem import BalancingProblem

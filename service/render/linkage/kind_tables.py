@@ -18,6 +18,7 @@ from service.render.linkage.fourbar import scene as fourbar_scene
 from service.render.linkage.fourbar_picture import FourbarPicture, description
 from service.render.linkage.function_diagram import function_diagram, range_arc
 from service.render.linkage.motion import DrivenLinkage, demands_of, target_curve
+from service.render.linkage.sprung import spring_balancing
 from service.render.page import blocks
 from service.render.page.diagrams import Diagram
 from service.render.page.numbers import angle, length, small
@@ -460,6 +461,7 @@ _CONTENTS: dict[str, Callable[[Any, Any, DrivenLinkage], Content]] = {
     "dwell": dwell,
     "parallel_motion": parallel_motion,
     "balancing": balancing,
+    "spring_balancing": spring_balancing,
 }
 
 

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.dynamics.reactions import reactions
+from synthesis.analyses.driven import placed
 from synthesis.kinds.balancing.design import BalancedDesign
-from synthesis.kinds.balancing.driven import inertial, placed, task_of
+from synthesis.kinds.balancing.driven import inertial, task_of
 from synthesis.kinds.balancing.problem import BalancingProblem
 from synthesis.kinds.balancing.verify_linkage import machine_of_answer
 

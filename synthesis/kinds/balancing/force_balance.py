@@ -28,7 +28,8 @@ from kinematics.dynamics.bodies import Body, body
 from kinematics.dynamics.machine import Machine
 from kinematics.dynamics.places import Places
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
-from synthesis.kinds.balancing.driven import Task, inertial, moving, on_fixed_pivot, pivot, placed
+from synthesis.analyses.driven import Task, placed
+from synthesis.kinds.balancing.driven import inertial, moving, on_fixed_pivot, pivot
 from synthesis.kinds.balancing.stated_weights import Counterweights
 from synthesis.numerics.conic import Rows, minimized
 

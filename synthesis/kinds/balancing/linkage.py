@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from functools import partial
 
+from synthesis.analyses.driven import Task, placed
 from synthesis.kinds.balancing.design import BalancedDesign, BalancingResult
-from synthesis.kinds.balancing.driven import Task, placed, task_of
+from synthesis.kinds.balancing.driven import task_of
 from synthesis.kinds.balancing.force_balance import Weight, balanceable, force_balances, unpinned
 from synthesis.kinds.balancing.minimize import NothingToReduce, Undetermined, minimum, setting_of
 from synthesis.kinds.balancing.moment_balance import NoMomentBalance, moment_balance

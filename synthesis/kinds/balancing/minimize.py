@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.balancing.driven import Task, moving, pivot, placed
+from synthesis.analyses.driven import Task, placed
+from synthesis.kinds.balancing.driven import moving, pivot
 from synthesis.kinds.balancing.effects import PARAMETERS, Linear, quantities
 from synthesis.kinds.balancing.force_balance import Weight
 from synthesis.kinds.balancing.problem import BalancingProblem

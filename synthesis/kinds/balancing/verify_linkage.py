@@ -19,6 +19,7 @@ from kinematics.dynamics.machine import Machine
 from kinematics.dynamics.places import Places
 from kinematics.dynamics.reactions import reactions
 from kinematics.linkage.planar.mechanism import Mechanism
+from synthesis.analyses.driven import Task, placed
 from synthesis.kinds.balancing.block import weighted, with_inertias
 from synthesis.kinds.balancing.design import (
     BalancedDesign,
@@ -27,7 +28,7 @@ from synthesis.kinds.balancing.design import (
     Counterweight,
     GearedInertia,
 )
-from synthesis.kinds.balancing.driven import Task, inertial, pivot, placed
+from synthesis.kinds.balancing.driven import inertial, pivot
 from synthesis.kinds.balancing.force_balance import Weight
 from synthesis.kinds.balancing.problem import BalancingProblem
 from synthesis.mechanisms.machine import machine_of

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from kinematics.dynamics.balance import balance
 from kinematics.dynamics.machine import Machine
 from kinematics.dynamics.reactions import Reactions, reactions
+from synthesis.analyses.driven import Task, paced, placed
 from synthesis.kinds.balancing.design import BalancedDesign, BalanceMetrics, ForceLevel
-from synthesis.kinds.balancing.driven import Task, placed
 from synthesis.kinds.balancing.minimize import GRID, Minimum
 from synthesis.kinds.balancing.problem import BalancingProblem
 from synthesis.kinds.balancing.verify_linkage import answer_of, machine_of_answer, told
@@ -157,10 +157,8 @@ def _levels(problem: BalancingProblem, before: Measured, after: Measured) -> lis
 def _measured(machine: Machine, task: Task, grid: Real) -> Measured:
     """A machine over the grid, by both routes."""
     now = placed(machine, grid, task.speed, task.acceleration)
-    unit = 1.0 if not machine.mechanism.driven_by_slide else 1.0 / machine.scale
-    paced = placed(machine, grid, unit)
     found = reactions(machine, now)
-    check = balance(machine, now, paced, found.rubbing)
+    check = balance(machine, now, paced(machine, grid), found.rubbing)
     known = found.solved
     pairs = (
         (found.shaking_force, check.shaking_force),

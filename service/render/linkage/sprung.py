@@ -1,0 +1,133 @@
+"""A linkage with the springs that balance it on its sheet: drawn at places of its motion, and the drive over it."""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+
+from kinematics.dynamics.places import Places
+from service.render.linkage.content import Content
+from service.render.linkage.drawing import PlanarPicture, Scene
+from service.render.linkage.motion import DrivenLinkage
+from service.render.page import blocks
+from service.render.page.diagrams import Diagram
+from service.render.page.numbers import angle, length
+from service.render.page.svg import Box, Element, Points, Viewport, circle, path
+from service.render.page.symbols import CURVE, DEMANDED, OUTPUT, PALE
+from service.units import symbols
+from synthesis.kinds.spring_balancing.curves import drive_curves
+from synthesis.kinds.spring_balancing.design import SprungDesign
+from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
+from synthesis.model.dimension import Dimension
+
+PLACES = 4
+"""Places of the motion at which the linkage is drawn; at the first heavy."""
+
+COILS, WIDTH, STRAIGHT = 9, 7.0, 0.16
+"""Coils of a drawn spring, half its width in pixels, and the straight part at each end as a share of its length."""
+
+TURNS, INNER, OUTER = 2.25, 7.0, 19.0
+"""Turns of a drawn torsion spring, and its radii in pixels."""
+
+
+def coil(start: complex, end: complex) -> Points:
+    """A spring between two points of the sheet."""
+    along = end - start
+    across = 1j * along / abs(along) if along != 0.0 else 0j
+    shares = np.linspace(STRAIGHT, 1.0 - STRAIGHT, 2 * COILS + 1)
+    sides = np.where(np.arange(2 * COILS + 1) % 2 == 1, 1.0, -1.0)
+    sides[[0, -1]] = 0.0
+    return np.concatenate([[start], start + along * shares + WIDTH * sides * across, [end]])
+
+
+def spiral(at: complex, turned: float) -> Points:
+    """A torsion spring about a point of the sheet, which ends in a direction (radians)."""
+    angles = np.linspace(0.0, 2.0 * math.pi * TURNS, 120)
+    return np.asarray(at + np.linspace(INNER, OUTER, 120) * np.exp(1j * (angles - angles[-1] + turned)))
+
+
+def spring_balancing(design: SprungDesign, problem: SpringBalancingProblem, linkage: DrivenLinkage) -> Content:
+    """A linkage at places of its motion with its springs; the drive without them and with them."""
+    curves = drive_curves(problem, design)
+    inputs = np.linspace(curves.at[0], curves.at[-1], PLACES)
+    scene = Scene(linkage, inputs, [])
+    now = Places(linkage.mechanism, linkage.driven(inputs, order=2))
+    ends = {
+        spring.number: [now.point(end.link, np.asarray(complex(*end.point)))[0] for end in spring.ends]
+        for spring in design.springs
+        if spring.ends is not None
+    }
+    held = [points[np.isfinite(points)] for pair in ends.values() for points in pair]
+    box = Box.around(np.concatenate([scene.places(), *held]))
+
+    def drawn(view: Viewport) -> list[Element]:
+        shapes: list[Element | None] = []
+        for number, (one, other) in ends.items():
+            for k in range(len(inputs) - 1, -1, -1):
+                if not (np.isfinite(one[k]) and np.isfinite(other[k])):
+                    continue
+                start, end = view.point(complex(one[k])), view.point(complex(other[k]))
+                if k:
+                    shapes.append(path([np.array([start, end])], stroke=PALE, stroke_width=1.0))
+                    continue
+                shapes.append(path([coil(start, end)], stroke=DEMANDED, stroke_width=1.8, data_spring=f"{number}"))
+                shapes += [circle(at, 3.0, fill=DEMANDED) for at in (start, end)]
+        for spring in design.springs:
+            if spring.links is not None:
+                centre, turned = _turning_place(linkage, scene, spring.links)
+                shape = spiral(view.point(centre), -turned)
+                shapes.append(path([shape], stroke=DEMANDED, stroke_width=1.8, data_spring=f"{spring.number}"))
+        return [shape for shape in shapes if shape is not None]
+
+    units, unit = symbols(problem), problem.length_unit
+    rows = []
+    for spring in design.springs:
+        name = f"spring {spring.number + 1}"
+        if spring.links is not None:
+            rate = f"{length(spring.torsion or 0.0)} {units[Dimension.TORSION_STIFFNESS]}"
+            rows += [(f"{name}: torsion", rate), ("free angle", angle(spring.free_angle or 0.0))]
+            continue
+        rows.append((f"{name}: rate", f"{length(spring.rate or 0.0)} {units[Dimension.STIFFNESS]}"))
+        rows.append(("free length", f"{length(spring.free_length or 0.0)} {unit}"))
+        if spring.preload:
+            rows.append(("preload", f"{length(spring.preload)} {units[Dimension.FORCE]}"))
+        rows.append(
+            ("over the motion", f"{length(spring.min_length or 0.0)} to {length(spring.max_length or 0.0)} {unit}")
+        )
+        for end in spring.ends or ():
+            x, y = (length(value, box.diagonal) for value in end.point)
+            rows.append((f"on {end.link}", f"({x}, {y})"))
+    places = [
+        (name, f"({length(x, box.diagonal)}, {length(y, box.diagonal)})")
+        for name, (x, y) in design.mechanism.skeleton.joints.items()
+    ]
+    slides = linkage.mechanism.driven_by_slide
+    per = units[Dimension.FORCE if slides else Dimension.TORQUE]
+    over = "over the input's travel" if slides else "over the input's rotation"
+    shown = curves.at if slides else np.degrees(curves.at)
+    count = len(design.springs)
+    return Content(
+        "Spring-balanced linkage",
+        f"Linkage with {count} spring{'s' * (count != 1)}",
+        f"a linkage at {PLACES} places of its motion, with its springs",
+        PlanarPicture(scene, unit, drawn, box),
+        [blocks.rows("Springs", rows or [("none", "")])],
+        titles={"value": "what is left of the drive", "bound": "least that could be"},
+        dimensions=blocks.rows(f"Joints in the reference ({unit})", places),
+        diagrams=[
+            Diagram(f"drive without the springs ({per}) {over}", "drive_before", shown, curves.before, CURVE),
+            Diagram(f"drive with them ({per})", "drive_after", shown, curves.after, OUTPUT),
+        ],
+    )
+
+
+def _turning_place(linkage: DrivenLinkage, scene: Scene, links: tuple[str, str]) -> tuple[complex, float]:
+    """Where a torsion spring is drawn at the first place: at the pin of both links, or the first pin of the second."""
+    mechanism, joints = linkage.mechanism, scene.joints(0)
+    listed = [joint for joint in mechanism.links[links[1]] if joint in joints]
+    shared = [joint for joint in listed if joint in mechanism.links[links[0]]]
+    at = joints[(shared or listed or list(joints))[0]]
+    others = [joints[joint] for joint in listed if joints[joint] != at]
+    return at, cmath.phase(others[0] - at) if others else 0.0

@@ -1,0 +1,23 @@
+"""Spring balancing: springs with which gravity and steady loads ask for as little drive as can be."""
+
+from __future__ import annotations
+
+from synthesis.kinds.spring_balancing.design import SpringBalancingResult
+from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
+from synthesis.model.kind import Kind, Progress
+
+__all__ = ["KIND"]
+
+
+def _solve(problem: SpringBalancingProblem, progress: Progress) -> SpringBalancingResult:
+    from synthesis.kinds.spring_balancing.solver import solve_spring_balancing
+
+    return solve_spring_balancing(problem, progress)
+
+
+def _brief(problem: SpringBalancingProblem) -> bool:
+    """Ends are searched for where the program is not convex."""
+    return all(spring.convex for spring in problem.springs)
+
+
+KIND = Kind("spring_balancing", SpringBalancingProblem, SpringBalancingResult, _solve, brief=_brief)

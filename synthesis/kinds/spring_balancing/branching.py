@@ -1,0 +1,145 @@
+"""Zero-free-length springs with both ends open: the best places, proved by branching on the first end's.
+
+In the program the corners of both ends are taken in pairs. That bounds what such a spring can do, the closer the
+smaller the area of its first end is; at one point it is exact. So the area is cut in two again and again, the part with
+the lowest bound first, until no part promises more than what has been found. Found is the best of the second end and
+the rate for a given first end, and the other way round, in turns.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable, Sequence
+from itertools import count
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.spring_balancing.effects import Setting, effects_of, hull
+from synthesis.kinds.spring_balancing.found import Spring, centres, springs_of
+from synthesis.kinds.spring_balancing.program import EXACT, Best, best
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Places = list[list[Complex]]
+
+NODES = 250
+"""Parts that are looked at, at most."""
+
+GAP = 1e-3
+"""Share of the value that the bound is brought within."""
+
+TURNS = 4
+"""Turns of the ends, one given and the other sought."""
+
+ON_LINE = 1e-12
+"""Distance from a cut, as a share of the area's size, at which a corner lies on it."""
+
+
+class Branched(NamedTuple):
+    """The best springs, their value, the bound, and whether it is reached; infeasible where none keep their limits."""
+
+    status: Literal["solved", "infeasible", "failed"]
+    springs: list[Spring]
+    value: float
+    bound: float
+    proved: bool
+
+
+def solved_at(setting: Setting, places: Places, *, bounded: bool = True) -> Best:
+    """The program of all springs with their ends between corners."""
+    effects = [effects_of(setting, spring, ends) for spring, ends in zip(setting.problem.springs, places, strict=True)]
+    return best(setting.fixed, effects, setting.problem.norm, bounded=bounded)
+
+
+def branched(setting: Setting, places: Places, report: Callable[[float], None]) -> Branched:
+    """The best springs with their ends between corners; those of springs that are not superposed are given."""
+    open_both = [n for n, ends in enumerate(places) if ends and min(len(end) for end in ends) > 1]
+    whole = solved_at(setting, places)
+    if not open_both or whole.status != "solved":
+        springs = springs_of(setting, places, whole.parameters) if whole.status == "solved" else []
+        return Branched(whole.status, springs, whole.value, whole.bound, proved=whole.status == "solved")
+    order = count()
+    parts = [(whole.bound, next(order), places, whole)]
+    value, springs, looked, failed = np.inf, list[Spring](), 1, False
+    bound = whole.bound
+    while parts:
+        bound, _, mine, relaxed = heapq.heappop(parts)
+        if _near(value, bound) or looked > NODES:
+            break
+        reached, given = _alternated(setting, mine, relaxed, open_both)
+        if reached.value < value:
+            value, springs = reached.value, springs_of(setting, given, reached.parameters)
+        report(min(looked / NODES, 1.0))
+        wide = max(open_both, key=lambda n: _spread(mine[n], relaxed.parameters[n]))
+        for half in _halves(mine[wide][0]):
+            child = [*mine]
+            child[wide] = [half, mine[wide][1]]
+            found = solved_at(setting, child, bounded=False)
+            looked += 1
+            failed = failed or found.status == "failed"
+            if found.status == "solved" and found.bound < value:
+                # No part promises less than the whole of which it is one.
+                heapq.heappush(parts, (max(found.bound, bound), next(order), child, found))
+    else:
+        bound = value
+    bound = min(bound, value)
+    if not np.isfinite(value):
+        return Branched("failed" if failed or parts else "infeasible", [], value, bound, proved=not failed)
+    return Branched("solved", springs, value, bound, proved=not failed and _near(value, bound))
+
+
+def _near(value: float, bound: float) -> bool:
+    """Whether a value is proved to be the least, but for the gap."""
+    return np.isfinite(value) and value - bound <= max(GAP * value, EXACT)
+
+
+def _alternated(setting: Setting, places: Places, relaxed: Best, open_both: Sequence[int]) -> tuple[Best, Places]:
+    """The best from the middle of a relaxation on: an end given, the other sought, in turns over the whole areas."""
+    springs = setting.problem.springs
+    areas = [setting.places(spring) for spring in springs]
+    fixed, side = {n: centres(places[n], np.maximum(relaxed.parameters[n], 0.0))[0] for n in open_both}, 0
+    found, given = Best("failed", [], np.inf, 0.0), places
+    for _ in range(TURNS):
+        now = [*areas]
+        for n in open_both:
+            now[n] = [np.array([fixed[n]]) if end == side else areas[n][end] for end in range(2)]
+        tried = solved_at(setting, now)
+        if tried.status != "solved" or tried.value >= found.value * (1.0 - 1e-3):
+            break
+        found, given = tried, now
+        side = 1 - side
+        fixed = {n: centres(now[n], np.maximum(tried.parameters[n], 0.0))[side] for n in open_both}
+    return found, given
+
+
+def _spread(ends: Sequence[Complex], rates: Real) -> float:
+    """How far a relaxation is from one spring: what its rates at pairs of corners are off those of their centres."""
+    table = np.maximum(rates, 0.0).reshape(len(ends[0]), len(ends[1]))
+    whole = float(table.sum())
+    if not whole > 0.0:
+        return 0.0
+    size = float(np.abs(ends[0][:, None] - ends[0]).max())
+    one, other = centres(ends, np.maximum(rates, 0.0))
+    off = float(np.abs(((ends[0] - one).conj() @ table) @ (ends[1] - other)))
+    twisted = float(np.abs(((ends[0] - one) @ table) @ (ends[1] - other)))
+    return off + twisted + 1e-6 * whole * size**2
+
+
+def _halves(corners: Complex) -> tuple[Complex, Complex]:
+    """A convex area cut across its longest way; a line in its middle."""
+    apart = np.abs(corners[:, None] - corners)
+    one, other = np.unravel_index(int(np.argmax(apart)), apart.shape)
+    middle = 0.5 * (corners[one] + corners[other])
+    along = (corners[other] - corners[one]) / max(float(apart[one, other]), 1e-300)
+    beside = ((corners - middle) * along.conjugate()).real
+    slack = ON_LINE * float(apart[one, other])
+    cuts = [
+        corners[n] + (corners[k] - corners[n]) * beside[n] / (beside[n] - beside[k])
+        for n in range(len(corners))
+        for k in range(n + 1, len(corners))
+        if beside[n] * beside[k] < 0.0 and min(abs(beside[n]), abs(beside[k])) > slack
+    ]
+    halves = [np.array([*corners[side * beside >= -slack], *cuts]) for side in (-1.0, 1.0)]
+    return hull(halves[0]), hull(halves[1])

@@ -1,0 +1,309 @@
+"""What springs do to the drive: all of it is linear once their ends are known.
+
+With the length L of a spring over the input q, L' = dL/dq, its tension is k (L − L₀) + P, and it asks the drive for
+
+    k L L' − k L₀ L' + P L',
+
+linear in the rate k, in k L₀ and in the preload P; a torsion spring over the rotation φ for κ φ φ' − κ φ₀ φ'. Without a
+free length it is ½ k (L²)', and there the ends may be sought as well: for an end p = Σ λ_v p_v between corners fixed in
+one link, and q fixed in another,
+
+    |q − p|² = Σ λ_v |q − p_v|² − Σ λ_v |p − p_v|²,
+
+of which the last sum never changes. So a spring at p is a set of springs of the rates μ_v = λ_v k at the corners, and
+the best place within an area is found with the rate (potential energies of zero-free-length springs add up to one such
+spring: Herder, *Energy-free Systems*, 2001). With both ends open the corners are taken in pairs, and μ_uv ≥ 0 holds all
+that such springs can do, and more: a bound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from copy import copy
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.dynamics.balance import balance
+from kinematics.dynamics.places import Places
+from kinematics.dynamics.reactions import reactions
+from kinematics.linkage.planar.mechanism import GROUND
+from synthesis.analyses.driven import Task, driven_task, paced, placed
+from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
+from synthesis.kinds.spring_balancing.stated_springs import SoughtSpring
+from synthesis.mechanisms.machine import place_on, torsion_spring
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+GRID = 2880
+"""Positions of the motion on which peaks and means are taken, or its steps where these are more."""
+
+MET = 1e-9
+"""Length of a spring, as a share of the size, at which its ends have met and its force has no direction."""
+
+
+class Carrier(NamedTuple):
+    """A link over positions, by which its points go: place + turn · z, and both for a unit of the input's motion."""
+
+    place: Complex
+    turn: Complex
+    place_rate: Complex
+    turn_rate: Complex
+
+    def points(self, of: Complex) -> tuple[Complex, Complex]:
+        """Points of the reference over positions, shape (len(of), N), and their rates."""
+        z = np.asarray(of)[:, None]
+        return self.place + self.turn * z, self.place_rate + self.turn_rate * z
+
+
+class Effects(NamedTuple):
+    """The parameters of a spring, K of them: what each does to the drive by positions, and the limits of all.
+
+    Attributes
+    ----------
+    drive : float, shape (K, N)
+        By units of the parameters.
+    rows, limits : float, shapes (R, K), (R,)
+        rows · x ≤ limits.
+    stiff : float, shape (K,)
+        How much each counts as a rate.
+    spans : complex, shape (K, N), or None
+        From end to end of springs at the corners, where lengths or forces of their sum are limited.
+    longest, strongest : float
+        Limits of that sum as a length, and as a force; infinite where there are none.
+    """
+
+    drive: Real
+    rows: Real
+    limits: Real
+    stiff: Real
+    spans: Complex | None = None
+    longest: float = np.inf
+    strongest: float = np.inf
+
+
+class Setting:
+    """A linkage over the motion of a problem, and what springs between its links do; in the unit of its forces.
+
+    Attributes
+    ----------
+    at : float, shape (N,)
+        Positions at which all forces are known.
+    fixed : float, shape (N,)
+        The drive without the springs that are sought.
+    parts : float
+        The greatest sum of the magnitudes of all parts of that drive.
+    size : float
+        Of the linkage.
+    """
+
+    def __init__(self, problem: SpringBalancingProblem) -> None:
+        self.problem = problem
+        self.task: Task = driven_task(problem.mechanism, problem.dynamics, problem.length_unit, problem.motion)
+        machine = self.task.machine
+        grid = self.task.positions(max(GRID, problem.motion.steps))
+        now = placed(machine, grid, self.task.speed, self.task.acceleration)
+        self._paced = paced(machine, grid)
+        found = reactions(machine, now)
+        check = balance(machine, now, self._paced, found.rubbing)
+        self._known = found.solved & np.isfinite(check.drive)
+        self.at = grid[self._known]
+        self.fixed = check.drive[self._known]
+        self.parts = float(check.scale[self._known].max(initial=0.0))
+        self.size = float(np.max(now.size))
+        self._carriers: dict[str, Carrier] = {}
+
+    @cached_property
+    def peak(self) -> float:
+        """The greatest drive without springs."""
+        return float(np.abs(self.fixed).max(initial=0.0))
+
+    def places(self, spring: SoughtSpring) -> list[Complex]:
+        """The corners of the areas of both ends of a spring, one of a given end; none of a torsion spring."""
+        machine = self.task.machine
+        return [
+            hull(np.array([place_on(machine.mechanism, end.link, corner, machine.scale) for corner in end.corners]))
+            for end in spring.ends or ()
+        ]
+
+    def thinned(self, count: int) -> Setting:
+        """The same on so many of its positions, spread evenly."""
+        few = copy(self)
+        kept = np.unique(np.linspace(0, len(self.at) - 1, count).astype(int))
+        few.at, few.fixed = self.at[kept], self.fixed[kept]
+        few._known = np.zeros_like(self._known)
+        few._known[np.flatnonzero(self._known)[kept]] = True
+        few._carriers = {}
+        return few
+
+    def carrier(self, link: str) -> Carrier:
+        """A link over the known positions."""
+        if link not in self._carriers:
+            self._carriers[link] = _carrier(self._paced, link, self._known)
+        return self._carriers[link]
+
+    def lengths(self, spring: SoughtSpring, ends: Sequence[complex]) -> Real:
+        """The lengths of a spring between two points."""
+        assert spring.ends is not None
+        one, other = (
+            self.carrier(end.link).points(np.array([at]))[0][0] for end, at in zip(spring.ends, ends, strict=True)
+        )
+        return np.abs(other - one)
+
+    def rotation(self, links: tuple[str, str]) -> tuple[Real, Real]:
+        """The rotation of the second link against the first from the reference, and its rate."""
+        spring = torsion_spring(self.task.machine.mechanism, links)
+        turned = spring.rotation(self._paced)[self._known]
+        rates = [np.broadcast_to(self._paced.spins[link][1], self._known.shape)[self._known] for link in links]
+        return np.asarray(turned), np.asarray(rates[1] - rates[0])
+
+
+def _carrier(now: Places, link: str, known: NDArray[np.bool_]) -> Carrier:
+    count = int(known.sum())
+    if link == GROUND:
+        return Carrier(*(np.full(count, value, np.complex128) for value in (0.0, 1.0, 0.0, 0.0)))
+    turn, turn_rate = (part[known] for part in now.turns[link][:2])
+    base = now.base(link)
+    place, rate = (part[known] for part in now.joints[base][:2])
+    about = complex(now.reference(base))
+    return Carrier(place - about * turn, turn, rate - about * turn_rate, turn_rate)
+
+
+def hull(points: Complex) -> Complex:
+    """The corners of the convex hull of points, counter-clockwise; two of a line, one of a place."""
+    distinct = sorted({complex(z) for z in points}, key=lambda z: (z.real, z.imag))
+    if len(distinct) < 3:
+        return np.array(distinct)
+    chains: list[list[complex]] = []
+    for ordered in (distinct, distinct[::-1]):
+        chain: list[complex] = []
+        for z in ordered:
+            while len(chain) > 1 and ((chain[-1] - chain[-2]).conjugate() * (z - chain[-1])).imag <= 0.0:
+                chain.pop()
+            chain.append(z)
+        chains.append(chain[:-1])
+    return np.array([*chains[0], *chains[1]])
+
+
+def effects_of(setting: Setting, spring: SoughtSpring, ends: Sequence[Complex]) -> Effects:
+    """A spring whose ends are between corners (the unit of forces); only a superposed spring may have several."""
+    if spring.links is not None:
+        return _turning(setting, spring)
+    assert spring.ends is not None
+    one, other = (setting.carrier(end.link).points(corners) for end, corners in zip(spring.ends, ends, strict=True))
+    span = (other[0][None] - one[0][:, None]).reshape(-1, len(setting.at))
+    rate = (other[1][None] - one[1][:, None]).reshape(span.shape)
+    along = span.real * rate.real + span.imag * rate.imag
+    if spring.superposed:
+        return _superposed(setting, spring, span, along)
+    return _single(setting, spring, span[0], along[0])
+
+
+class _Rows:
+    """Limits of the parameters as they come."""
+
+    def __init__(self, count: int) -> None:
+        self.count = count
+        self.rows: list[list[float]] = []
+        self.limits: list[float] = []
+
+    def at_most(self, row: Sequence[float], limit: float = 0.0) -> None:
+        self.rows.append(list(row))
+        self.limits.append(limit)
+
+    def between(self, row: Sequence[float], low: float, high: float | None) -> None:
+        self.at_most([-entry for entry in row], -low)
+        if high is not None:
+            self.at_most(row, high)
+
+    @property
+    def matrix(self) -> Real:
+        return np.array(self.rows, np.float64).reshape(-1, self.count)
+
+
+def _superposed(setting: Setting, spring: SoughtSpring, span: Complex, along: Real) -> Effects:
+    """Rates at the pairs of corners."""
+    count, scale = len(span), setting.task.machine.scale
+    kept = _Rows(count)
+    for n in range(count):
+        kept.at_most([-1.0 if k == n else 0.0 for k in range(count)])
+    ones = np.ones(count)
+    kept.between(ones.tolist(), *spring.rates)
+    lengths = [limit for limit in (spring.max_length, spring.max_deflection) if limit is not None]
+    longest = scale * min(lengths, default=np.inf)
+    strongest = np.inf if spring.max_force is None else spring.max_force
+    if count > 1:
+        limited = span if np.isfinite(min(longest, strongest)) else None
+        return Effects(along, kept.matrix, np.array(kept.limits), ones, limited, longest, strongest)
+    length = np.abs(span[0])
+    least = 0.0 if spring.min_length is None else scale * spring.min_length
+    if length.max() > longest * (1.0 + MET) or length.min() < least * (1.0 - MET):
+        kept.at_most([1.0])
+    if np.isfinite(strongest):
+        kept.at_most([float(length.max()) / strongest], 1.0)
+    return Effects(along, kept.matrix, np.array(kept.limits), ones)
+
+
+def free_limits(spring: SoughtSpring, scale: float, length: Real) -> tuple[float, float]:
+    """The least free length and the greatest of a spring that has these lengths; the first is above where none will do.
+
+    An extension spring is nowhere shorter, a compression spring nowhere longer, and none goes beyond its stroke.
+    """
+    least, most = spring.free_lengths
+    low, high = float(length.min()), float(length.max())
+    least, most = scale * least, np.inf if most is None else scale * most
+    if spring.form == "extension":
+        most = min(most, low)
+    if spring.form == "compression":
+        least = max(least, high)
+    if spring.max_deflection is not None:
+        stroke = scale * spring.max_deflection
+        least, most = max(least, high - stroke), min(most, low + stroke)
+    return least, most
+
+
+def _single(setting: Setting, spring: SoughtSpring, span: Complex, along: Real) -> Effects:
+    """Rate, rate times free length, and preload."""
+    scale = setting.task.machine.scale
+    length = np.abs(span)
+    low, high = float(length.min()), float(length.max())
+    lengthening = along / np.where(length > 0.0, length, 1.0)
+    kept = _Rows(3)
+    kept.between([1.0, 0.0, 0.0], *spring.rates)
+    kept.between([0.0, 0.0, 1.0], *spring.preloads)
+    shortest, free = free_limits(spring, scale, length)
+    none = shortest > free * (1.0 + MET)
+    kept.at_most([shortest, -1.0, 0.0])
+    kept.at_most([-max(free, shortest), 1.0, 0.0])
+    if spring.max_force is not None:
+        for end in (low, high):
+            kept.at_most([end, -1.0, 1.0], spring.max_force)
+            kept.at_most([-end, 1.0, -1.0], spring.max_force)
+    least = 0.0 if spring.min_length is None else scale * spring.min_length
+    most = np.inf if spring.max_length is None else scale * spring.max_length
+    if none or low < max(least * (1.0 - MET), MET * setting.size) or high > most * (1.0 + MET):
+        # At these places there can be no such spring.
+        kept.at_most([1.0, 0.0, 0.0])
+        kept.at_most([0.0, 0.0, 1.0])
+    drive = np.stack([along, -lengthening, lengthening])
+    return Effects(drive, kept.matrix, np.array(kept.limits), np.array([1.0, 0.0, 1.0]))
+
+
+def _turning(setting: Setting, spring: SoughtSpring) -> Effects:
+    """Rate, and rate times free angle."""
+    assert spring.links is not None
+    rotation, rate = setting.rotation(spring.links)
+    kept = _Rows(2)
+    kept.between([1.0, 0.0], *spring.rates)
+    least, most = np.radians(spring.free_angles)
+    kept.at_most([float(least), -1.0])
+    kept.at_most([-float(most), 1.0])
+    if spring.max_torque is not None:
+        for end in (float(rotation.min()), float(rotation.max())):
+            kept.at_most([end, -1.0], spring.max_torque)
+            kept.at_most([-end, 1.0], spring.max_torque)
+    drive = np.stack([rotation * rate, -rate])
+    return Effects(drive, kept.matrix, np.array(kept.limits), np.array([1.0, 0.0]))

@@ -1,0 +1,76 @@
+"""Potential energy of a linkage that is held at rest: of its weights, steady loads and springs. No force is in it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.dynamics.machine import Machine
+from kinematics.dynamics.places import Places, dot
+from kinematics.dynamics.springs import Spring, TorsionSpring
+from synthesis.mechanisms.machine import place_on
+from synthesis.model.dynamics import DynamicsBlock
+
+Real = NDArray[np.float64]
+
+
+def has_potential(block: DynamicsBlock) -> bool:
+    """Whether all loads are steady: constant torques, and forces that keep their direction."""
+    for load in block.loads:
+        course = load.torque if load.force is None else load.force
+        if course is None or course.constant is None or (load.force is not None and load.frame == "link"):
+            return False
+    return True
+
+
+def potential(machine: Machine, block: DynamicsBlock, now: Places) -> tuple[Real, float]:
+    """Energy over positions, up to a constant, and the greatest part of it; the block is one that has a potential."""
+    gravity = np.asarray(machine.gravity)
+    parts: list[Real] = [np.zeros(now.smooth.shape)]
+    for link, part in machine.bodies.items():
+        parts.append(-float(part.mass) * dot(gravity, now.point(link, part.cg)[0]))
+    for joint, mass in machine.pin_masses.items():
+        parts.append(-float(mass) * dot(gravity, now.joints[joint][0]))
+    for load in block.loads:
+        if load.torque is not None:
+            steady = load.torque.constant
+            assert isinstance(steady, float)
+            parts.append(-steady * now.spins[str(load.link)][0])
+            continue
+        assert load.force is not None
+        assert isinstance(load.force.constant, tuple)
+        force = np.asarray(complex(*load.force.constant))
+        if load.joint is not None:
+            place = now.joints[load.joint][0]
+        else:
+            assert load.point is not None
+            at = place_on(machine.mechanism, str(load.link), load.point, machine.scale)
+            place = now.point(str(load.link), np.asarray(at))[0]
+        parts.append(-dot(force, place))
+    for spring in machine.loads:
+        if isinstance(spring, Spring):
+            parts.append(_stored(spring, lengths(spring, now)))
+        elif isinstance(spring, TorsionSpring):
+            parts.append(0.5 * spring.rate * (spring.rotation(now) - spring.free) ** 2)
+    return np.asarray(np.sum(parts, axis=0)), max(float(np.abs(part).max()) for part in parts)
+
+
+def lengths(spring: Spring, now: Places) -> Real:
+    """The length of a spring over positions."""
+    first, second = (now.point(link, at)[0] for link, at in zip(spring.links, spring.places, strict=True))
+    return np.abs(second - first)
+
+
+def tension(spring: Spring, length: Real) -> Real:
+    """The pull of a spring at rest, as if it bore both."""
+    return np.asarray(spring.rate * (length - spring.free_length) + spring.preload)
+
+
+def _stored(spring: Spring, length: Real) -> Real:
+    """½ T²/k, or without a rate T L."""
+    pull = tension(spring, length)
+    if spring.one_sided == "pull":
+        pull = np.maximum(pull, 0.0)
+    elif spring.one_sided == "push":
+        pull = np.minimum(pull, 0.0)
+    return 0.5 * pull**2 / spring.rate if spring.rate > 0.0 else pull * length

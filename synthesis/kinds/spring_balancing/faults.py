@@ -1,0 +1,58 @@
+"""What is wrong with a linkage that springs are to balance: as an analysis tells it, and what springs need besides."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from kinematics.linkage.planar.mechanism import GROUND
+from synthesis.analyses.weighed import weighed_faults, weighed_request
+from synthesis.kinds.spring_balancing.stated_springs import SoughtSpring
+from synthesis.mechanisms.machine import place_on
+from synthesis.model.dynamics import DynamicsBlock, LengthUnit
+from synthesis.model.motions import Sweep
+
+FAR = 1e4
+"""Distance of an end from the linkage, in sizes of it, beyond which it is a typing error."""
+
+
+def spring_faults(
+    stated: dict[str, Any], dynamics: DynamicsBlock, unit: LengthUnit, motion: Sweep, springs: Sequence[SoughtSpring]
+) -> list[tuple[str, str]]:
+    """Faults of a mechanism, what it weighs and carries, its motion and the sought springs, by their fields."""
+    faults = weighed_faults(stated, dynamics, unit)
+    if faults:
+        return faults
+    mechanism = weighed_request(stated, dynamics, unit).mechanism.mechanism()
+    if mechanism.driven_by_slide and motion.speed_rpm is not None:
+        faults.append(("/motion/speed_rpm", "a slider drives this; state its speed as `speed`, length units a second"))
+    weighs = any(body.shape is not None or body.mass for body in dynamics.bodies.values())
+    weighs = weighs or any(mass.mass > 0.0 for mass in dynamics.point_masses)
+    pulled = dynamics.gravity is not None and dynamics.gravity.magnitude > 0.0
+    moved = motion.rate != 0.0 or motion.acceleration != 0.0
+    if not dynamics.loads and not dynamics.springs and not (weighs and (pulled or moved)):
+        detail = "nothing is to be balanced: state gravity with what the links weigh, or a load"
+        faults.append(("/dynamics/gravity" if weighs else "/dynamics/bodies", detail))
+    no_link = f"no link; they are {', '.join(mechanism.links)}"
+    places = [complex(z) for z in mechanism.joints.values()]
+    size = max(abs(a - b) for a in places for b in places) or 1.0
+    for n, spring in enumerate(springs):
+        ends = spring.ends
+        named = [end.link for end in ends] if ends is not None else list(spring.links or ())
+        paths = [f"/springs/{n}/ends/{k}/link" if ends is not None else f"/springs/{n}/links/{k}" for k in range(2)]
+        missing = [path for path, link in zip(paths, named, strict=True) if link not in mechanism.links]
+        faults += [(path, no_link) for path in missing]
+        if missing:
+            continue
+        if named[0] == named[1]:
+            faults.append((paths[1], f"a spring acts between two links; both of its ends are on {named[0]}"))
+            continue
+        for k, end in enumerate(ends or ()):
+            if len(mechanism.links[end.link]) < 2 and end.link != GROUND:
+                continue
+            for corner in end.corners:
+                if min(abs(place_on(mechanism, end.link, corner) - place) for place in places) > FAR * size:
+                    field = "point" if end.point is not None else "within"
+                    faults.append((f"/springs/{n}/ends/{k}/{field}", "this is nowhere near the linkage"))
+                    break
+    return faults

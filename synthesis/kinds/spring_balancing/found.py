@@ -1,0 +1,127 @@
+"""Springs as they were found: ends, rate, free length and preload from the parameters of a program."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.spring_balancing.effects import Setting, effects_of, free_limits
+from synthesis.kinds.spring_balancing.program import size_of
+from synthesis.kinds.spring_balancing.stated_springs import SoughtSpring
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+ABSENT = 1e-7
+"""Effect of a spring on the drive, as a share of what is to be balanced, with which it may as well be left out."""
+
+
+class Spring(NamedTuple):
+    """A spring in the unit of forces, its ends in the reference; of a torsion spring the free angle, radians.
+
+    ``ends`` is empty of a torsion spring.
+    """
+
+    number: int
+    ends: tuple[complex, ...]
+    rate: float
+    free: float
+    preload: float
+
+
+def centres(corners: Sequence[Complex], rates: Real) -> tuple[complex, ...]:
+    """The centres of the rates at pairs of corners, for both ends."""
+    whole = float(rates.sum())
+    if not whole > 0.0:
+        return tuple(complex(end.mean()) for end in corners)
+    table = rates.reshape(len(corners[0]), len(corners[1])) / whole
+    return complex(table.sum(axis=1) @ corners[0]), complex(table.sum(axis=0) @ corners[1])
+
+
+def springs_of(setting: Setting, places: Sequence[Sequence[Complex]], parameters: Sequence[Real]) -> list[Spring]:
+    """The springs of parameters; of each spring one end at most may have several corners."""
+    found = []
+    for n, (spring, ends, own) in enumerate(zip(setting.problem.springs, places, parameters, strict=True)):
+        if spring.links is not None:
+            rate, by = max(float(own[0]), 0.0), float(own[1])
+            free = by / rate if rate > 0.0 else 0.0
+            low, high = np.radians(spring.free_angles)
+            found.append(Spring(n, (), rate, min(max(free, float(low)), float(high)), 0.0))
+        elif spring.superposed:
+            own = np.maximum(own, 0.0)
+            found.append(Spring(n, centres(ends, own), float(own.sum()), 0.0, 0.0))
+        else:
+            at = complex(ends[0][0]), complex(ends[1][0])
+            rate, by, preload = max(float(own[0]), 0.0), float(own[1]), float(own[2])
+            low, high = free_limits(spring, setting.task.machine.scale, setting.lengths(spring, at))
+            free = min(max(by / rate if rate > 0.0 else low, low), high)
+            if preload - spring.preloads[0] <= ABSENT * rate * setting.size:
+                preload = spring.preloads[0]
+            found.append(Spring(n, at, rate, free, float(np.clip(preload, *spring.preloads))))
+    return _needed(setting, [_rated(setting.problem.springs[spring.number], spring) for spring in found])
+
+
+def _rated(stated: SoughtSpring, spring: Spring) -> Spring:
+    low, high = stated.rates
+    return spring._replace(rate=min(max(spring.rate, low), np.inf if high is None else high))
+
+
+def parameters_of(setting: Setting, spring: Spring) -> tuple[list[Complex], Real]:
+    """Where a found spring holds, and its parameters in the program of given ends."""
+    stated = setting.problem.springs[spring.number]
+    ends = [np.array([end]) for end in spring.ends]
+    if stated.links is not None:
+        return ends, np.array([spring.rate, spring.rate * spring.free])
+    if stated.superposed:
+        return ends, np.array([spring.rate])
+    return ends, np.array([spring.rate, spring.rate * spring.free, spring.preload])
+
+
+def drive_of(setting: Setting, spring: Spring) -> Real:
+    """What a found spring asks of the drive, (N,)."""
+    ends, own = parameters_of(setting, spring)
+    return np.asarray(own @ effects_of(setting, setting.problem.springs[spring.number], ends).drive)
+
+
+def value_of(setting: Setting, springs: Sequence[Spring]) -> float:
+    """What springs leave of the drive, as a share."""
+    left = setting.fixed + sum((drive_of(setting, spring) for spring in springs), np.zeros(len(setting.fixed)))
+    return size_of(left, setting.problem.norm) / size_of(setting.fixed, setting.problem.norm)
+
+
+def _needed(setting: Setting, springs: list[Spring]) -> list[Spring]:
+    """The springs that do something, or are not free to be left out."""
+    kept = []
+    for spring in springs:
+        stated = setting.problem.springs[spring.number]
+        effect = float(np.abs(drive_of(setting, spring)).max())
+        demanded = stated.rates[0] > 0.0 or (stated.ends is not None and stated.preload > 0.0)
+        if demanded or effect > ABSENT * setting.peak:
+            kept.append(spring)
+    return kept
+
+
+def listed(setting: Setting, springs: Sequence[Spring]) -> list[dict[str, Any]]:
+    """The springs as the block ``dynamics`` takes them."""
+    scale, stated = setting.task.machine.scale, setting.problem.springs
+    written: list[dict[str, Any]] = []
+    for spring in springs:
+        asked = stated[spring.number]
+        if asked.ends is None:
+            free = float(np.degrees(spring.free))
+            written.append({"torsion": spring.rate, "links": list(asked.links or ()), "free_angle": free})
+            continue
+        ends = [
+            {"link": end.link, "point": [(at / scale).real, (at / scale).imag]}
+            for end, at in zip(asked.ends, spring.ends, strict=True)
+        ]
+        one: dict[str, Any] = {"ends": ends, "rate": spring.rate, "free_length": spring.free / scale}
+        if spring.preload:
+            one["preload"] = spring.preload
+        if asked.form is not None and not asked.without_length:
+            one["one_sided"] = "pull" if asked.form == "extension" else "push"
+        written.append(one)
+    return written

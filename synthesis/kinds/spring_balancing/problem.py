@@ -1,0 +1,164 @@
+"""Spring balancing: springs that hold a linkage against gravity and steady loads."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import ConfigDict, Field
+
+from synthesis.kinds.spring_balancing.stated_springs import SoughtSpring
+from synthesis.model.dynamics import DynamicsBlock
+from synthesis.model.motions import Sweep
+from synthesis.model.statement import Contradiction, StatedProblem
+
+LEVER: dict[str, Any] = {
+    "mechanism": {
+        "type": "skeleton",
+        "skeleton": {
+            "joints": {"O": [0.0, 0.0], "A": [400.0, 0.0]},
+            "links": [{"name": "ground", "joints": ["O"]}, {"name": "lever", "joints": ["O", "A"]}],
+            "input_link": "lever",
+        },
+    },
+    "motion": {"from": -60.0, "to": 80.0},
+    "dynamics": {"gravity": {}, "bodies": {"lever": {"mass": 5.0, "cg": [300.0, 0.0]}}},
+}
+"""A lever with a weight, of the examples."""
+
+ROCKER: dict[str, Any] = {
+    "mechanism": {
+        "type": "fourbar",
+        "fixed_pivots": {"input": [0.0, 0.0], "output": [300.0, 0.0]},
+        "links": {"input": 200.0, "coupler": 280.0, "output": 220.0},
+    },
+    "motion": {"from": 40.0, "to": 110.0},
+    "dynamics": {
+        "gravity": {},
+        "bodies": {
+            "input": {"mass": 1.0, "cg": {"distance": 100.0}},
+            "coupler": {"mass": 4.0, "cg": {"distance": 150.0, "angle": 20.0}},
+            "output": {"mass": 1.5, "cg": {"distance": 110.0}},
+        },
+        "loads": [{"joint": "B", "force": {"constant": [0.0, -40.0]}}],
+    },
+}
+"""A lifting linkage with its weights and a load, of the examples."""
+
+
+class Holding(Sweep):
+    """Equal steps of the input; without a speed the linkage is held at rest at every one of them."""
+
+    @property
+    def rate(self) -> float:
+        """Input speed, rad/s (length unit/s of a driven slider); 0 where none is stated."""
+        return 0.0 if self.speed is None and self.speed_rpm is None else super().rate
+
+
+class SpringBalancingProblem(StatedProblem):
+    """Spring balancing: springs with which a linkage needs as little drive as can be for what it weighs and carries.
+
+    Rates, preloads and free lengths at given ends, and one open end of a zero-free-length spring, are the best there
+    are, with a proven bound; so are both ends of such springs where the bound is reached. Ends of other springs are
+    searched for. Where springs can balance the linkage exactly, the energy of all that moves is constant.
+    """
+
+    model_config = ConfigDict(
+        title="Spring balancing",
+        json_schema_extra={
+            "examples": [
+                {
+                    "kind": "spring_balancing",
+                    **LEVER,
+                    "springs": [
+                        {
+                            "ends": [
+                                {"link": "ground", "point": [0.0, 250.0]},
+                                {"link": "lever", "within": [[50.0, 0.0], [200.0, 0.0]]},
+                            ],
+                            "max_rate": 1000.0,
+                        }
+                    ],
+                },
+                {
+                    "kind": "spring_balancing",
+                    **ROCKER,
+                    "springs": [
+                        {
+                            "ends": [
+                                {"link": "ground", "point": [-60.0, 260.0]},
+                                {"link": "input", "point": {"distance": 120.0}},
+                            ],
+                            "min_free_length": 60.0,
+                            "max_free_length": 120.0,
+                            "max_rate": 5000.0,
+                            "max_preload": 30.0,
+                            "form": "extension",
+                            "max_deflection": 200.0,
+                        },
+                        {"links": ["ground", "output"], "max_torsion": 40.0, "max_torque": 30.0},
+                    ],
+                },
+                {
+                    "kind": "spring_balancing",
+                    **ROCKER,
+                    "springs": [
+                        {
+                            "ends": [
+                                {"link": "ground", "within": [[-150.0, 0.0], [-50.0, 0.0], [-50.0, 300.0]]},
+                                {"link": "input", "within": [[0.0, 100.0], [80.0, 120.0]]},
+                            ],
+                            "max_rate": 2000.0,
+                        }
+                    ],
+                },
+                {
+                    "kind": "spring_balancing",
+                    **ROCKER,
+                    "springs": [
+                        {
+                            "ends": [
+                                {"link": "ground", "within": [[-150.0, -100.0], [-50.0, 50.0], [-50.0, 250.0]]},
+                                {"link": "input", "within": [{"distance": 60.0}, {"distance": 180.0}]},
+                            ],
+                            "min_free_length": 50.0,
+                            "max_free_length": 150.0,
+                            "form": "extension",
+                        }
+                    ],
+                    "norm": "rms",
+                    "max_designs": 3,
+                },
+            ]
+        },
+    )
+
+    kind: Literal["spring_balancing"]
+    mechanism: dict[str, Any] = Field(description="A linkage, as in `POST /v1/analyses`.")
+    motion: Holding = Field(
+        default=Holding(),
+        description="By default a full turn, of a driven slider from toggle to toggle; without a speed at rest.",
+    )
+    dynamics: DynamicsBlock = Field(description="What it weighs and carries, as in `POST /v1/analyses`.")
+    springs: list[SoughtSpring] = Field(min_length=1, max_length=6, description="The springs that are sought.")
+    norm: Literal["max", "rms"] = Field(
+        default="max",
+        description="Whether the peak of the drive over the motion is made least, or the root of its mean square.",
+    )
+
+    @property
+    def force_units(self) -> Literal["si", "consistent"]:
+        """Forces are in these units."""
+        return self.dynamics.units
+
+    def contradictions(self) -> list[Contradiction]:
+        """What is wrong with the linkage and what it carries, and with where springs are to hold."""
+        if self.dynamics.friction is not None:
+            detail = "the best springs are known without friction only; leave it out"
+            return [Contradiction("/dynamics/friction", detail)]
+        # It brings the analysis core, for which the parsing of problems does not wait.
+        from synthesis.kinds.spring_balancing.faults import spring_faults
+
+        faults = self.motion.faults() or spring_faults(
+            self.mechanism, self.dynamics, self.length_unit, self.motion, self.springs
+        )
+        return [Contradiction(path, detail) for path, detail in faults]

@@ -1,0 +1,177 @@
+"""Springs with open ends of which the program is not convex: a search from many places, without proof.
+
+At given ends the program has its optimum. From the best of many places the ends are moved by sequential programs: what
+a small way towards each corner of an area does to the drive, and to the limits, is added to the program as a further
+parameter, within a trust region that shrinks where a step is no gain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.spring_balancing.branching import Places, solved_at
+from synthesis.kinds.spring_balancing.effects import Effects, Setting, effects_of
+from synthesis.kinds.spring_balancing.found import Spring, springs_of, value_of
+from synthesis.kinds.spring_balancing.program import EXACT, Best, best
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+POSITIONS = 120
+"""Positions of the motion that the search looks at."""
+
+STARTS, REFINED = 40, 6
+"""Places that are tried, and the best of them that are moved from."""
+
+STEPS = 24
+"""Steps from a place at most."""
+
+WIDEST, NARROWEST = 0.4, 1e-5
+"""Shares of the way to the corners that a step may go: at first, and where it ends."""
+
+NUDGE = 1e-6
+"""Share of the way to a corner by which derivatives are taken."""
+
+GAIN = 1e-7
+"""Share of the value that a step must gain."""
+
+ALIKE = 0.02
+"""Share of the linkage's size, and of a rate, within which springs are the same."""
+
+
+class Tried(NamedTuple):
+    """Places of the ends that are searched for, and the best parameters there."""
+
+    points: tuple[complex, ...]
+    best: Best
+
+
+class Search:
+    """The search among the places of some ends of the springs of a problem."""
+
+    def __init__(self, setting: Setting) -> None:
+        self.setting, self.few = setting, setting.thinned(POSITIONS)
+        springs = setting.problem.springs
+        self.areas: Places = [setting.places(spring) for spring in springs]
+        self.moved = [
+            (n, k)
+            for n, spring in enumerate(springs)
+            for k in ([0] if spring.superposed else [0, 1])
+            if spring.ends is not None and not spring.convex and len(self.areas[n][k]) > 1
+        ]
+
+    def places(self, points: Sequence[complex]) -> Places:
+        """The corners of all ends, with those that are searched for at points."""
+        places = [list(ends) for ends in self.areas]
+        for (n, k), at in zip(self.moved, points, strict=True):
+            places[n][k] = np.array([at])
+        return places
+
+    def tried(self, points: Sequence[complex]) -> Tried:
+        """The best parameters at places."""
+        return Tried(tuple(points), solved_at(self.few, self.places(points), bounded=False))
+
+    def drawn(self, rng: np.random.Generator) -> tuple[complex, ...]:
+        """Places at random in the areas."""
+        return tuple(complex(rng.dirichlet(np.ones(len(self.areas[n][k]))) @ self.areas[n][k]) for n, k in self.moved)
+
+    def refined(self, start: Tried) -> Tried:
+        """The best places near some."""
+        at, way = start, WIDEST
+        for _ in range(STEPS):
+            if way < NARROWEST or at.best.value <= EXACT:
+                break
+            points = self._stepped(at, way)
+            tried = None if points is None else self.tried(points)
+            if tried is not None and tried.best.value < at.best.value * (1.0 - GAIN):
+                at, way = tried, min(2.0 * way, WIDEST)
+            else:
+                way *= 0.25
+        return at
+
+    def _effects(self, points: Sequence[complex]) -> list[Effects]:
+        springs = self.setting.problem.springs
+        return [effects_of(self.few, spring, ends) for spring, ends in zip(springs, self.places(points), strict=True)]
+
+    def _stepped(self, at: Tried, way: float) -> tuple[complex, ...] | None:
+        """Places a step further, by the program with the ways to the corners as parameters."""
+        here = self._effects(at.points)
+        drives, rows, corners = [], [], []
+        for m, (n, k) in enumerate(self.moved):
+            for corner in self.areas[n][k]:
+                moved = [*at.points]
+                moved[m] += NUDGE * (complex(corner) - moved[m])
+                there = self._effects(moved)[n]
+                own = at.best.parameters[n]
+                drives.append(own @ (there.drive - here[n].drive) / NUDGE)
+                shifted = np.zeros(sum(len(part.rows) for part in here))
+                if len(there.rows) == len(here[n].rows):
+                    first = sum(len(part.rows) for part in here[:n])
+                    shifted[first : first + len(there.rows)] = (there.rows - here[n].rows) @ own / NUDGE
+                rows.append(shifted)
+                corners.append((m, complex(corner)))
+        whole = self._joined(here, np.array(drives), np.array(rows).T, [m for m, _ in corners], way)
+        found = best(self.few.fixed, [whole], self.setting.problem.norm, bounded=False)
+        if found.status != "solved":
+            return None
+        points = [*at.points]
+        for (m, corner), share in zip(corners, found.parameters[0][-len(corners) :].tolist(), strict=True):
+            points[m] += max(share, 0.0) * (corner - at.points[m])
+        return tuple(points)
+
+    @staticmethod
+    def _joined(here: Sequence[Effects], drives: Real, shifts: Real, ends: list[int], way: float) -> Effects:
+        """All springs and the ways of their ends as one."""
+        count, more = sum(len(part.drive) for part in here), len(ends)
+        rows, at = np.zeros((len(shifts), count + more)), 0
+        first = 0
+        for part in here:
+            rows[first : first + len(part.rows), at : at + len(part.drive)] = part.rows
+            first, at = first + len(part.rows), at + len(part.drive)
+        rows[:, count:] = shifts
+        ways = np.zeros((more + max(ends) + 1, count + more))
+        ways[:more, count:] = -np.eye(more)
+        for column, end in enumerate(ends):
+            ways[more + end, count + column] = 1.0
+        limits = [*(part.limits for part in here), np.zeros(more), np.full(max(ends) + 1, way)]
+        stiff = np.concatenate([*(part.stiff for part in here), np.zeros(more)])
+        drive = np.concatenate([*(part.drive for part in here), drives])
+        return Effects(drive, np.concatenate([rows, ways]), np.concatenate(limits), stiff)
+
+
+def searched(setting: Setting, report: Callable[[float], None]) -> list[list[Spring]]:
+    """Springs by their value, the least first, and different ones."""
+    search = Search(setting)
+    rng = np.random.default_rng(setting.problem.seed)
+    middle = tuple(complex(search.areas[n][k].mean()) for n, k in search.moved)
+    starts = [search.tried(points) for points in (middle, *(search.drawn(rng) for _ in range(STARTS)))]
+    report(0.3)
+    solved = sorted((start for start in starts if start.best.status == "solved"), key=lambda one: one.best.value)
+    found: list[tuple[float, list[Spring]]] = []
+    for n, start in enumerate(solved[: max(REFINED, min(setting.problem.max_designs, STARTS))]):
+        places = search.places(search.refined(start).points)
+        last = solved_at(setting, places)
+        if last.status == "solved":
+            springs = springs_of(setting, places, last.parameters)
+            found.append((value_of(setting, springs), springs))
+        report(0.3 + 0.7 * (n + 1) / REFINED)
+    different: list[list[Spring]] = []
+    for _, springs in sorted(found, key=lambda one: one[0]):
+        if not any(_alike(setting, springs, other) for other in different):
+            different.append(springs)
+    return different
+
+
+def _alike(setting: Setting, one: Sequence[Spring], other: Sequence[Spring]) -> bool:
+    if [spring.number for spring in one] != [spring.number for spring in other]:
+        return False
+    for mine, its in zip(one, other, strict=True):
+        if abs(mine.rate - its.rate) > ALIKE * max(mine.rate, its.rate):
+            return False
+        if any(abs(a - b) > ALIKE * setting.size for a, b in zip(mine.ends, its.ends, strict=True)):
+            return False
+    return True

@@ -1,0 +1,82 @@
+"""Spring balancing: the best springs by programs or by search, each verified by driving what is answered."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from synthesis.kinds.spring_balancing.branching import branched
+from synthesis.kinds.spring_balancing.design import SpringBalancingResult, SprungDesign
+from synthesis.kinds.spring_balancing.effects import Setting
+from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
+from synthesis.kinds.spring_balancing.search import searched
+from synthesis.kinds.spring_balancing.verification import verify_springs
+from synthesis.model.kind import Progress, part_of
+from synthesis.outcome.sifting import Sifting
+
+LEAST_POSITIONS = 5
+"""Positions at which the forces must be known for the motion to be one."""
+
+NOTHING = 1e-12
+"""Drive as a share of the magnitudes of its parts that is nothing: rounding."""
+
+
+def solve_spring_balancing(problem: SpringBalancingProblem, progress: Progress) -> SpringBalancingResult:
+    """Solve a problem of spring balancing.
+
+    Returns
+    -------
+    SpringBalancingResult
+        Complete where the springs are proved to be the best, or that there are none.
+    """
+    progress(0.0, "measuring the linkage")
+    setting = Setting(problem)
+    sifting = Sifting[SprungDesign](problem)
+    if len(setting.at) < LEAST_POSITIONS:
+        return _answer(sifting, "exact", "The mechanism cannot be held over this motion.", complete=False)
+    if not setting.peak > NOTHING * setting.parts:
+        text = "The drive is zero without springs: nothing is to be balanced."
+        return _answer(sifting, "exact", text, complete=True)
+    report = part_of(progress, 0.1, 0.8)
+    places = [setting.places(spring) for spring in problem.springs]
+    if all(spring.convex or spring.superposed for spring in problem.springs):
+        method = "convex" if all(spring.convex for spring in problem.springs) else "branch_and_bound"
+        best = branched(setting, places, partial(_reported, report))
+        if best.status == "infeasible":
+            text = "None exists: no springs that are asked for keep their limits over this motion."
+            return _answer(sifting, method, text, complete=True)
+        found, bound, proved = [best.springs] if best.status == "solved" else [], best.bound, best.proved
+    else:
+        method, bound, proved = "search", None, False
+        found = searched(setting, partial(_reported, report))
+    progress(0.8, "verifying")
+    sifting.sift(found, partial(verify_springs, setting, bound=bound, proved=proved))
+    progress(1.0, "verified")
+    exact = bool(sifting.passed) and sifting.passed[0].metrics.exact
+    return _answer(
+        sifting, method, _summary(sifting, proved or exact), complete=(proved or exact) and bool(sifting.passed)
+    )
+
+
+def _reported(progress: Progress, share: float) -> None:
+    progress(share, "finding springs")
+
+
+def _answer(sifting: Sifting[SprungDesign], method: str, summary: str, *, complete: bool) -> SpringBalancingResult:
+    return SpringBalancingResult(
+        designs=sifting.designs(lambda designs: sorted(designs, key=lambda design: design.metrics.value)),
+        search=sifting.search(method, complete=complete),
+        summary=summary,
+    )
+
+
+def _summary(sifting: Sifting[SprungDesign], proved: bool) -> str:
+    if not sifting.passed:
+        return f"No design was found.{sifting.reasons()}"
+    metrics = min(sifting.passed, key=lambda design: design.metrics.value).metrics
+    if metrics.exact:
+        return "The springs balance it exactly: the drive is zero and the potential energy constant over the motion."
+    said = f"The drive is brought to {metrics.value:.4g} of what it was"
+    if metrics.bound is None:
+        return f"{said}, the least that was found; that no springs leave less is not proved."
+    known = f"no springs that are asked for bring it below {metrics.bound:.4g}"
+    return f"{said}; {known}." if proved else f"{said}; {known}, and what lies between is open."
