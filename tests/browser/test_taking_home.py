@@ -39,6 +39,7 @@ FIELDS = {
     "function": ("input_range", "85", 85),
     "cam": ("follower/roller_radius", "9", 9),
     "balancing": ("rpm", "900", 900),
+    "spring_balancing": ("motion/to", "70", 70),
     "flywheel": ("coefficient", "0.06", 0.06),
     "engine": ("stroke", "74", 74),
     "indexing": ("roller_diameter", "11", 11),

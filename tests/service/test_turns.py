@@ -219,7 +219,7 @@ def test_the_cost_of_every_example_is_known():
     brief = {name for name, kind in KINDS.items() if kind.brief(parse_problem(kind.examples[0]))}
     assert brief == {
         "motion", "quick_return", "straight_line", "parallel_motion", "gear_train", "planetary_train", "gearbox",
-        "layshaft_gearbox", "cam", "balancing", "flywheel", "engine", "indexing",
+        "layshaft_gearbox", "cam", "balancing", "spring_balancing", "flywheel", "engine", "indexing",
     }  # fmt: skip
     assert not KINDS["motion"].brief(parse_problem(LONG))
 

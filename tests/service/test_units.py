@@ -110,6 +110,7 @@ PURE = {
     "SpindleSpeeds": {"ratio"},
     "SecondMetrics": {"curvature_ratio"},
     "SpringChoice": {"gap"},
+    "SpringMetrics": {"value", "bound", "gap", "energy_variation"},  # shares of what was before
     "StageRatio": {"min", "max"},
     "StatedSpring": {"damping"},  # by the sort of spring
     "StatedTorque": {"table"},  # columns of two units

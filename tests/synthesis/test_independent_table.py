@@ -15,7 +15,17 @@ from benchmarks.independent.quantities import COMPARED, NEVER_STATED, NOT_MEASUR
 from synthesis.dispatch import solve
 from synthesis.registry import KINDS, examples, parse_problem
 
-GEARS = {"gear_train", "planetary_train", "gearbox", "layshaft_gearbox", "balancing", "flywheel", "engine", "indexing"}
+GEARS = {
+    "gear_train",
+    "planetary_train",
+    "gearbox",
+    "layshaft_gearbox",
+    "balancing",
+    "spring_balancing",
+    "flywheel",
+    "engine",
+    "indexing",
+}
 """Kinds that design no motion: their answers are numbers of teeth, wheels, or masses of mechanisms that there are."""
 
 SOURCES = Path(synthesis.__file__).parent

@@ -151,7 +151,7 @@ class Setting:
         one, other = (
             self.carrier(end.link).points(np.array([at]))[0][0] for end, at in zip(spring.ends, ends, strict=True)
         )
-        return np.abs(other - one)
+        return np.asarray(np.abs(other - one))
 
     def rotation(self, links: tuple[str, str]) -> tuple[Real, Real]:
         """The rotation of the second link against the first from the reference, and its rate."""

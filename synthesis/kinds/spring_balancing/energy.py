@@ -58,7 +58,7 @@ def potential(machine: Machine, block: DynamicsBlock, now: Places) -> tuple[Real
 def lengths(spring: Spring, now: Places) -> Real:
     """The length of a spring over positions."""
     first, second = (now.point(link, at)[0] for link, at in zip(spring.links, spring.places, strict=True))
-    return np.abs(second - first)
+    return np.asarray(np.abs(second - first))
 
 
 def tension(spring: Spring, length: Real) -> Real:

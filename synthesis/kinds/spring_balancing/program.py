@@ -173,7 +173,7 @@ def _solved(scaled: _Scaled, norm: Norm, used: list[int], held: list[int], most:
         rows.append(Rows("nonnegative", matrix, np.concatenate([-at, at])))
     else:
         stacked = np.concatenate([scaled.drive, scaled.fixed[None]]).T / np.sqrt(len(scaled.fixed))
-        triangle = np.linalg.qr(stacked, mode="r")
+        triangle = np.asarray(np.linalg.qr(stacked, mode="r"))
         matrix = np.zeros((1 + len(triangle), count + 1))
         matrix[0, count] = -1.0
         matrix[1:, :count] = -triangle[:, :-1]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from tests.service.stated import balancing, cams, gears, linkages, shafts
+from tests.service.stated import balancing, cams, gears, linkages, shafts, springs
 
 TABLES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "motion": (linkages.MOTION, linkages.MOTION_ROWS),
@@ -21,6 +21,7 @@ TABLES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "cam": (cams.CAM, cams.CAM_ROWS),
     "function": (linkages.FUNCTION, linkages.FUNCTION_ROWS),
     "balancing": (balancing.ROTOR, balancing.ROTOR_ROWS),
+    "spring_balancing": (springs.SPRINGS, springs.SPRINGS_ROWS),
     "flywheel": (shafts.FLYWHEEL, shafts.FLYWHEEL_ROWS),
     "engine": (shafts.ENGINE, shafts.ENGINE_ROWS),
     "indexing": (shafts.INDEXING, shafts.INDEXING_ROWS),
@@ -34,6 +35,7 @@ NO_EFFECT = {
     ("planetary_train", "include_failed"): EXHAUSTIVE,
     ("gearbox", "include_failed"): EXHAUSTIVE,
     ("layshaft_gearbox", "include_failed"): EXHAUSTIVE,
+    ("spring_balancing", "include_failed"): "the springs of a program keep the limits that are stated in it",
     ("flywheel", "include_failed"): "the lightest wheel within the limits keeps them",
     ("quick_return", "layout.over"): "the crank turns through: that is its used range",
     ("dwell", "layout.over"): "the crank turns through: that is its used range",
