@@ -17,6 +17,7 @@ from starlette.routing import Match
 
 from service import telemetry
 from service.jobs.database import unreachable
+from synthesis.model.stated_path import stated_steps
 
 PROBLEM_JSON = "application/problem+json"
 
@@ -243,27 +244,10 @@ def _place(fault: Mapping[str, Any], body: Any) -> str:
     # The framework puts the part of the request first; in a body the pointer starts at the body itself.
     if location[:1] != ("body",):
         return pointer(location)
-    steps = _steps(location[1:], body, fault["type"] == "missing")
+    steps = stated_steps(location[1:], body, fault["type"] == "missing")
     if fault["type"] == "unknown_kind" and isinstance(fault["input"], dict):
         steps.append("kind")
     return pointer(steps)
-
-
-def _steps(location: Sequence[str | int], body: Any, missing: bool) -> list[str | int]:
-    """The steps of a validation error's location that exist in the body.
-
-    The location also names the member of a union that was tried, and marks keys of objects; these are left out.
-    """
-    steps: list[str | int] = []
-    value = body
-    for step in location:
-        member = isinstance(value, list) and isinstance(step, int) and step < len(value)
-        if member or (isinstance(value, dict) and step in value):
-            value = value[step]
-        elif not (missing and step is location[-1] and isinstance(value, dict)):
-            continue
-        steps.append(step)
-    return steps
 
 
 def _explained(fault: Mapping[str, Any]) -> str:

@@ -5,6 +5,7 @@ The mechanism is read here and not in the models of the problem: it brings the a
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from pydantic import ValidationError
@@ -12,7 +13,9 @@ from pydantic import ValidationError
 from kinematics.errors import MechanismError as KinematicsError
 from synthesis.analyses.linkage import LinkageAnalysisRequest
 from synthesis.mechanisms import MechanismError
+from synthesis.mechanisms.link_bodies import token
 from synthesis.model.dynamics import DynamicsBlock, LengthUnit, WeighedLinkage
+from synthesis.model.stated_path import stated_steps
 
 
 def weighed_request(mechanism: dict[str, Any], dynamics: WeighedLinkage, unit: LengthUnit) -> LinkageAnalysisRequest:
@@ -34,9 +37,11 @@ def weighed_faults(
     try:
         request = weighed_request(mechanism, dynamics, unit)
     except ValidationError as error:
+        stated = {"mechanism": mechanism, "dynamics": dynamics.model_dump(exclude_unset=True, by_alias=True)}
+        found = error.errors(include_url=False, include_context=False, include_input=False)
         return [
-            ("".join(f"/{step}" for step in fault["loc"] if not str(step).startswith("<")), fault["msg"])
-            for fault in error.errors(include_url=False, include_context=False, include_input=False)
+            (_pointer(stated_steps(fault["loc"], stated, fault["type"] == "missing")), _said(fault["msg"]))
+            for fault in found
         ]
     try:
         built = request.mechanism.mechanism()
@@ -47,3 +52,11 @@ def weighed_faults(
     if shaft and built.driven_by_slide:
         return [("/mechanism", "a slider drives this; a shaft has to")]
     return request.faults()
+
+
+def _pointer(steps: Sequence[str | int]) -> str:
+    return "".join(f"/{token(str(step))}" for step in steps)
+
+
+def _said(message: str) -> str:
+    return message.removeprefix("Value error, ")
