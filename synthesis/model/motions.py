@@ -57,7 +57,7 @@ class Driving(Statement):
 class Sweep(Driving):
     """Equal steps of the input from one angle to another, both included; a full turn where neither is stated."""
 
-    model_config = ConfigDict(populate_by_name=True)
+    model_config = ConfigDict(populate_by_name=True, serialize_by_alias=True)
 
     start: Number | None = Field(
         default=None,

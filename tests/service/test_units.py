@@ -119,6 +119,7 @@ PURE = {
     "StructureVerdict": {"max_error"},
     "SuggestedShift": {"driver", "driven", "contact_ratio"},  # shifts in modules
     "TablePoint": {"x", "y"},
+    "Holding": {"from", "to", "speed", "acceleration"},  # of an input that turns or slides
     "Sweep": {"from", "to", "speed", "acceleration"},  # of an input that turns or slides
     "Target": {"residual"},
     "TorqueCourse": {"table"},  # columns of several units

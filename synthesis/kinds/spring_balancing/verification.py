@@ -131,7 +131,7 @@ def verify_springs(
 
 def answer_of(setting: Setting, springs: Sequence[Spring]) -> tuple[SprungLinkage, dict[str, Any]]:
     """Mechanism and block of an answer."""
-    stated = setting.problem.dynamics.model_dump(mode="json", by_alias=True, exclude_unset=True)
+    stated = setting.problem.dynamics.model_dump(mode="json", by_alias=True, exclude_defaults=True)
     block = {**stated, "springs": [*stated.get("springs", []), *listed(setting, springs)]}
     skeleton = Skeleton.model_validate(skeleton_of(setting.task.machine.mechanism))
     return SprungLinkage(skeleton=skeleton), block
