@@ -262,8 +262,8 @@ def test_lengths_and_forces_are_kept_where_an_end_is_sought() -> None:
     assert short.springs[0].max_length <= 0.9 * free.max_length * (1.0 + 1e-4)
     assert weak.springs[0].max_force <= 0.8 * free.max_force * (1.0 + 1e-4)
     # No longer convex: a length that must not be undercut.
-    given = {"link": "ground", "point": [-79.4, 211.8]}
-    long = best(with_spring(BOTH, ends=[given, BOTH["springs"][0]["ends"][1]], min_length=1.1 * free.min_length))
+    given = {"link": "input", "point": [80.0, 120.0]}
+    long = best(with_spring(BOTH, ends=[BOTH["springs"][0]["ends"][0], given], min_length=1.1 * free.min_length))
     assert long.springs[0].min_length >= 1.1 * free.min_length * (1.0 - 1e-4)
     assert long.metrics.bound is None
     for design in (short, weak, long):
