@@ -1,15 +1,14 @@
 """Forces of linkages: how fast they are had, and whether a limit on them is met where a known linkage meets it.
 
-    python -m benchmarks.dynamics [speed | dyads | analysis | limited | routes] [--count N] [--seed N]
+    python -m benchmarks.dynamics [speed | dyads | analysis | limited | routes] [--count N] [--seed N] [--kind KIND]
 
 ``speed``: force analyses a second of fourbars in closed form, compiled, beside plain vectorised numpy of the same
 formulas and the general equations; 10 000 candidates ordered by their peak torque. ``dyads``: the same of linkages of
 dyads, sixbars and chains to ten links, by elimination. ``analysis``: what a block
-``dynamics`` adds to an analysis of 360 steps. ``limited``: planted tasks of motion, with a limit on the torque 5 %
-above that of the linkage that they were made from; every answer is confirmed by the general equations at 1440
-positions. ``routes``: 10 000 random machines of every type and chains of dyads to ten links, with springs, dampers,
-weight, loads that follow their links and masses on pins, over a full turn: how far reactions and the balances of energy
-and momentum differ. Times are of the processor, on one core.
+``dynamics`` adds to an analysis of 360 steps. ``limited``: planted tasks with limits on forces
+(:mod:`benchmarks.limited_forces`), of all kinds or of one. ``routes``: 10 000 random machines of every type and chains
+of dyads to ten links, with springs, dampers, weight, loads that follow their links and masses on pins, over a full
+turn: how far reactions and the balances of energy and momentum differ. Times are of the processor, on one core.
 """
 
 from __future__ import annotations
@@ -18,27 +17,23 @@ import argparse
 import math
 import statistics
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from benchmarks.limited_forces import KINDS, LADEN, PLATE, SPEED_RPM, limited
 from kinematics.dynamics import Machine, Places, body, reactions
 from kinematics.dynamics.dyads import dyad_forces
 from kinematics.dynamics.fourbar import DRIVE, Fourbars, Weights, peaks
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.analyses import parse_request
-from synthesis.analyses.dynamics import peaks_of
-from synthesis.dispatch import solve
-from synthesis.kinds.motion.demanded import demanded
-from synthesis.kinds.motion.verification import verify
 from synthesis.mechanisms.fourbar_weights import JOINTS, fourbars, weights
 from synthesis.model.dynamics import DesignDynamics
-from synthesis.model.linkages import FOURBAR_LINKS, FourbarConfiguration, fourbar_mechanism
-from synthesis.outcome.forces import run_of, shaped, with_forces
-from synthesis.registry import parse_problem
+from synthesis.model.linkages import FOURBAR_LINKS
+from synthesis.outcome.forces import shaped
 from tests.kinematics.dynamics.dyad_twin import Twin
 from tests.kinematics.dynamics.machines import differences, masses
 from tests.kinematics.mechanism_sampling import CHAIN, EVERY, take
@@ -58,10 +53,7 @@ DYADIC_ROWS = (
     "dyad chain 20",
 )
 """Of the chains those with ten links."""
-SPEED_RPM = 60.0
 SPEED = SPEED_RPM * math.tau / 60.0
-PLATE = {"density": 7800.0, "thickness": 10.0, "width": 20.0, "holes": {"A": 8.0, "B": 8.0}}
-BLOCK = {"gravity": {}, "links": PLATE, "point_masses": [{"joint": "P", "mass": 2.0}], "speed_rpm": SPEED_RPM}
 
 
 def crank_rockers(rng: np.random.Generator, count: int) -> np.ndarray:
@@ -157,7 +149,7 @@ def in_general(joints: np.ndarray, carried: Weights) -> np.ndarray:
 def speed(count: int, seed: int) -> None:
     """Analyses a second, three ways, which agree."""
     joints = crank_rockers(np.random.default_rng(seed), count)
-    stated = shaped(DesignDynamics.model_validate(BLOCK), FOURBAR_LINKS)
+    stated = shaped(DesignDynamics.model_validate(LADEN), FOURBAR_LINKS)
     whole = np.full(count, math.tau)
     linkages, carried = fourbars(joints, whole, 1e-3), weights(stated, joints, "mm")
     analyses = count * (POSITIONS + 1)
@@ -259,56 +251,6 @@ def analysis(count: int, seed: int) -> None:
     )
 
 
-def limited(count: int, seed: int) -> None:
-    """Planted motions with a limit on their torque: how many are answered, and whether the answers keep it."""
-    rng = np.random.default_rng(seed)
-    answered, kept, spent = 0, 0, []
-    for n, row in enumerate(crank_rockers(rng, count)):
-        problem, limit = planted(rng, row, n)
-        begun = time.process_time()
-        result = solve(problem)
-        spent.append(time.process_time() - begun)
-        designs = [design for design in result.designs if design.verification.passed]
-        answered += bool(designs)
-        for design in designs:
-            run = run_of(problem.dynamics, design, 1440)
-            _, found = peaks_of(run.mechanism, run.block, problem.length_unit, run.at, run.speed)
-            kept += bool(found["drive"].value <= limit * (1.0 + 1e-4))
-            if found["drive"].value > limit * (1.0 + 1e-4):
-                print(f"task {n}: {found['drive'].value} over {limit}")
-        if not designs:
-            print(f"task {n}: none; {result.summary}")
-    print(f"{answered} of {count} answered; {kept} designs confirmed")
-    print(f"CPU: median {statistics.median(spent):.2f} s, worst {max(spent):.2f} s")
-
-
-def planted(rng: np.random.Generator, row: np.ndarray, n: int) -> tuple[Any, float]:
-    """Three positions of a body that a known linkage carries, and its torque with 5 % more."""
-    o2, a, b, o4, p = (complex(z) for z in row)
-    mechanism = Mechanism(
-        dict(zip(("O2", "A", "B", "O4", "P"), (o2, a, b, o4, p), strict=True)), FOURBAR_LINKS, "input"
-    )
-    inputs = float(mechanism.reference_input) + np.sort(rng.uniform(0.0, 2.0, 3))
-    inputs[0] = float(mechanism.reference_input)
-    motion = drive(mechanism, inputs)
-    angles = np.degrees(motion.angles["coupler"][0] - motion.angles["coupler"][0][0])
-    positions = [
-        {"x": float(z.real), "y": float(z.imag), "angle": float(turned)}
-        for z, turned in zip(motion.joints["P"][0], angles, strict=True)
-    ]
-    stated = {"kind": "motion", "positions": positions, "max_designs": 5, "dynamics": BLOCK, "seed": n}
-    bare = parse_problem(stated)
-    peak = _peak(bare, row)
-    return parse_problem({**stated, "constraints": {"max_drive_torque": 1.05 * peak}}), 1.05 * peak
-
-
-def _peak(problem: Any, row: np.ndarray) -> float:
-    """The torque of the linkage that a task was made from, as of a design that was answered."""
-    design = verify(problem, fourbar_mechanism(FourbarConfiguration(*(complex(z) for z in row))), demanded(problem))
-    assert design is not None
-    return float(with_forces(problem, design).forces.drive_torque.max)
-
-
 def routes(count: int, seed: int) -> None:
     """Reactions against energy and momentum on random machines of all makes."""
     makes = EVERY | CHAIN
@@ -334,18 +276,26 @@ def routes(count: int, seed: int) -> None:
     print(f"CPU: {time.process_time() - begun:.0f} s")
 
 
+def all_limited(count: int, seed: int, kinds: Sequence[str]) -> None:
+    """Planted tasks of these kinds."""
+    for kind in kinds:
+        limited(kind, count, seed)
+
+
 def main() -> None:
     """Run one part, or all."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("part", nargs="?", choices=["speed", "analysis", "limited", "routes", "dyads"])
     parser.add_argument("--count", type=int)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--kind", choices=list(KINDS), help="of limited tasks")
     asked = parser.parse_args()
+    kinds = tuple(KINDS) if asked.kind is None else (asked.kind,)
     parts = (
         ("speed", speed, 10_000),
         ("dyads", dyads, 1000),
         ("analysis", analysis, 20),
-        ("limited", limited, 100),
+        ("limited", partial(all_limited, kinds=kinds), 100),
         ("routes", routes, 10_000),
     )
     for name, part, count in parts:

@@ -30,8 +30,8 @@ from kinematics.linkage.planar.mechanism import Complex, Real
 DRIVE, JOINT, SHAKING_FORCE, SHAKING_MOMENT, POWER = range(5)
 """Columns of the peaks."""
 
-INPUT, COUPLER, OUTPUT, PIN_A, PIN_B = range(5)
-"""What a load acts on. A load at P acts on the coupler, at a pin of the ground on nothing that moves."""
+INPUT, COUPLER, OUTPUT, PIN_A, PIN_B, PIN_P = range(6)
+"""What a load acts on. One at a pin of the ground acts on nothing that moves."""
 
 LEAST_SINE = 1e-6
 """Sine of the transmission angle below which the forces of a position count as infinite."""
@@ -94,9 +94,9 @@ def peaks(linkages: Fourbars, weights: Weights, speed: float, positions: int) ->
     float, shape (n, 5)
         In the order of :data:`DRIVE` and the following; infinite where a position cannot be assembled, or is a toggle.
     """
-    out = np.empty((len(linkages.a), 5))
-    _peaks(*linkages, *weights, speed, positions, out)
-    return out
+    out = np.empty((len(linkages.a), 1, 5))
+    fill_peaks(*linkages, *weights, speed, positions, out)
+    return out[:, 0]
 
 
 @njit(**OPTIONS)
@@ -115,7 +115,7 @@ def _square(z: complex) -> float:
 
 
 @njit(**OPTIONS)
-def _peaks(
+def fill_peaks(
     o2s: Complex,
     o4s: Complex,
     a_lengths: Real,
@@ -140,7 +140,11 @@ def _peaks(
     positions: int,
     out: Real,
 ) -> None:
-    """One long loop: what passes through a function's boundary costs as much as what is done there."""
+    """As :func:`peaks`, by windows of as many positions each: ``out`` has the shape (n, windows, 5).
+
+    One long loop: what passes through a function's boundary costs as much as what is done there.
+    """
+    windows = out.shape[1]
     for n in range(len(o2s)):
         o2, o4, about = o2s[n], o4s[n], abouts[n]
         a, b, c, point, sign = a_lengths[n], b_lengths[n], c_lengths[n], points[n], signs[n]
@@ -153,7 +157,13 @@ def _peaks(
         turn = complex(math.cos(step), math.sin(step))
         drive = pin = shaking = moment = 0.0
         whole = True
-        for _ in range(positions):
+        window, last = 0, positions // windows
+        for k in range(positions):
+            if k == last and window + 1 < windows:
+                _note(out[n, window], drive, pin, shaking, moment, speed)
+                drive = pin = shaking = moment = 0.0
+                window += 1
+                last = (window + 1) * positions // windows
             crank = a * u2
             joint_a = o2 + crank
             diagonal = o4 - joint_a
@@ -189,24 +199,28 @@ def _peaks(
             need3 -= payload
             on_a = mass_a * (gravity - pull)
             on_b = mass_b * (gravity - rate4 * c * u4)
-            for k in range(len(on)):
-                force = forces[n, k]
-                if on[k] == INPUT:
-                    force = force * u2 if turning[k] else force
+            for i in range(len(on)):
+                force = forces[n, i]
+                if on[i] == INPUT:
+                    force = force * u2 if turning[i] else force
                     need2 -= force
-                    turned2 -= _cross(arms[n, k] * u2, force)
-                elif on[k] == COUPLER:
-                    force = force * u3 if turning[k] else force
+                    turned2 -= _cross(arms[n, i] * u2, force)
+                elif on[i] == COUPLER:
+                    force = force * u3 if turning[i] else force
                     need3 -= force
-                    turned3 -= _cross(arms[n, k] * u3, force)
-                elif on[k] == OUTPUT:
-                    force = force * u4 if turning[k] else force
+                    turned3 -= _cross(arms[n, i] * u3, force)
+                elif on[i] == OUTPUT:
+                    force = force * u4 if turning[i] else force
                     need4 -= force
-                    turned4 -= _cross(arms[n, k] * u4, force)
-                elif on[k] == PIN_A:
+                    turned4 -= _cross(arms[n, i] * u4, force)
+                elif on[i] == PIN_A:
                     on_a += force
-                else:
+                elif on[i] == PIN_B:
                     on_b += force
+                else:
+                    need3 -= force
+                    turned3 -= _cross(arm_p, force)
+                    payload += force
 
             b_on_output = turned4 / (c * s) * u3 + (turned3 - b * _cross(u3, on_b)) / (b * s) * u4
             b_on_coupler = on_b - b_on_output
@@ -223,7 +237,13 @@ def _peaks(
             pin = max(pin, _square(b_on_output), _square(b_on_coupler), _square(payload))
             u2 *= turn
         if whole:
-            out[n, DRIVE], out[n, JOINT], out[n, SHAKING_FORCE] = drive, math.sqrt(pin), math.sqrt(shaking)
-            out[n, SHAKING_MOMENT], out[n, POWER] = moment, drive * abs(speed)
+            _note(out[n, window], drive, pin, shaking, moment, speed)
         else:
             out[n] = np.inf
+
+
+@njit(**OPTIONS)
+def _note(out: Real, drive: float, pin: float, shaking: float, moment: float, speed: float) -> None:
+    """Write the peaks; those of pins and frame come as squares."""
+    out[DRIVE], out[JOINT], out[SHAKING_FORCE] = drive, math.sqrt(pin), math.sqrt(shaking)
+    out[SHAKING_MOMENT], out[POWER] = moment, drive * abs(speed)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from kinematics.dynamics.bodies import Body
 from kinematics.dynamics.friction import Friction
 from kinematics.dynamics.loads import Load
-from kinematics.linkage.planar.mechanism import Mechanism, Real
+from kinematics.linkage.planar.mechanism import Complex, Mechanism, Real
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Machine:
         Forces, torques, springs.
     friction : Friction
         Of pins and slides.
-    about : complex
+    about : complex, or of shape S
         Point about which the shaking moment is taken.
     """
 
@@ -37,6 +37,6 @@ class Machine:
     pin_masses: dict[str, Real] = field(default_factory=dict)
     gravity: complex = 0j
     loads: tuple[Load, ...] = ()
-    about: complex = 0j
+    about: complex | Complex = 0j
     scale: float = 1.0
     friction: Friction = field(default_factory=Friction)

@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 from kinematics.compiling import njit
 from synthesis.fit.chart import LENGTHS, OPTIONS, POINT
 from synthesis.fit.coupler_curve import crank_range, two_bars, unit
-from synthesis.fit.room import BOXED, CYCLE, GROUPS, O2, O4, PLACES, TURN, A, B, P
+from synthesis.fit.fourbar_forces import force_margins, force_slopes
+from synthesis.fit.room import BOXED, CYCLE, FORCED, FORCES_AT, GROUPS, O2, O4, PLACES, TURN, A, B, P
 from synthesis.fit.room_margins import ROW, add_derivative, margins_of, parabola, room_margins, steps_of
 from synthesis.numerics.augmented_lagrangian import load_of
 
@@ -133,7 +134,10 @@ def fourbar_margins(
     if not stands(x, lengths, sign, begin, end, ring, ends[0], body, places, home):
         return False
     room_margins(room, places, ring, home, values, rows)
-    return True
+    forced = int(room[FORCED])
+    if forced == 0:
+        return True
+    return bool(force_margins(x, lengths, sign, ends, room[int(room[FORCES_AT]) :], values[len(values) - forced :]))
 
 
 @njit(**OPTIONS)
@@ -192,11 +196,20 @@ def room_rows(
     root = math.sqrt(weight)
     known = np.zeros(n + 1, np.bool_)
     by = np.empty((n + 1, PLACES, unknowns), np.complex128)
+    forced = int(room[FORCED])
+    weighed, by_forces = False, np.empty((forced, unknowns))
     for k in range(count):
         load = load_of(values[k], multipliers[k], weight, False)
         if load <= 0.0:
             continue
         residuals[m] = root * load
+        if k >= count - forced:
+            if not weighed:
+                force_slopes(x, lengths, slopes, sign, ends, turns, room[int(room[FORCES_AT]) :], by_forces)
+                weighed = True
+            jacobian[m] = -root * by_forces[k - count + forced]
+            m += 1
+            continue
         row, out = rows[k], jacobian[m]
         out[:] = 0.0
         at, shares = (n, n, n), (1.0, 0.0, 0.0)

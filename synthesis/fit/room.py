@@ -10,6 +10,7 @@ pivot zones  one for each pivot that has zones       how far it lies within the 
 box          four for each window of the motion      how far the parts lie within a side
 obstacles    one for each window, part and obstacle  distance of the outlines, less the clearance; less than
                                                      nothing by the depth of the overlap
+forces       one for each window and limit           :mod:`synthesis.fit.fourbar_forces`, of fourbars alone
 ============ ======================================= ==========================================================
 
 The motion is taken in :data:`WINDOWS` windows of :data:`STEPS` steps each, and within a window the nearest place
@@ -28,6 +29,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.fit.convex_pieces import convex_pieces
+from synthesis.fit.fourbar_forces import NONE as NO_LIMITS
+from synthesis.fit.fourbar_forces import margins_of_forces
 from synthesis.model.space import Space
 from synthesis.model.zones import MovingZone, Zone
 
@@ -60,14 +63,15 @@ MOST_GROUPS = 24
 
 (
     COUNT, HALF, WANTED, LEFT, RIGHT, LOW, HIGH, BOXED, FIRST_X, FIRST_Y,
-    CYCLE, PARTS, BODY, GROUPS, PIECES, ZONED, ZONES_AT, PARTS_AT, BODY_AT, PIECES_AT, EASED,
-) = range(21)  # fmt: skip
+    CYCLE, PARTS, BODY, GROUPS, PIECES, ZONED, ZONES_AT, PARTS_AT, BODY_AT, PIECES_AT, EASED, FORCED, FORCES_AT,
+) = range(23)  # fmt: skip
 """Places of a room's numbers: how many margins it has; half of a link's width; the distance to be kept; the box, and
 whether there is one; P of the body as it is drawn; whether the whole cycle counts; how many parts, groups of the body's
 pieces, groups of the obstacles' pieces, these pieces, and pivots with zones there are; where each of these tables
-begins; and by how much less narrowly than other parts the body is aimed at in the first window and the last."""
+begins; by how much less narrowly than other parts the body is aimed at in the first window and the last; and how many
+margins limits on forces have, and where these (:mod:`synthesis.fit.fourbar_forces`) begin."""
 
-HEADER = 21
+HEADER = 23
 
 NONE = np.zeros(0)
 """No room."""
@@ -83,6 +87,7 @@ def packed(
     pivots: Sequence[int] = (O2, O4, A, B),
     aim: float = AIM,
     spare: float = np.inf,
+    forces: Real = NO_LIMITS,
 ) -> Real:
     """A room in task coordinates, with ``origin`` at 0 and ``size`` at 1; empty where nothing is demanded.
 
@@ -104,9 +109,11 @@ def packed(
     spare : float
         By how much more than is checked the body keeps clear where it has to be at the ends of the motion: it cannot be
         aimed at more narrowly there.
+    forces : float
+        Limits on forces, of :func:`synthesis.fit.fourbar_forces.packed_forces`.
     """
     if space is None:
-        return NONE
+        return _with_forces(np.zeros(HEADER), [[], [], [], []], forces) if len(forces) else NONE
     zones = _zones(space, origin, size, pivots, first is not None, aim)
     moves = space.swept
     carries = space.body is not None and first is not None
@@ -117,7 +124,7 @@ def packed(
         body = _pieces([((outline - origin) / size, 0.0)])
     obstacles = [] if not moves else [((points - origin) / size, radius / size) for points, radius in _outlines(space)]
     pieces = _pieces(obstacles)
-    if not zones and not moves:
+    if not zones and not moves and not len(forces):
         return NONE
     groups = len({piece[0] for piece in pieces})
     bodies = len({piece[0] for piece in body})
@@ -143,6 +150,11 @@ def packed(
         body,
         pieces,
     ]
+    return _with_forces(header, tables, forces)
+
+
+def _with_forces(header: Real, tables: Sequence[list[list[float]]], forces: Real) -> Real:
+    """The numbers of a room, table after table, and the limits on forces behind them."""
     numbers = [header]
     at = HEADER
     for place, table in zip((ZONES_AT, PARTS_AT, BODY_AT, PIECES_AT), tables, strict=True):
@@ -150,7 +162,9 @@ def packed(
         # Each table ends with the mark of no further record.
         numbers.append(np.array([value for record in table for value in record] + [-1.0]))
         at += len(numbers[-1])
-    return np.concatenate(numbers)
+    header[FORCED], header[FORCES_AT] = margins_of_forces(forces), at
+    header[COUNT] += header[FORCED]
+    return np.concatenate([*numbers, forces])
 
 
 def zones_alone(room: Real) -> Real:
@@ -158,7 +172,7 @@ def zones_alone(room: Real) -> Real:
     if not len(room) or room[ZONED] == 0.0:
         return NONE
     zones = room.copy()
-    zones[COUNT], zones[BOXED], zones[GROUPS] = room[ZONED], 0.0, 0.0
+    zones[COUNT], zones[BOXED], zones[GROUPS], zones[FORCED] = room[ZONED], 0.0, 0.0, 0.0
     return zones
 
 

@@ -7,8 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinematics.dynamics.bodies import Body, slenderness_faults
 from kinematics.dynamics.friction import Friction, rubbing_joints
@@ -184,6 +187,62 @@ def machine_of(block: WeighedLinkage, mechanism: Mechanism, unit: LengthUnit) ->
         _friction(block, scale),
     )
     return machine, warnings
+
+
+def machines_of(block: WeighedLinkage, mechanism: Mechanism, unit: LengthUnit) -> Machine | None:
+    """The machines of many designs of one make, shape (n,), as one; None where a load changes, or there are springs or
+    friction, or names that the designs do not have.
+
+    A design of which holes leave nothing has no finite mass.
+    """
+    first_one = _first(mechanism)
+    constant = all(getattr(load.force or load.torque, "constant", None) is not None for load in block.loads)
+    if not constant or block.springs or block.friction is not None or any(_named_faults(block, first_one)):
+        return None
+    scale, count = block.scale(unit), mechanism.shape[0]
+    mass, inertia = np.zeros((2, len(block.bodies), count))
+    cg, places = np.zeros((len(block.bodies), count), np.complex128), np.zeros((len(block.loads), count), np.complex128)
+    for n in range(count):
+        reader = LinkBodies({joint: place[n] for joint, place in mechanism.joints.items()}, mechanism.links, scale)
+        for k, (link, stated) in enumerate(block.bodies.items()):
+            try:
+                part = reader.body(link, stated)
+            except BlockError:
+                mass[k, n] = np.inf
+                continue
+            mass[k, n], cg[k, n], inertia[k, n] = part.mass, part.cg, part.inertia
+        for k, load in enumerate(block.loads):
+            if load.link is not None and load.point is not None:
+                places[k, n] = reader.place(load.link, load.point)
+    reading = _Reader(first_one, scale)
+    loads = [reading.load(f"/dynamics/loads/{k}", load) for k, load in enumerate(block.loads)]
+    masses: dict[str, float] = {}
+    for stated_mass in block.point_masses:
+        masses[stated_mass.joint] = masses.get(stated_mass.joint, 0.0) + stated_mass.mass
+    ground = mechanism.links[GROUND]
+    about = np.asarray(mechanism.joints[ground[0]] if ground else mechanism.slides[0].point)
+    if block.moment_about is not None:
+        about = np.asarray(complex(*block.moment_about))
+    return Machine(
+        mechanism,
+        {link: Body(mass[k], cg[k], inertia[k]) for k, link in enumerate(block.bodies)},
+        {joint: np.asarray(each) for joint, each in masses.items()},
+        0j if block.gravity is None else block.gravity.vector,
+        tuple(replace(load, place=places[k]) if isinstance(load, PointForce) else load for k, load in enumerate(loads)),
+        scale * about,
+        scale,
+    )
+
+
+def _first(mechanism: Mechanism) -> Mechanism:
+    """The first of many designs."""
+
+    def own(value: NDArray[Any]) -> NDArray[Any]:
+        return np.asarray(np.broadcast_to(value, mechanism.shape)[0])
+
+    slides = tuple(slide._replace(point=own(slide.point), angle=own(slide.angle)) for slide in mechanism.slides)
+    joints = {joint: place[0] for joint, place in mechanism.joints.items()}
+    return Mechanism(joints, mechanism.links, mechanism.input, slides, mechanism.gears, mechanism.turns)
 
 
 def _friction(block: WeighedLinkage, scale: float) -> Friction:

@@ -13,7 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from synthesis.fit.fourbar_forces import packed_forces
 from synthesis.fit.placed_in_room import Moving, placed_in_room
+from synthesis.fit.placed_under_forces import placed_under_forces
 from synthesis.kinds.function.closure import Closure, closure_of
 from synthesis.kinds.function.design import Dials, InputDial, OutputDial
 from synthesis.kinds.function.problem import FunctionProblem
@@ -191,10 +193,15 @@ def _placed(task: FunctionTask, linkage: Moving, pin: complex, joint: complex) -
     fixed, sized = ([0j], None) if problem.slides else ([0j, 1 + 0j], lengths)
     preferred = complex(task.unit if problem.slides else USUAL_GROUND)
     found = placement(constraints, fixed, [pin, joint], sized, preferred)
+    limits = constraints.link_length
+    least = 0.0 if limits is None else limits.min / min(lengths)
+    most = math.inf if limits is None or limits.max is None else limits.max / max(lengths)
     if problem.space is not None and not problem.slides:
-        limits = constraints.link_length
-        least = 0.0 if limits is None else limits.min / min(lengths)
-        most = math.inf if limits is None or limits.max is None else limits.max / max(lengths)
         regions = [constraints.fixed_pivot_region] * 2 + [constraints.moving_pivot_region] * 2
         found = placed_in_room(problem.space, linkage, boxes(regions), (least, most), found) or found
+    elif constraints.of_forces and not problem.slides:
+        forces = packed_forces(problem.dynamics, constraints.of_forces, problem.length_unit, 0j, 1.0)
+        bound = constraints.fixed_pivot_region is not None or constraints.moving_pivot_region is not None
+        if len(forces) and not bound:
+            found = placed_under_forces(forces, linkage, (least, most), found)
     return found.origin, found.along

@@ -21,6 +21,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.linkage.planar.mechanism import Mechanism, Slide
 from synthesis.kinds.motion.areas import side_areas, within
 from synthesis.kinds.motion.choices import side_dyads
 from synthesis.kinds.motion.design import MotionResult
@@ -37,7 +38,10 @@ from synthesis.model.linkage_answer import LinkageDesign, LinkageMechanism
 from synthesis.model.linkages import inverted_slider_crank_mechanism, slider_crank_mechanism
 from synthesis.outcome.ranking import ranked, widest_apart
 from synthesis.outcome.sifting import DEFECTS, LENGTHS, NUMERICAL, OUTRANKED, Sifting, reported
+from synthesis.outcome.weighed import bearable
 from synthesis.proof.measures import BULKY, UNEVEN
+
+Whole = NDArray[np.int64]
 
 USABLE_TRANSMISSION_ANGLE = 30.0
 """Degrees; where the client sets no limit, pairs below this are tried only if none reaches it."""
@@ -84,6 +88,9 @@ IN_ZONES = 100
 
 LOOKED_AT, AT_ONCE, FITTING = 60_000, 4000, 400
 """Pairs that are looked at in a room at most, how many at a time, and with how many that fit it is left at that."""
+
+WEIGHED, WEIGHED_AT_ONCE = 4000, 500
+"""Pairs that are weighed at most where forces are limited, and how many at a time, until :data:`FITTING` keep them."""
 
 ALONE = 6000
 """Dyads of a side that is drawn where the other is determined."""
@@ -201,6 +208,8 @@ def slider_linkages(
     sound = int(np.count_nonzero(screened.score))
     if kind == "PR" and not driving and not few:
         screened = _in_room(problem, task, links, sliders, screened)
+    if problem.constraints.of_forces and not few:
+        screened = _bearable(problem, task, links, sliders, screened, kind, driving)
     sifting = Sifting[LinkageDesign](problem, DEFECTS | LENGTHS)
     counts = np.bincount(screened.verdict.ravel(), minlength=len(REJECTED))
     for name, count in zip(REJECTED[1:], counts[1:].tolist(), strict=True):
@@ -377,6 +386,59 @@ def _in_room(
         if np.count_nonzero(fitting) >= FITTING:
             break
     return screened._replace(score=fitting.reshape(screened.score.shape)) if fitting.any() else screened
+
+
+def _bearable(
+    problem: MotionProblem,
+    task: MotionTask,
+    links: Dyads,
+    sliders: Sliders,
+    screened: _Screened,
+    kind: str,
+    driving: bool,
+) -> _Screened:
+    """Without the pairs that break a limit on their forces, and those that are not looked at for it.
+
+    All of them where none keeps the limits, as for a room.
+    """
+    score = screened.score.ravel()
+    sound = np.flatnonzero(score > 0.0)
+    best = sound[np.argsort(-score[sound], kind="stable")]
+    best = best[:: -(-len(best) // WEIGHED) or 1]
+    portions = -(-len(best) // WEIGHED_AT_ONCE)
+    light = np.zeros_like(score)
+    for k in range(portions):
+        weighed = best[k::portions]
+        i, j = np.unravel_index(weighed, screened.score.shape)
+        mechanism, moved = _many(task, links, sliders, kind, driving, i, j)
+        kept = weighed[bearable(problem, mechanism, moved)]
+        light[kept] = score[kept]
+        if np.count_nonzero(light) >= FITTING:
+            break
+    return screened._replace(score=light.reshape(screened.score.shape)) if light.any() else screened
+
+
+def _many(
+    task: MotionTask, links: Dyads, sliders: Sliders, kind: str, driving: bool, i: Whole, j: Whole
+) -> tuple[Mechanism, Real]:
+    """Many linkages of a link and a slider in the problem's coordinates, and what their inputs move by."""
+    o2, a, z = (task.origin + task.size * places for places in (links.fixed[i], links.moving[i], sliders.points[j]))
+    angle = sliders.angles[j]
+    p = np.full(len(i), task.origin)
+    _, turned = _turned(task.images(links.moving[i])[:, None, :], links.fixed[i, None, None])
+    joined: dict[str, tuple[str, ...]]
+    if kind == "RP":
+        joined = {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "P")}
+        block = (Slide("O4", "coupler", z, angle),)
+        return Mechanism({"O2": o2, "O4": z, "A": a, "P": p}, joined, "input", block), turned[:, 0]
+    joined = {"ground": ("O2",), "crank": ("O2", "A"), "coupler": ("A", "B", "P")}
+    mechanism = Mechanism(
+        {"O2": o2, "A": a, "B": z, "P": p}, joined, "B" if driving else "crank", (Slide("B", "ground", z, angle),)
+    )
+    if not driving:
+        return mechanism, turned[:, 0]
+    places = task.images(sliders.points[j])
+    return mechanism, task.size * ((places[:, -1] - places[:, 0]) * np.exp(-1j * angle)).real
 
 
 def _best(task: MotionTask, links: Dyads, sliders: Sliders, screened: _Screened, count: int) -> list[tuple[int, int]]:

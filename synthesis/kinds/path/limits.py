@@ -26,6 +26,7 @@ from synthesis.fit.demands import (
     SIGN,
     WHOLE,
 )
+from synthesis.fit.fourbar_forces import packed_forces
 from synthesis.fit.room import packed, zones_alone
 from synthesis.fit.room_margins import margins_of
 from synthesis.kinds.path.problem import PathProblem
@@ -110,7 +111,14 @@ def setting_of(
             out[GIVEN + 2 * k] = (x - origin.real) / size
         if y is not None:
             out[GIVEN + 2 * k + 1] = (y - origin.imag) / size
-    return np.concatenate([out, packed(problem.space, origin, size)])
+    return np.concatenate([out, room_of(problem, origin, size)])
+
+
+def room_of(problem: PathProblem, origin: complex, size: float) -> Real:
+    """What is held along the motion, with ``origin`` at 0 and ``size`` at 1: the room, and limits on forces."""
+    limits = problem.constraints.of_forces
+    forces = packed_forces(problem.dynamics, limits, problem.length_unit, origin, size)
+    return packed(problem.space, origin, size, forces=forces)
 
 
 def zoned(setting: Real) -> Real:

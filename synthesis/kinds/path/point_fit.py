@@ -17,11 +17,10 @@ from numpy.typing import NDArray
 
 from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, DOUBLE_ROCKER, FOURBAR, UNKNOWNS
 from synthesis.fit.demands import FAMILY, SIGN
-from synthesis.fit.room import packed
 from synthesis.kinds.path.curve_families import joints_of
 from synthesis.kinds.path.curve_limits import all_broken
 from synthesis.kinds.path.held import held
-from synthesis.kinds.path.limits import SETTING, Usable, limits_of, setting_of, zoned
+from synthesis.kinds.path.limits import SETTING, Usable, limits_of, room_of, setting_of, zoned
 from synthesis.kinds.path.point_rows import path_rows
 from synthesis.kinds.path.point_starts import (
     COUPLER,
@@ -151,7 +150,7 @@ def point_task(problem: PathProblem) -> PointTask:
     widths = problem.tolerances
     weights = np.ones(len(z)) if widths is None else widths.min() / widths
     rows = np.ascontiguousarray(np.stack([unit.real, unit.imag, turns, weights], axis=1))
-    return PointTask(rows, origin, size, packed(problem.space, origin, size))
+    return PointTask(rows, origin, size, room_of(problem, origin, size))
 
 
 def families(problem: PathProblem) -> list[int]:

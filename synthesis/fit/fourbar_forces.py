@@ -1,0 +1,276 @@
+"""Limits on forces as margins of a fourbar in its chart, and their rows in a fit.
+
+The forces are those of the closed form (:mod:`kinematics.dynamics.fourbar`) at equal steps of the crank: over a whole
+turn where it turns through, else from the first point to the last. In each of :data:`WINDOWS` windows of the motion the
+peak F of each force that is limited has a margin, ln(limit / F), so that a fit sees every hump of a curve of forces,
+and not the highest alone. The derivatives are differences: what a link weighs, too, follows from the unknowns. A whole
+linkage takes some microseconds.
+
+The numbers stand behind those of a room (:mod:`synthesis.fit.room`), of which these margins are the last.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.compiling import njit
+from kinematics.dynamics.fourbar import DRIVE, JOINT, SHAKING_FORCE, SHAKING_MOMENT, fill_peaks
+from synthesis.fit.chart import LENGTHS, OPTIONS, POINT
+from synthesis.fit.coupler_curve import crank_range, two_bars, unit
+from synthesis.fit.fourbar_loads import (
+    ABOUT,
+    AT_POINT,
+    COUPLES,
+    FORCE,
+    FORCES,
+    GRAVITY,
+    LINKS,
+    LOADS,
+    PINS,
+    SPEED,
+    carried,
+    weigh,
+)
+from synthesis.model.dynamics import DesignDynamics, LengthUnit
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+WINDOWS, POSITIONS = 12, 145
+"""Windows of the motion, and positions in all of them together, both ends included."""
+
+AIM = 0.005
+"""Share by which forces are kept below their limits: peaks lie between the positions."""
+
+PLENTY = 1.0
+"""Margins above this are not told apart: a force of a third of its limit is none that matters."""
+
+DIFFERENCE = 1e-6
+"""Step of the derivatives: of angles, logarithms of lengths and places in task sizes."""
+
+SIZE, LIMITED, INDEX, STRENGTH, COUPLE, BLOCK = 0, 1, 5, 6, 7, 8
+"""Places of the numbers: the task's size in the unit of the forces, limits of the first four peaks, of the joint force
+index, the strength of the load that this is of and the link if it is a torque (-1 if not), and where the block begins.
+Infinite where no limit is stated."""
+
+QUANTITIES = 5
+
+MOVES = 11
+"""What forces depend on: the nine numbers of the chart, and the crank angles at the first point and the last."""
+
+NONE = np.zeros(0)
+"""No limits."""
+
+
+def packed_forces(
+    stated: DesignDynamics | None, limits: Mapping[Any, float], unit: LengthUnit, origin: complex, size: float
+) -> Real:
+    """Limits on forces, and what they are of; empty where there are none, or the closed form does not know the block.
+
+    Parameters
+    ----------
+    stated : DesignDynamics or None
+        What every design weighs and carries.
+    limits : mapping of str to float
+        By the names of the forces.
+    unit : str
+        The length unit.
+    origin, size : complex and float
+        Of the task, length units.
+    """
+    if stated is None or not limits or stated.speed_rpm is None:
+        return NONE
+    block = carried(stated, unit, origin)
+    if block is None:
+        return NONE
+    out = np.full(BLOCK, np.inf)
+    out[SIZE], out[COUPLE], out[STRENGTH] = size * stated.scale(unit), -1.0, 1.0
+    for name, place in (
+        ("drive_torque", DRIVE),
+        ("joint_force", JOINT),
+        ("shaking_force", SHAKING_FORCE),
+        ("shaking_moment", SHAKING_MOMENT),
+    ):
+        if name in limits:
+            out[LIMITED + place] = limits[name]
+    speed = abs(float(block[SPEED]))
+    if "power" in limits and speed > 0.0:
+        out[LIMITED + DRIVE] = min(out[LIMITED + DRIVE], limits["power"] / speed)
+    if "joint_force_index" in limits and stated.loads:
+        first = stated.loads[0]
+        out[INDEX] = limits["joint_force_index"]
+        if first.force is None:
+            out[COUPLE] = list(LINKS).index(str(first.link))
+        elif first.joint in ("O2", "O4"):
+            out[INDEX] = np.inf  # the frame bears it: nothing that moves does
+        else:
+            out[STRENGTH] = abs(complex(*(first.force.constant or (1.0, 0.0)))) or 1.0
+    out[LIMITED : INDEX + 1] *= 1.0 - AIM
+    return np.concatenate([out, block]) if np.isfinite(out[LIMITED : INDEX + 1]).any() else NONE
+
+
+@njit(**OPTIONS)
+def margins_of_forces(forces: Real) -> int:
+    """How many margins there are."""
+    stated = 0
+    for k in range(QUANTITIES if len(forces) else 0):
+        if forces[LIMITED + k] < np.inf:
+            stated += 1
+    return stated * WINDOWS
+
+
+@njit(**OPTIONS)
+def peaks_in_windows(charts: Real, lengths: Real, sign: float, ends: Real, forces: Real, out: Real) -> None:
+    """Peaks of each of n fourbars in each window, shape (n, WINDOWS, QUANTITIES); infinite where one does not close.
+
+    ``charts`` (n, 9) and ``lengths`` (n, 4) are of the linkages, ``ends`` (n, 2) their crank angles from the ground
+    line at the first point and the last.
+    """
+    count, size, block = len(charts), forces[SIZE], forces[BLOCK:]
+    loads = int(block[LOADS])
+    o2s, o4s = np.empty(count, np.complex128), np.empty(count, np.complex128)
+    about, points = np.empty(count, np.complex128), np.empty(count, np.complex128)
+    starts, spans = np.empty(count), np.empty(count)
+    mass, inertia, pins = np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 3))
+    cg = np.empty((count, 3), np.complex128)
+    arms, acting = np.empty((count, loads), np.complex128), np.empty((count, loads), np.complex128)
+    joints = np.empty(5, np.complex128)
+    sound = np.ones(count, np.bool_)
+    for n in range(count):
+        x, own = charts[n], lengths[n]
+        ground, crank = unit(x[2]), unit(x[2] + ends[n, 0])
+        closes, along = two_bars(own[0] * ground - own[1] * crank, own[2], own[3], sign)
+        o2 = complex(x[0], x[1])
+        joints[0], joints[1], joints[3] = o2, o2 + own[1] * crank, o2 + own[0] * ground
+        joints[2] = joints[1] + own[2] * along
+        joints[4] = joints[1] + complex(x[POINT], x[POINT + 1]) * along
+        joints *= size
+        o2s[n], o4s[n], points[n] = joints[0], joints[3], size * complex(x[POINT], x[POINT + 1])
+        about[n] = complex(block[ABOUT], block[ABOUT + 1]) if block[AT_POINT] > 0.0 else joints[0]
+        sound[n] = closes and weigh(block, joints, mass[n], cg[n], inertia[n], arms[n], acting[n])
+        pins[n] = block[PINS : PINS + 3]
+        low, high = crank_range(own[0], own[1], own[2], own[3])
+        starts[n] = x[2] + ends[n, 0]
+        spans[n] = 2.0 * math.pi if low == 0.0 and high == math.pi else ends[n, 1] - ends[n, 0]
+    on, turning = np.empty(loads, np.int64), np.empty(loads, np.bool_)
+    for k in range(loads):
+        on[k], turning[k] = int(block[FORCES + FORCE * k]), block[FORCES + FORCE * k + 6] > 0.0
+    signs = np.full(count, sign)
+    a, b, c = size * lengths[:, 1], size * lengths[:, 2], size * lengths[:, 3]
+    found = np.empty((count, WINDOWS, 5))
+    fill_peaks(
+        o2s, o4s, a, b, c, points, signs, starts, spans, mass, cg, inertia, pins,
+        complex(block[GRAVITY], block[GRAVITY + 1]), on, arms, acting, turning, block[COUPLES : COUPLES + 3], about,
+        block[SPEED], POSITIONS, found,
+    )  # fmt: skip
+    out[:, :, : QUANTITIES - 1] = found[:, :, : QUANTITIES - 1]
+    if forces[INDEX] < np.inf:
+        # The first of the loads alone, on links without mass.
+        couples = np.zeros(3)
+        first = 0 if forces[COUPLE] >= 0.0 else 1
+        if first == 0:
+            couples[int(forces[COUPLE])] = 1.0
+        mass[:], inertia[:], pins[:] = 0.0, 0.0, 0.0
+        fill_peaks(
+            o2s, o4s, a, b, c, points, signs, starts, spans, mass, cg, inertia, pins, 0j, on[:first],
+            np.ascontiguousarray(arms[:, :first]), np.ascontiguousarray(acting[:, :first]), turning[:first], couples,
+            about, 0.0, POSITIONS, found,
+        )  # fmt: skip
+        out[:, :, QUANTITIES - 1] = found[:, :, JOINT] / forces[STRENGTH]
+    for n in range(count):
+        if not sound[n]:
+            out[n] = np.inf
+
+
+@njit(**OPTIONS)
+def force_margins(x: Real, lengths: Real, sign: float, ends: Real, forces: Real, values: Real) -> bool:
+    """The margins of one linkage, written; False where it does not close all along its motion.
+
+    Parameters
+    ----------
+    x, lengths : float, shapes (9 or more,) and (4,)
+        Of the chart.
+    sign : float
+        Assembly.
+    ends : float, shape (2,)
+        Crank angles from the ground line at the first point and the last.
+    forces : float, shape (m,)
+        Of :func:`packed_forces`.
+    values : float, shape (margins_of_forces(forces),)
+        Written.
+    """
+    found = np.empty((1, WINDOWS, QUANTITIES))
+    charts, sizes, angles = np.empty((1, 9)), np.empty((1, 4)), np.empty((1, 2))
+    charts[0], sizes[0], angles[0] = x[:9], lengths, ends
+    peaks_in_windows(charts, sizes, sign, angles, forces, found)
+    m = 0
+    for k in range(QUANTITIES):
+        limit = forces[LIMITED + k]
+        if limit == np.inf:
+            continue
+        for w in range(WINDOWS):
+            force = found[0, w, k]
+            if force == np.inf:
+                return False
+            values[m] = min(math.log(limit / force), PLENTY) if force > 0.0 and limit > 0.0 else PLENTY
+            if limit == 0.0 and force > 0.0:
+                values[m] = -force
+            m += 1
+    return True
+
+
+@njit(**OPTIONS)
+def force_slopes(
+    x: Real, lengths: Real, slopes: Real, sign: float, ends: Real, turns: Real, forces: Real, rows: Real
+) -> None:
+    """The derivatives of the margins by the unknowns, shape (margins, unknowns), written.
+
+    ``slopes`` are those of the lengths, ``turns``, shape (2, unknowns), those of the crank angles at both ends.
+    """
+    charts, sizes, angles = np.empty((MOVES + 1, 9)), np.empty((MOVES + 1, 4)), np.empty((MOVES + 1, 2))
+    for n in range(MOVES + 1):
+        charts[n], sizes[n], angles[n] = x[:9], lengths, ends
+        move = n - 1
+        if LENGTHS <= move < LENGTHS + 4:
+            sizes[n] += DIFFERENCE * slopes[:, move - LENGTHS]
+        elif move >= 9:
+            angles[n, move - 9] += DIFFERENCE
+        if 0 <= move < 9:
+            charts[n, move] += DIFFERENCE
+    found = np.empty((MOVES + 1, WINDOWS, QUANTITIES))
+    peaks_in_windows(charts, sizes, sign, angles, forces, found)
+    m = 0
+    rows[:] = 0.0
+    for k in range(QUANTITIES):
+        if forces[LIMITED + k] == np.inf:
+            continue
+        for w in range(WINDOWS):
+            force = found[0, w, k]
+            if 0.0 < force < np.inf:
+                for n in range(MOVES):
+                    moved = found[n + 1, w, k]
+                    by = (force - moved) / (DIFFERENCE * force) if moved < np.inf else 0.0
+                    if n < 9:
+                        rows[m, n] += by
+                    else:
+                        rows[m] += by * turns[n - 9]
+            m += 1
+
+
+def least_margins(charts: Real, lengths: Real, sign: float, ends: Real, forces: Real) -> Real:
+    """The least margin of each of n fourbars, shape (n,), as for :func:`peaks_in_windows`.
+
+    −∞ where one does not close.
+    """
+    found = np.empty((len(charts), WINDOWS, QUANTITIES))
+    peaks_in_windows(charts, lengths, sign, ends, forces, found)
+    limits = forces[LIMITED : LIMITED + QUANTITIES]
+    stated = np.isfinite(limits)
+    with np.errstate(divide="ignore"):
+        logs = np.log(limits[stated]) - np.log(found[:, :, stated].max(axis=1))
+    return np.asarray(np.where(np.isnan(logs), PLENTY, logs).min(axis=1))

@@ -1,0 +1,72 @@
+"""Which of many linkages of one make are likely to keep the limits on their forces: weighed by elimination.
+
+For searches that choose among many candidates before any is driven. What is left out would fail where it was looked at;
+what passes is measured by the general equations before it is answered.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.dynamics.dyads import closes_by_dyads, dyad_forces
+from kinematics.linkage.planar.mechanism import Mechanism
+from synthesis.mechanisms.machine import machines_of
+from synthesis.model.linkage_statement import LinkageProblem
+from synthesis.outcome.forces import STEPS, shaped
+
+Real = NDArray[np.float64]
+
+SEEN = ("drive_torque", "joint_force", "shaking_force", "shaking_moment", "power")
+"""Limits that are looked at; the joint force index is measured alone."""
+
+
+def bearable(problem: LinkageProblem, mechanism: Mechanism, moved: Real) -> NDArray[np.bool_]:
+    """Which linkages keep the limits on their forces at the positions that are looked at.
+
+    Parameters
+    ----------
+    problem : LinkageProblem
+        That limits forces.
+    mechanism : Mechanism
+        Designs of shape (n,), as they stand at the first target.
+    moved : float, shape (n,)
+        What the input turns by, radians, or slides by, to the last target. An input that turns through is looked at
+        over its whole turn.
+
+    Returns
+    -------
+    bool, shape (n,)
+        All, where the elimination does not know what the linkages weigh and carry.
+    """
+    stated, limits = problem.dynamics, problem.constraints.of_forces
+    every = np.ones(mechanism.shape, np.bool_)
+    slides = mechanism.driven_by_slide
+    if stated is None or not limits.keys() & set(SEEN) or not every.size:
+        return every
+    speed = stated.speed if slides else stated.speed_rpm
+    machine = None if speed is None else machines_of(shaped(stated, mechanism.links), mechanism, problem.length_unit)
+    if speed is None or machine is None or not closes_by_dyads(machine):
+        return every
+    pace = speed if slides else speed * math.tau / 60.0
+    start = np.broadcast_to(np.asarray(mechanism.reference_input), mechanism.shape)[:, None]
+    shares = np.linspace(0.0, 1.0, STEPS + 1)
+    found = dyad_forces(machine, start + moved[:, None] * shares, pace)
+    if not slides:
+        whole = dyad_forces(machine, start + math.tau * shares, pace)
+        turns = np.isfinite(whole.drive).all(axis=1, keepdims=True)
+        found = type(found)(*(np.where(turns, full, part) for full, part in zip(whole, found, strict=True)))
+    peaks = {
+        "drive_torque": found.drive,
+        "joint_force": found.pin,
+        "shaking_force": found.shaking_force,
+        "shaking_moment": found.shaking_moment,
+        "power": found.drive * pace * (machine.scale if slides else 1.0),
+    }
+    for name, limit in limits.items():
+        if name in peaks:
+            # What is not a number is no motion, and fails.
+            every &= np.abs(peaks[name]).max(axis=1) <= limit
+    return every
