@@ -32,6 +32,7 @@ FILES: dict[str, tuple[Form, ...]] = {
     "flywheel": ("svg", "dxf", "csv"),
     "engine": ("svg", "dxf", "csv"),
     **dict.fromkeys(GENEVA, ("svg", "gif", "dxf", "csv")),
+    "ratchet": ("svg", "dxf", "csv"),
 }
 """The forms of files of the types of mechanism that are not linkages; linkages have all forms."""
 
@@ -57,6 +58,7 @@ def _sheets() -> dict[str, Maker]:
     from service.render.shafts.engine import engine_sheet
     from service.render.shafts.flywheel import flywheel_sheet
     from service.render.shafts.indexing import indexing_sheet
+    from service.render.shafts.ratchet import ratchet_sheet
 
     return {
         LINKAGE: linkage_sheet,
@@ -70,6 +72,7 @@ def _sheets() -> dict[str, Maker]:
         "flywheel": flywheel_sheet,
         "engine": engine_sheet,
         **dict.fromkeys(GENEVA, indexing_sheet),
+        "ratchet": ratchet_sheet,
     }
 
 
@@ -97,6 +100,7 @@ def _drawings() -> dict[str, Maker]:
     from service.render.shafts.engine import engine_drawing
     from service.render.shafts.flywheel import flywheel_drawing
     from service.render.shafts.indexing import indexing_drawing
+    from service.render.shafts.ratchet import ratchet_drawing
 
     return {
         LINKAGE: linkage_drawing,
@@ -110,6 +114,7 @@ def _drawings() -> dict[str, Maker]:
         "flywheel": flywheel_drawing,
         "engine": engine_drawing,
         **dict.fromkeys(GENEVA, indexing_drawing),
+        "ratchet": ratchet_drawing,
     }
 
 
@@ -121,6 +126,7 @@ def _tables() -> dict[str, Maker]:
     from service.render.shafts.engine import engine_table
     from service.render.shafts.flywheel import flywheel_table
     from service.render.shafts.indexing import indexing_table
+    from service.render.shafts.ratchet import ratchet_table
 
     return {
         LINKAGE: linkage_table,
@@ -135,6 +141,7 @@ def _tables() -> dict[str, Maker]:
         "flywheel": flywheel_table,
         "engine": engine_table,
         **dict.fromkeys(GENEVA, indexing_table),
+        "ratchet": ratchet_table,
     }
 
 

@@ -16,6 +16,7 @@ import { Gears } from "./gears.js";
 import { Geneva } from "./geneva.js";
 import { checks, dimensions, figures, made, table } from "./figures.js";
 import { Mover, demanded } from "./mover.js";
+import { Ratchet } from "./ratchet.js";
 import { Rotor } from "./rotor.js";
 
 /** Samples of a cycle. */
@@ -28,6 +29,7 @@ const TURN_STEPS = 360;
 const VIEWS = {
   cam: Disc, barrel_cam: Barrel, gear_train: Gears, planetary_train: Gears, gearbox: Gears, layshaft_gearbox: Gears, rotor: Rotor,
   flywheel: Flywheel, engine: Engine, geneva_external: Geneva, geneva_internal: Geneva, geneva_spherical: Geneva,
+  ratchet: Ratchet,
 };
 
 /** @typedef {{stop: () => void, pause?: () => void}} Moving */

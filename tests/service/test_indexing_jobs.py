@@ -27,7 +27,11 @@ def outcome(client: httpx.Client, problem: Statement) -> Any:
     return job["result"]
 
 
-@pytest.mark.parametrize("example", examples("indexing"), ids=lambda one: f"{one['drive']} {one['stations']}")
+GENEVA = [one for one in examples("indexing") if one["drive"] != "ratchet"]
+RATCHET = next(one for one in examples("indexing") if one["drive"] == "ratchet")
+
+
+@pytest.mark.parametrize("example", GENEVA, ids=lambda one: f"{one['drive']} {one['stations']}")
 def test_every_drive_is_drawn_and_moves(client: httpx.Client, example: Statement) -> None:
     job = finished(client, example)
     design = job["result"]["designs"][0]
@@ -108,9 +112,41 @@ def test_a_drive_is_analysed(client: httpx.Client) -> None:
     assert [error["path"] for error in refused.json()["errors"]] == ["/mechanism/crank_radius"]
 
 
+def test_a_ratchet_is_found_drawn_and_moves(client: httpx.Client) -> None:
+    wanted = RATCHET | {"pawls": {"friction": 0.2, "overlap": 2}, "constraints": {"pin_force": 500.0, "size": 120.0}}
+    job = finished(client, wanted)
+    designs = job["result"]["designs"]
+    assert [len(one["mechanism"]["pawls"]) for one in designs] == [2, 4, 6]
+    for number, design in enumerate(designs):
+        assert design["metrics"]["tooth_force"] <= 500.0 * (1.0 + 1e-9)
+        place = f"/v1/jobs/{job['id']}/designs/{number}"
+        for form in ("svg", "dxf", "csv"):
+            assert client.get(f"{place}.{form}").status_code == 200
+        motion = client.get(f"{place}/motion?steps=360").raise_for_status().json()
+        lifts = [max(pawl["lift"]) for pawl in motion["pawls"]]
+        assert max(lifts) <= design["metrics"]["lift"] * (1.0 + 1e-9)
+        assert min(lifts) > 0.8 * design["metrics"]["lift"]
+    assert client.get(f"/v1/jobs/{job['id']}/report.html").status_code == 200
+    none = outcome(client, wanted | {"constraints": {"pin_force": 500.0, "size": 60.0}})
+    assert none["designs"] == []
+    assert none["search"]["complete"]
+
+
 @pytest.mark.parametrize(
     ("problem", "path"),
     [
+        (indexing(roller_diameter=None), "/roller_diameter"),
+        (indexing(speed_rpm=None), "/speed_rpm"),
+        (indexing(pawls={"count": 1}), "/pawls"),
+        (indexing(stations=100), "/stations"),
+        (RATCHET | {"speed_rpm": 10.0}, "/speed_rpm"),
+        (RATCHET | {"load_inertia": 1.0}, "/load_inertia"),
+        (RATCHET | {"clearances": {"slot": 0.1}}, "/clearances"),
+        (RATCHET | {"wall_thickness": None}, "/wall_thickness"),
+        (RATCHET | {"pawls": {"count": 5}}, "/pawls/count"),
+        (RATCHET | {"stations": 7}, "/pawls/count"),
+        (RATCHET | {"constraints": {"drive_torque": 1.0}}, "/constraints/drive_torque"),
+        (RATCHET | {"constraints": {"shock_free": False}}, "/constraints/shock_free"),
         (indexing(stations=2), "/stations"),
         (indexing(drive="geneva_linear"), "/drive"),
         (indexing(rollers=4), "/rollers"),

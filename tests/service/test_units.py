@@ -97,6 +97,7 @@ PURE = {
     "Quality": {"yield"},
     "QuickReturnMetrics": {"time_ratio", "link_ratio", "reach", "quality"},
     "QuickReturnProblem": {"time_ratio"},
+    "Ratcheting": {"friction"},
     "Ratio": {"value"},
     "RatioRange": {"least", "greatest"},
     "Reachable": {"max_link_ratio", "tolerance"},

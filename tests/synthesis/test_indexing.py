@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from typing import Any
 
@@ -9,12 +10,14 @@ import numpy as np
 import pytest
 
 from kinematics.indexing.geneva import Geneva
+from kinematics.indexing.ratchet import Ratchet
 from kinematics.linkage.planar.catalogue import quick_return
 from kinematics.linkage.planar.drive import drive as core_drive
 from synthesis.dispatch import solve
 from synthesis.kinds.indexing.forces import Load, peaks
 from synthesis.kinds.indexing.plane import margins
 from synthesis.kinds.indexing.verification import verify_indexing
+from synthesis.kinds.indexing.verify_ratchet import verify_ratchet
 from synthesis.registry import examples, parse_problem
 
 DRIVES = ("geneva_external", "geneva_internal", "geneva_spherical")
@@ -138,7 +141,7 @@ def test_a_turn_of_the_crank_is_one_station_for_each_roller(drive: str) -> None:
     assert (float(resting.v[0]), float(resting.a[0])) == (0.0, 0.0)
 
 
-@pytest.mark.parametrize("example", examples("indexing"))
+@pytest.mark.parametrize("example", [one for one in examples("indexing") if one["drive"] != "ratchet"])
 def test_a_changed_dimension_is_noticed(example: dict[str, Any]) -> None:
     problem = parse_problem(example)
     design = solve(problem, lambda fraction, message: None).designs[0]
@@ -217,6 +220,74 @@ def test_an_entry_with_a_shock_is_refused_unless_it_is_allowed() -> None:
     assert design.metrics.entry_speed > 0.01
     # tan of the angle between slot and the roller's path, by the sine rule.
     assert design.index_angle < 120.0
+
+
+RATCHET: dict[str, Any] = {
+    "kind": "indexing",
+    "drive": "ratchet",
+    "stations": 36,
+    "wall_thickness": 5.0,
+    "load_torque": 40.0,
+}
+
+
+def ratchets(**changes: Any) -> Any:
+    return solve(parse_problem(RATCHET | changes), lambda fraction, message: None)
+
+
+def test_teeth_and_pawls_that_give_the_stops() -> None:
+    found = [(one.mechanism.teeth, len(one.mechanism.pawls)) for one in ratchets().designs]
+    assert found == [(36, 1), (18, 2), (12, 3)]
+    shared = [(one.mechanism.teeth, len(one.mechanism.pawls)) for one in ratchets(pawls={"overlap": 2}).designs]
+    assert shared == [(36, 2), (18, 4), (12, 6)]
+    halved = ratchets(pawls={"overlap": 2, "wheel_radius": 60.0}).designs[0].metrics.tooth_force
+    assert 2.0 * halved == pytest.approx(ratchets(pawls={"wheel_radius": 60.0}).designs[0].metrics.tooth_force)
+
+
+def test_a_ratchet_locks_where_its_face_leans_over_enough() -> None:
+    (straight, *_) = ratchets(include_failed=True, pawls={"face_angle": 5.0, "friction": 0.15}).designs
+    failed = [check.name for check in straight.verification.checks if not check.passed]
+    assert failed == ["locking_angle"]
+    (sought, *_) = ratchets(pawls={"friction": 0.15, "reserve": 0.0}).designs
+    assert sought.metrics.locking_angle == pytest.approx(math.degrees(math.atan(0.15)), abs=1e-9)
+    # By the statics of a pawl that is about to slide out: the friction that holds it just holds it.
+    wheel = Ratchet(36, 50.0, 3.0, math.radians(14.0), 50.0)
+    mu = math.tan(wheel.locking_angle)
+    normal, outward = -1j * cmath.exp(-1j * wheel.face), cmath.exp(-1j * wheel.face)
+    force = normal + mu * outward
+    moment = ((wheel.tip - wheel.pivot).conjugate() * force).imag
+    assert moment == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_a_changed_ratchet_is_noticed(count: int) -> None:
+    problem = parse_problem(RATCHET | {"pawls": {"count": count}, "wheel_shaft_diameter": 20.0})
+    (design,) = solve(problem, lambda fraction, message: None).designs
+    assert design.verification.passed
+    mechanism = design.mechanism
+    moved = mechanism.pawls[-1].model_copy(
+        update={"nose": (mechanism.pawls[-1].nose[0] + 0.01, mechanism.pawls[-1].nose[1])}
+    )
+    profile = mechanism.profile
+    changes: list[tuple[str, dict[str, Any]]] = [
+        ("equal_stops", {"pawls": [*mechanism.pawls[:-1], moved]}),
+        ("equal_stops", {"profile": profile.model_copy(update={"y": [1.001 * y for y in profile.y]})}),
+        ("pawl_rides", {"pawl_length": 1.1 * mechanism.pawl_length}),
+        ("pawls_at_every_stop", {"overlap": 2}),
+    ]
+    for name, change in changes:
+        broken = design.model_copy(update={"mechanism": mechanism.model_copy(update=change)})
+        failed = [check.name for check in verify_ratchet(problem, broken).verification.checks if not check.passed]  # type: ignore[arg-type]
+        assert name in failed, (name, failed)
+
+
+def test_a_pawl_falls_behind_each_tooth() -> None:
+    wheel = Ratchet(24, 50.0, 4.0, math.radians(15.0), 40.0)
+    angle = wheel.overtravel + wheel.pitch * np.array([1e-9, 0.5, 1.0 - 1e-9, 1.0 + 1e-9])
+    low, half, high, fallen = wheel.lifted(angle)
+    assert high == pytest.approx(wheel.lift, abs=1e-6)
+    assert low == pytest.approx(fallen, abs=1e-6)
+    assert low < half < high
 
 
 def test_no_room_for_walls() -> None:

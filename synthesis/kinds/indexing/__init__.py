@@ -1,4 +1,4 @@
-"""Indexing drives: Geneva drives in the plane and on the sphere, sized, drawn, and proved by driving their geometry."""
+"""Indexing drives: Geneva drives and ratchets, sized, drawn, and proved by driving their geometry."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Result, Verification, optional
+from synthesis.model.answer import Answer, Point, Result, Verification, optional
 from synthesis.model.dimension import (
     Acceleration,
     Angle,
@@ -133,5 +133,51 @@ class IndexingDesign(Answer):
     metrics: IndexingMetrics
 
 
-class IndexingResult(Result[IndexingDesign]):
-    """Drives, those with the fewest rollers first."""
+class Pawl(Answer):
+    """A pawl at rest on the teeth, the wheel being free to turn counter-clockwise."""
+
+    pivot: Point
+    nose: Point = Field(description="At the foot of the tooth that it holds, where it holds one.")
+    stop: Angle = Field(description="By how much the wheel is beyond its first stop where this pawl first holds it.")
+
+
+class RatchetMechanism(Answer):
+    """A ratchet wheel, its axis the origin, as the first pawl holds it; and its pawls."""
+
+    type: Literal["ratchet"] = "ratchet"
+    stations: int
+    teeth: int
+    overlap: int = Field(description="Pawls that hold the wheel at once.")
+    wheel_radius: Length = Field(description="To the tips.")
+    tooth_height: Length
+    face_angle: Angle = Field(description="Of a face from the radius at its middle, leaning over the pawl.")
+    pawl_length: Length = Field(description="From the middle of the held face to the pivot, along the tangent.")
+    bore: Length
+    pawls: list[Pawl]
+    profile: Profile
+
+
+class RatchetMetrics(Answer):
+    """Properties of a ratchet."""
+
+    step: Angle = Field(description="From stop to stop: the farthest that the wheel turns back.")
+    tooth_force: Force = Field(description="Of each pawl that holds, square to the face.")
+    locking_angle: Angle = Field(description="Least over the face, between its normal and the line to the pivot.")
+    friction_angle: Angle
+    tooth_thickness: Length = Field(description="At the foot.")
+    lift: Angle = Field(description="Of a pawl as a tip passes.")
+    overtravel: Angle = Field(description="By which the wheel must turn beyond a stop for the pawl to fall in.")
+    size: Length = Field(description="The diameter to the tips.")
+    sized_by: SizedBy | None = optional("The demand that keeps the wheel from being smaller, where its size is found.")
+
+
+class RatchetDesign(Answer):
+    """A ratchet with its proof."""
+
+    mechanism: RatchetMechanism
+    verification: Verification
+    metrics: RatchetMetrics
+
+
+class IndexingResult(Result[IndexingDesign | RatchetDesign]):
+    """Drives, those with the fewest rollers or pawls first."""

@@ -18,8 +18,6 @@ from kinematics.indexing.geneva import Geneva
 
 Real = NDArray[np.float64]
 
-RAD_PER_S = math.pi / 30.0
-
 
 @dataclass(frozen=True)
 class Load:

@@ -20,9 +20,9 @@ def wheel_of(problem: IndexingProblem, drive: Geneva, center_distance: float) ->
     """The wheel of a drive; its locking arc is NaN where the wall leaves none."""
     internal = problem.drive == "geneva_internal"
     step, radius = math.pi / problem.stations, drive.ratio * center_distance
-    half_slot = 0.5 * (problem.roller_diameter + problem.clearances.slot)
+    half_slot = 0.5 * (problem.roller + problem.clearances.slot)
     entry = center_distance * abs(1.0 - drive.signed * complex(math.cos(drive.half), math.sin(drive.half)))
-    reach = math.hypot(entry, 0.5 * problem.roller_diameter)
+    reach = math.hypot(entry, 0.5 * problem.roller)
     end = center_distance + radius + problem.slot_room if internal else center_distance - radius - problem.slot_room
     lock = _lock(internal, step, center_distance, reach, half_slot + problem.wall)
     return Wheel(internal, problem.stations, center_distance, reach, half_slot, end, lock)
@@ -50,7 +50,7 @@ def margins(problem: IndexingProblem, drive: Geneva, center_distance: float) -> 
     disc = wheel.lock - problem.clearances.locking
     found = {
         # Not a number where any of them is.
-        "locking_disc": float(np.min([disc - shaft, disc - 0.5 * problem.roller_diameter, wheel.land])),
+        "locking_disc": float(np.min([disc - shaft, disc - 0.5 * problem.roller, wheel.land])),
         "web": wheel.web - problem.wall,
     }
     if wheel.internal:
@@ -79,7 +79,7 @@ def size_of(problem: IndexingProblem, wheel: Wheel, crank_radius: float) -> floa
     """The extent: of an external drive along the line of both axes, of a ring its diameter."""
     if wheel.internal:
         return 2.0 * ring_radius(problem, wheel)
-    return wheel.reach + wheel.center_distance + crank_radius + 0.5 * problem.roller_diameter
+    return wheel.reach + wheel.center_distance + crank_radius + 0.5 * problem.roller
 
 
 def ring_radius(problem: IndexingProblem, wheel: Wheel) -> float:
@@ -97,7 +97,7 @@ def mechanism_of(problem: IndexingProblem, drive: Geneva, wheel: Wheel, rollers:
         rollers=rollers,
         center_distance=wheel.center_distance,
         crank_radius=drive.ratio * wheel.center_distance,
-        roller_diameter=problem.roller_diameter,
+        roller_diameter=problem.roller,
         wheel_radius=wheel.reach,
         ring_radius=ring_radius(problem, wheel) if wheel.internal else None,
         slot_width=2.0 * wheel.half_slot,

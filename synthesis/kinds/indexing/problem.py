@@ -9,6 +9,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from synthesis.model.dimension import (
     ACCELERATION,
+    ANGLE,
     FORCE,
     INERTIA,
     LENGTH,
@@ -27,8 +28,11 @@ from synthesis.model.statement import (
     Statement,
 )
 
-MOST_STATIONS = 48
-"""Beyond these a Geneva wheel is all slots."""
+MOST_STATIONS, MOST_STOPS = 48, 720
+"""Of a Geneva wheel, which is all slots beyond; of a ratchet."""
+
+FEWEST_TEETH, MOST_GROUPS = 12, 4
+"""Of a ratchet wheel with straight backs; of pawls that are staggered."""
 
 NEAR_ONE = 0.999
 """Crank radius over center distance up to which a plane drive is taken: at 1 the roller comes to the wheel's axis."""
@@ -90,13 +94,40 @@ class Clearances(Statement):
     )
 
 
-class IndexingProblem(StatedProblem):
-    """Indexing: a wheel turned from station to station by a crank's roller, and locked between.
+class Ratcheting(Statement):
+    """Pawls and teeth of a ratchet."""
 
-    External, internal and spherical Geneva drives. Motion, torque and pin force follow in closed form; without a center
-    distance the smallest drive is found whose walls and forces keep what is stated. Every answer is proved by its own
-    outlines: the roller is driven through the slots, the disc past the wheel, and forces follow from reactions and
-    energy.
+    count: Annotated[Count, Field(ge=1, le=16)] | None = Field(
+        default=None,
+        description="Of all pawls; left out, one design for each number that gives the stations with some number of "
+        "teeth.",
+    )
+    overlap: Annotated[Count, Field(ge=1, le=4)] = Field(
+        default=1, description="Pawls that hold the wheel at once and share its load."
+    )
+    wheel_radius: PositiveLength | None = Field(default=None, description="To the tips; left out, the smallest.")
+    tooth_height: PositiveLength | None = Field(
+        default=None, description="A third of the pitch where it is left out, or what few teeth need."
+    )
+    length: PositiveLength | None = Field(
+        default=None, description="From the face of the held tooth to the pawl's pivot; the wheel's radius if left out."
+    )
+    friction: NonNegative = Field(default=0.15, description="Coefficient between tooth and pawl.")
+    face_angle: Annotated[float, Field(strict=True, ge=0.0, le=60.0, allow_inf_nan=False), ANGLE] | None = Field(
+        default=None, description="Of a tooth's face from the radius, leaning over; left out, the least that locks."
+    )
+    reserve: Annotated[float, Field(strict=True, ge=0.0, le=30.0, allow_inf_nan=False), ANGLE] = Field(
+        default=2.0, description="Of the locking angle beyond the angle of friction."
+    )
+
+
+class IndexingProblem(StatedProblem):
+    """Indexing: a wheel turned from station to station by a crank's roller, and locked between; or held by pawls.
+
+    External, internal and spherical Geneva drives, and ratchets. Motion, torque and pin force follow in closed form;
+    without a size the smallest is found whose walls and forces keep what is stated. Every answer is proved by its own
+    outlines: the roller is driven through the slots, the disc past the wheel, teeth under pawls, and forces follow from
+    reactions and energy.
     """
 
     model_config = ConfigDict(
@@ -146,6 +177,16 @@ class IndexingProblem(StatedProblem):
                     "load_inertia": 0.01,
                     "constraints": {"pin_force": 40.0},
                 },
+                {
+                    "kind": "indexing",
+                    "drive": "ratchet",
+                    "stations": 36,
+                    "wall_thickness": 6.0,
+                    "wheel_shaft_diameter": 30.0,
+                    "load_torque": 40.0,
+                    "pawls": {"friction": 0.2},
+                    "constraints": {"pin_force": 800.0},
+                },
             ]
         },
     )
@@ -154,11 +195,13 @@ class IndexingProblem(StatedProblem):
     units: Literal["si", "consistent"] = Field(
         default="si", description="`si`: N, N·m, kg·m², and lengths in the length unit; `consistent`: no conversion."
     )
-    drive: Literal["geneva_external", "geneva_internal", "geneva_spherical"] = Field(
+    drive: Literal["geneva_external", "geneva_internal", "geneva_spherical", "ratchet"] = Field(
         description="Wheel beside the crank, ring about it, or a hemisphere whose axis crosses the crank's at a right "
-        "angle."
+        "angle; or a toothed wheel that pawls hold against turning back."
     )
-    stations: Annotated[Count, Field(ge=3, le=MOST_STATIONS)]
+    stations: Annotated[Count, Field(ge=3, le=MOST_STOPS)] = Field(
+        description=f"Up to {MOST_STATIONS} of a Geneva drive; of a ratchet the places of a turn at which it is held."
+    )
     rollers: Annotated[Count, Field(ge=1, le=5)] | None = Field(
         default=None,
         description="On the crank, in equal steps; left out, one design for each number with which the wheel rests.",
@@ -172,23 +215,27 @@ class IndexingProblem(StatedProblem):
     crank_radius: PositiveLength | None = Field(
         default=None, description="Of a drive in the plane; left out, that of shock-free entry."
     )
-    roller_diameter: PositiveLength
+    roller_diameter: PositiveLength | None = Field(default=None, description="Of a Geneva drive.")
     wall_thickness: PositiveLength | None = Field(
         default=None,
         description="Between slot and locking arc; between the ends of slots, and of these from the bore, it is the "
-        "least. Half of the roller's diameter where it is not stated.",
+        "least. Half of the roller's diameter where it is not stated. Of a ratchet: of a tooth at its foot, and above "
+        "the bore.",
     )
+    pawls: Ratcheting | None = Field(default=None, description="Of a ratchet.")
     wheel_shaft_diameter: Annotated[NonNegative, LENGTH] = Field(default=0.0, description="The bore of the wheel.")
     crank_shaft_diameter: Annotated[NonNegative, LENGTH] = Field(
         default=0.0, description="Of what passes through the wheel's plane beside an external wheel; 0: overhung."
     )
     clearances: Clearances = Clearances()
-    speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] = Field(description="Of the crank, steady.")
+    speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] | None = Field(
+        default=None, description="Of the crank of a Geneva drive, steady."
+    )
     load_inertia: Annotated[NonNegative, INERTIA] = Field(
         default=0.0, description="About the wheel's axis, with the wheel's own."
     )
     load_torque: Annotated[NonNegative, TORQUE] = Field(
-        default=0.0, description="Against the wheel's motion, while it moves."
+        default=0.0, description="Against the wheel's motion, while it moves; what a ratchet holds."
     )
     constraints: IndexingConstraints = IndexingConstraints()
 
@@ -203,6 +250,18 @@ class IndexingProblem(StatedProblem):
         return True
 
     @property
+    def roller(self) -> float:
+        """The diameter of a Geneva drive's roller."""
+        assert self.roller_diameter is not None
+        return self.roller_diameter
+
+    @property
+    def crank_speed(self) -> float:
+        """Of a Geneva drive, rad/s."""
+        assert self.speed_rpm is not None
+        return self.speed_rpm * math.pi / 30.0
+
+    @property
     def scale(self) -> float:
         """The length unit in that of torque over force."""
         return METRES[self.length_unit] if self.units == "si" else 1.0
@@ -215,23 +274,35 @@ class IndexingProblem(StatedProblem):
     @property
     def wall(self) -> float:
         """The thickness of walls."""
-        return 0.5 * self.roller_diameter if self.wall_thickness is None else self.wall_thickness
+        return self.wall_thickness if self.wall_thickness is not None else 0.5 * self.roller
 
     @property
     def slot_room(self) -> float:
         """Clearance at the end of a slot."""
         stated = self.clearances.slot_end
-        return 0.05 * self.roller_diameter if stated is None else stated
+        return 0.05 * self.roller if stated is None else stated
 
     @property
     def relief(self) -> float:
         """Clearance of the disc from the passing wheel."""
         stated = self.clearances.relief
-        return 0.05 * self.roller_diameter if stated is None else stated
+        return 0.05 * self.roller if stated is None else stated
 
     def contradictions(self) -> list[Contradiction]:
         """Fields of another drive, rollers that leave no rest, and cranks that reach no slot."""
-        found: list[Contradiction] = []
+        if self.drive == "ratchet":
+            return self._ratchet_faults()
+        found = [
+            Contradiction(f"/{name}", f"{self.drive} has one; state it")
+            for name in ("roller_diameter", "speed_rpm")
+            if getattr(self, name) is None
+        ]
+        if self.stations > MOST_STATIONS:
+            found.append(Contradiction("/stations", f"a Geneva drive has up to {MOST_STATIONS}"))
+        if self.pawls is not None:
+            found.append(Contradiction("/pawls", f"{self.drive} has none; leave it out"))
+        if found:
+            return found
         foreign = ("center_distance", "crank_radius") if self.spherical else ("sphere_radius",)
         found += [
             Contradiction(f"/{name}", f"{self.drive} has none; leave it out")
@@ -247,7 +318,7 @@ class IndexingProblem(StatedProblem):
             found.append(Contradiction("/crank_shaft_diameter", detail))
         for name in ("slot_end", "relief"):
             stated = getattr(self.clearances, name)
-            if stated is not None and stated < LEAST_ROOM * self.roller_diameter:
+            if stated is not None and stated < LEAST_ROOM * self.roller:
                 detail = f"must be at least {LEAST_ROOM:g} roller diameters, which outlines of finite steps tell apart"
                 found.append(Contradiction(f"/clearances/{name}", detail))
         return found + ([] if self.crank_radius is None or self.spherical else self._crank_faults(self.crank_radius))
@@ -257,6 +328,56 @@ class IndexingProblem(StatedProblem):
         """How many rollers leave the wheel a rest."""
         index = {"geneva_external": 0.5 - 1.0 / self.stations}.get(self.drive, 0.5)
         return max(1, math.ceil(1.0 / index - 1e-9) - 1)
+
+    def _ratchet_faults(self) -> list[Contradiction]:
+        stated = self.model_fields_set
+        foreign = {
+            "rollers": self.rollers,
+            "center_distance": self.center_distance,
+            "sphere_radius": self.sphere_radius,
+            "crank_radius": self.crank_radius,
+            "roller_diameter": self.roller_diameter,
+            "speed_rpm": self.speed_rpm,
+        }
+        found = [
+            Contradiction(f"/{name}", "a ratchet has none; leave it out")
+            for name, value in foreign.items()
+            if value is not None
+        ]
+        for name in ("crank_shaft_diameter", "load_inertia", "clearances"):
+            if name in stated and getattr(self, name) != type(self).model_fields[name].default:
+                found.append(Contradiction(f"/{name}", "a ratchet has none; leave it out"))
+        for name in ("dwell_share", "peak_acceleration", "drive_torque"):
+            if getattr(self.constraints, name) is not None:
+                found.append(Contradiction(f"/constraints/{name}", "a ratchet has none; leave it out"))
+        if not self.constraints.shock_free:
+            found.append(Contradiction("/constraints/shock_free", "a ratchet has no entry; leave it out"))
+        if self.wall_thickness is None:
+            found.append(Contradiction("/wall_thickness", "state how thick a tooth is at its foot"))
+        if not self.teeth_choices:
+            detail = f"no number of teeth from {FEWEST_TEETH} on has so many stops with this number of pawls"
+            found.append(Contradiction("/pawls/count", detail))
+        return found
+
+    @property
+    def pawl(self) -> Ratcheting:
+        """What is stated of pawls, or what holds where nothing is."""
+        return self.pawls or Ratcheting()
+
+    @property
+    def teeth_choices(self) -> list[tuple[int, int]]:
+        """Numbers of teeth and of pawls whose stops are the stations, those with the fewest pawls first.
+
+        Pawls in g groups, staggered by a g-th of a pitch, stop z teeth at g z places; each group has the pawls that
+        share the load.
+        """
+        shared = self.pawl.overlap
+        choices = [
+            (self.stations // groups, groups * shared)
+            for groups in range(1, MOST_GROUPS + 1)
+            if self.stations % groups == 0 and self.stations // groups >= max(FEWEST_TEETH, shared)
+        ]
+        return [choice for choice in choices if self.pawl.count is None or choice[1] == self.pawl.count]
 
     def _crank_faults(self, radius: float) -> list[Contradiction]:
         if self.center_distance is None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Callable
+from functools import partial
 from typing import cast
 
 from kinematics.indexing.geneva import Geneva
@@ -20,7 +21,7 @@ def smallest(problem: IndexingProblem, drive: Geneva, load: Load) -> tuple[float
     """The least center distance or sphere radius, and the demand that sets it; None where none up to 1e9 will do."""
     least: dict[str, float] = {}
     for name in _margins(problem, drive, ABSURD):
-        found = _least(problem, drive, name)
+        found = least_size(partial(_margin, problem, drive, name), problem.roller)
         if found is None:
             return None
         least[name] = found
@@ -36,18 +37,30 @@ def _margins(problem: IndexingProblem, drive: Geneva, size: float) -> dict[str, 
     return sphere.margins(problem, size) if problem.spherical else plane.margins(problem, drive, size)
 
 
-def _least(problem: IndexingProblem, drive: Geneva, name: str) -> float | None:
-    """The least size whose margin is not negative, by halving; the margin grows with the size."""
-    kept = low = problem.roller_diameter
-    while not _margins(problem, drive, kept)[name] > 0.0:
+def _margin(problem: IndexingProblem, drive: Geneva, name: str, size: float) -> float:
+    return _margins(problem, drive, size)[name]
+
+
+def least_size(margin: Callable[[float], float], first: float) -> float | None:
+    """The least size with a positive margin, which grows with the size, by halving; None where none up to 1e9 has one.
+
+    Parameters
+    ----------
+    margin : callable
+        Of a size; not a number where it is too small to have one.
+    first : float
+        A size to begin with.
+    """
+    kept = low = first
+    while not margin(kept) > 0.0:
         low, kept = kept, 2.0 * kept
-        if kept > ABSURD or not math.isfinite(kept):
+        if kept > ABSURD:
             return None
     if kept == low:
         low = 0.5 * kept
     for _ in range(HALVINGS):
         middle = 0.5 * (low + kept)
-        if _margins(problem, drive, middle)[name] > 0.0:
+        if margin(middle) > 0.0:
             kept = middle
         else:
             low = middle

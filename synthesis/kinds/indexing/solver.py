@@ -16,11 +16,13 @@ from synthesis.kinds.indexing.design import (
     IndexingMetrics,
     IndexingProgram,
     IndexingResult,
+    RatchetDesign,
     SizedBy,
     SphericalGenevaMechanism,
 )
-from synthesis.kinds.indexing.forces import RAD_PER_S, Load, arm, peaks, wheel_torque
+from synthesis.kinds.indexing.forces import Load, arm, peaks, wheel_torque
 from synthesis.kinds.indexing.problem import IndexingProblem
+from synthesis.kinds.indexing.ratchets import solve_ratchet
 from synthesis.kinds.indexing.smallest import smallest
 from synthesis.kinds.indexing.verification import verify_indexing
 from synthesis.model.answer import Verification
@@ -45,12 +47,14 @@ def solve_indexing(problem: IndexingProblem, progress: Progress) -> IndexingResu
         One design for each number of rollers that keeps the demands; complete, since each number has one drive of the
         stated size, or one smallest. ``summary`` says what is in the way where there is none.
     """
-    sifting = Sifting[IndexingDesign](problem)
+    if problem.drive == "ratchet":
+        return solve_ratchet(problem, progress)
+    sifting = Sifting[IndexingDesign | RatchetDesign](problem)
     numbers = range(1, problem.most_rollers + 1) if problem.rollers is None else [problem.rollers]
     progress(0.0, "sizing")
     sifting.sift(numbers, partial(_candidate, problem))
     progress(1.0, "verified")
-    designs = sifting.designs(lambda found: sorted(found, key=lambda design: design.mechanism.rollers))
+    designs = sifting.designs(lambda found: found)
     complete = not UNPROVEN & sifting.rejected.keys()
     return IndexingResult(
         designs=designs,
@@ -60,6 +64,7 @@ def solve_indexing(problem: IndexingProblem, progress: Progress) -> IndexingResu
 
 
 def _drive(problem: IndexingProblem) -> Geneva:
+    assert problem.drive != "ratchet"
     if problem.crank_radius is not None and problem.center_distance is not None:
         ratio = max(problem.crank_radius / problem.center_distance, math.sin(math.pi / problem.stations))
         return Geneva(problem.drive, problem.stations, ratio)
@@ -69,7 +74,7 @@ def _drive(problem: IndexingProblem) -> Geneva:
 def _candidate(problem: IndexingProblem, rollers: int) -> IndexingDesign | str:
     """The drive with a number of rollers, verified; the reason where it cannot be drawn."""
     drive = _drive(problem)
-    load = Load(problem.load_inertia, problem.load_torque, problem.speed_rpm * RAD_PER_S)
+    load = Load(problem.load_inertia, problem.load_torque, problem.crank_speed)
     size, sized_by = problem.sphere_radius if problem.spherical else problem.center_distance, None
     if size is None:
         found = smallest(problem, drive, load)
@@ -145,11 +150,11 @@ def _metrics(
     )
 
 
-def _summary(problem: IndexingProblem, sifting: Sifting[IndexingDesign], complete: bool) -> str:
-    if not sifting.passed:
+def _summary(problem: IndexingProblem, sifting: Sifting[IndexingDesign | RatchetDesign], complete: bool) -> str:
+    best = sifting.passed[0] if sifting.passed else None
+    if not isinstance(best, IndexingDesign):
         told = "None exists" if complete else "None was found"
         return f"{told}: {sifting.listed()}."
-    best = min(sifting.passed, key=lambda design: design.mechanism.rollers)
     metrics, unit = best.metrics, problem.length_unit
     size = f"its size is {metrics.size:.6g} {unit}"
     if metrics.sized_by is not None:

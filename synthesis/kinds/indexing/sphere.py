@@ -95,7 +95,7 @@ class Hemisphere:
 
 def hemisphere_of(problem: IndexingProblem, radius: float) -> Hemisphere:
     """The wheel of a sphere's radius."""
-    step, half_slot = math.pi / problem.stations, 0.5 * (problem.roller_diameter + problem.clearances.slot)
+    step, half_slot = math.pi / problem.stations, 0.5 * (problem.roller + problem.clearances.slot)
     apart = (half_slot + problem.wall) / radius
     lock = step - math.asin(apart) if apart < 1.0 else math.nan
     return Hemisphere(problem.stations, radius, half_slot, step + problem.slot_room / radius, lock)
@@ -126,7 +126,7 @@ def mechanism_of(problem: IndexingProblem, wheel: Hemisphere) -> SphericalGeneva
         rollers=1,
         sphere_radius=wheel.radius,
         cone_angle=math.degrees(wheel.step),
-        roller_diameter=problem.roller_diameter,
+        roller_diameter=problem.roller,
         slot_width=2.0 * wheel.half_slot,
         slot_end_angle=math.degrees(wheel.slot_end),
         cap_angle=math.degrees(wheel.lock - problem.clearances.locking / wheel.radius),

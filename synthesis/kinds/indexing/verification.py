@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from synthesis.kinds.indexing.clearance import Measured, measured
 from synthesis.kinds.indexing.design import IndexingDesign, SphericalGenevaMechanism
-from synthesis.kinds.indexing.forces import RAD_PER_S, Load
+from synthesis.kinds.indexing.forces import Load
 from synthesis.kinds.indexing.problem import IndexingProblem
 from synthesis.kinds.indexing.reactions import Driven, driven
 from synthesis.model.answer import Check, Verification
@@ -55,7 +55,7 @@ def verify_indexing(problem: IndexingProblem, design: IndexingDesign) -> Indexin
     IndexingDesign
         With the checks of what was measured, and the angle over which the wheel is held.
     """
-    load = Load(problem.load_inertia, problem.load_torque, problem.speed_rpm * RAD_PER_S)
+    load = Load(problem.load_inertia, problem.load_torque, problem.crank_speed)
     half = math.radians(0.5 * design.index_angle)
     alpha = np.radians(design.program.angle) - half
     drive = driven(design.mechanism, load, problem.scale, alpha)

@@ -162,6 +162,15 @@ INDEXING: dict[str, Any] = {
     "load_torque": 1.0,
 }
 LARGER_CRANK: dict[str, Any] = {"crank_radius": 41.0, "rollers": 1, "wall_thickness": 2.0}
+RATCHET: dict[str, Any] = {
+    "drive": "ratchet",
+    "stations": 36,
+    "center_distance": None,
+    "roller_diameter": None,
+    "speed_rpm": None,
+    "load_inertia": 0.0,
+    "wall_thickness": 6.0,
+}
 INDEXING_ROWS: dict[str, Any] = {
     "length_unit": Row("in", {"units": "consistent"}, file="dxf"),
     "max_designs": 1,
@@ -186,6 +195,15 @@ INDEXING_ROWS: dict[str, Any] = {
     "speed_rpm": 70.0,
     "load_inertia": 0.03,
     "load_torque": 2.0,
+    "pawls": Row({"friction": 0.25}, RATCHET),
+    "pawls.count": Row(2, RATCHET),
+    "pawls.overlap": Row(2, RATCHET),
+    "pawls.wheel_radius": Row(60.0, RATCHET),
+    "pawls.tooth_height": Row(5.0, RATCHET),
+    "pawls.length": Row(50.0, RATCHET),
+    "pawls.friction": Row(0.25, RATCHET),
+    "pawls.face_angle": Row(20.0, RATCHET),
+    "pawls.reserve": Row(3.0, RATCHET),
     "constraints": {"size": 200.0},
     "constraints.dwell_share": {"min": 0.5},
     "constraints.dwell_share.min": Row(0.5, {"constraints": {"dwell_share": {"min": 0.1}}}),

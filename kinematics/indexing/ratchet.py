@@ -1,0 +1,161 @@
+"""Ratchets: the outline of a wheel with undercut teeth, and the pawl that holds them.
+
+The wheel's axis is the origin; it is free to turn counter-clockwise and held against turning back. A tooth has a face,
+which leans over by an angle ξ so that it draws the pawl in, and a straight back from the foot of its face's space to
+the next tip. The middle M of the held face lies on x, at the distance ρ from the axis, and the pawl's pivot at
+M − i l: on the tangent, so that the force at M passes the pivot at ξ.
+
+A point of the face at s outward from M pushes the pawl along −i e^{−iξ}; towards the pivot that would be
+−i l − s e^{−iξ}. The pawl is drawn in, whatever the friction, where the angle between the two is above the angle of
+friction; it is least at the tip: ξ − tan⁻¹(s cos ξ/(l − s sin ξ)).
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
+
+STEEPEST = 60
+"""Greatest face angle that is looked at, degrees."""
+
+HALVINGS = 60
+"""Of an interval of angles below a right angle: to rounding."""
+
+
+@dataclass(frozen=True)
+class Ratchet:
+    """A ratchet wheel and its pawl by their dimensions, in any one unit of length.
+
+    Attributes
+    ----------
+    teeth : int
+    radius, height : float
+        To the tips, and of a tooth.
+    face : float
+        ξ, radians.
+    pawl : float
+        l, from the middle of the face to the pawl's pivot.
+    """
+
+    teeth: int
+    radius: float
+    height: float
+    face: float
+    pawl: float
+
+    @property
+    def pitch(self) -> float:
+        """Angle from tooth to tooth."""
+        return 2.0 * math.pi / self.teeth
+
+    @property
+    def middle(self) -> float:
+        """ρ: the middle of the face is as far along it from the tip as from the foot; NaN where it reaches none."""
+        outer, inner = self.radius**2, (self.radius - self.height) ** 2
+        # ρ² + s² = (R² + (R − h)²)/2 and ρ s = (R² − (R − h)²)/(4 cos ξ).
+        square = 0.5 * (outer + inner)
+        gap = (0.25 * (outer - inner) / math.cos(self.face)) ** 2
+        root = square * square - 4.0 * gap
+        return math.sqrt(0.5 * (square + math.sqrt(root))) if root >= 0.0 else math.nan
+
+    @property
+    def reach(self) -> float:
+        """s at the tip: half the length of the face."""
+        return 0.25 * (self.radius**2 - (self.radius - self.height) ** 2) / (self.middle * math.cos(self.face))
+
+    @property
+    def tip(self) -> complex:
+        """The tip of the held tooth."""
+        return self.middle + self.reach * cmath.exp(-1j * self.face)
+
+    @property
+    def foot(self) -> complex:
+        """The foot of its face, where the pawl's nose rests."""
+        return self.middle - self.reach * cmath.exp(-1j * self.face)
+
+    @property
+    def pivot(self) -> complex:
+        """Of the pawl."""
+        return complex(self.middle, -self.pawl)
+
+    @property
+    def locking_angle(self) -> float:
+        """Least angle over the face between its normal and the line to the pivot, towards drawing in, radians."""
+        return _least_angle(self.face, self.reach, self.pawl)
+
+    @property
+    def thickness(self) -> float:
+        """Of a tooth at its foot."""
+        return 2.0 * (self.radius - self.height) * math.sin(0.5 * self.pitch)
+
+    @property
+    def lift(self) -> float:
+        """Angle by which a passing tip lifts the pawl, radians; law of cosines."""
+        far, nose = abs(self.pivot), abs(self.foot - self.pivot)
+        angles = [
+            math.acos(max(-1.0, min(1.0, (far**2 + nose**2 - at**2) / (2.0 * far * nose))))
+            for at in (self.radius, self.radius - self.height)
+        ]
+        return angles[0] - angles[1]
+
+    @property
+    def overtravel(self) -> float:
+        """Angle beyond the pitch, radians, at which the tip leaves the circle of the nose, and the pawl falls in."""
+        far, nose = abs(self.pivot), abs(self.foot - self.pivot)
+        cosine = (far**2 + self.radius**2 - nose**2) / (2.0 * far * self.radius)
+        return cmath.phase(self.pivot) + math.acos(max(-1.0, min(1.0, cosine))) - cmath.phase(self.tip)
+
+    @property
+    def outline(self) -> Complex:
+        """Tip and foot of every tooth, counter-clockwise; closed by its first point."""
+        # Counter-clockwise: from a foot's space over the overhanging tip back to the foot, then along the tooth's back.
+        tooth = np.array([self.foot, self.tip])
+        turns = np.exp(1j * self.pitch * np.arange(self.teeth))
+        return np.asarray((turns[:, None] * tooth).ravel())
+
+    def lifted(self, angle: Real) -> Real:
+        """How far the pawl is lifted, radians, while the wheel turns on by angles from where it is held.
+
+        The nose rides on the back of the tooth behind, a line from this foot to the tip a pitch before.
+        """
+        turned = np.mod(angle - self.overtravel, self.pitch) + self.overtravel
+        nose = abs(self.foot - self.pivot)
+        start = self.foot * np.exp(1j * turned)
+        back = self.tip * cmath.exp(-1j * self.pitch) * np.exp(1j * turned) - start
+        apart = start - self.pivot
+        # |apart + u back| = nose: the point of the back that the nose is on, between foot and tip.
+        a, b, c = np.abs(back) ** 2, (apart * back.conj()).real, np.abs(apart) ** 2 - nose * nose
+        share = c / (np.sqrt(np.maximum(b * b - a * c, 0.0)) - b)
+        place = apart + np.clip(share, 0.0, 1.0) * back
+        return np.asarray(np.angle((self.foot - self.pivot) / place))
+
+
+def _least_angle(face: float, reach: float, pawl: float) -> float:
+    return face - math.atan2(reach * math.cos(face), pawl - reach * math.sin(face))
+
+
+def least_face(teeth: int, radius: float, height: float, pawl: float, wanted: float) -> float | None:
+    """The least face angle, radians, whose locking angle is as wanted; None where none below 60° is."""
+
+    def short(face: float) -> bool:
+        return not Ratchet(teeth, radius, height, face, pawl).locking_angle >= wanted
+
+    # A face that leans over too far no longer reaches the foot, so that the first that will do is looked for.
+    degrees = next((degree for degree in range(1, STEEPEST + 1) if not short(math.radians(degree))), None)
+    if degrees is None:
+        return None
+    low, high = math.radians(degrees - 1), math.radians(degrees)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if short(middle):
+            low = middle
+        else:
+            high = middle
+    return high

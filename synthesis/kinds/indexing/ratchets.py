@@ -1,0 +1,173 @@
+"""Ratchets: for each number of teeth and pawls that gives the stops, the wheel of the stated size or the smallest."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from functools import partial
+from typing import cast
+
+from kinematics.indexing.ratchet import Ratchet, least_face
+from synthesis.kinds.indexing.design import (
+    IndexingDesign,
+    IndexingResult,
+    Pawl,
+    Profile,
+    RatchetDesign,
+    RatchetMechanism,
+    RatchetMetrics,
+    SizedBy,
+)
+from synthesis.kinds.indexing.problem import IndexingProblem
+from synthesis.kinds.indexing.smallest import least_size
+from synthesis.kinds.indexing.verify_ratchet import verify_ratchet
+from synthesis.model.answer import Verification
+from synthesis.model.kind import Progress
+from synthesis.model.linkages import to_point
+from synthesis.outcome.sifting import NUMERICAL, Sifting
+
+STEEP = 1.6
+"""Height of few teeth over that at which the straight back of a tooth would no longer fall towards its foot."""
+
+NO_FACE = "no_face_locks"
+"""Reason where the pawl is too short for any face to draw it in."""
+
+
+def solve_ratchet(problem: IndexingProblem, progress: Progress) -> IndexingResult:
+    """Solve a problem of ratchets.
+
+    Returns
+    -------
+    IndexingResult
+        One design for each number of pawls; complete: each has one wheel of the stated size, or one smallest.
+    """
+    sifting = Sifting[IndexingDesign | RatchetDesign](problem)
+    progress(0.0, "sizing")
+    sifting.sift(problem.teeth_choices, partial(_candidate, problem))
+    progress(1.0, "verified")
+    complete = not NUMERICAL & sifting.rejected.keys()
+    return IndexingResult(
+        designs=sifting.designs(lambda found: found),
+        search=sifting.search("closed_form", complete=complete),
+        summary=_summary(problem, sifting),
+    )
+
+
+def wheel_of(problem: IndexingProblem, teeth: int, radius: float) -> Ratchet | None:
+    """The wheel of a radius with its pawl; None where no face angle draws the pawl in."""
+    stated, pitch = problem.pawl, 2.0 * math.pi / teeth
+    height = stated.tooth_height
+    if height is None:
+        height = radius * max(pitch / 3.0, STEEP * (1.0 - math.cos(pitch)))
+    length = radius if stated.length is None else stated.length
+    if not height < 0.9 * radius:
+        return None
+    if stated.face_angle is not None:
+        wheel = Ratchet(teeth, radius, height, math.radians(stated.face_angle), length)
+        return wheel if wheel.reach < length else None
+    wanted = math.atan(stated.friction) + math.radians(stated.reserve)
+    face = least_face(teeth, radius, height, length, wanted)
+    return None if face is None else Ratchet(teeth, radius, height, face, length)
+
+
+def tooth_force(problem: IndexingProblem, wheel: Ratchet) -> float:
+    """Of each pawl that holds, at the middle of the face and square to it."""
+    arm = problem.scale * wheel.middle * math.cos(wheel.face)
+    return problem.load_torque / (problem.pawl.overlap * arm)
+
+
+def _margin(problem: IndexingProblem, teeth: int, name: str, radius: float) -> float:
+    wheel = wheel_of(problem, teeth, radius)
+    if wheel is None:
+        return math.nan
+    if name == "web":
+        return wheel.thickness - problem.wall
+    if name == "bore":
+        return wheel.radius - wheel.height - 0.5 * problem.wheel_shaft_diameter - problem.wall
+    limit = problem.constraints.pin_force
+    assert limit is not None
+    return limit - tooth_force(problem, wheel)
+
+
+def _smallest(problem: IndexingProblem, teeth: int) -> tuple[float, SizedBy] | None:
+    names = ["web", "bore", *(["pin_force"] if problem.constraints.pin_force is not None else [])]
+    least: dict[str, float] = {}
+    for name in names:
+        found = least_size(partial(_margin, problem, teeth, name), problem.wall)
+        if found is None:
+            return None
+        least[name] = found
+    setting = max(least, key=lambda name: least[name])
+    return least[setting], cast(SizedBy, setting)
+
+
+def _candidate(problem: IndexingProblem, choice: tuple[int, int]) -> RatchetDesign | str:
+    """The ratchet of a number of teeth and pawls, verified; the reason where there is none."""
+    teeth, pawls = choice
+    radius, sized_by = problem.pawl.wheel_radius, None
+    if radius is None:
+        found = _smallest(problem, teeth)
+        if found is None:
+            return NO_FACE
+        radius, sized_by = found
+    wheel = wheel_of(problem, teeth, radius)
+    if wheel is None:
+        return NO_FACE
+    outline = wheel.outline
+    mechanism = RatchetMechanism(
+        stations=problem.stations,
+        teeth=teeth,
+        overlap=problem.pawl.overlap,
+        wheel_radius=radius,
+        tooth_height=wheel.height,
+        face_angle=math.degrees(wheel.face),
+        pawl_length=wheel.pawl,
+        bore=problem.wheel_shaft_diameter,
+        pawls=_placed(wheel, pawls, problem.pawl.overlap),
+        profile=Profile(x=outline.real.tolist(), y=outline.imag.tolist()),
+    )
+    metrics = RatchetMetrics(
+        step=360.0 / problem.stations,
+        tooth_force=tooth_force(problem, wheel),
+        locking_angle=math.degrees(wheel.locking_angle),
+        friction_angle=math.degrees(math.atan(problem.pawl.friction)),
+        tooth_thickness=wheel.thickness,
+        lift=math.degrees(wheel.lift),
+        overtravel=math.degrees(wheel.overtravel),
+        size=2.0 * radius,
+        sized_by=sized_by,
+    )
+    design = RatchetDesign(mechanism=mechanism, verification=Verification.of([]), metrics=metrics)
+    return verify_ratchet(problem, design)
+
+
+def _placed(wheel: Ratchet, count: int, overlap: int) -> list[Pawl]:
+    """Pawls as evenly round the wheel as whole pitches let them stand, their groups staggered."""
+    groups, placed = count // overlap, []
+    for number in range(count):
+        stagger = number % groups
+        around = wheel.pitch * round(number * wheel.teeth / count)
+        turn = cmath.exp(1j * (around + wheel.pitch * stagger / groups))
+        placed.append(
+            Pawl(
+                pivot=to_point(turn * wheel.pivot),
+                nose=to_point(turn * wheel.foot),
+                stop=math.degrees(wheel.pitch) * stagger / groups,
+            )
+        )
+    return placed
+
+
+def _summary(problem: IndexingProblem, sifting: Sifting[IndexingDesign | RatchetDesign]) -> str:
+    best = sifting.passed[0] if sifting.passed else None
+    if not isinstance(best, RatchetDesign):
+        return f"None exists: {sifting.listed()}."
+    mechanism, metrics, unit = best.mechanism, best.metrics, problem.length_unit
+    pawls = "one pawl" if len(mechanism.pawls) == 1 else f"{len(mechanism.pawls)} pawls"
+    size = f"diameter {metrics.size:.6g} {unit}"
+    if metrics.sized_by is not None:
+        size += f", set by its {metrics.sized_by.replace('_', ' ').replace('web', 'teeth')}"
+    return (
+        f"A wheel of {mechanism.teeth} teeth with {pawls} stops every {metrics.step:.6g}°; {size}. Its faces lean over "
+        f"by {mechanism.face_angle:.4g}°." + sifting.reasons()
+    )
