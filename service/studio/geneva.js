@@ -19,19 +19,27 @@ const BESIDE = 2.4;
 export class Geneva {
   /** @param {HTMLElement} place @param {any} design @param {any} motion */
   constructor(place, design, motion) {
-    const { mechanism, index_angle: index } = design;
+    const { mechanism } = design;
     this.motion = motion;
     const external = mechanism.type === "geneva_external";
     const spherical = mechanism.type === "geneva_spherical";
     /** The wheel turns against the crank, or with it. */
     this.sense = external ? -1 : 1;
+    // Half an index of the crank, by the axes' angles.
+    const half = external ? 90 - 180 / mechanism.stations : spherical ? 90 : 90 + 180 / mechanism.stations;
     // As the first roller enters a slot, the crank turning counter-clockwise; that of a sphere is seen along its own axis.
-    this.begin = { wheel: (-this.sense * 180) / mechanism.stations, crank: (external ? 180 : spherical ? 90 : 0) - index / 2 };
+    this.begin = { wheel: (-this.sense * 180) / mechanism.stations, crank: (external ? 180 : spherical ? 90 : 0) - half };
     const { disc, rollers, reach, centre } = spherical ? cap(mechanism) : crank(mechanism);
     const wheel = ring(mechanism.profile);
     const outside = mechanism.ring_radius ?? Math.max(...wheel.map(([x, y]) => Math.hypot(x, y)));
     const far = reach + mechanism.roller_diameter / 2;
-    const view = new View([[-outside, -outside], [outside, outside], [centre - far, -far], [centre + far, far]], WIDTH, HEIGHT, 12);
+    /** Before the crank, where that is not the input. */
+    this.link = mechanism.drag_link ?? null;
+    this.centre = centre;
+    const wide = this.link ? [[this.link.input_pivot[0] - this.link.input, -this.link.input], [this.link.input_pivot[0] + this.link.input, this.link.input]] : [];
+    const view = new View(/** @type {Point[]} */ ([[-outside, -outside], [outside, outside], [centre - far, -far], [centre + far, far], ...wide]), WIDTH, HEIGHT, 12);
+    this.view = view;
+    this.bars = svg("path", { class: "link" });
     this.axes = [view.at(0, 0), view.at(centre, 0)];
     const [[u, v]] = this.axes;
     this.wheel = svg("path", { class: "pitch", d: `${view.path(wheel)}Z` });
@@ -44,7 +52,7 @@ export class Geneva {
       svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
       mechanism.ring_radius && svg("g", { class: "wheel t0" }, svg("circle", { class: "pitch", cx: u, cy: v, r: view.scale * mechanism.ring_radius })),
       svg("g", { class: "wheel t0" }, this.wheel), svg("g", { class: "wheel t1" }, this.crank),
-      ...this.axes.map(([cx, cy]) => svg("circle", { class: "pin", cx, cy, r: 3.5 })));
+      this.link && this.bars, ...this.axes.map(([cx, cy]) => svg("circle", { class: "pin", cx, cy, r: 3.5 })));
     this.angle = el("dd", {});
     this.state = el("dd", {});
     this.player = new Player({ count: motion.input_angle.length, closed: true, endless: true, label: "Crank",
@@ -73,7 +81,8 @@ export class Geneva {
     const last = motion.input_angle.length - 1;
     const within = at - last * Math.floor(at / last);
     const turned = this.over(motion.angle, at);
-    const turns = [begin.wheel + sense * turned, begin.crank + this.over(motion.input_angle, at)];
+    const turns = [begin.wheel + sense * turned, begin.crank + this.over(motion.crank, at)];
+    if (this.link) this.bars.setAttribute("d", this.view.path(bars(this.link, this.centre, this.link.entry_angle + this.over(motion.input_angle, at), turns[1])));
     [this.wheel, this.crank].forEach((part, k) => {
       part.setAttribute("transform", `rotate(${(-turns[k]).toFixed(3)} ${this.axes[k][0].toFixed(2)} ${this.axes[k][1].toFixed(2)})`);
     });
@@ -94,6 +103,14 @@ function crank(mechanism) {
   const rollers = Array.from({ length: mechanism.rollers }, (_, k) => polar(mechanism.crank_radius, (360 * k) / mechanism.rollers));
   const disc = inner.some((/** @type {number} */ radius) => radius > 0) ? [...edge(outer), ...edge(inner).reverse()] : edge(outer);
   return { disc, rollers, reach: mechanism.crank_radius, centre: mechanism.center_distance };
+}
+
+/** Input, coupler and output of a drag link. @param {any} link @param {number} centre @param {number} input @param {number} crank degrees @returns {Point[]} */
+function bars(link, centre, input, crank) {
+  const [x, y] = link.input_pivot;
+  const [u, v] = polar(link.input, input + 180);
+  const [s, t] = polar(link.output, crank - link.crank_offset);
+  return [[x, y], [x + u, y + v], [centre + s, t], [centre, 0]];
 }
 
 /** Cap and roller of a spherical drive, seen along the crank's axis, with the roller along x. @param {any} mechanism */

@@ -8,12 +8,24 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import ConfigDict, Field
 
-from kinematics.indexing.geneva import Geneva
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
+from synthesis.mechanisms.geneva import course_of
 from synthesis.model.statement import Count, Degrees, PositiveLength, Statement
 
 ENTERS = 1e-9
 """Share by which a crank may be below the radius at which its roller reaches a slot: rounding."""
+
+
+class GivenDragLink(Statement):
+    """A drag link whose output turns the crank; the ground is the shortest link, and all links turn through."""
+
+    ground: PositiveLength
+    input: PositiveLength
+    coupler: PositiveLength
+    output: PositiveLength
+    crank_offset: Degrees = Field(default=0.0, description="From the output to the crank.")
+    input_pivot: Any = None
+    entry_angle: Any = None
 
 
 class GivenGeneva(Statement):
@@ -29,6 +41,7 @@ class GivenGeneva(Statement):
     cone_angle: Degrees | None = Field(
         default=None, description="Of a spherical drive; that of shock-free entry where it is left out."
     )
+    drag_link: GivenDragLink | None = None
     sphere_radius: Any = None
     roller_diameter: Any = None
     wheel_radius: Any = None
@@ -51,6 +64,7 @@ class GenevaAnalysis(DrivenAnalysis):
 
     valid: list[bool]
     moves: list[bool] = Field(description="Whether a roller is in a slot.")
+    crank: list[float] = Field(description="Angle of the crank, degrees, since then.")
     angle: list[float] = Field(description="Of the wheel, degrees, since the entry of a roller at input angle 0.")
     omega: list[float] = Field(description="rad/s")
     alpha: list[float] = Field(description="rad/s²")
@@ -78,39 +92,40 @@ class GenevaAnalysisRequest(DrivenRequest[GivenGeneva]):
         if given.type == "geneva_spherical":
             if given.cone_angle is not None and not math.degrees(step) * (1.0 - ENTERS) <= given.cone_angle < 90.0:
                 faults.append(("/mechanism/cone_angle", f"must be from {math.degrees(step):.9g} to below 90 degrees"))
+            if given.drag_link is not None:
+                faults.append(("/mechanism/drag_link", "a drag link drives plane Geneva drives only"))
         elif given.crank_radius is not None:
             if given.center_distance is None:
                 faults.append(("/mechanism/center_distance", "state it with the crank's radius"))
             elif not math.sin(step) * (1.0 - ENTERS) <= given.crank_radius / given.center_distance < 1.0:
                 least = given.center_distance * math.sin(step)
                 faults.append(("/mechanism/crank_radius", f"must be from {least:.9g} to below the center distance"))
+        if given.drag_link is not None and not faults:
+            faults += _drag_link_faults(given.drag_link)
         return faults
 
     def answer(self) -> dict[str, Any]:
         """Everything about the drive, in the shape of :class:`GenevaAnalysis`."""
         at, speed, time = self.motion.inputs()
-        drive = self._drive()
-        motion = drive.turned(np.radians(at), self.mechanism.rollers)
+        course, rollers = course_of(self.mechanism), self.mechanism.rollers
+        motion = course.turned(np.radians(at), rollers)
         return {
             "input_angle": at.tolist(),
             "time": None if time is None else time.tolist(),
             "valid": [True] * len(at),
-            "moves": drive.engaged(np.radians(at), self.mechanism.rollers).tolist(),
+            "moves": course.engaged(np.radians(at), rollers).tolist(),
+            "crank": np.degrees(course.from_entry(np.radians(at)).s).tolist(),
             "angle": np.degrees(motion.s).tolist(),
             "omega": (motion.v * speed).tolist(),
             "alpha": (motion.a * speed**2 + motion.v * self.motion.acceleration).tolist(),
         }
 
-    def _drive(self) -> Geneva:
-        given = self.mechanism
-        drive = Geneva.shock_free(given.type, given.stations)
-        if given.type == "geneva_spherical":
-            ratio = drive.ratio if given.cone_angle is None else math.tan(math.radians(given.cone_angle))
-        elif given.crank_radius is not None and given.center_distance is not None:
-            ratio = given.crank_radius / given.center_distance
-        else:
-            ratio = drive.ratio
-        return Geneva(given.type, given.stations, max(ratio, drive.ratio))
+
+def _drag_link_faults(link: GivenDragLink) -> list[tuple[str, str]]:
+    lengths = (link.input, link.coupler, link.output)
+    if min(lengths) > link.ground * (1.0 + ENTERS) and link.ground + 2.0 * max(lengths) < sum(lengths) * (1.0 - ENTERS):
+        return []
+    return [("/mechanism/drag_link", "the ground must be the shortest link, and with the longest below the others")]
 
 
 FAMILY = Family(GenevaAnalysisRequest, GenevaAnalysis)

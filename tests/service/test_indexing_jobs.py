@@ -27,7 +27,7 @@ def outcome(client: httpx.Client, problem: Statement) -> Any:
     return job["result"]
 
 
-GENEVA = [one for one in examples("indexing") if one["drive"] != "ratchet"]
+GENEVA = [one for one in examples("indexing") if one["drive"] != "ratchet" and "driver" not in one]
 RATCHET = next(one for one in examples("indexing") if one["drive"] == "ratchet")
 
 
@@ -52,6 +52,31 @@ def test_every_drive_is_drawn_and_moves(client: httpx.Client, example: Statement
                 assert omega == pytest.approx(design["program"]["v"][k], abs=1e-9)
         elif not moves:
             assert omega == 0.0
+
+
+def test_a_drag_link_through_http(client: httpx.Client) -> None:
+    """The whole driven: the wheel of the answer and of its analysis move alike, and demands together are kept."""
+    demands = {"steady_share": 0.3, "dwell_share": {"min": 0.45}, "min_transmission_angle": 35.0, "pin_force": 30.0}
+    wanted = indexing(driver="drag_link", load_inertia=0.02, constraints=demands)
+    job = finished(client, wanted)
+    (design,) = job["result"]["designs"]
+    metrics, program = design["metrics"], design["program"]
+    assert metrics["steady_share"] >= 0.3
+    assert design["dwell_share"] >= 0.45
+    assert metrics["min_transmission_angle"] >= 35.0
+    assert metrics["peak_pin_force"] <= 30.0 * (1.0 + 1e-9)
+    assert metrics["peak_acceleration"] < 2.0
+    body = {"mechanism": design["mechanism"], "motion": {"from": 0.0, "to": design["index_angle"], "steps": 360}}
+    found = client.post("/v1/analyses", json=body).raise_for_status().json()
+    for name, told in (("angle", program["s"]), ("omega", program["v"]), ("alpha", program["a"])):
+        assert found[name][1:-1] == pytest.approx(told[1:-1], abs=1e-7)
+    assert all(found["moves"][1:-1])
+    place = f"/v1/jobs/{job['id']}/designs/0"
+    for form in ("svg", "gif", "dxf", "csv"):
+        assert client.get(f"{place}.{form}").status_code == 200
+    assert 'data-part="drag_link"' in client.get(f"{place}.svg").text
+    whole = client.get(f"{place}/motion?steps=360").raise_for_status().json()
+    assert whole["angle"][-1] == pytest.approx(90.0, abs=1e-6)
 
 
 def test_a_wheel_is_drawn_with_true_arcs(client: httpx.Client) -> None:
@@ -135,6 +160,10 @@ def test_a_ratchet_is_found_drawn_and_moves(client: httpx.Client) -> None:
 @pytest.mark.parametrize(
     ("problem", "path"),
     [
+        (indexing(driver="drag_link", rollers=2), "/rollers"),
+        (indexing(driver="drag_link", drive="geneva_spherical"), "/driver"),
+        (indexing(constraints={"min_transmission_angle": 30.0}), "/constraints/min_transmission_angle"),
+        (RATCHET | {"driver": "drag_link"}, "/driver"),
         (indexing(roller_diameter=None), "/roller_diameter"),
         (indexing(speed_rpm=None), "/speed_rpm"),
         (indexing(pawls={"count": 1}), "/pawls"),

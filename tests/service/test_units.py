@@ -72,7 +72,8 @@ PURE = {
     "GivenPivotSolutions": {"largest_residual"},
     "DwellShare": {"min", "max"},
     "IndexingDesign": {"dwell_share"},
-    "IndexingMetrics": {"entry_speed"},  # over the crank's
+    "IndexingConstraints": {"steady_share"},
+    "IndexingMetrics": {"entry_speed", "steady_share"},  # speeds over the crank's
     "InputDial": {"at"},
     "LayshaftMetrics": {"max_error", "errors", "contact_ratios"},
     "LayshaftProblem": {"ratios", "reverse", "tolerance"},

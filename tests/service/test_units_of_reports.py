@@ -87,6 +87,7 @@ MEASURING = {
     "tooth_thickness": LENGTH,
     "locking_angle": ANGLE,
     "locking_as_told": ANGLE,
+    "transmission_as_told": ANGLE,
     "web": LENGTH,
     "bore": LENGTH,
     "crank_shaft": LENGTH,

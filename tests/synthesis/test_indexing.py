@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import cmath
+import itertools
 import math
 from typing import Any
 
 import numpy as np
 import pytest
 
+from kinematics.indexing.drag_link import Course, DragLink
 from kinematics.indexing.geneva import Geneva
 from kinematics.indexing.ratchet import Ratchet
 from kinematics.linkage.planar.catalogue import quick_return
@@ -141,7 +143,9 @@ def test_a_turn_of_the_crank_is_one_station_for_each_roller(drive: str) -> None:
     assert (float(resting.v[0]), float(resting.a[0])) == (0.0, 0.0)
 
 
-@pytest.mark.parametrize("example", [one for one in examples("indexing") if one["drive"] != "ratchet"])
+@pytest.mark.parametrize(
+    "example", [one for one in examples("indexing") if one["drive"] != "ratchet" and "driver" not in one]
+)
 def test_a_changed_dimension_is_noticed(example: dict[str, Any]) -> None:
     problem = parse_problem(example)
     design = solve(problem, lambda fraction, message: None).designs[0]
@@ -201,7 +205,7 @@ def test_a_pin_force_sets_the_size_and_is_met() -> None:
     assert design.metrics.sized_by == "pin_force"
     assert design.metrics.peak_pin_force == pytest.approx(20.0, rel=1e-9)
     load, drive = Load(0.05, 0.0, 2.0 * math.pi), Geneva.shock_free("geneva_external", 6)
-    assert peaks(drive, load, 1.0).pin_force / 20.0 == pytest.approx(design.mechanism.center_distance / 1000.0)
+    assert peaks(Course(drive), load, 1.0).pin_force / 20.0 == pytest.approx(design.mechanism.center_distance / 1000.0)
 
 
 def test_rollers_shorten_the_rest() -> None:
@@ -288,6 +292,44 @@ def test_a_pawl_falls_behind_each_tooth() -> None:
     assert high == pytest.approx(wheel.lift, abs=1e-6)
     assert low == pytest.approx(fallen, abs=1e-6)
     assert low < half < high
+
+
+@pytest.fixture(scope="module")
+def dragged() -> Any:
+    problem = parse_problem(next(one for one in examples("indexing") if one.get("driver") == "drag_link"))
+    return problem, solve(problem, lambda fraction, message: None).designs[0]
+
+
+def test_a_drag_link_lowers_the_peak_acceleration(dragged: Any) -> None:
+    _, design = dragged
+    assert design.verification.passed
+    assert design.metrics.peak_acceleration < 0.25 * 5.407
+    assert design.metrics.min_transmission_angle >= 40.0
+    assert design.dwell_share >= 0.6
+    assert design.program.s[-1] == pytest.approx(90.0, abs=1e-9)
+
+
+def test_a_changed_drag_link_is_noticed(dragged: Any) -> None:
+    problem, design = dragged
+    link = design.mechanism.drag_link
+    for name, change in (
+        ("program_is_driven", {"coupler": 1.001 * link.coupler}),
+        ("reaches_next_station", {"entry_angle": link.entry_angle + 0.1}),
+        ("program_is_driven", {"crank_offset": link.crank_offset + 0.1}),
+    ):
+        changed = design.mechanism.model_copy(update={"drag_link": link.model_copy(update=change)})
+        checked = verify_indexing(problem, design.model_copy(update={"mechanism": changed}))
+        assert name in [check.name for check in checked.verification.checks if not check.passed]
+
+
+def test_a_drag_link_is_differentiated_and_turns_through() -> None:
+    link = DragLink(2.0, 1.8, 2.2)
+    angle = np.linspace(0.0, 2.0 * math.pi, 4001)
+    moved = link.turned(angle)
+    assert moved.s[-1] - moved.s[0] == pytest.approx(2.0 * math.pi)
+    for value, rate in itertools.pairwise(moved):
+        assert np.gradient(value, angle)[1:-1] == pytest.approx(rate[1:-1], abs=1e-4)
+    assert float(link.turned(np.array(link.reached(1.0))).s) == pytest.approx(1.0, abs=1e-14)
 
 
 def test_no_room_for_walls() -> None:

@@ -14,12 +14,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 from ezdxf.layouts.layout import Modelspace
 from numpy.typing import NDArray
 
-from kinematics.indexing.geneva import Geneva
 from service.render.checks import checks, verdict
 from service.render.outline import entries
 from service.render.page import blocks, dxf
@@ -33,9 +33,11 @@ from service.render.page.table import table
 from service.units import symbols
 from synthesis.kinds.indexing.design import GenevaMechanism, IndexingDesign, SphericalGenevaMechanism
 from synthesis.kinds.indexing.problem import IndexingProblem
+from synthesis.mechanisms.geneva import course_of
 from synthesis.model.dimension import ACCELERATION, FORCE, JERK, TORQUE, VELOCITY
 
 Complex = NDArray[np.complex128]
+Mechanism = GenevaMechanism | SphericalGenevaMechanism
 
 PANEL, DIAGRAM, MARGIN = 380.0, 150.0, 24.0
 """Heights of the panel and of each diagram, and room around what is shown, pixels."""
@@ -131,11 +133,29 @@ def _crank(design: IndexingDesign) -> tuple[Complex, list[complex], complex, flo
     """Disc, rollers, the crank's axis and the radius of the rollers' circle."""
     mechanism = design.mechanism
     if isinstance(mechanism, GenevaMechanism):
-        disc, rollers = _plane_crank(mechanism, math.radians(0.5 * design.index_angle))
+        disc, rollers = _plane_crank(mechanism, course_of(mechanism).geneva.half)
         return disc, rollers, complex(mechanism.center_distance), mechanism.crank_radius
     cap, roller = _cap(mechanism)
     center = complex(2.4 * mechanism.sphere_radius)
     return cap, [roller], center, abs(roller - center)
+
+
+def _links(mechanism: Mechanism, angle: float, crank: float) -> list[Complex]:
+    """Input, coupler and output of a drag link, at angles of its input and of the crank since the entry; else none."""
+    link = getattr(mechanism, "drag_link", None)
+    if link is None or not isinstance(mechanism, GenevaMechanism):
+        return []
+    towards = math.pi if mechanism.type == "geneva_external" else 0.0
+    output = towards - course_of(mechanism).geneva.half + crank - math.radians(link.crank_offset)
+    pivot, axis = complex(*link.input_pivot), complex(mechanism.center_distance)
+    pin = pivot - link.input * np.exp(1j * (math.radians(link.entry_angle) + angle))
+    return [np.array([pivot, pin, axis + link.output * np.exp(1j * output), axis])]
+
+
+def _reach(mechanism: Mechanism) -> Complex:
+    """Around what a drag link reaches; nothing without one."""
+    link = getattr(mechanism, "drag_link", None)
+    return np.empty(0, np.complex128) if link is None else _ring(link.input, complex(*link.input_pivot))
 
 
 def _outside(design: IndexingDesign) -> Complex:
@@ -147,7 +167,7 @@ def _panel(design: IndexingDesign, problem: IndexingProblem) -> Element:
     wheel, outside = _wheel(design), _outside(design)
     disc, rollers, center, reach = _crank(design)
     size = 0.5 * design.mechanism.roller_diameter
-    around = np.concatenate([wheel, outside, disc, _ring(reach + size, center)])
+    around = np.concatenate([wheel, outside, disc, _ring(reach + size, center), _reach(design.mechanism)])
     view = Viewport.fit(Box.around(around), Box(EDGE, TOP, EDGE + beside(), TOP + PANEL), MARGIN, MARGIN)
     group = framed(view.panel, "indexing")
 
@@ -164,6 +184,11 @@ def _panel(design: IndexingDesign, problem: IndexingProblem) -> Element:
     for roller in rollers:
         group.add(line(view.point(center), view.point(roller), stroke=INPUT, stroke_width=3.0, stroke_opacity=0.4))
         group.add(circle(view.point(roller), view.scale * size, fill="#fff", stroke=INPUT, stroke_width=1.6))
+    for links in _links(design.mechanism, 0.0, 0.0):
+        group.add(
+            path([np.array([view.point(z) for z in links])], stroke=COUPLER, stroke_width=2.4, data_part="drag_link")
+        )
+        group.add(circle(view.point(complex(links[0])), 3.0, fill=GROUND))
     for axis in (0j, center):
         group.add(circle(view.point(axis), 3.0, fill=GROUND))
     return group.add(scale_bar(view, problem.length_unit)[0])
@@ -188,6 +213,10 @@ def indexing_drawing(design: IndexingDesign, problem: IndexingProblem, title: st
     dxf.add_outline(space, (complex(z) for z in disc), "CRANK")
     for roller in rollers:
         dxf.add_circle(space, roller, 0.5 * mechanism.roller_diameter, "CRANK")
+    for links in _links(mechanism, 0.0, 0.0):
+        for first, last in pairwise(links):
+            dxf.add_line(space, complex(first), complex(last), "CRANK")
+        dxf.add_cross(space, complex(links[0]), 2.0 * letters, "CENTRES")
     dxf.add_circle(space, center, reach, "CENTRES")
     dxf.add_cross(space, 0j, 2.0 * letters, "CENTRES")
     for n, (name, value) in enumerate(_dimensions(design, problem)):
@@ -223,20 +252,17 @@ def _true_wheel(space: Modelspace, mechanism: GenevaMechanism) -> None:
 def indexing_animation(design: IndexingDesign, problem: IndexingProblem, title: str) -> bytes:
     """One turn of the crank as GIF."""
     mechanism = design.mechanism
-    drive = Geneva.shock_free(mechanism.type, mechanism.stations)
-    if isinstance(mechanism, GenevaMechanism):
-        drive = Geneva(
-            mechanism.type, mechanism.stations, max(drive.ratio, mechanism.crank_radius / mechanism.center_distance)
-        )
+    course = course_of(mechanism)
     wheel, outside = _wheel(design), _outside(design)
     disc, rollers, center, reach = _crank(design)
     sense = -1.0 if mechanism.type == "geneva_external" else 1.0
     turns = 2.0 * math.pi * np.arange(FRAMES) / FRAMES
-    turned = drive.turned(turns, mechanism.rollers).s
+    turned = course.turned(turns, mechanism.rollers).s
+    cranks = course.from_entry(turns).s
     size = 0.5 * mechanism.roller_diameter
 
     def frames() -> Iterator[list[Stroke]]:
-        for crank, by in zip(turns, turned, strict=True):
+        for driven, crank, by in zip(turns, cranks, turned, strict=True):
             arm = np.exp(1j * crank)
             strokes = [Stroke(outside, OUTPUT, 1.4, True, FILL)] if len(outside) else []
             inside = "#ffffff" if len(outside) else FILL
@@ -244,9 +270,12 @@ def indexing_animation(design: IndexingDesign, problem: IndexingProblem, title: 
             strokes.append(Stroke(center + (disc - center) * arm, INPUT, 1.4, True, DISC))
             for one in rollers:
                 strokes.append(Stroke(ring(complex(center + (one - center) * arm), size), INPUT, 1.6, True, "#ffffff"))
+            strokes += [Stroke(links, COUPLER, 2.0) for links in _links(mechanism, float(driven), float(crank))]
             yield strokes
 
-    around = np.concatenate([_ring(float(np.abs(wheel).max())), outside, _ring(reach + size, center)])
+    around = np.concatenate(
+        [_ring(float(np.abs(wheel).max())), outside, _ring(reach + size, center), _reach(mechanism)]
+    )
     return animated(frames(), Box.around(around))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from synthesis.kinds.indexing.design import IndexingResult
 from synthesis.kinds.indexing.problem import IndexingProblem
-from synthesis.model.kind import Kind, Progress, always
+from synthesis.model.kind import Kind, Progress
 
 __all__ = ["KIND"]
 
@@ -15,4 +15,9 @@ def _solve(problem: IndexingProblem, progress: Progress) -> IndexingResult:
     return solve_indexing(problem, progress)
 
 
-KIND = Kind("indexing", IndexingProblem, IndexingResult, _solve, brief=always)
+def _brief(problem: IndexingProblem) -> bool:
+    """All but drag links follow in closed form."""
+    return problem.driver == "crank"
+
+
+KIND = Kind("indexing", IndexingProblem, IndexingResult, _solve, brief=_brief)

@@ -38,6 +38,22 @@ class LockingDisc(Answer):
     inner_radius: list[Length]
 
 
+class DragLinkDriver(Answer):
+    """A drag link whose output turns the crank; its input turns steadily.
+
+    Its input's pivot lies on the line of both axes, beyond the crank's; angles are from there towards the crank's axis,
+    counter-clockwise as the crank turns.
+    """
+
+    input_pivot: Point
+    ground: Length
+    input: Length
+    coupler: Length
+    output: Length
+    crank_offset: Angle = Field(description="From the output to the crank's roller.")
+    entry_angle: Angle = Field(description="Of the input, as the roller enters.")
+
+
 class GenevaMechanism(Answer):
     """A Geneva drive in the plane."""
 
@@ -54,6 +70,7 @@ class GenevaMechanism(Answer):
     locking_radius: Length = Field(description="Of the disc on the crank.")
     locking_arc_radius: Length = Field(description="Of the arcs in the wheel.")
     bore: Length
+    drag_link: DragLinkDriver | None = optional("Where the crank is not the input.")
     profile: Profile
     disc: LockingDisc
 
@@ -81,7 +98,7 @@ class SphericalGenevaMechanism(Answer):
 
 
 class IndexingProgram(Answer):
-    """The wheel during an index, over the crank's angle from where a roller enters; derivatives by that angle."""
+    """The wheel during an index, over the angle of the crank or the drag link's input from where a roller enters."""
 
     angle: list[Angle]
     s: list[Displacement]
@@ -108,6 +125,8 @@ class IndexingMetrics(Answer):
     peak_acceleration: Acceleration
     peak_acceleration_angle: Angle = Field(description="Of the crank, from where the roller enters.")
     peak_jerk: Jerk
+    steady_share: float = Field(description="Of an index, with nine tenths of the greatest speed and more.")
+    min_transmission_angle: Angle | None = optional("Of a drag link.")
     entry_speed: float = Field(description="Of the wheel over the crank's as the roller enters; 0 without shock.")
     peak_wheel_torque: Torque
     peak_drive_torque: Torque
@@ -126,7 +145,7 @@ class IndexingDesign(Answer):
 
     mechanism: GenevaMechanism | SphericalGenevaMechanism
     verification: Verification
-    index_angle: Angle = Field(description="Of the crank, for one index.")
+    index_angle: Angle = Field(description="Of the crank, or of the drag link's input, for one index.")
     dwell_share: float = Field(description="Of the time, in which the wheel rests.")
     program: IndexingProgram
     course: IndexingCourse

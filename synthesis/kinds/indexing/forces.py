@@ -14,9 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.cam.extremes import extremes
+from kinematics.indexing.drag_link import Course
 from kinematics.indexing.geneva import Geneva
 
 Real = NDArray[np.float64]
+
+
+ALIKE = 1e-9
+"""Share by which one peak may be above another that is as high."""
 
 
 @dataclass(frozen=True)
@@ -37,9 +42,14 @@ def arm(drive: Geneva, angle: Real, size: float) -> Real:
     return np.asarray(size * np.sqrt(1.0 - 2.0 * ratio * np.cos(angle) + ratio * ratio))
 
 
-def wheel_torque(drive: Geneva, load: Load, angle: Real) -> Real:
-    """Torque on the wheel at angles (radians) from the middle of the index."""
-    return np.asarray(load.inertia * load.speed**2 * drive.motion(angle).a + load.torque)
+def wheel_torque(course: Course, load: Load, angle: Real) -> Real:
+    """Torque on the wheel at angles (radians) of the input."""
+    return np.asarray(load.inertia * load.speed**2 * course.motion(angle).a + load.torque)
+
+
+def pin_force(course: Course, load: Load, angle: Real, size: float) -> Real:
+    """Force of the roller on the slot's side at angles of the input."""
+    return np.asarray(wheel_torque(course, load, angle) / arm(course.geneva, course.crank(angle).s, size))
 
 
 @dataclass(frozen=True)
@@ -47,19 +57,31 @@ class Peaks:
     """Greatest magnitudes over an index."""
 
     velocity: float
+    acceleration: float
+    acceleration_at: float
     jerk: float
     wheel_torque: float
     drive_torque: float
     pin_force: float
 
 
-def peaks(drive: Geneva, load: Load, size: float) -> Peaks:
-    """The greatest of motion and forces; ``size`` in the unit of torque over force."""
-    breaks = [-drive.half, 0.0, drive.half]
+def peaks(course: Course, load: Load, size: float) -> Peaks:
+    """The greatest of motion and forces; ``size`` in the unit of torque over force.
+
+    ``acceleration_at`` is the input's angle from the entry.
+    """
+    start, end = course.start, course.end
+    breaks = [start, 0.5 * (start + end), end]
+    acceleration = extremes(lambda at: course.motion(at).a, breaks)
+    at = acceleration.at_greatest
+    if abs(acceleration.least) > acceleration.greatest * (1.0 + ALIKE):
+        at = acceleration.at_least
     return Peaks(
-        velocity=extremes(lambda at: drive.motion(at).v, breaks).largest,
-        jerk=extremes(lambda at: drive.motion(at).j, breaks).largest,
-        wheel_torque=extremes(lambda at: wheel_torque(drive, load, at), breaks).largest,
-        drive_torque=extremes(lambda at: wheel_torque(drive, load, at) * drive.motion(at).v, breaks).largest,
-        pin_force=extremes(lambda at: wheel_torque(drive, load, at) / arm(drive, at, size), breaks).largest,
+        velocity=extremes(lambda at: course.motion(at).v, breaks).largest,
+        acceleration=acceleration.largest,
+        acceleration_at=at - start,
+        jerk=extremes(lambda at: course.motion(at).j, breaks).largest,
+        wheel_torque=extremes(lambda at: wheel_torque(course, load, at), breaks).largest,
+        drive_torque=extremes(lambda at: wheel_torque(course, load, at) * course.motion(at).v, breaks).largest,
+        pin_force=extremes(lambda at: pin_force(course, load, at, size), breaks).largest,
     )

@@ -6,10 +6,11 @@ import math
 
 import numpy as np
 
+from kinematics.indexing.drag_link import Course
 from kinematics.indexing.geneva import Geneva
 from kinematics.indexing.locking import Disc, crescent, disc
 from kinematics.indexing.wheel import Wheel
-from synthesis.kinds.indexing.design import GenevaMechanism, LockingDisc, Profile
+from synthesis.kinds.indexing.design import DragLinkDriver, GenevaMechanism, LockingDisc, Profile
 from synthesis.kinds.indexing.problem import IndexingProblem
 
 FEW = 9
@@ -87,8 +88,9 @@ def ring_radius(problem: IndexingProblem, wheel: Wheel) -> float:
     return wheel.slot_end + wheel.half_slot + problem.wall
 
 
-def mechanism_of(problem: IndexingProblem, drive: Geneva, wheel: Wheel, rollers: int) -> GenevaMechanism:
+def mechanism_of(problem: IndexingProblem, course: Course, wheel: Wheel, rollers: int) -> GenevaMechanism:
     """All dimensions and outlines of a drive that can be drawn."""
+    drive = course.geneva
     assert drive.drive != "geneva_spherical"
     gap = problem.clearances.locking
     return GenevaMechanism(
@@ -105,8 +107,28 @@ def mechanism_of(problem: IndexingProblem, drive: Geneva, wheel: Wheel, rollers:
         locking_radius=wheel.lock - gap,
         locking_arc_radius=wheel.lock,
         bore=problem.wheel_shaft_diameter,
+        drag_link=_driver(course, wheel.center_distance),
         profile=Profile(x=wheel.outline.real.tolist(), y=wheel.outline.imag.tolist()),
         disc=_listed(disc(wheel, drive, rollers, gap, problem.relief)),
+    )
+
+
+def _driver(course: Course, center_distance: float) -> DragLinkDriver | None:
+    """The drag link to scale: its output is as long as the crank."""
+    link = course.link
+    if link is None:
+        return None
+    ground = course.geneva.ratio * center_distance / float(link.output)
+    # The line from the input's pivot to the crank's axis points to the wheel, where an external crank's index is.
+    towards = 0.0 if course.geneva.drive == "geneva_external" else math.pi
+    return DragLinkDriver(
+        input_pivot=(center_distance + ground, 0.0),
+        ground=ground,
+        input=float(link.input) * ground,
+        coupler=float(link.coupler) * ground,
+        output=float(link.output) * ground,
+        crank_offset=math.degrees(towards - course.phase),
+        entry_angle=math.degrees(course.start),
     )
 
 

@@ -40,6 +40,9 @@ NEAR_ONE = 0.999
 LEAST_ROOM = 0.01
 """Least clearance at the end of a slot, and beside the disc, in roller diameters."""
 
+TRANSMISSION = 40.0
+"""Least transmission angle of a drag link where none is stated, degrees."""
+
 Share = Annotated[float, Field(strict=True, gt=0.0, lt=1.0, allow_inf_nan=False)]
 
 
@@ -74,6 +77,14 @@ class IndexingConstraints(Statement):
     size: PositiveLength | None = Field(
         default=None,
         description="The greatest extent: along the line of both axes, or the diameter of a ring or sphere.",
+    )
+    steady_share: Share | None = Field(
+        default=None,
+        description="The least share of an index, of the input's angle, in which the wheel has nine tenths of its "
+        "greatest speed.",
+    )
+    min_transmission_angle: Annotated[float, Field(strict=True, ge=0.0, le=80.0, allow_inf_nan=False), ANGLE] | None = (
+        Field(default=None, description="Of a drag link, between coupler and output; 40 degrees where it is left out.")
     )
     shock_free: Flag = Field(default=True, description="The roller must enter along the slot, the wheel being at rest.")
 
@@ -179,6 +190,17 @@ class IndexingProblem(StatedProblem):
                 },
                 {
                     "kind": "indexing",
+                    "drive": "geneva_external",
+                    "driver": "drag_link",
+                    "stations": 4,
+                    "center_distance": 100.0,
+                    "roller_diameter": 12.0,
+                    "speed_rpm": 60.0,
+                    "load_inertia": 0.02,
+                    "constraints": {"dwell_share": {"min": 0.6}},
+                },
+                {
+                    "kind": "indexing",
                     "drive": "ratchet",
                     "stations": 36,
                     "wall_thickness": 6.0,
@@ -198,6 +220,11 @@ class IndexingProblem(StatedProblem):
     drive: Literal["geneva_external", "geneva_internal", "geneva_spherical", "ratchet"] = Field(
         description="Wheel beside the crank, ring about it, or a hemisphere whose axis crosses the crank's at a right "
         "angle; or a toothed wheel that pawls hold against turning back."
+    )
+    driver: Literal["crank", "drag_link"] = Field(
+        default="crank",
+        description="What turns steadily: the crank with the roller, or the input of a drag link whose output is that "
+        "crank, found for the least peak acceleration of a plane Geneva drive.",
     )
     stations: Annotated[Count, Field(ge=3, le=MOST_STOPS)] = Field(
         description=f"Up to {MOST_STATIONS} of a Geneva drive; of a ratchet the places of a turn at which it is held."
@@ -262,6 +289,12 @@ class IndexingProblem(StatedProblem):
         return self.speed_rpm * math.pi / 30.0
 
     @property
+    def transmission_angle(self) -> float:
+        """The least of a drag link, degrees."""
+        stated = self.constraints.min_transmission_angle
+        return TRANSMISSION if stated is None else stated
+
+    @property
     def scale(self) -> float:
         """The length unit in that of torque over force."""
         return METRES[self.length_unit] if self.units == "si" else 1.0
@@ -303,6 +336,7 @@ class IndexingProblem(StatedProblem):
             found.append(Contradiction("/pawls", f"{self.drive} has none; leave it out"))
         if found:
             return found
+        found += self._driver_faults()
         foreign = ("center_distance", "crank_radius") if self.spherical else ("sphere_radius",)
         found += [
             Contradiction(f"/{name}", f"{self.drive} has none; leave it out")
@@ -326,8 +360,20 @@ class IndexingProblem(StatedProblem):
     @property
     def most_rollers(self) -> int:
         """How many rollers leave the wheel a rest."""
+        if self.driver == "drag_link":
+            return 1
         index = {"geneva_external": 0.5 - 1.0 / self.stations}.get(self.drive, 0.5)
         return max(1, math.ceil(1.0 / index - 1e-9) - 1)
+
+    def _driver_faults(self) -> list[Contradiction]:
+        if self.driver == "crank":
+            if self.constraints.min_transmission_angle is not None:
+                detail = "a crank has none; ask for a drag link, or leave it out"
+                return [Contradiction("/constraints/min_transmission_angle", detail)]
+            return []
+        if self.spherical:
+            return [Contradiction("/driver", "a drag link drives plane Geneva drives only")]
+        return []
 
     def _ratchet_faults(self) -> list[Contradiction]:
         stated = self.model_fields_set
@@ -347,7 +393,9 @@ class IndexingProblem(StatedProblem):
         for name in ("crank_shaft_diameter", "load_inertia", "clearances"):
             if name in stated and getattr(self, name) != type(self).model_fields[name].default:
                 found.append(Contradiction(f"/{name}", "a ratchet has none; leave it out"))
-        for name in ("dwell_share", "peak_acceleration", "drive_torque"):
+        if self.driver != "crank":
+            found.append(Contradiction("/driver", "a drag link drives plane Geneva drives only"))
+        for name in ("dwell_share", "peak_acceleration", "drive_torque", "steady_share", "min_transmission_angle"):
             if getattr(self.constraints, name) is not None:
                 found.append(Contradiction(f"/constraints/{name}", "a ratchet has none; leave it out"))
         if not self.constraints.shock_free:

@@ -15,6 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.indexing.geneva import Motion
+from kinematics.linkage.fourbar import OPEN, Fourbar
+from kinematics.linkage.planar.catalogue import fourbar as planar_fourbar
+from kinematics.linkage.planar.drive import MechanismMotion, drive
 from synthesis.kinds.indexing.design import GenevaMechanism, SphericalGenevaMechanism
 from synthesis.kinds.indexing.forces import Load
 
@@ -45,7 +48,33 @@ class Driven:
     drive_torque: Real
 
 
-def driven(mechanism: GenevaMechanism | SphericalGenevaMechanism, load: Load, scale: float, alpha: Real) -> Driven:
+def driven_link(mechanism: GenevaMechanism, angle: Real) -> MechanismMotion:
+    """The drag link of a mechanism as the analysis core drives it, over angles of its input, radians."""
+    link = mechanism.drag_link
+    assert link is not None
+    pivots = complex(*link.input_pivot), complex(mechanism.center_distance)
+    fourbar = Fourbar(pivots[0], pivots[1], link.input, link.coupler, link.output, 0j)
+    # Its ground line points along −x, from the input's pivot to the crank's axis.
+    return drive(planar_fourbar(fourbar, math.pi + float(angle[0]), OPEN), math.pi + angle)
+
+
+def crank_motion(mechanism: GenevaMechanism | SphericalGenevaMechanism, angle: Real) -> Motion:
+    """The crank's angle from the middle of the index, and its derivatives by the input's angle (radians).
+
+    A drag link is driven by the analysis core; otherwise the crank is the input.
+    """
+    link = getattr(mechanism, "drag_link", None)
+    if link is None or not isinstance(mechanism, GenevaMechanism):
+        return Motion(angle, np.ones_like(angle), np.zeros_like(angle), np.zeros_like(angle))
+    moved = driven_link(mechanism, angle)
+    output = moved.angles["output"]
+    arm = moved.joints["B"][0] - mechanism.center_distance
+    towards = math.pi if mechanism.type == "geneva_external" else 0.0
+    first = float(np.angle(arm[0] * np.exp(1j * (math.radians(link.crank_offset) - towards))))
+    return Motion(first + output[0] - output[0, 0], output[1], output[2], output[3])
+
+
+def driven(mechanism: GenevaMechanism | SphericalGenevaMechanism, load: Load, scale: float, angle: Real) -> Driven:
     """Drive the roller of a mechanism through its slot.
 
     Parameters
@@ -55,9 +84,10 @@ def driven(mechanism: GenevaMechanism | SphericalGenevaMechanism, load: Load, sc
     load : Load
     scale : float
         The length unit in that of torque over force.
-    alpha : float, shape (n,)
+    angle : float, shape (n,)
+        Of the input, radians: from the middle of the index where the crank is it, otherwise the drag link's own.
     """
-    place, rates = _path(mechanism, alpha)
+    place, rates = _path(mechanism, crank_motion(mechanism, angle))
     first, second, third = (rate / place for rate in rates)
     sense = -1.0 if mechanism.type == "geneva_external" else 1.0
     motion = Motion(
@@ -75,8 +105,18 @@ def driven(mechanism: GenevaMechanism | SphericalGenevaMechanism, load: Load, sc
     return Driven(place, np.angle(place), motion, torque, force, drive)
 
 
-def _path(mechanism: GenevaMechanism | SphericalGenevaMechanism, alpha: Real) -> tuple[Complex, list[Complex]]:
-    """The roller seen along the wheel's axis, and its three derivatives by the crank's angle."""
+def _path(mechanism: GenevaMechanism | SphericalGenevaMechanism, crank: Motion) -> tuple[Complex, list[Complex]]:
+    """The roller seen along the wheel's axis, and its three derivatives by the input's angle."""
+    place, (first, second, third) = _circle(mechanism, crank.s)
+    return place, [
+        first * crank.v,
+        second * crank.v**2 + first * crank.a,
+        third * crank.v**3 + 3.0 * second * crank.v * crank.a + first * crank.j,
+    ]
+
+
+def _circle(mechanism: GenevaMechanism | SphericalGenevaMechanism, alpha: Real) -> tuple[Complex, list[Complex]]:
+    """The roller and its derivatives by the crank's own angle."""
     if isinstance(mechanism, SphericalGenevaMechanism):
         cone = math.radians(mechanism.cone_angle)
         near, aside = mechanism.sphere_radius * math.cos(cone), mechanism.sphere_radius * math.sin(cone)

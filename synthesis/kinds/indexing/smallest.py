@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import cast
 
+from kinematics.indexing.drag_link import Course
 from kinematics.indexing.geneva import Geneva
 from synthesis.kinds.indexing import plane, sphere
 from synthesis.kinds.indexing.design import SizedBy
@@ -17,8 +18,9 @@ HALVINGS = 70
 """Of an interval that is a thousand times as wide as the least size: to rounding."""
 
 
-def smallest(problem: IndexingProblem, drive: Geneva, load: Load) -> tuple[float, SizedBy] | None:
+def smallest(problem: IndexingProblem, course: Course, load: Load) -> tuple[float, SizedBy] | None:
     """The least center distance or sphere radius, and the demand that sets it; None where none up to 1e9 will do."""
+    drive = course.geneva
     least: dict[str, float] = {}
     for name in _margins(problem, drive, ABSURD):
         found = least_size(partial(_margin, problem, drive, name), problem.roller)
@@ -28,7 +30,7 @@ def smallest(problem: IndexingProblem, drive: Geneva, load: Load) -> tuple[float
     limit = problem.constraints.pin_force
     if limit is not None:
         # At steady speed the force falls as the size grows.
-        least["pin_force"] = peaks(drive, load, problem.scale).pin_force / limit
+        least["pin_force"] = peaks(course, load, problem.scale).pin_force / limit
     setting = max(least, key=lambda name: least[name])
     return least[setting], cast(SizedBy, setting)
 

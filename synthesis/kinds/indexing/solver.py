@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 
+from kinematics.indexing.drag_link import Course, steady_share
 from kinematics.indexing.geneva import Geneva
 from synthesis.kinds.indexing import plane, sphere
 from synthesis.kinds.indexing.design import (
@@ -20,7 +21,8 @@ from synthesis.kinds.indexing.design import (
     SizedBy,
     SphericalGenevaMechanism,
 )
-from synthesis.kinds.indexing.forces import Load, arm, peaks, wheel_torque
+from synthesis.kinds.indexing.driver import best_course
+from synthesis.kinds.indexing.forces import Load, peaks, pin_force, wheel_torque
 from synthesis.kinds.indexing.problem import IndexingProblem
 from synthesis.kinds.indexing.ratchets import solve_ratchet
 from synthesis.kinds.indexing.smallest import smallest
@@ -32,8 +34,17 @@ from synthesis.outcome.sifting import NUMERICAL, Sifting
 SHOWN = 361
 """Positions of a program."""
 
-UNPROVEN = NUMERICAL | {"disc_clears_wheel", "roller_in_slot", "locked_at_rest"}
+UNPROVEN = NUMERICAL | {"disc_clears_wheel", "roller_in_slot", "locked_at_rest", "no_drag_link_found"}
 """Reasons that rest on outlines of finite steps: with one of them an empty answer is no proof."""
+
+STEADY_SAMPLES = 4001
+"""Positions of an index in which it is asked whether the wheel is steady."""
+
+METHODS = {"crank": "closed_form", "drag_link": "random draws and descent"}
+"""How answers are found, by driver."""
+
+NO_DRAG_LINK = "no_drag_link_found"
+"""Reason where no drag link that was tried keeps the demands."""
 
 NOT_DRAWABLE = "no_room_for_walls"
 
@@ -55,10 +66,11 @@ def solve_indexing(problem: IndexingProblem, progress: Progress) -> IndexingResu
     sifting.sift(numbers, partial(_candidate, problem))
     progress(1.0, "verified")
     designs = sifting.designs(lambda found: found)
-    complete = not UNPROVEN & sifting.rejected.keys()
+    # The best drag link is sought, not enumerated.
+    complete = problem.driver == "crank" and not UNPROVEN & sifting.rejected.keys()
     return IndexingResult(
         designs=designs,
-        search=sifting.search("closed_form", complete=complete),
+        search=sifting.search(METHODS[problem.driver], complete=complete),
         summary=_summary(problem, sifting, complete),
     )
 
@@ -74,10 +86,13 @@ def _drive(problem: IndexingProblem) -> Geneva:
 def _candidate(problem: IndexingProblem, rollers: int) -> IndexingDesign | str:
     """The drive with a number of rollers, verified; the reason where it cannot be drawn."""
     drive = _drive(problem)
+    course = Course(drive) if problem.driver == "crank" else best_course(problem, drive)
+    if course is None:
+        return NO_DRAG_LINK
     load = Load(problem.load_inertia, problem.load_torque, problem.crank_speed)
     size, sized_by = problem.sphere_radius if problem.spherical else problem.center_distance, None
     if size is None:
-        found = smallest(problem, drive, load)
+        found = smallest(problem, course, load)
         if found is None:
             return NOT_DRAWABLE
         size, sized_by = found
@@ -94,18 +109,19 @@ def _candidate(problem: IndexingProblem, rollers: int) -> IndexingDesign | str:
             return NOT_DRAWABLE
         walls = {"wall": wheel.wall, "web": wheel.web, "size": plane.size_of(problem, wheel, drive.ratio * size)}
         free = math.inf if wheel.internal else wheel.slot_end - wheel.half_slot - 0.5 * problem.wheel_shaft_diameter
-        mechanism = plane.mechanism_of(problem, drive, wheel, rollers)
-    metrics = _metrics(problem, drive, load, size, walls, undercut=free < 0.0 or walls["web"] < 0.0, sized_by=sized_by)
-    alpha = np.linspace(-drive.half, drive.half, SHOWN)
-    motion, torque = drive.motion(alpha), wheel_torque(drive, load, alpha)
-    index = math.degrees(2.0 * drive.half)
+        mechanism = plane.mechanism_of(problem, course, wheel, rollers)
+    metrics = _metrics(problem, course, load, size, walls, undercut=free < 0.0 or walls["web"] < 0.0, sized_by=sized_by)
+    start, end = course.start, course.end
+    angle = np.linspace(start, end, SHOWN)
+    motion, torque = course.motion(angle), wheel_torque(course, load, angle)
+    index = math.degrees(end - start)
     design = IndexingDesign(
         mechanism=mechanism,
         verification=Verification.of([]),
         index_angle=index,
         dwell_share=1.0 - rollers * index / 360.0,
         program=IndexingProgram(
-            angle=np.degrees(alpha + drive.half).tolist(),
+            angle=np.degrees(angle - start).tolist(),
             s=np.degrees(motion.s - motion.s[0]).tolist(),
             v=motion.v.tolist(),
             a=motion.a.tolist(),
@@ -114,7 +130,7 @@ def _candidate(problem: IndexingProblem, rollers: int) -> IndexingDesign | str:
         course=IndexingCourse(
             wheel_torque=torque.tolist(),
             drive_torque=(torque * motion.v).tolist(),
-            pin_force=(torque / arm(drive, alpha, problem.scale * size)).tolist(),
+            pin_force=pin_force(course, load, angle, problem.scale * size).tolist(),
         ),
         metrics=metrics,
     )
@@ -123,7 +139,7 @@ def _candidate(problem: IndexingProblem, rollers: int) -> IndexingDesign | str:
 
 def _metrics(
     problem: IndexingProblem,
-    drive: Geneva,
+    course: Course,
     load: Load,
     size: float,
     walls: dict[str, float],
@@ -131,14 +147,20 @@ def _metrics(
     undercut: bool,
     sized_by: SizedBy | None,
 ) -> IndexingMetrics:
-    greatest = peaks(drive, load, problem.scale * size)
-    at = drive.half - drive.peak_angle
+    greatest, drive, link = peaks(course, load, problem.scale * size), course.geneva, course.link
+    acceleration, at = greatest.acceleration, greatest.acceleration_at
+    if link is None:
+        at = drive.half - drive.peak_angle
+        acceleration = abs(float(drive.motion(np.array(at - drive.half)).a))
+    evenly = course.motion(np.linspace(course.start, course.end, STEADY_SAMPLES)).v
     return IndexingMetrics(
         peak_velocity=greatest.velocity,
-        peak_acceleration=abs(float(drive.motion(np.array(at - drive.half)).a)),
+        peak_acceleration=acceleration,
         peak_acceleration_angle=math.degrees(at),
+        steady_share=steady_share(evenly),
+        min_transmission_angle=None if link is None else math.degrees(float(link.transmission_angle)),
         peak_jerk=greatest.jerk,
-        entry_speed=float(drive.motion(np.array(-drive.half)).v),
+        entry_speed=float(course.motion(np.array(course.start)).v),
         peak_wheel_torque=greatest.wheel_torque,
         peak_drive_torque=greatest.drive_torque,
         peak_pin_force=greatest.pin_force,
@@ -159,7 +181,8 @@ def _summary(problem: IndexingProblem, sifting: Sifting[IndexingDesign | Ratchet
     size = f"its size is {metrics.size:.6g} {unit}"
     if metrics.sized_by is not None:
         size = f"the smallest has the size {metrics.size:.6g} {unit}, set by its {metrics.sized_by.replace('_', ' ')}"
+    turned = "crank" if problem.driver == "crank" else "drag link's input"
     return (
-        f"The wheel turns during {best.index_angle:.6g}° of the crank and rests for {100.0 * best.dwell_share:.4g} % "
-        f"of the time; {size}." + sifting.reasons()
+        f"The wheel turns during {best.index_angle:.6g}° of the {turned} and rests for "
+        f"{100.0 * best.dwell_share:.4g} % of the time; {size}." + sifting.reasons()
     )

@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.kinds.indexing.clearance import Measured, measured
-from synthesis.kinds.indexing.design import IndexingDesign, SphericalGenevaMechanism
+from synthesis.kinds.indexing.design import GenevaMechanism, IndexingDesign, SphericalGenevaMechanism
 from synthesis.kinds.indexing.forces import Load
 from synthesis.kinds.indexing.problem import IndexingProblem
-from synthesis.kinds.indexing.reactions import Driven, driven
+from synthesis.kinds.indexing.reactions import Driven, crank_motion, driven, driven_link
 from synthesis.model.answer import Check, Verification
-from synthesis.model.dimension import ACCELERATION, FORCE, LENGTH, TORQUE
+from synthesis.model.dimension import ACCELERATION, ANGLE, FORCE, LENGTH, TORQUE
 from synthesis.proof.checks import at_least, at_most, tolerated
 
 Real = NDArray[np.float64]
@@ -34,6 +34,9 @@ SAMPLED = 4001
 
 BELOW = 1e-5
 """Share by which a peak may be above the greatest sample."""
+
+AS_TOLD = 1e-6
+"""Degrees by which a told transmission angle may differ from that of the driven drag link."""
 
 LOCKED = 0.5
 """Share of a rest over which the disc must hold the wheel both ways; at the ends of a rest one side is about to free
@@ -56,20 +59,27 @@ def verify_indexing(problem: IndexingProblem, design: IndexingDesign) -> Indexin
         With the checks of what was measured, and the angle over which the wheel is held.
     """
     load = Load(problem.load_inertia, problem.load_torque, problem.crank_speed)
-    half = math.radians(0.5 * design.index_angle)
-    alpha = np.radians(design.program.angle) - half
-    drive = driven(design.mechanism, load, problem.scale, alpha)
-    outlines = measured(design, half)
+    span = _span(design)
+    drive = driven(design.mechanism, load, problem.scale, span[0] + np.radians(design.program.angle))
+    crank = crank_motion(design.mechanism, span[0] + np.radians(design.program.angle)).s
+    outlines = measured(design, 0.5 * float(crank[-1] - crank[0]))
     checks = [
         tolerated("reaches_next_station", _station_error(design, drive), AGREES),
         *_agreement(design, drive),
-        *_energy(problem, design, load, half),
-        *_peaks(problem, design, load, half),
+        *_energy(problem, design, load, span),
+        *_peaks(problem, design, load, span),
         *_walls(problem, design, outlines),
         *_constraints(problem, design, drive),
     ]
     metrics = design.metrics.model_copy(update={"locking_angle": outlines.locked_angle, "play": outlines.play})
     return design.model_copy(update={"verification": Verification.of(checks), "metrics": metrics})
+
+
+def _span(design: IndexingDesign) -> tuple[float, float]:
+    """The input's angles, radians, as a roller enters and as it leaves."""
+    link = getattr(design.mechanism, "drag_link", None)
+    start = math.radians(-0.5 * design.index_angle if link is None else link.entry_angle)
+    return start, start + math.radians(design.index_angle)
 
 
 def _station_error(design: IndexingDesign, drive: Driven) -> float:
@@ -98,24 +108,23 @@ def _agreement(design: IndexingDesign, drive: Driven) -> list[Check]:
     ]
 
 
-def _energy(problem: IndexingProblem, design: IndexingDesign, load: Load, half: float) -> list[Check]:
-    """The crank's work over the first half of an index is the wheel's energy and the work against its load."""
+def _energy(problem: IndexingProblem, design: IndexingDesign, load: Load, span: tuple[float, float]) -> list[Check]:
+    """The work of the input over the first half of an index is the wheel's energy and the work against its load."""
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
-    through = driven(design.mechanism, load, problem.scale, 0.5 * half * (nodes - 1.0))
+    start, half = span[0], 0.5 * (span[1] - span[0])
+    through = driven(design.mechanism, load, problem.scale, start + 0.5 * half * (nodes + 1.0))
     work = 0.5 * half * float(weights @ through.drive_torque)
-    ends = driven(design.mechanism, load, problem.scale, np.array([-half, 0.0])).motion
+    ends = driven(design.mechanism, load, problem.scale, np.array([start, start + half])).motion
     gained = 0.5 * load.inertia * load.speed**2 * float(ends.v[1] ** 2 - ends.v[0] ** 2)
     gained += load.torque * float(ends.s[1] - ends.s[0])
     size = max(abs(work), abs(gained))
     return [tolerated("energy_balance", abs(work - gained) / size if size > 0.0 else 0.0, AGREES)]
 
 
-def _peaks(problem: IndexingProblem, design: IndexingDesign, load: Load, half: float) -> list[Check]:
+def _peaks(problem: IndexingProblem, design: IndexingDesign, load: Load, span: tuple[float, float]) -> list[Check]:
     """No sample is above a peak, and the greatest is nearly as high."""
     metrics = design.metrics
-    # Closer where the wheel is fastest, in the middle.
-    places = half * np.linspace(-1.0, 1.0, SAMPLED)
-    found = driven(design.mechanism, load, problem.scale, places)
+    found = driven(design.mechanism, load, problem.scale, np.linspace(*span, SAMPLED))
     beside = [
         (metrics.peak_velocity, found.motion.v),
         (metrics.peak_acceleration, found.motion.a),
@@ -164,6 +173,13 @@ def _constraints(problem: IndexingProblem, design: IndexingDesign, drive: Driven
             checks.append(at_least("min_dwell_share", share, stated.dwell_share.min))
         if stated.dwell_share.max is not None:
             checks.append(at_most("max_dwell_share", share, stated.dwell_share.max))
+    if stated.steady_share is not None:
+        checks.append(at_least("steady_share", metrics.steady_share, stated.steady_share))
+    if metrics.min_transmission_angle is not None:
+        measured_angle = _transmission_angle(design)
+        told = abs(measured_angle - metrics.min_transmission_angle)
+        checks.append(tolerated("transmission_as_told", told, AS_TOLD, ANGLE))
+        checks.append(at_least("transmission_angle", measured_angle, problem.transmission_angle, ANGLE, AGREES))
     if stated.peak_acceleration is not None:
         limit = stated.peak_acceleration
         checks.append(at_most("peak_acceleration", metrics.peak_acceleration, limit, ACCELERATION))
@@ -174,3 +190,12 @@ def _constraints(problem: IndexingProblem, design: IndexingDesign, drive: Driven
     if stated.size is not None:
         checks.append(at_most("size", metrics.size, stated.size, LENGTH))
     return checks
+
+
+def _transmission_angle(design: IndexingDesign) -> float:
+    """The least of the drag link, degrees: pin and pivots in line, both ways, by the law of cosines."""
+    assert isinstance(design.mechanism, GenevaMechanism)
+    link = design.mechanism.drag_link
+    assert link is not None
+    moved = driven_link(design.mechanism, np.array([0.0, math.pi]))
+    return math.degrees(float(np.arcsin(np.abs(moved.sines["coupler"]).min())))

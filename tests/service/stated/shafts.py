@@ -178,6 +178,7 @@ INDEXING_ROWS: dict[str, Any] = {
     "seed": 7,
     "units": "consistent",
     "drive": "geneva_internal",
+    "driver": "drag_link",
     "stations": 5,
     "rollers": 1,
     "center_distance": 90.0,
@@ -212,5 +213,7 @@ INDEXING_ROWS: dict[str, Any] = {
     "constraints.drive_torque": 1.0,
     "constraints.pin_force": 20.0,
     "constraints.size": 150.0,
+    "constraints.steady_share": 0.15,
+    "constraints.min_transmission_angle": Row(42.0, {"driver": "drag_link"}),
     "constraints.shock_free": Row(False, LARGER_CRANK),
 }

@@ -1,0 +1,34 @@
+"""A Geneva drive by its dimensions, whatever holds them: an answer, or what a client states."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from kinematics.indexing.drag_link import Course, DragLink
+from kinematics.indexing.geneva import Geneva
+
+
+def course_of(mechanism: Any) -> Course:
+    """The drive with its crank, and with the drag link before it where it has one.
+
+    Parameters
+    ----------
+    mechanism : object
+        Has ``type``, ``stations`` and the sizes that the type has; those of shock-free entry where they are None.
+    """
+    drive = Geneva.shock_free(mechanism.type, mechanism.stations)
+    ratio = drive.ratio
+    if mechanism.type == "geneva_spherical":
+        if mechanism.cone_angle is not None:
+            ratio = math.tan(math.radians(mechanism.cone_angle))
+    elif mechanism.crank_radius is not None and mechanism.center_distance is not None:
+        ratio = mechanism.crank_radius / mechanism.center_distance
+    # A crank that is rounded off a little below the least reaches the slots all the same.
+    drive = Geneva(mechanism.type, mechanism.stations, max(ratio, drive.ratio))
+    link = getattr(mechanism, "drag_link", None)
+    if link is None:
+        return Course(drive)
+    towards = 0.0 if mechanism.type == "geneva_external" else math.pi
+    lengths = DragLink(link.input / link.ground, link.coupler / link.ground, link.output / link.ground)
+    return Course(drive, lengths, towards - math.radians(link.crank_offset))
