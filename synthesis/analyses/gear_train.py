@@ -19,9 +19,10 @@ from kinematics.errors import DimensionError
 from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, Mesh
 from kinematics.gear.train import OrdinaryTrain, TrainStage
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
-from synthesis.model.answer import Answer
-from synthesis.model.gear_answer import MeshGeometry, Ratio, mesh_geometries
+from synthesis.model.answer import Answer, optional
+from synthesis.model.gear_answer import MeshGeometry, Ratio, mesh_geometries, rack_contact
 from synthesis.model.gear_statement import PressureAngle, ShiftCoefficient, ToothNumber
+from synthesis.model.gear_strength import Loaded, PairStrength, StrengthMethod, told
 from synthesis.model.statement import Number, PositiveNumber, Statement
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
@@ -50,6 +51,8 @@ class GivenStage(Statement):
     centre_distance: PositiveNumber | None = Field(
         default=None, description="As in a design: it has to be that of the teeth without play."
     )
+
+    face_width: PositiveNumber | None = Field(default=None, description="For `strength`.")
 
     @property
     def shifts(self) -> tuple[float, float]:
@@ -121,6 +124,11 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
     friction: Annotated[float, Field(strict=True, ge=0.0, le=1.0)] = Field(
         default=FRICTION, description="Friction coefficient between the teeth."
     )
+    strength: StrengthMethod | None = Field(
+        default=None,
+        description="Stresses of every mesh under the torque at the first position, over the stage's face width or "
+        "over the least that keeps the allowable stresses; pairs are of the driving gear and the driven one.",
+    )
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
@@ -131,12 +139,28 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         for number, stage in enumerate(self.mechanism.stages):
             if stage.shift is not None and any(idler.stage == number + 1 for idler in self.mechanism.idlers):
                 faults.append((f"/mechanism/stages/{number}/shift", "a stage with an idler has no shift"))
+        faults += self._wrong_strength()
         if not faults:
             faults += self._wrong_distances()
         if not faults and self.mechanism.ratio is not None:
             ratio, stated = self.mechanism.train().ratio, self.mechanism.ratio
             if stated.numerator != ratio * stated.denominator:
                 faults.append(("/mechanism/ratio", f"the teeth have the ratio {ratio}; leave the ratio out"))
+        return faults
+
+    def _wrong_strength(self) -> list[tuple[str, str]]:
+        stated = self.strength
+        if stated is None:
+            return []
+        faults = [(f"/strength{path}", detail) for path, detail in stated.faults()]
+        if self.input_torque == 0.0 or float(self.motion.inputs()[1][0]) == 0.0:
+            faults.append(("/strength", "state a torque and a speed; no power is carried without"))
+        if stated.allowable_bending is None and stated.allowable_contact is None:
+            faults += [
+                (f"/mechanism/stages/{number}/face_width", "state it, or the allowable stresses that it follows from")
+                for number, stage in enumerate(self.mechanism.stages)
+                if stage.face_width is None
+            ]
         return faults
 
     def _wrong_distances(self) -> list[tuple[str, str]]:
@@ -181,6 +205,7 @@ class LoadedMesh(MeshGeometry):
     pitch_line_velocity: float = Field(description="At the first position, length units per second.")
     tangential_force: float = Field(description="N")
     radial_force: float = Field(description="N")
+    strength: PairStrength | None = optional("Stresses, where a method is stated.")
 
 
 class Shaft(Answer):
@@ -271,10 +296,11 @@ def _meshes(
 ) -> list[dict[str, Any]]:
     """Every mesh with its contact and its forces at the first position."""
     geometries = iter(mesh_geometries(train))
-    loaded = []
-    for stage, meshes, efficiencies, turns, torque in zip(
-        train.stages, train.meshes, shares, train.speeds, torques[:-1], strict=True
+    loaded: list[dict[str, Any]] = []
+    for number, (stage, meshes, efficiencies, turns, torque) in enumerate(
+        zip(train.stages, train.meshes, shares, train.speeds, torques[:-1], strict=True)
     ):
+        begin = len(loaded)
         # The tangential force passes through an idler; each mesh takes its losses from it.
         radius = 0.5 * stage.module * stage.driver
         if stage.shifts != (0.0, 0.0):
@@ -299,8 +325,27 @@ def _meshes(
                     "radial_force": force * math.tan(mesh.pressure_angle),
                 }
             )
+            if request.strength is not None:
+                place = len(loaded) - begin - 1
+                power = force * abs(float(turn) * speed) * METRES[request.length_unit] * 0.5 * stage.module * driver
+                if stage.shifts != (0.0, 0.0):
+                    power *= mesh.centre_distance / mesh.standard_distance
+                turning = abs(float(turn) * speed)
+                loaded[-1]["strength"] = _strength(request, stage, place, number, power, turning)
             force *= 1.0 if share is None else share
     return loaded
+
+
+def _strength(
+    request: GearTrainAnalysisRequest, stage: TrainStage, place: int, number: int, power: float, turning: float
+) -> dict[str, Any]:
+    """Stresses of one mesh of a stage, its gears as they stand in the order of the power, in millimetres."""
+    assert request.strength is not None
+    unit = 1000.0 * METRES[request.length_unit]
+    gears = replace(stage, module=stage.module * unit).cut_gears(math.radians(request.mechanism.pressure_angle))
+    contact = rack_contact(Mesh(gears[place], gears[place + 1]))
+    width = request.mechanism.stages[number].face_width
+    return told(Loaded(contact, power, turning), request.strength, width, unit)
 
 
 FAMILY = Family(GearTrainAnalysisRequest, GearTrainAnalysis)

@@ -18,10 +18,11 @@ from kinematics.gear.flanks import Contact, ShapedRing, rack_cut_form, shortened
 from kinematics.gear.helical import HelicalGear
 from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, FULL_DEPTH_DEDENDUM, Gear, Mesh
 from synthesis.analyses.base import AnalysisRequest, Family
-from synthesis.analyses.gear_pair import RPM
+from synthesis.analyses.gear_pair import MILLIMETRE, RPM
 from synthesis.mechanisms.base import MechanismError
-from synthesis.model.answer import Answer
+from synthesis.model.answer import Answer, optional
 from synthesis.model.gear_statement import PressureAngle, ShiftCoefficient, ToothNumber
+from synthesis.model.gear_strength import Loaded, PairStrength, StatedStrength, told
 from synthesis.model.statement import Flag, Number, PositiveNumber, Statement
 
 USUAL_CUTTER = 20
@@ -190,6 +191,7 @@ class RunningPairAnalysis(Answer):
         "pair of teeth in contact."
     )
     gears: list[RunningGear]
+    strength: PairStrength | None = optional("Stresses under a stated power.")
 
 
 class RunningPairRequest(AnalysisRequest):
@@ -204,6 +206,10 @@ class RunningPairRequest(AnalysisRequest):
                         "type": "gear_pair", "teeth": [20, 50], "module": 2.0, "shift": [0.4, 0.1], "face_width": 20.0
                     },
                     "speed_rpm": 1450.0,
+                    "strength": {
+                        "method": "agma", "power_kw": 3.0, "allowable_bending": [200.0, 180.0],
+                        "allowable_contact": [800.0, 750.0]
+                    },
                 }
             ]
         },
@@ -211,6 +217,11 @@ class RunningPairRequest(AnalysisRequest):
 
     mechanism: GivenGearPair
     speed_rpm: Number = Field(default=1.0, description="Speed of the first gear, revolutions a minute.")
+    length_unit: Literal["mm", "cm", "m", "in"] = Field(default="mm", description="Of the module, for `strength`.")
+    strength: StatedStrength | None = Field(
+        default=None,
+        description="A power that spur gears carry: stresses over the face width, or over the least that carries it.",
+    )
 
     @classmethod
     def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
@@ -226,6 +237,19 @@ class RunningPairRequest(AnalysisRequest):
             faults.append(("/mechanism/cutter_teeth", "only a ring is shaped by a cutter; leave it out"))
         if given.cutter_teeth is not None and given.cutter_teeth >= given.teeth[1]:
             faults.append(("/mechanism/cutter_teeth", "a cutter has fewer teeth than the ring that it shapes"))
+        return [*faults, *self._wrong_strength()]
+
+    def _wrong_strength(self) -> list[tuple[str, str]]:
+        given, stated = self.mechanism, self.strength
+        if stated is None:
+            return []
+        faults = [(f"/strength{path}", detail) for path, detail in stated.faults()]
+        if given.helix_angle != 0.0:
+            faults.append(("/strength", "only spur teeth are judged; leave the helix angle out"))
+        if self.speed_rpm == 0.0:
+            faults.append(("/speed_rpm", "no power is carried at rest"))
+        if given.face_width is None and stated.allowable_bending is None and stated.allowable_contact is None:
+            faults.append(("/mechanism/face_width", "state it, or the allowable stresses that it follows from"))
         return faults
 
     def answer(self) -> dict[str, Any]:
@@ -243,7 +267,7 @@ class RunningPairRequest(AnalysisRequest):
         trimmed = None if pair.ring is None else pair.ring.is_trimmed
         backlash = pair.contact.backlash
         bad = interferes or thin or faulty or mesh.tips_foul or bool(trimmed) or pair.clearance < -slack
-        return {
+        answer = {
             "ratio": given.teeth[1] / given.teeth[0],
             "centre_distance": mesh.centre_distance,
             "standard_distance": mesh.standard_distance,
@@ -261,6 +285,16 @@ class RunningPairRequest(AnalysisRequest):
             "sound": not bad and backlash >= -slack and mesh.contact_ratio >= 1.0,
             "gears": gears,
         }
+        return answer if self.strength is None else {**answer, "strength": self._carried(self.strength)}
+
+    def _carried(self, stated: StatedStrength) -> dict[str, Any]:
+        """Stresses of the pair in millimetres, whatever its unit."""
+        unit = 1.0 / MILLIMETRE[self.length_unit]
+        given = self.mechanism
+        distance = None if given.centre_distance is None else given.centre_distance * unit
+        large = given.model_copy(update={"module": given.module * unit, "centre_distance": distance})
+        loaded = Loaded(large.pair().contact, 1000.0 * stated.power_kw, abs(self.speed_rpm) * RPM)
+        return told(loaded, stated, given.face_width, unit)
 
 
 def _overlap(given: GivenGearPair, angle: float) -> float | None:

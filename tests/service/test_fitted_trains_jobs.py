@@ -149,6 +149,28 @@ def test_face_width_and_cutter_count(client: httpx.Client) -> None:
     assert roots[0]["gears"][1]["form_diameter"] != roots[1]["gears"][1]["form_diameter"]
 
 
+def test_a_load_on_a_pair_and_on_a_train(client: httpx.Client) -> None:
+    strength = {"power_kw": 3.0, "allowable_bending": [200.0, 180.0], "allowable_contact": [700.0, 650.0]}
+    pair = {"type": "gear_pair", "teeth": [17, 52], "module": 2.5}
+    said = client.post("/v1/analyses", json={"mechanism": pair, "speed_rpm": 1800.0, "strength": strength}).json()
+    gears = said["strength"]["gears"]
+    assert min(gear["contact_safety"] for gear in gears) == pytest.approx(1.0)
+    assert said["strength"]["face_width"] == said["strength"]["least_face_width"]
+    found, _ = designs(client, max_designs=1)
+    del strength["power_kw"]
+    body = {"mechanism": found[0]["mechanism"], "motion": {"at": 0.0, "speed_rpm": 900.0}, "input_torque": 30.0}
+    answer = client.post("/v1/analyses", json={**body, "strength": strength})
+    assert answer.status_code == 200, answer.text
+    widths = [mesh["strength"]["face_width"] for mesh in answer.json()["meshes"]]
+    assert all(width > 0.0 for width in widths)
+    assert "strength" not in client.post("/v1/analyses", json=body).json()["meshes"][0]
+    refused = client.post(
+        "/v1/analyses", json={**body, "strength": {"method": "lewis", "allowable_contact": [1.0, 1.0]}}
+    )
+    assert refused.status_code == 422
+    assert "/strength/allowable_contact" in [error["path"] for error in refused.json()["errors"]]
+
+
 @pytest.mark.parametrize(
     ("changes", "path"),
     [

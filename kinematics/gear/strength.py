@@ -1,0 +1,163 @@
+"""Strength of spur teeth, a first estimate: bending by Lewis and by AGMA, contact stress by AGMA.
+
+Lewis takes the tooth for a beam with the whole tangential load at its tip. The load's line crosses the middle of the
+tooth at the apex of a parabola of constant strength; where it is widest against the profile, at the half thickness t/2
+and the depth l below the apex, the stress is σ = K_v W / (F m Y) with the form factor Y = t² / (6 l m).
+
+AGMA puts the load where a single pair carries it highest, counts its radial part, and corrects for the fillet:
+
+    σ = W K_o K_v K_s K_m K_B / (F m J),    σ_c = C_p √(W K_o K_v K_s K_m / (d F I)),
+    1/J = K_f m (cos φ_L / cos φ) (6 h / s² − tan φ_L / s),    I = cos φ sin φ / 2 · G / (G ± 1),
+
+K_f = H + (s/ρ)^L (s/h)^M by Dolan and Broghamer (AGMA 908-B89; Budynas & Nisbett, Shigley's Mechanical Engineering
+Design, 8th ed., ch. 14, whose equation numbers stand with the factors). Newton, millimetre, MPa, metres a second.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.gear.flanks import Contact, corner_rounding
+from kinematics.gear.profile import half_space
+from kinematics.gear.teeth import Gear, involute
+
+STEEL_ON_STEEL = 191.0
+"""Elastic coefficient C_p of steel gears, √MPa (Shigley, Table 14-8)."""
+
+INCH = 25.4
+
+FEET_A_MINUTE = 60.0 / 0.3048
+"""Feet a minute in one metre a second."""
+
+
+def barth_factor(speed: float) -> float:
+    """Velocity factor of Lewis's equation for cut or milled teeth, K_v = (1200 + V) / 1200, V in ft/min (eq. 14-4b)."""
+    return (1200.0 + speed * FEET_A_MINUTE) / 1200.0
+
+
+def dynamic_factor(speed: float, quality: float) -> float:
+    """AGMA's dynamic factor for a quality number Q_v of 3 to 12: ((A + √V) / A)^B (eq. 14-27, 14-28)."""
+    b = 0.25 * (12.0 - quality) ** (2.0 / 3.0)
+    a = 50.0 + 56.0 * (1.0 - b)
+    return float(((a + math.sqrt(speed * FEET_A_MINUTE)) / a) ** b)
+
+
+def size_factor(width: float, module: float, form: float) -> float:
+    """K_s = 1.192 (F √Y / P)^0.0535, F and 1/P in inches; at least 1 (Sec. 14-10)."""
+    return max(1.0, 1.192 * math.pow(width / INCH * math.sqrt(form) * module / INCH, 0.0535))
+
+
+def load_distribution_factor(width: float, pinion_diameter: float) -> float:
+    """K_m of uncrowned teeth between bearings that are near, in a commercial enclosed unit (eq. 14-30 to 14-35)."""
+    face, share = width / INCH, max(0.05, width / (10.0 * pinion_diameter))
+    if face <= 1.0:
+        proportion = share - 0.025
+    elif face <= 17.0:
+        proportion = share - 0.0375 + 0.0125 * face
+    else:
+        proportion = share - 0.1109 + 0.0207 * face - 0.000228 * face**2
+    return 1.0 + proportion + 0.127 + 0.0158 * face - 0.930e-4 * face**2
+
+
+def lewis_form(gear: Gear) -> float:
+    """Lewis's form factor Y of an external gear with the load at its tip."""
+    apex, _ = _load_line(gear, gear.tip_radius)
+    depth, half = _tooth(gear)
+    below = apex - depth
+    bent = below > 1e-6 * gear.module
+    return float((4.0 * half[bent] ** 2 / (6.0 * below[bent] * gear.module)).min())
+
+
+def bending_geometry(contact: Contact, second: bool) -> float:
+    """AGMA's factor J of the pinion of an external pair, or of the gear: spur teeth that share no load.
+
+    The load stands a base pitch from the end of contact at the mate's tip, as high as one pair alone carries it.
+    """
+    mesh = contact.mesh
+    gear = mesh.gear if second else mesh.pinion
+    highest = contact.reaches[1 if second else 0] + gear.base_pitch
+    tip = math.sqrt(gear.tip_radius**2 - gear.base_radius**2)
+    apex, angle = _load_line(gear, math.hypot(gear.base_radius, min(highest, tip)))
+    depth, half = _tooth(gear)
+    inside = apex - depth > 1e-6 * gear.module
+    height, thick = (apex - depth[inside]) / gear.module, 2.0 * half[inside] / gear.module
+    bent = 6.0 * height / thick**2 - math.tan(angle) / thick
+    at = int(np.argmax(bent))
+    phi = gear.pressure_angle
+    stress = math.cos(angle) / math.cos(phi) * float(bent[at])
+    curved = _fillet_radius(gear) / gear.module
+    h, low, high = 0.34 - 0.4583662 * phi, 0.316 - 0.4583662 * phi, 0.290 + 0.4583662 * phi
+    raised = h + (float(thick[at]) / curved) ** low * (float(thick[at]) / float(height[at])) ** high
+    return float(1.0 / (raised * stress))
+
+
+def contact_geometry(pressure_angle: float, ratio: float, internal: bool) -> float:
+    """AGMA's factor I of spur teeth, G = ``ratio`` ≥ 1 the teeth of the gear over the pinion's (eq. 14-23)."""
+    share = ratio / (ratio - 1.0 if internal else ratio + 1.0)
+    return 0.5 * math.cos(pressure_angle) * math.sin(pressure_angle) * share
+
+
+def _load_line(gear: Gear, radius: float) -> tuple[float, float]:
+    """Where the normal of the flank at a radius crosses the middle of the tooth, and its angle to the tangential."""
+    there = math.acos(min(1.0, gear.base_radius / radius))
+    half = gear.tooth_thickness / (2.0 * gear.pitch_radius) + involute(gear.pressure_angle) - involute(there)
+    angle = there - half
+    return gear.base_radius / math.cos(angle), angle
+
+
+def _tooth(gear: Gear) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Points of one side of the tooth: distance from the centre along its middle, and half the thickness there."""
+    points = half_space(gear)
+    # From the middle of the space to the middle of the tooth: seen from the tooth's middle.
+    seen = points * np.exp(-1j * math.pi / gear.teeth)
+    return np.asarray(seen.real), np.asarray(-seen.imag)
+
+
+def _fillet_radius(gear: Gear) -> float:
+    """Least radius of curvature of the fillet, at its root: ρ + b² / (r + b), b from the pitch circle (AGMA 908)."""
+    rounding = gear.module * corner_rounding(gear.pressure_angle, gear.dedendum)
+    deep = gear.module * (gear.dedendum - gear.shift) - rounding
+    return rounding + deep**2 / (gear.pitch_radius + deep)
+
+
+@dataclass(frozen=True)
+class Load:
+    """A tangential load on a pair: force, speed at the working pitch circles, width, module and pinion diameter."""
+
+    force: float
+    speed: float
+    width: float
+    module: float
+    pinion_diameter: float
+
+
+@dataclass(frozen=True)
+class Factors:
+    """Factors of one gear; those of no part in a method are 1."""
+
+    overload: float
+    dynamic: float
+    size: float
+    load_distribution: float
+    rim: float
+
+
+def lewis_stress(load: Load, form: float, dynamic: float) -> float:
+    """σ = K_v W / (F m Y) (eq. 14-8)."""
+    return dynamic * load.force / (load.width * load.module * form)
+
+
+def bending_stress(load: Load, geometry: float, factors: Factors) -> float:
+    """AGMA's bending stress (eq. 14-15)."""
+    raised = factors.overload * factors.dynamic * factors.size * factors.load_distribution * factors.rim
+    return load.force * raised / (load.width * load.module * geometry)
+
+
+def contact_stress(load: Load, geometry: float, factors: Factors, elastic: float) -> float:
+    """AGMA's contact stress (eq. 14-16)."""
+    raised = factors.overload * factors.dynamic * factors.size * factors.load_distribution
+    return elastic * math.sqrt(load.force * raised / (load.pinion_diameter * load.width * geometry))

@@ -1,0 +1,247 @@
+"""Stresses in the teeth of a spur pair that carries a power: what is stated and told, and the width that carries it.
+
+It is a first estimate: the equations of Lewis and of AGMA (:mod:`kinematics.gear.strength`) with factors that a client
+states, or that formulas of the textbook give. It knows no bearings, no lubricant, no wear and no life.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal, NamedTuple
+
+from pydantic import Field
+
+from kinematics.gear import strength
+from kinematics.gear.flanks import Contact
+from kinematics.gear.strength import Factors, Load
+from synthesis.model.answer import Answer, optional
+from synthesis.model.statement import PositiveNumber, Statement
+
+Positive = Annotated[float, Field(strict=True, gt=0.0, le=1e6)]
+
+ESTIMATE = (
+    "A first estimate by textbook formulas: life, temperature, lubrication, mounting and material data beyond the "
+    "stated allowable stresses are not looked at. Size gears by the standard that applies."
+)
+
+WIDTHS = 400
+"""Widths that are tried, in equal ratios, in search of the least that carries the load."""
+
+
+class StatedFactors(Statement):
+    """Factors in place of those that formulas give; pairs are of the first gear and the second."""
+
+    form: tuple[Positive, Positive] | None = Field(
+        default=None, description="Lewis's Y, for the size factor too; from the true profile with the load at the tip."
+    )
+    overload: Positive = 1.0
+    dynamic: Positive | None = Field(
+        default=None, description="Lewis: (1200 + V)/1200 of cut teeth, V in ft/min. AGMA: by the quality number."
+    )
+    size: tuple[Positive, Positive] | None = Field(default=None, description="1.192 (F √Y / P)^0.0535, at least 1.")
+    load_distribution: Positive | None = Field(
+        default=None, description="Of uncrowned teeth close to both bearings, in a commercial enclosed unit."
+    )
+    rim: Positive = 1.0
+    bending_geometry: tuple[Positive, Positive] | None = Field(
+        default=None,
+        description="AGMA's J; from the true profile. Its fillets have the 0.38 modules of ISO 53: tables for racks of "
+        "0.25 have values about a tenth lower.",
+    )
+    contact_geometry: Positive | None = Field(default=None, description="AGMA's I.")
+    elastic: Positive | None = Field(default=None, description="AGMA's C_p, √MPa; 191 of steel on steel.")
+
+
+class StrengthMethod(Statement):
+    """The method, its factors, and what the material may bear."""
+
+    method: Literal["lewis", "agma"] = "agma"
+    quality: Annotated[float, Field(strict=True, ge=3.0, le=11.5)] = Field(
+        default=6.0, description="AGMA's quality number Q_v, for the dynamic factor."
+    )
+    factors: StatedFactors = StatedFactors()
+    allowable_bending: tuple[Positive, Positive] | None = Field(default=None, description="MPa, of both gears.")
+    allowable_contact: tuple[Positive, Positive] | None = Field(default=None, description="MPa, of both; AGMA only.")
+    max_face_width: Annotated[float, Field(strict=True, ge=1.0, le=100.0)] = Field(
+        default=16.0, description="The widest face in search of the least, in modules."
+    )
+
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows, by the path below this statement."""
+        if self.method == "lewis" and self.allowable_contact is not None:
+            return [("/allowable_contact", "Lewis's equation knows no contact stress; leave it out or take agma")]
+        return []
+
+
+class StatedStrength(StrengthMethod):
+    """The power besides, where it is not known from a torque and a speed."""
+
+    power_kw: PositiveNumber
+
+
+class StressedGear(Answer):
+    """One gear: stresses in MPa, and how far below what it may bear; null where nothing is stated or known."""
+
+    form: float | None = Field(description="Lewis's Y; null for a ring of which none is stated.")
+    size_factor: float | None
+    bending_geometry: float | None
+    bending_stress: float | None
+    contact_stress: float | None
+    bending_safety: float | None = Field(description="Allowable over actual bending stress.")
+    contact_safety: float | None = Field(description="Allowable over actual contact stress.")
+
+
+class PairStrength(Answer):
+    """Stresses of a pair at a face width."""
+
+    method: str
+    estimate: str
+    tangential_force: float = Field(description="On the working pitch circles, N.")
+    pitch_line_velocity: float = Field(description="m/s")
+    dynamic: float
+    load_distribution: float | None
+    contact_geometry: float | None
+    face_width: float | None = Field(description="As stated, or the least that carries the load; the module's unit.")
+    least_face_width: float | None = optional("The least that keeps the allowable stresses; left out: there is none.")
+    gears: list[StressedGear]
+
+
+class Loaded(NamedTuple):
+    """A pair in millimetres and what it carries."""
+
+    contact: Contact
+    power: float
+    speed: float
+
+    @property
+    def working_diameters(self) -> tuple[float, float]:
+        """Diameters of the working pitch circles."""
+        mesh = self.contact.mesh
+        wide = math.cos(mesh.pinion.pressure_angle) / math.cos(mesh.pressure_angle)
+        return 2.0 * mesh.pinion.pitch_radius * wide, 2.0 * mesh.gear.pitch_radius * wide
+
+    def load(self, width: float) -> Load:
+        """The tangential load, N and m/s, over a face of this width."""
+        diameters = self.working_diameters
+        velocity = self.speed * 0.5e-3 * diameters[0]
+        return Load(self.power / velocity, velocity, width, self.contact.mesh.pinion.module, min(diameters))
+
+
+class Stresses(NamedTuple):
+    """What a width leads to: the load, factors common to both gears, and rows of each gear."""
+
+    load: Load
+    dynamic: float
+    load_distribution: float | None
+    contact_geometry: float | None
+    gears: list[dict[str, float | None]]
+
+    def keep(self) -> bool:
+        """Whether every stated allowable stress is kept."""
+        safeties = [row[name] for row in self.gears for name in ("bending_safety", "contact_safety")]
+        return all(safety >= 1.0 for safety in safeties if safety is not None)
+
+
+class Judge:
+    """The stresses of a pair over widths; what does not depend on the width is found once."""
+
+    def __init__(self, loaded: Loaded, stated: StrengthMethod) -> None:
+        self._loaded, self._stated = loaded, stated
+        mesh, factors = loaded.contact.mesh, stated.factors
+        given = factors.form, factors.bending_geometry
+        self._forms: list[float | None] = []
+        self._bending: list[float | None] = []
+        for place, gear in enumerate((mesh.pinion, mesh.gear)):
+            self._forms.append(given[0][place] if given[0] else None if gear.internal else strength.lewis_form(gear))
+            if stated.method == "lewis":
+                self._bending.append(None)
+            elif given[1]:
+                self._bending.append(given[1][place])
+            else:
+                known = not gear.internal
+                self._bending.append(strength.bending_geometry(loaded.contact, place == 1) if known else None)
+
+    def at(self, width: float) -> Stresses:
+        """Stresses over a face of this width, millimetres."""
+        stated, factors, load = self._stated, self._stated.factors, self._loaded.load(width)
+        mesh = self._loaded.contact.mesh
+        if stated.method == "lewis":
+            dynamic = factors.dynamic or strength.barth_factor(load.speed)
+            rows = [
+                self._row(k, form, None, self._lewis(load, form, dynamic), None) for k, form in enumerate(self._forms)
+            ]
+            return Stresses(load, dynamic, None, None, rows)
+        dynamic = factors.dynamic or strength.dynamic_factor(load.speed, stated.quality)
+        spread = factors.load_distribution or strength.load_distribution_factor(width, load.pinion_diameter)
+        teeth = sorted((mesh.pinion.teeth, mesh.gear.teeth))
+        geometry = factors.contact_geometry or strength.contact_geometry(
+            mesh.pressure_angle, teeth[1] / teeth[0], mesh.gear.internal
+        )
+        rows = []
+        for place, (form, bending) in enumerate(zip(self._forms, self._bending, strict=True)):
+            size = factors.size[place] if factors.size else None
+            if size is None and form is not None:
+                size = strength.size_factor(width, load.module, form)
+            found = Factors(factors.overload, dynamic, size or 1.0, spread, factors.rim)
+            bent = None if bending is None else strength.bending_stress(load, bending, found)
+            pressed = strength.contact_stress(load, geometry, found, factors.elastic or strength.STEEL_ON_STEEL)
+            rows.append(self._row(place, form, size, bent, pressed))
+        return Stresses(load, dynamic, spread, geometry, rows)
+
+    def _lewis(self, load: Load, form: float | None, dynamic: float) -> float | None:
+        return None if form is None else strength.lewis_stress(load, form, dynamic * self._stated.factors.overload)
+
+    def _row(
+        self, place: int, form: float | None, size: float | None, bent: float | None, pressed: float | None
+    ) -> dict[str, float | None]:
+        bending, contact = self._stated.allowable_bending, self._stated.allowable_contact
+        return {
+            "form": form,
+            "size_factor": size,
+            "bending_geometry": self._bending[place],
+            "bending_stress": bent,
+            "contact_stress": pressed,
+            "bending_safety": bending[place] / bent if bending and bent is not None else None,
+            "contact_safety": contact[place] / pressed if contact and pressed is not None else None,
+        }
+
+    def least_width(self) -> float | None:
+        """The least width that keeps the allowable stresses, millimetres; None where none does, or none is stated."""
+        stated, module = self._stated, self._loaded.contact.mesh.pinion.module
+        if stated.allowable_bending is None and stated.allowable_contact is None:
+            return None
+        most, before = stated.max_face_width * module, 0.0
+        for k in range(WIDTHS + 1):
+            width = most * math.pow(1e-3, 1.0 - k / WIDTHS)
+            if self.at(width).keep():
+                for _ in range(60):
+                    middle = 0.5 * (before + width)
+                    before, width = (before, middle) if middle > 0.0 and self.at(middle).keep() else (middle, width)
+                return width
+            before = width
+        return None
+
+
+def told(loaded: Loaded, stated: StrengthMethod, face_width: float | None, unit: float) -> dict[str, Any]:
+    """The strength of a pair in the shape of :class:`PairStrength`; widths in units of ``unit`` millimetres."""
+    judge = Judge(loaded, stated)
+    least = judge.least_width()
+    width = least if face_width is None else face_width * unit
+    # Without any width the load and what belongs to it are told, and no stresses.
+    found = judge.at(1.0 if width is None else width)
+    rows = found.gears
+    if width is None:
+        depending = ("size_factor", "bending_stress", "contact_stress", "bending_safety", "contact_safety")
+        rows = [{name: None if name in depending else value for name, value in row.items()} for row in rows]
+    answer = {
+        "method": stated.method,
+        "estimate": ESTIMATE,
+        "tangential_force": found.load.force,
+        "pitch_line_velocity": found.load.speed,
+        "dynamic": found.dynamic,
+        "load_distribution": None if width is None else found.load_distribution,
+        "contact_geometry": found.contact_geometry,
+        "face_width": None if width is None else width / unit,
+        "gears": rows,
+    }
+    return answer if least is None else {**answer, "least_face_width": least / unit}
