@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.errors import DimensionError
 from kinematics.gear.flanks import Contact, corner_rounding
 from kinematics.gear.profile import half_space
 from kinematics.gear.teeth import Gear, involute
@@ -29,6 +30,9 @@ STEEL_ON_STEEL = 191.0
 """Elastic coefficient C_p of steel gears, √MPa (Shigley, Table 14-8)."""
 
 INCH = 25.4
+
+WIDEST = 40.0
+"""Inches of face up to which the load distribution is known."""
 
 FEET_A_MINUTE = 60.0 / 0.3048
 """Feet a minute in one metre a second."""
@@ -52,8 +56,11 @@ def size_factor(width: float, module: float, form: float) -> float:
 
 
 def load_distribution_factor(width: float, pinion_diameter: float) -> float:
-    """K_m of uncrowned teeth between bearings that are near, in a commercial enclosed unit (eq. 14-30 to 14-35)."""
-    face, share = width / INCH, max(0.05, width / (10.0 * pinion_diameter))
+    """K_m of uncrowned teeth between bearings that are near, in a commercial enclosed unit (eq. 14-30 to 14-35).
+
+    The curves end at a face of 40 inches; wider ones have its values.
+    """
+    face, share = min(width / INCH, WIDEST), max(0.05, width / (10.0 * pinion_diameter))
     if face <= 1.0:
         proportion = share - 0.025
     elif face <= 17.0:
@@ -64,31 +71,40 @@ def load_distribution_factor(width: float, pinion_diameter: float) -> float:
 
 
 def lewis_form(gear: Gear) -> float:
-    """Lewis's form factor Y of an external gear with the load at its tip."""
+    """Lewis's form factor Y of an external gear with the load at its tip.
+
+    Raises
+    ------
+    DimensionError
+        For a tooth that has no section below its load.
+    """
     apex, _ = _load_line(gear, gear.tip_radius)
-    depth, half = _tooth(gear)
-    below = apex - depth
-    bent = below > 1e-6 * gear.module
-    return float((4.0 * half[bent] ** 2 / (6.0 * below[bent] * gear.module)).min())
+    height, thick = _sections(gear, apex)
+    return float((thick**2 / (6.0 * height)).min())
 
 
 def bending_geometry(contact: Contact, second: bool) -> float:
     """AGMA's factor J of the pinion of an external pair, or of the gear: spur teeth that share no load.
 
     The load stands a base pitch from the end of contact at the mate's tip, as high as one pair alone carries it.
+
+    Raises
+    ------
+    DimensionError
+        For a tooth that has no section below its load, or that the load does not bend.
     """
     mesh = contact.mesh
     gear = mesh.gear if second else mesh.pinion
     highest = contact.reaches[1 if second else 0] + gear.base_pitch
     tip = math.sqrt(gear.tip_radius**2 - gear.base_radius**2)
     apex, angle = _load_line(gear, math.hypot(gear.base_radius, min(highest, tip)))
-    depth, half = _tooth(gear)
-    inside = apex - depth > 1e-6 * gear.module
-    height, thick = (apex - depth[inside]) / gear.module, 2.0 * half[inside] / gear.module
+    height, thick = _sections(gear, apex)
     bent = 6.0 * height / thick**2 - math.tan(angle) / thick
     at = int(np.argmax(bent))
     phi = gear.pressure_angle
     stress = math.cos(angle) / math.cos(phi) * float(bent[at])
+    if not stress > 0.0:
+        raise DimensionError("tooth", "one that its load bends", gear)
     curved = _fillet_radius(gear) / gear.module
     h, low, high = 0.34 - 0.4583662 * phi, 0.316 - 0.4583662 * phi, 0.290 + 0.4583662 * phi
     raised = h + (float(thick[at]) / curved) ** low * (float(thick[at]) / float(height[at])) ** high
@@ -107,6 +123,15 @@ def _load_line(gear: Gear, radius: float) -> tuple[float, float]:
     half = gear.tooth_thickness / (2.0 * gear.pitch_radius) + involute(gear.pressure_angle) - involute(there)
     angle = there - half
     return gear.base_radius / math.cos(angle), angle
+
+
+def _sections(gear: Gear, apex: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Heights of the apex above the sections of the tooth below it, and their thickness, in modules."""
+    depth, half = _tooth(gear)
+    below = (apex - depth > 1e-6 * gear.module) & (half > 0.0)
+    if not below.any():
+        raise DimensionError("tooth", "one with a section below its load", gear)
+    return (apex - depth[below]) / gear.module, 2.0 * half[below] / gear.module
 
 
 def _tooth(gear: Gear) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -128,6 +128,9 @@ class GivenGearPair(Statement):
         tight = Mesh(full[0], full[1])
         shortening = shortened_tips(Mesh(full[0], full[1], self.centre_distance))
         one, two = (replace(gear, addendum=gear.addendum - shortening) for gear in full)
+        for gear, name in ((one, "first"), (two, "second")):
+            if not gear.internal and gear.tip_radius <= gear.base_radius:
+                raise MechanismError("/shift", f"leaves the {name} gear no tooth above its base circle")
         depth = straight_depth(phi, FULL_DEPTH_DEDENDUM) * math.cos(angle)
         ring = ShapedRing(two, self._cutter_teeth) if self.internal else None
         forms = rack_cut_form(one, depth), rack_cut_form(two, depth) if ring is None else ring.form

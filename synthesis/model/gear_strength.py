@@ -11,9 +11,11 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import Field
 
+from kinematics.errors import DimensionError
 from kinematics.gear import strength
 from kinematics.gear.flanks import Contact
 from kinematics.gear.strength import Factors, Load
+from kinematics.gear.teeth import Gear
 from synthesis.model.answer import Answer, optional
 from synthesis.model.statement import PositiveNumber, Statement
 
@@ -152,14 +154,24 @@ class Judge:
         self._forms: list[float | None] = []
         self._bending: list[float | None] = []
         for place, gear in enumerate((mesh.pinion, mesh.gear)):
-            self._forms.append(given[0][place] if given[0] else None if gear.internal else strength.lewis_form(gear))
-            if stated.method == "lewis":
-                self._bending.append(None)
-            elif given[1]:
-                self._bending.append(given[1][place])
-            else:
-                known = not gear.internal
-                self._bending.append(strength.bending_geometry(loaded.contact, place == 1) if known else None)
+            self._forms.append(given[0][place] if given[0] else self._form(gear))
+            self._bending.append(given[1][place] if given[1] else self._geometry(gear, place))
+
+    @staticmethod
+    def _form(gear: Gear) -> float | None:
+        """Lewis's factor; None of a ring, and of a tooth that is no beam."""
+        try:
+            return None if gear.internal else strength.lewis_form(gear)
+        except DimensionError:
+            return None
+
+    def _geometry(self, gear: Gear, place: int) -> float | None:
+        """AGMA's factor; None as above, and where it is not asked for."""
+        try:
+            known = self._stated.method == "agma" and not gear.internal
+            return strength.bending_geometry(self._loaded.contact, place == 1) if known else None
+        except DimensionError:
+            return None
 
     def at(self, width: float) -> Stresses:
         """Stresses over a face of this width, millimetres."""

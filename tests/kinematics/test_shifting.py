@@ -1,0 +1,111 @@
+"""Sums of profile shifts and their splits: against dense grids, where the method takes one maximum for granted."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numba import njit
+from numpy.typing import NDArray
+
+from kinematics.gear import shifting
+from kinematics.gear.flanks import Contact, rack_cut_form, straight_depth
+from kinematics.gear.shifting import Demands
+from kinematics.gear.teeth import Gear, Mesh
+
+
+def demands(angle: float, least: float, most: float, ratio: float, tip: float) -> Demands:
+    phi = math.radians(angle)
+    return Demands(phi, straight_depth(phi, 1.25), least, most, ratio, tip)
+
+
+ASKED = [
+    demands(20.0, -0.5, 1.0, 1.2, 0.25),
+    demands(20.0, -0.3, 0.6, 1.5, 0.4),
+    demands(25.0, -0.5, 1.0, 1.1, 0.2),
+    demands(14.5, -1.0, 1.5, 1.6, 0.3),
+]
+
+
+@njit
+def on_a_grid(
+    teeth: int, mate: int, low: float, high: float, sums: int, splits: int, asked: Demands
+) -> NDArray[np.bool_]:
+    """Which sums between two have a split on a grid that keeps all demands."""
+    kept = np.zeros(sums + 1, np.bool_)
+    for i in range(sums + 1):
+        working = shifting.with_sum(teeth, mate, low + (high - low) * i / sums, asked)
+        if not working.distance > 0.0:
+            continue
+        for j in range(splits + 1):
+            shift = asked.least_shift + (asked.most_shift - asked.least_shift) * j / splits
+            other = working.total - shift
+            if asked.least_shift <= other <= asked.most_shift:
+                kept[i] |= shifting.margin(teeth, mate, working, shift, asked) >= 0.0
+    return kept
+
+
+def grids_agree(asked: Demands, numbers: range, sums: int, splits: int) -> int:
+    """Compare every pair of the numbers with a grid; how many suit."""
+    suited = 0
+    low, high = 2.0 * asked.least_shift, 2.0 * asked.most_shift
+    for teeth in numbers:
+        for mate in numbers[numbers.index(teeth) :]:
+            kept = np.flatnonzero(on_a_grid(teeth, mate, low, high, sums, splits, asked))
+            sound = shifting.sum_that_suits(teeth, mate, low, high, asked)
+            if not len(kept):
+                continue
+            suited += 1
+            assert math.isfinite(sound), (teeth, mate)
+            assert kept[-1] - kept[0] + 1 == len(kept), ("the sums that suit are no interval", teeth, mate)
+            ends = [shifting.last_sum(teeth, mate, sound, end, asked) for end in (low, high)]
+            grid = [low + (high - low) * k / sums for k in (kept[0], kept[-1])]
+            assert ends[0] <= grid[0] + 1e-9
+            assert ends[1] >= grid[1] - 1e-9
+            step = (high - low) / sums + 2.0 * (asked.most_shift - asked.least_shift) / splits
+            assert grid[0] - ends[0] <= step + 0.05, (teeth, mate)
+            assert ends[1] - grid[1] <= step + 0.05, (teeth, mate)
+    return suited
+
+
+@pytest.mark.parametrize("asked", ASKED)
+def test_sums_that_suit_are_an_interval(asked: Demands) -> None:
+    assert grids_agree(asked, range(11, 60, 12), 120, 60) > 2
+
+
+@pytest.mark.campaign
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize("asked", ASKED)
+def test_sums_of_all_pairs_are_an_interval(asked: Demands) -> None:
+    assert grids_agree(asked, range(8, 101), 150, 80) > 100
+
+
+@pytest.mark.parametrize("asked", ASKED)
+@pytest.mark.parametrize("pair", [(23, 23), (18, 55), (25, 30), (40, 90)])
+def test_the_split_is_the_nearest_to_balanced_sliding(pair: tuple[int, int], asked: Demands) -> None:
+    """Of 2000 splits none that keeps the demands has less difference of specific sliding."""
+    sound = shifting.sum_that_suits(*pair, 2.0 * asked.least_shift, 2.0 * asked.most_shift, asked)
+    if not math.isfinite(sound):
+        pytest.fail("a pair of this table suits")
+    working = shifting.with_sum(*pair, sound, asked)
+    chosen = shifting.balanced_split(*pair, working, asked)
+
+    def unbalanced(shift: float) -> float:
+        gears = [
+            Gear(z, 1.0, asked.pressure_angle, 1.0 - working.shortening, shift=x)
+            for z, x in zip(pair, (shift, working.total - shift), strict=True)
+        ]
+        forms = rack_cut_form(gears[0], asked.depth), rack_cut_form(gears[1], asked.depth)
+        one, two = Contact(Mesh(gears[0], gears[1]), forms).specific_sliding
+        return abs(one - two)
+
+    others = np.linspace(asked.least_shift, asked.most_shift, 2001)
+    kept = [
+        float(x)
+        for x in others
+        if asked.least_shift <= working.total - x <= asked.most_shift
+        and shifting.margin(*pair, working, float(x), asked) >= 0.0
+    ]
+    assert shifting.margin(*pair, working, chosen, asked) >= -shifting.KEPT
+    assert unbalanced(chosen) <= min((unbalanced(x) for x in kept), default=math.inf) + 1e-6
