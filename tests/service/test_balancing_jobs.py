@@ -155,6 +155,14 @@ def test_a_couple_beside_one_plane_counts_in_the_grade(client: httpx.Client) -> 
     assert best(client, {**stated, "planes": [0.0, 100.0]})["metrics"]["grade"] < 1e-12
 
 
+def test_two_planes_at_one_place_are_one(client: httpx.Client) -> None:
+    stated = {**ROTOR, "masses": masses([[1.0, 2.0, 30.0, 4.0], [0.5, 3.0, 80.0, 9.0]]), "rpm": 300.0}
+    one, two = (best(client, {**stated, "planes": planes}) for planes in ([5.0], [5.0, 5.0]))
+    assert two["mechanism"]["corrections"] == one["mechanism"]["corrections"]
+    assert len(two["metrics"]["planes"]) == 1
+    assert two["metrics"]["residual_couple"] == one["metrics"]["residual_couple"] > 0.0
+
+
 LINKAGE: Statement = examples("balancing")[2]
 
 

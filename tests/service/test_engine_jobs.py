@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import xml.etree.ElementTree as ET
 from typing import Any
 
 import httpx
@@ -10,7 +11,7 @@ import pytest
 
 from synthesis.registry import example, examples
 from tests.cases import Case, cases
-from tests.service.answers import finished
+from tests.service.answers import SVG, finished
 
 Statement = dict[str, Any]
 
@@ -271,6 +272,25 @@ def test_arrangements_are_found_and_the_best_is_drawn(client: httpx.Client) -> N
     assert client.get(f"/v1/jobs/{job['id']}/report.html").status_code == 200
     motion = client.get(f"{place}/motion?steps=36").raise_for_status().json()
     assert [len(one["place"]) for one in motion["cylinders"]] == [37] * 8
+
+
+def test_pistons_stand_on_their_throws(client: httpx.Client) -> None:
+    """An inline four: the outer pistons are at their top and the inner ones at their bottom, a stroke lower."""
+    job = finished(client, example("engine"))
+    root = ET.fromstring(client.get(f"/v1/jobs/{job['id']}/designs/0.svg").raise_for_status().text)
+    tops = {
+        mark.get("data-side"): min(float(pair.split(",")[1]) for pair in str(mark.get("points")).split())
+        for mark in root.iter(f"{SVG}polygon")
+        if mark.get("data-side")
+    }
+    assert sorted(tops) == ["1", "2", "3", "4"]
+    pins = {mark.get("data-throw"): float(mark.get("y2", "nan")) for mark in root.iter(f"{SVG}line")}
+    stroke = pins["2"] - pins["1"]
+    assert stroke > 20.0
+    assert tops["4"] == tops["1"]
+    assert tops["3"] == tops["2"] == pytest.approx(tops["1"] + stroke, abs=0.3)
+    # From the front those behind one another are drawn once.
+    assert sum(mark.get("data-piston") is not None for mark in root.iter(f"{SVG}polygon")) == 2
 
 
 def test_the_example_with_all_its_parts(client: httpx.Client) -> None:

@@ -4,6 +4,7 @@
 layer      what is on it
 =========  ============================================================
 CYLINDERS  axes of the cylinders, seen from the front
+PISTONS    pistons and rods, seen from the front, with the first throw up
 CRANK      the throws, seen from the front, and the shaft from the side
 TEXT       numbers of the cylinders
 =========  ============================================================
@@ -23,7 +24,7 @@ from service.render.page import blocks, dxf
 from service.render.page.diagrams import Diagram
 from service.render.page.numbers import angle, length
 from service.render.page.sheet import EDGE, TOP, beside, framed, sheet, stacked
-from service.render.page.svg import Box, Element, Viewport, circle, element, line, path, text
+from service.render.page.svg import Box, Element, Viewport, circle, element, line, path, polygon, text
 from service.render.page.symbols import COUPLER, CURVE, GREY, GROUND, INK, INPUT, OUTPUT, scale_bar
 from service.render.page.table import table
 from service.units import symbols
@@ -39,6 +40,9 @@ LETTERS = 11.0
 
 SHOWN_ORDERS = 6
 """Firing orders on the sheet."""
+
+CROWN, STANDING = 0.72, 0.25
+"""Half of a piston's width in radii of the crank, and how far up an axis points that is seen from the side."""
 
 ENDS = (0.1, 0.3, 0.5, 0.7, 0.85, 1.0)
 """Right ends of the columns of the table of harmonics."""
@@ -59,7 +63,9 @@ def engine_sheet(design: EngineDesign, problem: EngineProblem, title: str) -> st
     words = (
         f"{mechanism.layout.capitalize()} engine of {count} cylinders, firing {order}; {verdict(design.verification)}"
     )
-    described = "A piston engine seen from the front, with its cylinders and throws, and its crankshaft from the side."
+    described = (
+        "A piston engine from the front, with its throws, rods and pistons by bank, and its crankshaft from the side."
+    )
     return sheet(title or "Piston engine", words, described, [*parts, *tables], max(low, bottom))
 
 
@@ -116,7 +122,7 @@ def _tables(design: EngineDesign, problem: EngineProblem) -> list[blocks.Block]:
 
 def _reach(mechanism: EngineMechanism) -> float:
     """From the shaft to beyond a piston at its top."""
-    return mechanism.crank + mechanism.rod + 0.6 * mechanism.crank
+    return mechanism.rod + 2.1 * mechanism.crank
 
 
 def _box(mechanism: EngineMechanism) -> Box:
@@ -146,13 +152,76 @@ def _throws(mechanism: EngineMechanism) -> list[complex]:
     return [1j * cmath.rect(mechanism.crank, math.radians(first - phase)) for phase in mechanism.throws]
 
 
+def _pistons(mechanism: EngineMechanism) -> list[tuple[int, complex, complex, complex]]:
+    """Of each cylinder its number, the crank's pin and the piston's, and the way along its axis; the first throw up.
+
+    The piston is r cos θ + √(l² − r² sin² θ) from the shaft (Norton 13.1).
+    """
+    pins, listed = _throws(mechanism), []
+    for cylinder in mechanism.cylinders:
+        way, pin = 1j * cmath.rect(1.0, math.radians(cylinder.axis)), pins[cylinder.throw - 1]
+        turned = pin * way.conjugate()
+        piston = (turned.real + math.sqrt(mechanism.rod**2 - turned.imag**2)) * way
+        listed.append((cylinder.number, pin, piston, way))
+    return listed
+
+
+def _crown(mechanism: EngineMechanism, piston: complex, way: complex) -> list[complex]:
+    """The corners of a piston about its pin."""
+    half = CROWN * mechanism.crank
+    return [piston + (along + 1j * side) * half * way for along, side in ((-0.7, 1), (-0.7, -1), (0.8, -1), (0.8, 1))]
+
+
+def _moving(mechanism: EngineMechanism, view: Viewport) -> list[Element]:
+    """Rods and pistons from the front; of those that stand alike behind one another the foremost."""
+    drawn, seen = [], set[tuple[float, float]]()
+    for number, pin, piston, way in _pistons(mechanism):
+        place = round(piston.real, 6), round(piston.imag, 6)
+        if place in seen:
+            continue
+        seen.add(place)
+        corners = [view.point(corner) for corner in _crown(mechanism, piston, way)]
+        at = view.point(piston)
+        drawn.append(
+            polygon(corners, fill="#fff", fill_opacity=0.75, stroke=OUTPUT, stroke_width=1.6, data_piston=str(number))
+        )
+        drawn.append(line(view.point(pin), at, stroke=COUPLER, stroke_width=3.0, stroke_linecap="round"))
+        drawn.append(circle(at, 3.0, fill="#fff", stroke=OUTPUT, stroke_width=1.4))
+    return drawn
+
+
+def _beside(mechanism: EngineMechanism, view: Viewport) -> list[Element]:
+    """Rods and pistons from the side, of cylinders that stand: two of a throw are beside each other."""
+    left, step = 1.2 * _reach(mechanism), 1.6 * mechanism.crank
+    drawn = []
+    throws = {cylinder.number: cylinder.throw for cylinder in mechanism.cylinders}
+    for number, pin, piston, way in _pistons(mechanism):
+        if way.imag < STANDING:
+            continue
+        on = [other for other, throw in throws.items() if throw == throws[number]]
+        half = 0.36 * step / len(on)
+        x = left + step * (throws[number] - 0.4) + half * (2 * on.index(number) + 1 - len(on))
+        high = CROWN * mechanism.crank * way.imag
+        corners = [
+            complex(x + a * half, piston.imag + b * high) for a, b in ((-1, -0.7), (1, -0.7), (1, 0.8), (-1, 0.8))
+        ]
+        shown = [view.point(corner) for corner in corners]
+        drawn.append(
+            line(
+                view.point(complex(x, pin.imag)), view.point(complex(x, piston.imag)), stroke=COUPLER, stroke_width=2.4
+            )
+        )
+        drawn.append(polygon(shown, fill="#fff", stroke=OUTPUT, stroke_width=1.4, data_side=str(number)))
+    return drawn
+
+
 def _panel(mechanism: EngineMechanism, view: Viewport, unit: str) -> Element:
     group = framed(view.panel, "engine")
     middle, reach = view.point(0j), _reach(mechanism)
     numbers: dict[float, list[int]] = {}
     for cylinder in mechanism.cylinders:
         numbers.setdefault(cylinder.axis, []).append(cylinder.number)
-    half = 0.75 * mechanism.crank
+    half = CROWN * mechanism.crank
     for axis, on in numbers.items():
         way = 1j * cmath.rect(1.0, math.radians(axis))
         low, high = mechanism.rod - mechanism.crank, mechanism.rod + mechanism.crank
@@ -163,6 +232,7 @@ def _panel(mechanism: EngineMechanism, view: Viewport, unit: str) -> Element:
         at = view.point(reach * way)
         words = ", ".join(map(str, on))
         group.add(text(at.real, at.imag, words, LETTERS, text_anchor="middle", fill=INK, data_bank=words))
+    group.add(*_moving(mechanism, view), *_beside(mechanism, view))
     for n, pin in enumerate(_throws(mechanism), 1):
         at = view.point(pin)
         group.add(line(middle, at, stroke=INPUT, stroke_width=4.0, stroke_opacity=0.5, data_throw=str(n)))
@@ -188,7 +258,12 @@ def _shaft_numbers(mechanism: EngineMechanism, view: Viewport) -> list[Element]:
 def engine_drawing(design: EngineDesign, problem: EngineProblem, title: str) -> str:
     """End view and shaft as a DXF document (R2010)."""
     mechanism = design.mechanism
-    layers = {"CYLINDERS": (7, "CENTER"), "CRANK": (5, "CONTINUOUS"), "TEXT": (7, "CONTINUOUS")}
+    layers = {
+        "CYLINDERS": (7, "CENTER"),
+        "PISTONS": (3, "CONTINUOUS"),
+        "CRANK": (5, "CONTINUOUS"),
+        "TEXT": (7, "CONTINUOUS"),
+    }
     document = dxf.new_drawing(title or "Piston engine", problem.length_unit, layers)
     space, letters = document.modelspace(), 0.25 * mechanism.crank
     for axis in sorted({cylinder.axis for cylinder in mechanism.cylinders}):
@@ -197,6 +272,11 @@ def engine_drawing(design: EngineDesign, problem: EngineProblem, title: str) -> 
         dxf.add_line(space, 0j, tip, "CYLINDERS")
         dxf.add_words(space, tip * 1.05, on, letters)
     dxf.add_circle(space, 0j, mechanism.crank, "CRANK")
+    for _, pin, piston, way in _pistons(mechanism):
+        corners = _crown(mechanism, piston, way)
+        dxf.add_line(space, pin, piston, "PISTONS")
+        for start, end in pairwise([*corners, corners[0]]):
+            dxf.add_line(space, start, end, "PISTONS")
     for pin in _throws(mechanism):
         dxf.add_line(space, 0j, pin, "CRANK")
         dxf.add_circle(space, pin, 0.15 * mechanism.crank, "CRANK")

@@ -254,7 +254,7 @@ class StatedRotor(StatedProblem):
     def _plane_faults(self) -> list[Contradiction]:
         reach = max(abs(z - self.planes[0]) for z in [*self.places, *self.planes])
         apart = abs(self.planes[-1] - self.planes[0])
-        if len(self.planes) == 2 and apart < APART * reach:
+        if len(self.used_planes) == 2 and apart < APART * reach:
             detail = "two planes must be apart; one place is one plane, which balances what lies in it"
             return [Contradiction("/planes", detail)]
         supports = self.supports
