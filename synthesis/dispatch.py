@@ -149,6 +149,11 @@ def compile_demands() -> None:
     room = {"box": [[-1e3, -1e3], [1e3, 1e3]], "obstacles": [{"circle": {"center": [900.0, 900.0], "radius": 1.0}}]}
     roomy = {"kind": "motion", "positions": positions, "space": room, "max_designs": 1}
     solve(KINDS["motion"].problem.model_validate(roomy))
+    weighed = {name: statement[name] for name in ("dynamics", "constraints", "max_designs")}
+    slides = {"kind": "motion", "positions": KINDS["motion"].examples[0]["positions"], "output_side": {"dyad": "PR"}}
+    solve(KINDS["motion"].problem.model_validate(slides | weighed))
+    turns = {"kind": "function", "pairs": [{"input": 20.0 * x, "output": 9.0 * x + x * x} for x in range(4)]}
+    solve(KINDS["function"].problem.model_validate(turns | weighed))
 
 
 def _load(name: str) -> None:

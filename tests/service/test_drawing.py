@@ -13,6 +13,7 @@ import pytest
 from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar, positions
 from service.render import exported
 from service.render.linkage.fourbar import MARKED, OTHERS
+from service.render.page.blocks import SIZE, CheckRow, checks
 from service.render.page.svg import Box, clipped, clipped_polygon, number, shortened, text_width
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.model.answer import Check, Verification
@@ -428,3 +429,18 @@ def test_numbers_and_cut_text() -> None:
     cut = shortened("a rather long line of text", 10.0, 60.0)
     assert cut.endswith("…")
     assert text_width(cut, 10.0) <= 60.0
+
+
+@pytest.mark.parametrize(("width", "lines"), [(480.0, 1), (240.0, 2)])
+def test_the_name_of_a_check_is_whole_and_clear_of_its_value(width: float, lines: int) -> None:
+    row = CheckRow("max_overturning_moment", True, "12.3456 N·m", "120.125 N·m")
+    block, end = checks([row])(0.0, 0.0, width)
+    _, empty = checks([])(0.0, 0.0, width)
+    root = ET.fromstring(block.write())
+    name, measure = (e for e in root.iter("text") if e.get("font-weight") is None)
+    assert (name.text, measure.text) == ("max overturning moment", "12.3456 N·m  (limit 120.125 N·m)")
+    apart = float(measure.attrib["y"]) - float(name.attrib["y"])
+    assert (apart > 0.0) == (lines == 2)
+    reach = float(name.attrib["x"]) + text_width(name.text, SIZE)
+    assert lines == 2 or reach < width - text_width(measure.text, SIZE)
+    assert end - empty > apart

@@ -96,7 +96,7 @@ def table(
 
 
 def checks(listed: Sequence[CheckRow]) -> Block:
-    """Every check with a mark, its value and its limit."""
+    """Every check with a mark, its whole name, its value and its limit, on a line of their own where both are long."""
 
     def draw(left: float, top: float, width: float) -> tuple[Element, float]:
         verdict = "all passed" if all(check.passed for check in listed) else "not all passed"
@@ -104,10 +104,12 @@ def checks(listed: Sequence[CheckRow]) -> Block:
         for check in listed:
             y += ROW
             measure = f"{check.value}  (limit {check.limit})" if check.limit else check.value
-            room = width - MARK_ROOM - text_width(measure, SIZE) - MARK
+            room = width - MARK_ROOM
             words = shortened(clean(check.name.replace("_", " ")), SIZE, room)
             row = element("g", _mark(check.passed, left + MARK, y - 4.0), data_check=clean(check.name))
             row.add(text(left + MARK_ROOM, y, words, SIZE, fill=INK))
+            if text_width(words, SIZE) + MARK + text_width(measure, SIZE) > room:
+                y += ROW - CLOSER
             row.add(text(left + width, y, measure, SIZE, text_anchor="end", fill=INK))
             block.add(row)
         return block, y + GAP

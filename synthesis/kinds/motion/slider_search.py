@@ -21,6 +21,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.errors import DimensionError
 from kinematics.linkage.planar.mechanism import Mechanism, Slide
 from synthesis.kinds.motion.areas import side_areas, within
 from synthesis.kinds.motion.choices import side_dyads
@@ -410,7 +411,10 @@ def _bearable(
     for k in range(portions):
         weighed = best[k::portions]
         i, j = np.unravel_index(weighed, screened.score.shape)
-        mechanism, moved = _many(task, links, sliders, kind, driving, i, j)
+        try:
+            mechanism, moved = _many(task, links, sliders, kind, driving, i, j)
+        except DimensionError:  # P is on a pin of a block's body, which has no direction then
+            return screened
         kept = weighed[bearable(problem, mechanism, moved)]
         light[kept] = score[kept]
         if np.count_nonzero(light) >= FITTING:
