@@ -69,6 +69,8 @@ def drawn_pair(rng: Random, internal: bool) -> dict[str, Any]:
         pair["addendum"] = [1.0, round(rng.uniform(0.5, 1.0), 2)]
         # The sum of shifts decides over the distance: rings are shifted about as much as their pinions.
         pair["shift"][1] = round(pair["shift"][0] + rng.uniform(-0.3, 0.3), 3)
+        # The cut ring is told its shift by its spaces at the reference circle, which has to lie on its teeth.
+        pair["addendum"][1] = max(pair["addendum"][1], min(1.25, round(pair["shift"][1] + 0.05, 2)))
     else:
         wheel = rng.randint(8, 140)
     return {**pair, "teeth": [pinion, wheel]}
