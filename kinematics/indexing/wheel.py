@@ -67,8 +67,8 @@ class Wheel:
 
     @property
     def mouth(self) -> float:
-        """Angle of a slot's corner from the slot's axis."""
-        return math.asin(self.half_slot / self.reach)
+        """Angle of a slot's corner from the slot's axis; NaN where the slot is wider than the wheel."""
+        return math.asin(self.half_slot / self.reach) if self.half_slot < self.reach else math.nan
 
     @property
     def land(self) -> float:

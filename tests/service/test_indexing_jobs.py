@@ -188,6 +188,8 @@ def test_a_ratchet_is_found_drawn_and_moves(client: httpx.Client) -> None:
         (indexing(drive="geneva_internal", crank_shaft_diameter=5.0), "/crank_shaft_diameter"),
         (indexing(clearances={"relief": 0.01}), "/clearances/relief"),
         (indexing(clearances={"slot_end": 0.01}), "/clearances/slot_end"),
+        (indexing(clearances={"slot": 31.0}), "/clearances/slot"),
+        (indexing(clearances={"locking": 1e9}), "/clearances/locking"),
         (indexing(constraints={"dwell_share": {}}), "/constraints/dwell_share"),
         (indexing(constraints={"dwell_share": {"min": 0.7, "max": 0.6}}), "/constraints/dwell_share"),
         (indexing(load_inertia=-1.0), "/load_inertia"),

@@ -336,3 +336,11 @@ def test_no_room_for_walls() -> None:
     result = solved(stations=24, center_distance=40.0)
     assert not result.designs
     assert result.search.rejected == {"no_room_for_walls": 2}
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+def test_slots_wider_than_the_wheel_are_no_drive(drive: str) -> None:
+    size = {"sphere_radius": 5.0} if drive == "geneva_spherical" else {"center_distance": 8.0}
+    result = solved(drive=drive, stations=5, clearances={"slot": 30.0}, **size)
+    assert not result.designs
+    assert result.search.rejected.keys() == {"no_room_for_walls"}

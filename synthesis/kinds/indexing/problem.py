@@ -37,8 +37,8 @@ FEWEST_TEETH, MOST_GROUPS = 12, 4
 NEAR_ONE = 0.999
 """Crank radius over center distance up to which a plane drive is taken: at 1 the roller comes to the wheel's axis."""
 
-LEAST_ROOM = 0.01
-"""Least clearance at the end of a slot, and beside the disc, in roller diameters."""
+LEAST_ROOM, MOST_ROOM = 0.01, 3.0
+"""Least clearance at the end of a slot, and beside the disc, and greatest of any, in roller diameters."""
 
 TRANSMISSION = 40.0
 """Least transmission angle of a drag link where none is stated, degrees."""
@@ -354,6 +354,11 @@ class IndexingProblem(StatedProblem):
             stated = getattr(self.clearances, name)
             if stated is not None and stated < LEAST_ROOM * self.roller:
                 detail = f"must be at least {LEAST_ROOM:g} roller diameters, which outlines of finite steps tell apart"
+                found.append(Contradiction(f"/clearances/{name}", detail))
+        for name in ("slot", "locking", "slot_end", "relief"):
+            stated = getattr(self.clearances, name)
+            if stated is not None and stated > MOST_ROOM * self.roller:
+                detail = f"must be at most {MOST_ROOM:g} roller diameters"
                 found.append(Contradiction(f"/clearances/{name}", detail))
         return found + ([] if self.crank_radius is None or self.spherical else self._crank_faults(self.crank_radius))
 

@@ -29,6 +29,17 @@ from synthesis.outcome.sifting import NUMERICAL, Sifting
 STEEP = 1.6
 """Height of few teeth over that at which the straight back of a tooth would no longer fall towards its foot."""
 
+UNPROVEN = NUMERICAL | {
+    "equal_stops",
+    "pawls_at_every_stop",
+    "locking_as_told",
+    "holds_the_torque",
+    "pawl_rides",
+    "falls_in",
+    "no_face_locks",
+}
+"""Reasons that rest on rounding, or on what is chosen here: with one of them an empty answer is no proof."""
+
 NO_FACE = "no_face_locks"
 """Reason where the pawl is too short for any face to draw it in."""
 
@@ -45,7 +56,7 @@ def solve_ratchet(problem: IndexingProblem, progress: Progress) -> IndexingResul
     progress(0.0, "sizing")
     sifting.sift(problem.teeth_choices, partial(_candidate, problem))
     progress(1.0, "verified")
-    complete = not NUMERICAL & sifting.rejected.keys()
+    complete = not UNPROVEN & sifting.rejected.keys()
     return IndexingResult(
         designs=sifting.designs(lambda found: found),
         search=sifting.search("closed_form", complete=complete),
@@ -161,7 +172,8 @@ def _placed(wheel: Ratchet, count: int, overlap: int) -> list[Pawl]:
 def _summary(problem: IndexingProblem, sifting: Sifting[IndexingDesign | RatchetDesign]) -> str:
     best = sifting.passed[0] if sifting.passed else None
     if not isinstance(best, RatchetDesign):
-        return f"None exists: {sifting.listed()}."
+        told = "None was found" if UNPROVEN & sifting.rejected.keys() else "None exists"
+        return f"{told}: {sifting.listed()}."
     mechanism, metrics, unit = best.mechanism, best.metrics, problem.length_unit
     pawls = "one pawl" if len(mechanism.pawls) == 1 else f"{len(mechanism.pawls)} pawls"
     size = f"diameter {metrics.size:.6g} {unit}"

@@ -115,7 +115,13 @@ def margins(problem: IndexingProblem, radius: float) -> dict[str, float]:
 def drawable(problem: IndexingProblem, wheel: Hemisphere) -> bool:
     """Whether the outline exists."""
     gap = problem.clearances.locking / wheel.radius
-    return wheel.lock > gap and wheel.inmost > 0.0 and wheel.web > 0.0 and wheel.slot_end < 0.5 * math.pi
+    return (
+        wheel.lock > gap
+        and wheel.half_slot < wheel.radius
+        and wheel.inmost > 0.0
+        and wheel.web > 0.0
+        and wheel.slot_end < 0.5 * math.pi
+    )
 
 
 def mechanism_of(problem: IndexingProblem, wheel: Hemisphere) -> SphericalGenevaMechanism:

@@ -145,10 +145,12 @@ def _peaks(problem: IndexingProblem, design: IndexingDesign, load: Load, span: t
 def _walls(problem: IndexingProblem, design: IndexingDesign, found: Measured) -> list[Check]:
     mechanism, metrics = design.mechanism, design.metrics
     size = metrics.size
+    # Coordinates are rounded by the size of the drive, whatever that of the roller.
+    rounding = AGREES * max(1.0, size / mechanism.roller_diameter)
     told = max(abs(found.wall - metrics.wall), abs(found.web - metrics.web)) / size
     checks = [
         tolerated("walls_as_told", told, AGREES),
-        at_least("roller_in_slot", found.roller, 0.5 * mechanism.roller_diameter, LENGTH, AGREES),
+        at_least("roller_in_slot", found.roller, 0.5 * mechanism.roller_diameter, LENGTH, rounding),
         tolerated("disc_clears_wheel", found.overlap / size, AGREES),
         at_least("locked_at_rest", found.locked, LOCKED),
         at_least("wall", found.wall, problem.wall, LENGTH),
