@@ -146,11 +146,12 @@ def moving_parts(space: Space, mechanism: Mechanism, first: FirstPosition | None
         parts.append(Part(link, hull, 0.5 * space.link_width))
     if space.body is not None and first is not None:
         outline = np.array([complex(*corner) for corner in space.body.outline])
-        parts.append(Part(_carrier(mechanism), first.off_body(outline), 0.0))
+        parts.append(Part(carrier(mechanism), first.off_body(outline), 0.0))
     return parts
 
 
-def _carrier(mechanism: Mechanism) -> str:
+def carrier(mechanism: Mechanism) -> str:
+    """The link that carries the body: the one with P."""
     return next(link for link, joints in mechanism.links.items() if BODY_POINT in joints and link != GROUND)
 
 

@@ -44,7 +44,7 @@ from synthesis.kinds.steering.problem import SteeringProblem
 from synthesis.kinds.straight_line.design import StraightLineDesign
 from synthesis.kinds.straight_line.problem import StraightLineProblem
 from synthesis.model.dimension import Dimension
-from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign
+from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, SixbarMechanism
 
 SAMPLES = 721
 """Points of a diagram's curve, and of P's path during a dwell."""
@@ -75,6 +75,13 @@ NAMES = {
     "watt_1": "Watt sixbar for parallel motion",
 }
 """What the types are called on a sheet."""
+
+CARRIER_NAMES = {
+    "watt_1": "Watt's sixbar of the first kind",
+    "stephenson_1": "Stephenson's sixbar of the first kind",
+    "stephenson_3": "Stephenson's sixbar of the third kind",
+}
+"""Sixbars without a driver, which carry a body by themselves."""
 
 STROKE_NAMES = NAMES | {"fourbar": "Crank-rocker", "slider_crank": "Offset slider-crank"}
 
@@ -130,7 +137,8 @@ def guided(design: LinkageDesign, problem: MotionProblem | PathProblem, linkage:
         )
         for target in design.targets
     ]
-    name = NAMES[design.mechanism.type]
+    driven = not isinstance(design.mechanism, SixbarMechanism) or "driver_coupler" in design.mechanism.links
+    name = (NAMES if driven else CARRIER_NAMES)[design.mechanism.type]
     return Content(
         name,
         name,

@@ -49,6 +49,8 @@ class Driven(NamedTuple):
         Deviations in x, y (length units) and angle (radians).
     input_side, output_side : Side
         The dyads.
+    pivots : (list of complex, list of complex), optional
+        All fixed and all moving pivots at the first target, of a linkage that has others than its sides'.
     """
 
     points: Complex
@@ -56,15 +58,20 @@ class Driven(NamedTuple):
     offsets: Real
     input_side: Side
     output_side: Side
+    pivots: tuple[list[complex], list[complex]] | None = None
 
     @property
     def fixed_pivots(self) -> list[complex]:
-        """Of both sides."""
+        """Of both sides, or all."""
+        if self.pivots is not None:
+            return self.pivots[0]
         return [side.pivot for side in (self.input_side, self.output_side) if side.pivot is not None]
 
     @property
     def moving_pivots(self) -> list[complex]:
-        """Of both sides, at the first target."""
+        """Of both sides, or all, at the first target."""
+        if self.pivots is not None:
+            return self.pivots[1]
         return [complex(side.pins[0]) for side in (self.input_side, self.output_side) if side.pins is not None]
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import ConfigDict, Field
 
 from synthesis.kinds.motion.stated_dyads import DriverDyad, DyadChoices, GroundLine, whole_point
+from synthesis.kinds.motion.stated_mechanisms import SIXBARS, Chain, Mechanisms, Sixbar, of_sixbars
 from synthesis.kinds.motion.stated_positions import Position, Tolerance
 from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.model.manufacture import Held, Made, kept_pivots
@@ -165,6 +166,18 @@ class MotionProblem(LinkageProblem):
                     "driver_dyad": {"link": "coupler"},
                     "max_designs": 3,
                 },
+                {
+                    "kind": "motion",
+                    "positions": [
+                        {"x": 0.0, "y": 0.0, "angle": 0.0},
+                        {"x": 35.0, "y": 12.0, "angle": 20.0},
+                        {"x": 70.0, "y": 8.0, "angle": 5.0},
+                        {"x": 100.0, "y": -20.0, "angle": -25.0},
+                        {"x": 115.0, "y": -60.0, "angle": -40.0},
+                    ],
+                    "mechanisms": ["watt_1", "stephenson_3"],
+                    "max_designs": 3,
+                },
             ]
         },
     )
@@ -184,6 +197,29 @@ class MotionProblem(LinkageProblem):
         default=False,
         description="Add a crank that turns through and moves the linkage from the first position to the last.",
     )
+
+    mechanisms: Mechanisms | None = Field(
+        default=None,
+        description="The types of linkages that are looked for; auto: fourbars and slider-cranks, and sixbars where "
+        "none of these is sound. Left out: fourbars, and slider-cranks where pins cannot do it.",
+    )
+    chain: Chain | None = Field(
+        default=None, description="What is fixed of the chain of three links that sixbars are made of."
+    )
+
+    @property
+    def sixbars(self) -> tuple[Sixbar, ...]:
+        """The types of sixbars that are looked for."""
+        if self.mechanisms is None:
+            return ()
+        if self.mechanisms == "auto":
+            return SIXBARS if self.few_enough else ()
+        return tuple(name for name in SIXBARS if name in self.mechanisms)
+
+    @property
+    def few_enough(self) -> bool:
+        """Whether the positions are met exactly, or within tolerances, and are not too many for a sixbar."""
+        return len(self.positions) <= MOST_HELD and not self.fitted
 
     @property
     def made(self) -> Made | str:
@@ -358,6 +394,7 @@ class MotionProblem(LinkageProblem):
             *self._pivots_off_the_ground_line(),
             *self._pivots_outside_regions(),
             *self._class_of_sliders(),
+            *of_sixbars(self),
             *self.contradicting_demands(),
             *self._without_room(),
         ]

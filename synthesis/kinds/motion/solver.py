@@ -17,6 +17,7 @@ from functools import partial
 import numpy as np
 
 from synthesis.kinds.motion.burmester import Window, branches, burmester_curve
+from synthesis.kinds.motion.by_type import solve_types
 from synthesis.kinds.motion.choices import Cloud
 from synthesis.kinds.motion.demanded import demanded
 from synthesis.kinds.motion.design import BurmesterBranch, MotionResult
@@ -58,8 +59,15 @@ _EITHER_WAY = {"degenerate", "residual", "cannot_be_driven", "circuit_defect"}
 
 def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
     """Solve a motion-generation problem, each way of asking by its own method."""
+    if problem.mechanisms is not None:
+        return solve_types(problem, _of_two_dyads, progress)
+    return _of_two_dyads(problem, progress)
+
+
+def _of_two_dyads(problem: MotionProblem, progress: Progress) -> MotionResult:
+    """Fourbars, slider-cranks, and fourbars with a driver."""
     if problem.driver is not None:
-        bare = solve_motion(undriven(problem), part_of(progress, 0.0, 0.8))
+        bare = _of_two_dyads(undriven(problem), part_of(progress, 0.0, 0.8))
         return with_driver_dyads(problem, bare, progress)
     if problem.steered_in_room:
         return _in_room(problem, progress)

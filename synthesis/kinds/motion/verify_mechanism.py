@@ -18,7 +18,8 @@ from kinematics.errors import MechanismError
 from kinematics.linkage.planar.branches import Branch, cycle
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.limits import branches, holding_reference, limit_positions
-from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from synthesis.kinds.motion.chains import chain_gap
 from synthesis.kinds.motion.checks import Driven, Side, linkage_design
 from synthesis.kinds.motion.closest import SAME_MISS, as_near, closest_inputs
 from synthesis.kinds.motion.demanded import Complex, Demanded, Real
@@ -33,12 +34,13 @@ from synthesis.model.linkage_answer import (
 )
 from synthesis.model.linkages import body_shift
 from synthesis.proof.carried import Carried, carried, ease
-from synthesis.proof.checks import tolerated
+from synthesis.proof.checks import CHOICE_KEPT, tolerated
 from synthesis.proof.closer import GRID, least_angles
 from synthesis.proof.constraints import within_zone
 from synthesis.proof.measures import barker_of, link_lengths, measured, reach_of
 from synthesis.proof.on_branch import OnBranch
 from synthesis.proof.rebuilt import rebuilt
+from synthesis.proof.space import BODY_POINT, carrier
 
 OWN = 1.5
 """A target counts as met on the reference's branch unless another one misses it this many times less."""
@@ -51,6 +53,9 @@ END_WITHIN, END_SAMPLES, END_REFINEMENTS = 0.1, 33, 6
 """Radians of the crank around a last target within which its toggle is looked for; grids, each 32 times finer: 1e-10
 radians in the end. Where the body turns about a point that the linkage holds nearly still, the nearest place is known
 to some hundredths only."""
+
+DRIVER = "driver_coupler"
+"""The link of a driver dyad."""
 
 RANGE_GRID = 721
 """Inputs at which the driven link's way is looked at."""
@@ -92,7 +97,7 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
     way = _way(mechanism, here, met.inputs) if same_branch else _Way(met.inputs, False)
     joints, turns = _at_targets(bodies, met)
     driven = _driven(design, mechanism, joints, turns, target)
-    whole = isinstance(design, SixbarMechanism)
+    whole = DRIVER in mechanism.links
     used = (here.low, here.high) if whole else (float(way.inputs.min()), float(way.inputs.max()))
     slides = mechanism.driven_by_slide
     way_of_body = Carried()
@@ -123,22 +128,23 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
         on_circuit=bool(all(listed[row].circuit == here.circuit for row in met.rows)),
         carried=way_of_body,
         slides=slides,
-        own=_driver_checks(problem, design, mechanism, here, way) if isinstance(design, SixbarMechanism) else (),
+        own=_own_checks(problem, design, mechanism, here, way, joints, target),
     )
 
 
 class _Body(OnBranch):
-    """The body on the coupler, on one branch; it is turned by ``shift`` against the first demanded pose."""
+    """The body on the link with P, on one branch; it is turned by ``shift`` against the first demanded pose."""
 
     def __init__(self, mechanism: Mechanism, branch: Branch, shift: float) -> None:
         super().__init__(mechanism, branch)
-        self._first = float(mechanism.link_angle("coupler")) - shift
+        self._link = carrier(mechanism)
+        self._first = float(mechanism.link_angle(self._link)) - shift
 
     def pose(self, inputs: Real) -> tuple[Complex, Real]:
         """P and the body's rotation from the first demanded pose, at inputs of any shape."""
         motion = self.at(inputs.ravel())
         points = motion.joints["P"][0].reshape(inputs.shape)
-        return points, (motion.angles["coupler"][0] - self._first).reshape(inputs.shape)
+        return points, (motion.angles[self._link][0] - self._first).reshape(inputs.shape)
 
 
 def _closest(bodies: list[_Body], target: Demanded, own: int) -> _Met | None:
@@ -160,7 +166,7 @@ def _closest(bodies: list[_Body], target: Demanded, own: int) -> _Met | None:
     home = float(bodies[own].mechanism.reference_input)
     if as_near(bodies[own].pose, target, 0, home, at[0]):
         at[0] = home
-    if "driver_coupler" in bodies[own].mechanism.links and best[-1] == 0 and math.isfinite(at[-1]):
+    if DRIVER in bodies[own].mechanism.links and best[-1] == 0 and math.isfinite(at[-1]):
         end = _dead_centre(bodies[own], float(at[-1]))
         if end is not None and as_near(bodies[own].pose, target, -1, end, at[-1]):
             at[-1] = end
@@ -221,14 +227,40 @@ def _driven(
         sides = (link, Side(complex(joints["O4"][0]), None, float(mechanism.slides[0].angle)))
     else:
         sides = (link, Side(complex(joints["O4"][0]), joints["B"]))
-    return Driven(joints["P"], turns, target.offsets(joints["P"], turns), *sides)
+    offsets = target.offsets(joints["P"], turns)
+    if isinstance(design, SixbarMechanism) and DRIVER not in mechanism.links:
+        ground = mechanism.links[GROUND]
+        fixed = [complex(joints[name][0]) for name in ground]
+        moving = [complex(joints[name][0]) for name in joints if name != BODY_POINT and name not in ground]
+        return Driven(joints["P"], turns, offsets, *sides, pivots=(fixed, moving))
+    return Driven(joints["P"], turns, offsets, *sides)
+
+
+def _own_checks(
+    problem: MotionProblem,
+    design: LinkageMechanism,
+    mechanism: Mechanism,
+    here: Branch,
+    way: _Way,
+    joints: dict[str, Complex],
+    target: Demanded,
+) -> list[Check]:
+    """Checks of a sixbar: of its driver, or of the chain that carries the body."""
+    if not isinstance(design, SixbarMechanism):
+        return []
+    if DRIVER in mechanism.links:
+        return _driver_checks(problem, design, mechanism, here, way)
+    if problem.chain is None:
+        return []
+    gap = chain_gap(problem.chain, mechanism.links, joints, target.size)
+    return [tolerated("chain", gap, CHOICE_KEPT)]
 
 
 def _driver_checks(
     problem: MotionProblem, design: SixbarMechanism, mechanism: Mechanism, here: Branch, way: _Way
 ) -> list[Check]:
     """A driver's crank turns through, and the link that it drives has its limits at the first and the last target."""
-    held = next(name for name, listed in mechanism.links.items() if "C" in listed and name != "driver_coupler")
+    held = next(name for name, listed in mechanism.links.items() if "C" in listed and name != DRIVER)
     # The coupler may turn back on its way; the input, which took the fourbar through its targets, does not.
     driven = "input" if held == "coupler" else held
     run = np.linspace(way.inputs[0], way.inputs[-1], RANGE_GRID)

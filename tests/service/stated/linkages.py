@@ -109,6 +109,20 @@ DRIVEN = {
     "max_designs": 2,
 }
 
+SIXBARS: dict[str, Any] = {
+    "positions": [
+        {"x": 0.0, "y": 0.0, "angle": 0.0},
+        {"x": 35.0, "y": 12.0, "angle": 20.0},
+        {"x": 70.0, "y": 8.0, "angle": 5.0},
+        {"x": 100.0, "y": -20.0, "angle": -25.0},
+        {"x": 115.0, "y": -60.0, "angle": -40.0},
+    ],
+    "input_side": {},
+    "output_side": {},
+    "mechanisms": ["watt_1"],
+    "max_designs": 1,
+}
+
 MOTION_ROWS: dict[str, Any] = {
     **UNITS,
     **DEMANDS,
@@ -151,6 +165,12 @@ MOTION_ROWS: dict[str, Any] = {
     "ground_line.point": Row([0.0, -70.0], {**BOTH_OPEN, "ground_line": {"point": [0.0, -60.0], "angle": 0.0}}),
     "ground_line.angle": Row(10.0, {**BOTH_OPEN, "ground_line": {"point": [0.0, -60.0], "angle": 0.0}}),
     "method": Row("least_squares", {"positions": [*FITTED["positions"][:4], FITTED["positions"][5]], **BOTH_OPEN}),
+    "mechanisms": Row(["stephenson_3"], SIXBARS),
+    "chain": Row({"elbow": "left", "fixed_pivot": [20.0, -110.0]}, SIXBARS),
+    "chain.links": Row([120.0, None], {**SIXBARS, "chain": {"elbow": "left"}}),
+    "chain.fixed_pivot": Row([20.0, -110.0], {**SIXBARS, "chain": {"elbow": "left"}}),
+    "chain.moving_pivot": Row([0.0, None], {**SIXBARS, "chain": {"elbow": "left"}}),
+    "chain.elbow": Row("left", {**SIXBARS, "chain": {"elbow": "right"}}),
     "driver_dyad": Row(True, DRIVEN),
     "driver_dyad.link": Row("output", {**DRIVEN, "driver_dyad": {"link": "input"}}),
     "driver_dyad.pivot_region": Row({"x": [-300.0, 300.0], "y": [-300.0, -60.0]}, {**DRIVEN, "driver_dyad": {}}),

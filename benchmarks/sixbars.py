@@ -1,0 +1,152 @@
+"""Sixbars: how many random tasks have a sound one, how long that takes, and whether what is claimed of them is true.
+
+    python -m benchmarks.sixbars motion [--tasks 200] [--seed 0]
+    python -m benchmarks.sixbars auto [--tasks 100] [--seed 0]
+
+``motion``: tasks of five positions of three sorts. *On a way*: the body goes along a bent way and turns by up to 30°
+from position to position. *Within a box*: positions anywhere in a square, turned by up to ±30°. *Anyhow*: the same, up
+to ±90°. Sound is one branch and circuit, in order, no toggle, a transmission angle of 20° and no link longer than five
+task sizes. Each sixbar is driven once more by its loops (tests/oracles/loops.py), which know nothing of the product.
+
+``auto``: tasks of three positions that have a sound fourbar, with ``mechanisms`` and without. Times are of a processor,
+and of the wall.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from synthesis.dispatch import solve
+from synthesis.kinds.motion.design import MotionResult
+from synthesis.registry import parse_problem
+from tests.oracles.loops import Loops
+
+SIXBARS = ["watt_1", "stephenson_1", "stephenson_3"]
+SOUND, REACH = 20.0, 5.0
+Task = list[dict[str, float]]
+
+
+def stated(points: Any, angles: Any) -> Task:
+    return [{"x": float(p.real), "y": float(p.imag), "angle": float(a)} for p, a in zip(points, angles, strict=True)]
+
+
+def on_a_way(rng: np.random.Generator, n: int = 5) -> Task:
+    course = rng.uniform(0.0, 2.0 * np.pi) + np.cumsum(rng.uniform(-0.9, 0.9, n))
+    return stated(
+        100.0 * np.cumsum(rng.uniform(0.3, 1.0, n) * np.exp(1j * course)), np.cumsum(rng.uniform(-30.0, 30.0, n))
+    )
+
+
+def within_a_box(rng: np.random.Generator, most: float = 30.0) -> Task:
+    points = 100.0 * (rng.uniform(-1.0, 1.0, 5) + 1j * rng.uniform(-1.0, 1.0, 5))
+    return stated(points, rng.uniform(-most, most, 5))
+
+
+def anyhow(rng: np.random.Generator) -> Task:
+    return within_a_box(rng, 90.0)
+
+
+SORTS: dict[str, Callable[[np.random.Generator], Task]] = {
+    "on a way, up to 30° from each to the next": on_a_way,
+    "within a box, up to ±30°": within_a_box,
+    "anyhow, up to ±90°": anyhow,
+}
+
+
+def solved(task: Task, **more: Any) -> tuple[MotionResult, float, float]:
+    problem = parse_problem({"kind": "motion", "positions": task, "max_designs": 3, **more})
+    wall, processor = time.perf_counter(), time.process_time()
+    result = solve(problem)
+    return result, time.process_time() - processor, time.perf_counter() - wall
+
+
+def sound(result: MotionResult) -> list[Any]:
+    """Of the designs those that pass, transmit and are not too large."""
+    passed = [design for design in result.designs if design.verification.passed]
+    return [d for d in passed if d.metrics.min_transmission_angle >= SOUND and (d.metrics.reach or 0.0) <= REACH]
+
+
+def false_claim(design: Any, task: Task) -> str:
+    """What another formulation does not confirm of a design; empty where it confirms all."""
+    inputs = np.radians([target.input_angle for target in design.targets])
+    try:
+        met = Loops(design.mechanism.skeleton.model_dump(mode="json")).followed(inputs - inputs[0])
+    except AssertionError as error:
+        return str(error)
+    if not met.branch > 0.0:
+        return "another branch"
+    if not (np.all(np.diff(inputs) > 0.0) or np.all(np.diff(inputs) < 0.0)):
+        return "out of order"
+    points = np.array([complex(p["x"], p["y"]) for p in task])
+    turns = np.exp(1j * np.radians([p["angle"] - task[0]["angle"] for p in task]))
+    size = np.abs(points[:, None] - points).max()
+    if np.abs(met.points - points).max() > 1e-6 * size or np.abs(np.exp(1j * met.turns) - turns).max() > 1e-6:
+        return "another position"
+    at = {"coupler": "B", "link_5": "D" if design.mechanism.type == "stephenson_3" else "E"}
+    for link, angle in design.metrics.transmission_angles.items():
+        seen = min(value for (joint, *on), value in met.angles.items() if joint == at[link] and link in on)
+        if seen < angle - 0.1:
+            return "transmission angle"
+    return ""
+
+
+def motion_table(tasks: int, seed: int) -> None:
+    print(
+        f"{'five positions':<44}{'tasks':>6}{'fourbar %':>11}{'sixbar %':>10}"
+        f"{'CPU s':>8}{'most':>7}{'wall s':>8}{'false':>7}"
+    )
+    for name, draw in SORTS.items():
+        rng = np.random.default_rng(seed)
+        fourbars = sixbars = wrong = driven = 0
+        times, walls = [], []
+        for _ in range(tasks):
+            task = draw(rng)
+            fourbars += bool(sound(solved(task, mechanisms=["fourbar"])[0]))
+            result, processor, wall = solved(task, mechanisms=SIXBARS)
+            designs = sound(result)
+            sixbars += bool(designs)
+            times.append(processor)
+            walls.append(wall)
+            for design in designs:
+                fault = false_claim(design, task)
+                driven, wrong = driven + 1, wrong + bool(fault)
+                if fault:
+                    print(f"  {fault}: {design.mechanism.model_dump_json()}")
+        print(
+            f"{name:<44}{tasks:>6}{100.0 * fourbars / tasks:>11.1f}{100.0 * sixbars / tasks:>10.1f}"
+            f"{statistics.median(times):>8.2f}{max(times):>7.1f}{max(walls):>8.1f}{wrong:>4}/{driven}"
+        )
+
+
+def auto_table(tasks: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    without, auto = [], []
+    for _ in range(tasks):
+        task = on_a_way(rng, 3)
+        result, processor, _ = solved(task)
+        if sound(result):
+            again, longer, _ = solved(task, mechanisms="auto")
+            assert again.designs == result.designs
+            without.append(processor)
+            auto.append(longer)
+    share = 100.0 * (sum(auto) / sum(without) - 1.0)
+    print(f"auto on {len(auto)} tasks with a sound fourbar: {share:+.1f} % time, the same answers")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("table", choices=["motion", "auto"])
+    parser.add_argument("--tasks", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=0)
+    asked = parser.parse_args()
+    {"motion": motion_table, "auto": auto_table}[asked.table](asked.tasks, asked.seed)
+
+
+if __name__ == "__main__":
+    main()

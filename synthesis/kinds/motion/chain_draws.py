@@ -1,0 +1,141 @@
+"""Chains that are drawn for a task, and poses of the body beside the demanded ones: what the search begins from."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.motion.chain_kernels import POSITIONS
+from synthesis.kinds.motion.demanded import Complex, Demanded, Real
+from synthesis.kinds.motion.stated_mechanisms import Chain
+from synthesis.kinds.motion.task import MotionTask
+from synthesis.model.linkage_statement import Region
+from synthesis.model.statement import PartialPoint
+
+AROUND_BODY = np.array([0.3, 0.6, 1.2])
+"""Spreads of H₂ around P, in task sizes."""
+
+AROUND_TASK = 1.0
+"""Spread of G around the positions."""
+
+LONGER = 0.5
+"""Mean of what the links are longer than the farthest reach, as a share of it; they are longer by 2 % at least."""
+
+EVEN = 0.98
+"""Share of the nearest reach by which the links may differ in length."""
+
+TRIES, SHORT = 24, 0.05
+"""Ground pivots that are tried where a length is stated, and the least of an open length, in task sizes."""
+
+ASTRAY = 0.15
+"""Spread of a drawn pose beside the way between two demanded ones, in task sizes and radians."""
+
+
+class Poses(NamedTuple):
+    """Five poses of the body for each of n chains, task coordinates: those that are demanded, and drawn ones.
+
+    ``points``, ``turns`` (n, 5), complex, the turns from the first of these poses; ``demanded`` (5,); ``stands`` (n,),
+    how far the first is turned from the demanded one, radians.
+    """
+
+    points: Complex
+    turns: Complex
+    demanded: NDArray[np.bool_]
+    stands: Real
+
+
+def drawn_poses(task: MotionTask, target: Demanded, rng: np.random.Generator, count: int) -> Poses:
+    """Poses within the tolerances, every other set as demanded; up to five by poses on the way between them."""
+    n = len(task.points)
+    deviations = rng.uniform(-1.0, 1.0, (count, n, 3)) * np.where(np.isfinite(target.limits), target.limits, 0.0)
+    deviations[::2] = 0.0
+    points = task.points + (deviations[..., 0] + 1j * deviations[..., 1]) / target.size
+    angles = np.angle(task.turns) + deviations[..., 2]
+    demanded = np.ones(POSITIONS, np.bool_)
+    if n < POSITIONS:
+        between = np.sort(rng.integers(0, n - 1, POSITIONS - n))
+        places = np.sort(np.concatenate([np.arange(n), between + 0.5]), kind="stable")
+        demanded = places == np.floor(places)
+        before = np.floor(places).astype(np.int64)
+        after = np.minimum(before + 1, n - 1)
+        share = np.where(demanded, 0.0, np.sort(rng.uniform(0.15, 0.85, (count, POSITIONS)), axis=1))
+        off = np.where(demanded, 0.0, ASTRAY) * rng.normal(size=(3, count, POSITIONS))
+        step = np.angle(np.exp(1j * (angles[:, after] - angles[:, before])))
+        points = points[:, before] + share * (points[:, after] - points[:, before]) + off[0] + 1j * off[1]
+        angles = angles[:, before] + share * step + off[2]
+    # The body as it stands first is the reference of all other poses.
+    return Poses(points, np.exp(1j * (angles - angles[:, :1])), demanded, angles[:, 0])
+
+
+def drawn_chains(
+    task: MotionTask, poses: Poses, stated: Chain, region: Region | None, rng: np.random.Generator
+) -> tuple[Real, Real]:
+    """Chains that reach all poses, as rows (n, 7) of :func:`synthesis.kinds.motion.chain_kernels.searched`.
+
+    With them what may be varied of them: (6,), 1 and 0.
+    """
+    count = len(poses.points)
+    free = np.ones(6)
+    one, two = (None if length is None else length / task.size for length in stated.links or (None, None))
+    pin = poses.points[:, 0] + rng.choice(AROUND_BODY, count) * _spread(rng, count)
+    pin = _stated(task, stated.moving_pivot, pin, free[2:4])
+    end = poses.points + poses.turns * (pin - poses.points[:, 0])[:, None]
+    # Several pivots for a chain, of which one is taken that a stated length reaches from.
+    tries = 1 if one is None and two is None else TRIES
+    pivots = poses.points.mean() + AROUND_TASK * _spread(rng, tries * count)
+    if region is not None:
+        pivots = np.array([task.to_task(complex(z)) for z in region.sampled(rng, tries * count)])
+    pivots = _stated(task, stated.fixed_pivot, pivots, free[:2]).reshape(tries, count)
+    reach = np.abs(end - pivots[..., None])
+    near, far = reach.min(axis=2), reach.max(axis=2)
+    chosen = _reached(near, far, one, two).argmax(axis=0), np.arange(count)
+    pivot, near, far = pivots[chosen], near[chosen], far[chosen]
+    total = far * (1.02 + rng.exponential(LONGER, count))
+    first = 0.5 * (total + EVEN * near * rng.uniform(-1.0, 1.0, count))
+    second = total - first
+    share = rng.uniform(0.0, 1.0, count)
+    if one is not None:
+        first, free[4] = np.full(count, one), 0.0
+        second = np.maximum(far - one, SHORT) + share * (one + near - np.maximum(far - one, SHORT))
+    if two is not None:
+        second, free[5] = np.full(count, two), 0.0
+        if one is None:
+            first = np.maximum(far - two, SHORT) + share * (two + near - np.maximum(far - two, SHORT))
+    elbow = np.where(rng.random(count) < 0.5, 1.0, -1.0)
+    if stated.elbow != "any":
+        elbow[:] = 1.0 if stated.elbow == "left" else -1.0
+    return np.stack([pivot.real, pivot.imag, pin.real, pin.imag, first, second, elbow], axis=1), free
+
+
+def _reached(near: Real, far: Real, one: float | None, two: float | None) -> NDArray[np.bool_]:
+    """Whether links of stated lengths reach all places between the nearest and the farthest."""
+    if one is None and two is None:
+        return np.ones(near.shape, np.bool_)
+    if one is None or two is None:
+        return np.asarray(far - near < 2.0 * (one or two or 0.0))
+    return np.asarray((abs(one - two) < near) & (far < one + two))
+
+
+def _spread(rng: np.random.Generator, count: int) -> Complex:
+    return np.asarray(rng.normal(size=count) + 1j * rng.normal(size=count))
+
+
+def _stated(task: MotionTask, stated: PartialPoint | None, drawn: Complex, free: Real) -> Complex:
+    """Points with the coordinates that are stated; ``free`` is 0 for these."""
+    if stated is None:
+        return drawn
+    x, y = (None if at is None else (at - o) / task.size for at, o in zip(stated, _pair(task.origin), strict=True))
+    free[:] = x is None, y is None
+    return np.asarray((drawn.real if x is None else x) + 1j * (drawn.imag if y is None else y) + np.zeros(len(drawn)))
+
+
+def _pair(z: complex) -> tuple[float, float]:
+    return z.real, z.imag
+
+
+def needed(task: MotionTask) -> Real:
+    """Way of P and turn of the body that the demanded positions need: task sizes, radians."""
+    turns = task.turns[1:] / task.turns[:-1]
+    return np.array([np.abs(np.diff(task.points)).sum(), np.abs(np.angle(turns)).sum()])

@@ -1,0 +1,547 @@
+"""Sixbars from planar 3R chains, compiled: the two cranks that constrain a chain, and a drive through the positions.
+
+A chain G–H₁–H₂ carries the body M at H₂; its links 1 and 2 stand, for each of five positions, where the elbow bends to
+the stated side. Two more cranks leave it one freedom (Soh & McCarthy, Mech. Mach. Theory 43 (2008) 160,
+doi:10.1016/j.mechmachtheory.2006.11.004). Each is a dyad between two bodies whose poses are known, and is itself a body
+with known poses as soon as it is found:
+
+    ground–2, then 1–M             Watt I
+    ground–2, then its crank–M     Watt I
+    ground–2, then ground–M        Stephenson III
+    ground–M, then its crank–1     Stephenson I
+
+Between bodies that the chain joins by one link there
+is that link's own dyad among the four, so that at least one other is real: a Watt I for each chain.
+
+All of these are a fourbar O₂ A B O₄, driven by one of its ground links, and a dyad Q₁ J Q₂ on two of its links, the
+body on the first link of the dyad. Which links Q₁ and Q₂ are on is a *make*.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from synthesis.kinds.motion.relative_dyads import MOST, OPTIONS, dyads, relative
+from synthesis.proof.carried import ease
+from synthesis.proof.measures import quality
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Numbers = NDArray[np.int64]
+
+POSITIONS = 5
+
+O2, A, B, O4, Q1, Q2, J = range(7)
+"""Joints of a candidate, in the first position."""
+
+GROUND, INPUT, COUPLER, OUTPUT = range(4)
+"""Links that Q₁ and Q₂ may be on."""
+
+MAKES = np.array([[COUPLER, INPUT], [COUPLER, OUTPUT], [COUPLER, GROUND], [INPUT, OUTPUT], [OUTPUT, INPUT]])
+"""By the number of a make: the link of Q₁ and that of Q₂."""
+
+WATT_1_IN, WATT_1_OUT, STEPHENSON_3, STEPHENSON_1_IN, STEPHENSON_1_OUT = range(5)
+
+OF_LINK = np.array([[O2, O4], [O2, A], [A, B], [O4, B]])
+"""The pins of each link of the fourbar."""
+
+LEAST_SINE, MOST_REACH, MOST_RATIO, SHORTEST_LINK, LONGEST_LINK, CLASS, FULL_TURN = range(7)
+FIXED_BOX, MOVING_BOX, ROOM = 7, 11, 15
+"""Limits: the least sine of a transmission angle; the greatest distance of two joints of a link; longest link over
+shortest; both of these; the class of the fourbar; 1 where the input turns through; boxes (x from, to, y from, to) of
+the fixed pivots, of the moving ones in the first position, and of all joints on the way. Task coordinates."""
+
+ANY, CRANK_ROCKER, DOUBLE_CRANK, DOUBLE_ROCKER, NON_GRASHOF = range(5)
+"""Classes that are demanded; a crank-rocker is driven by its crank."""
+
+STEPS = 60
+"""Steps of the drive from the first position to the last."""
+
+SHORTEST = 0.02
+"""Length below which a link is of no use, in task sizes."""
+
+FIRST_STEP, LONGEST_STEP, LAST_STEP = 0.3, 0.6, 0.003
+"""Spread of a random step at first and at most, and that below which no more are made; task sizes, or shares."""
+
+STRIDE = 61
+"""Chains take the same steps from different ones on."""
+
+LITTLE_TURN = math.radians(15.0)
+"""As in :mod:`synthesis.proof.carried`."""
+
+
+@njit(**OPTIONS)
+def _carry(point: complex, place: Complex, turn: Complex, k: int) -> complex:
+    carried: complex = place[k] + turn[k] * (point - place[0])
+    return carried
+
+
+@njit(**OPTIONS)
+def _crank(
+    fixed: complex,
+    moving: complex,
+    one: Complex,
+    one_turn: Complex,
+    other: Complex,
+    other_turn: Complex,
+    place: Complex,
+    turn: Complex,
+) -> None:
+    """Poses of a link that is pinned to two bodies."""
+    for k in range(POSITIONS):
+        place[k] = _carry(fixed, one, one_turn, k)
+        turn[k] = _carry(moving, other, other_turn, k) - place[k]
+    first = turn[0]
+    for k in range(POSITIONS):
+        turn[k] /= first
+
+
+@njit(**OPTIONS)
+def chain_poses(
+    points: Complex,
+    turns: Complex,
+    pivot: complex,
+    pin: complex,
+    first: float,
+    second: float,
+    elbow: float,
+    place: Complex,
+    turn: Complex,
+) -> bool:
+    """Poses (3, 5) of the chain's links 1 and 2 and of the body; False where it does not reach.
+
+    ``elbow`` is +1 where H₁ lies to the left of the way from G to H₂.
+    """
+    for k in range(POSITIONS):
+        place[2, k], turn[2, k] = points[k], turns[k]
+        end = points[k] + turns[k] * (pin - points[0])
+        reach = end - pivot
+        square = reach.real * reach.real + reach.imag * reach.imag
+        along = (first * first - second * second + square) / (2.0 * square)
+        height = first * first / square - along * along
+        if not height > 0.0:
+            return False
+        knee = pivot + reach * complex(along, elbow * math.sqrt(height))
+        place[0, k], turn[0, k] = pivot, knee - pivot
+        place[1, k], turn[1, k] = knee, end - knee
+    for link in range(2):
+        start = turn[link, 0]
+        for k in range(POSITIONS):
+            turn[link, k] /= start
+    return True
+
+
+@njit(**OPTIONS)
+def _on(
+    link: int, point: complex, joints: Complex, a: complex, into: complex, through: complex, out: complex
+) -> complex:
+    """A point of a link of the fourbar, the links turned from the first position by ``into``, ``through``, ``out``."""
+    place = point
+    if link == INPUT:
+        place = joints[O2] + into * (point - joints[O2])
+    elif link == COUPLER:
+        place = a + through * (point - joints[A])
+    elif link == OUTPUT:
+        place = joints[O4] + out * (point - joints[O4])
+    return place
+
+
+@njit(**OPTIONS)
+def _closed(pin: complex, other: complex, first: float, second: float, side: float) -> tuple[complex, float]:
+    """Where two links on two pins meet, ``side`` +1 to the left of the way from the one to the other.
+
+    With it the sine of the angle between them; where they do not meet, less than 0 by how far they are from it.
+    """
+    base = other - pin
+    square = base.real * base.real + base.imag * base.imag
+    cosine = (first * first + second * second - square) / (2.0 * first * second)
+    if not abs(cosine) < 1.0:
+        return pin, 1.0 - abs(cosine)
+    sine = math.sqrt((1.0 - cosine) * (1.0 + cosine))
+    along, height = 0.5 * (first * first - second * second + square) / square, first * second * sine / square
+    return pin + base * complex(along, side * height), sine
+
+
+@njit(**OPTIONS)
+def _signed_sine(pin: complex, other: complex, joint: complex) -> float:
+    """Sine of the angle between two links where they meet, negative where that is to the right of the pins' line."""
+    one, two = joint - pin, joint - other
+    return (one.conjugate() * two).imag / (abs(one) * abs(two))
+
+
+@njit(**OPTIONS)
+def run(input_turns: Complex, demanded: NDArray[np.bool_], inputs: Real) -> float:
+    """Input rotations at the positions in one run that takes the demanded ones in order.
+
+    Returns
+    -------
+    float
+        0 where there is such a run; else less, to −1, by the angle that the input turns back.
+    """
+    best, shorter = -1.0, 2.0 * math.pi
+    for way in (1.0, -1.0):
+        at, back, before = 0.0, 0.0, input_turns[0]
+        for k in range(1, POSITIONS):
+            if demanded[k]:
+                turned = _turned(before, input_turns[k]) * way
+                back += min(turned, 0.0)
+                at += turned if turned >= 0.0 else turned + 2.0 * math.pi
+                before = input_turns[k]
+        best = max(best, (back if back < 0.0 else 2.0 * math.pi - at) / (math.pi * POSITIONS))
+        if at >= shorter:
+            continue
+        shorter, at, before = at, 0.0, input_turns[0]
+        for k in range(1, POSITIONS):
+            if demanded[k]:
+                turned = _turned(before, input_turns[k]) * way
+                at += turned if turned >= 0.0 else turned + 2.0 * math.pi
+                before, inputs[k] = input_turns[k], way * at
+    return 0.0 if shorter < 2.0 * math.pi else min(best, 0.0)
+
+
+@njit(**OPTIONS)
+def _turned(before: complex, after: complex) -> float:
+    """The angle from one direction to another, −π to π."""
+    step = after * before.conjugate()
+    return math.atan2(step.imag, step.real)
+
+
+@njit(**OPTIONS)
+def _outside(point: complex, box: Real) -> float:
+    """How far a point lies outside a box."""
+    across = max(box[0] - point.real, point.real - box[1], 0.0)
+    return math.hypot(across, max(box[2] - point.imag, point.imag - box[3], 0.0))
+
+
+@njit(**OPTIONS)
+def _off_class(lengths: Real, wanted: float) -> float:
+    """How far a fourbar (input, coupler, output, ground) is from a class, as a share of all its links; 0 within it."""
+    total, shortest, longest = lengths.sum(), lengths.min(), lengths.max()
+    over = 2.0 * (shortest + longest) / total - 1.0
+    if wanted == NON_GRASHOF:
+        return float(max(-over, 0.0))
+    own = lengths[0] if wanted == CRANK_ROCKER else (lengths[3] if wanted == DOUBLE_CRANK else lengths[1])
+    return float(max(over, 0.0) + (own - shortest) / total)
+
+
+@njit(**OPTIONS)
+def _turns_through(joints: Complex, c1: int, c2: int, lengths: Real, first_side: float, second_side: float) -> float:
+    """0 where the input turns through, else less, by the shares of a turn in which the dyads do not close."""
+    missing = 0.0
+    for n in range(STEPS):
+        angle = 2.0 * math.pi * n / STEPS
+        into = complex(math.cos(angle), math.sin(angle))
+        a = joints[O2] + into * (joints[A] - joints[O2])
+        b, sine = _closed(a, joints[O4], lengths[1], lengths[2], first_side)
+        if sine <= 0.0:
+            missing += sine - 1.0
+            continue
+        through, out = (b - a) / (joints[B] - joints[A]), (b - joints[O4]) / (joints[B] - joints[O4])
+        one = _on(c1, joints[Q1], joints, a, into, through, out)
+        two = _on(c2, joints[Q2], joints, a, into, through, out)
+        missing += min(_closed(one, two, lengths[4], lengths[5], second_side)[1], 0.0)
+    return missing / STEPS
+
+
+@njit(**OPTIONS)
+def weighed(
+    joints: Complex,
+    make: int,
+    input_turns: Complex,
+    output_turns: Complex,
+    points: Complex,
+    turns: Complex,
+    demanded: NDArray[np.bool_],
+    needed: Real,
+    limits: Real,
+) -> float:
+    """How sound a candidate is.
+
+    Returns
+    -------
+    float
+        From 1 on: sound, with the quality added. From 0 on: it moves through all positions, with the sine of the least
+        transmission angle, or what is left of it beside a size beyond the limits. From −1: there is a toggle on the
+        way. From −2: not all positions are on one assembly. From −3: the input turns back.
+    """
+    c1, c2 = MAKES[make, 0], MAKES[make, 1]
+    lengths = np.empty(6)
+    lengths[0], lengths[1] = abs(joints[A] - joints[O2]), abs(joints[B] - joints[A])
+    lengths[2], lengths[3] = abs(joints[B] - joints[O4]), abs(joints[O4] - joints[O2])
+    lengths[4], lengths[5] = abs(joints[J] - joints[Q1]), abs(joints[J] - joints[Q2])
+    shortest, longest = lengths.min(), lengths.max()
+    reach = max(longest, abs(points[0] - joints[Q1]), abs(points[0] - joints[J]))
+    for n in range(2):
+        link, point = (c1, joints[Q1]) if n == 0 else (c2, joints[Q2])
+        one, two = OF_LINK[link, 0], OF_LINK[link, 1]
+        near, far = abs(point - joints[one]), abs(point - joints[two])
+        shortest, longest = min(shortest, near, far), max(longest, near, far)
+    reach = max(reach, longest)
+    if not shortest > SHORTEST:
+        return -3.0
+    inputs = np.zeros(POSITIONS)
+    back: float = run(input_turns, demanded, inputs)
+    if back < 0.0:
+        return -2.0 + back
+    # The sine between two links where they meet is positive just where that is to the left of the pins' line.
+    first_sine = _signed_sine(joints[A], joints[O4], joints[B])
+    second_sine = _signed_sine(joints[Q1], joints[Q2], joints[J])
+    first_side, second_side = math.copysign(1.0, first_sine), math.copysign(1.0, second_sine)
+    other, last = 0.0, 0.0
+    for k in range(1, POSITIONS):
+        if not demanded[k]:
+            continue
+        last = inputs[k]
+        into, out = input_turns[k], output_turns[k]
+        a, b = joints[O2] + into * (joints[A] - joints[O2]), joints[O4] + out * (joints[B] - joints[O4])
+        through = (b - a) / (joints[B] - joints[A])
+        one, two = (
+            _on(c1, joints[Q1], joints, a, into, through, out),
+            _on(c2, joints[Q2], joints, a, into, through, out),
+        )
+        j = points[k] + turns[k] * (joints[J] - points[0])
+        other += min(first_side * _signed_sine(a, joints[O4], b), 0.0)
+        other += min(second_side * _signed_sine(one, two, j), 0.0)
+    if other < 0.0:
+        return -1.0 + other / (2.0 * POSITIONS)
+    flattest, beyond = min(abs(first_sine), abs(second_sine)), 0.0
+    travelled = turned = outside = 0.0
+    place_before, turn_before = points[0], 1.0 + 0.0j
+    for n in range(1, STEPS + 1):
+        rotation = last * n / STEPS
+        into = complex(math.cos(rotation), math.sin(rotation))
+        a = joints[O2] + into * (joints[A] - joints[O2])
+        b, sine = _closed(a, joints[O4], lengths[1], lengths[2], first_side)
+        flattest = min(flattest, sine)
+        if sine <= 0.0:
+            beyond += 2.0 * sine - 1.0
+            continue
+        through, out = (b - a) / (joints[B] - joints[A]), (b - joints[O4]) / (joints[B] - joints[O4])
+        one = _on(c1, joints[Q1], joints, a, into, through, out)
+        two = _on(c2, joints[Q2], joints, a, into, through, out)
+        j, sine = _closed(one, two, lengths[4], lengths[5], second_side)
+        flattest, beyond = min(flattest, sine), beyond + min(sine, 0.0)
+        if flattest <= 0.0:
+            continue
+        body = (j - one) / (joints[J] - joints[Q1])
+        p = one + body * (points[0] - joints[Q1])
+        outside = max(outside, _outside(a, limits[ROOM:]), _outside(b, limits[ROOM:]), _outside(one, limits[ROOM:]))
+        outside = max(outside, _outside(two, limits[ROOM:]), _outside(j, limits[ROOM:]), _outside(p, limits[ROOM:]))
+        travelled += abs(p - place_before)
+        turned += abs(_turned(turn_before, body))
+        place_before, turn_before = p, body
+    if flattest <= 0.0:
+        beyond /= STEPS
+        return beyond / (1.0 - beyond)
+    ratio = longest / shortest
+    over = max(reach / limits[MOST_REACH], ratio / limits[MOST_RATIO])
+    over = max(over, limits[SHORTEST_LINK] / shortest, longest / limits[LONGEST_LINK])
+    for joint in range(7):
+        fixed = joint in (O2, O4) or (joint == Q2 and c2 == GROUND)
+        outside = max(
+            outside, _outside(joints[joint], limits[FIXED_BOX:MOVING_BOX] if fixed else limits[MOVING_BOX:ROOM])
+        )
+    over = max(over, 1.0) + outside
+    if limits[CLASS] != ANY:
+        over += _off_class(lengths[:4], limits[CLASS])
+    if limits[FULL_TURN]:
+        over -= _turns_through(joints, c1, c2, lengths, first_side, second_side)
+    if not (flattest >= limits[LEAST_SINE] and over <= 1.0):
+        return float(min(flattest, 0.999) / over)
+    excess = max((travelled - needed[0]) / max(needed[0], 1.0), (turned - needed[1]) / max(needed[1], LITTLE_TURN))
+    return 1.0 + ease(abs(last), max(excess, 0.0)) * quality(flattest, reach, ratio)
+
+
+@njit(**OPTIONS)
+def _tried(
+    bar: Complex,
+    make: int,
+    value: float,
+    joints: Complex,
+    makes: Numbers,
+    scores: Real,
+    found: Real,
+    owners: Numbers,
+) -> None:
+    """Notes a candidate: the best value of the chain, and what moves through all positions in the next free row."""
+    if value > found[0]:
+        found[0] = value
+    n = int(found[1])
+    if n < (len(makes) if value >= 1.0 else (len(makes) // 2 if value > 0.0 else 0)):
+        joints[n], makes[n], scores[n], owners[n] = bar, make, value, int(found[3])
+        found[1] = n + 1
+    found[2] += 1
+
+
+class Given(NamedTuple):
+    """What is demanded.
+
+    Attributes
+    ----------
+    points, turns : complex, shape (n, 5)
+        Poses of the body for each chain.
+    demanded : bool, shape (5,)
+        Which positions are demanded; the others only help to find dyads.
+    needed : float, shape (2,)
+        Way and turn that the body needs.
+    wanted : bool, shape (5,)
+        The makes that are wanted.
+    limits : float, shape (19,)
+        See :data:`LEAST_SINE`.
+    """
+
+    points: Complex
+    turns: Complex
+    demanded: NDArray[np.bool_]
+    needed: Real
+    wanted: NDArray[np.bool_]
+    limits: Real
+
+
+class Results(NamedTuple):
+    """What is filled.
+
+    Attributes
+    ----------
+    joints, makes, scores
+        Those that move through all positions, with their values: (most, 7), (most,), (most,). Unsound ones fill no more
+        than half of the rows.
+    found : float, shape (4,)
+        The best value of the last chain; how many rows are filled; candidates in all; the number of the chain.
+    owners : int, shape (most,)
+        The chain of each row.
+    """
+
+    joints: Complex
+    makes: Numbers
+    scores: Real
+    found: Real
+    owners: Numbers
+
+
+@njit(**OPTIONS)
+def constrained(chain: Real, n: int, given: Given, results: Results) -> float:
+    """All sixbars of one chain: the value of the best (:func:`weighed`).
+
+    Parameters
+    ----------
+    chain : float, shape (7,)
+        Ground pivot G and H₂ in the first position, x and y; lengths of the two links; elbow.
+    n : int
+        Its number.
+    given, results
+        What is demanded, and what is filled.
+    """
+    every_points, every_turns, demanded, needed, wanted, limits = given
+    joints, makes, scores, found, owners = results
+    points, turns = every_points[n], every_turns[n]
+    found[3] = n
+    found[0] = -4.0
+    place, turn = np.empty((4, POSITIONS), np.complex128), np.empty((4, POSITIONS), np.complex128)
+    pivot, pin = complex(chain[0], chain[1]), complex(chain[2], chain[3])
+    if not chain_poses(points, turns, pivot, pin, chain[4], chain[5], chain[6], place, turn):
+        return float(found[0])
+    still, upright = np.zeros(POSITIONS, np.complex128), np.ones(POSITIONS, np.complex128)
+    shift, spin = np.empty(POSITIONS, np.complex128), np.empty(POSITIONS, np.complex128)
+    fixed, moving = np.empty((4, MOST), np.complex128), np.empty((4, MOST), np.complex128)
+    none, knee = complex(math.nan, math.nan), place[1, 0]
+    bar = np.empty(7, np.complex128)
+    with_m = with_1 = 0
+    if wanted[STEPHENSON_3] or wanted[STEPHENSON_1_IN]:
+        relative(still, upright, place[2], turn[2], shift, spin)
+        with_m = dyads(shift, spin, none, none, fixed[0], moving[0])
+    if wanted[WATT_1_IN]:
+        relative(place[0], turn[0], place[2], turn[2], shift, spin)
+        with_1 = dyads(shift, spin, knee, pin, fixed[1], moving[1])
+    if wanted[WATT_1_IN] or wanted[STEPHENSON_3]:
+        relative(still, upright, place[1], turn[1], shift, spin)
+        for i in range(dyads(shift, spin, pivot, knee, fixed[2], moving[2])):
+            _crank(fixed[2, i], moving[2, i], still, upright, place[1], turn[1], place[3], turn[3])
+            for sort in range(3):
+                count = with_m if sort == 0 else with_1
+                if sort == 2:
+                    relative(place[3], turn[3], place[2], turn[2], shift, spin)
+                    count = dyads(shift, spin, moving[2, i], pin, fixed[3], moving[3]) if wanted[WATT_1_IN] else 0
+                for second in range(count):
+                    row = 0 if sort == 0 else (1 if sort == 1 else 3)
+                    # Driven by the chain's link 1, or by the crank.
+                    for driver in range(2):
+                        bar[B], bar[O2], bar[O4] = moving[2, i], pivot, fixed[2, i]
+                        bar[A], bar[Q1], bar[Q2], bar[J] = knee, pin, fixed[row, second], moving[row, second]
+                        make = (
+                            STEPHENSON_3 if sort == 0 else (WATT_1_IN if (sort == 1) == (driver == 0) else WATT_1_OUT)
+                        )
+                        if driver:
+                            bar[A], bar[B], bar[O2], bar[O4] = bar[B], bar[A], bar[O4], bar[O2]
+                        if wanted[make]:
+                            value = weighed(
+                                bar, make, turn[3 * driver], turn[3 - 3 * driver], points, turns, demanded, needed,
+                                limits,
+                            )  # fmt: skip
+                            _tried(bar, make, value, joints, makes, scores, found, owners)
+    if wanted[STEPHENSON_1_IN]:
+        for i in range(with_m):
+            _crank(fixed[0, i], moving[0, i], still, upright, place[2], turn[2], place[3], turn[3])
+            relative(place[3], turn[3], place[0], turn[0], shift, spin)
+            for second in range(dyads(shift, spin, fixed[0, i], pivot, fixed[3], moving[3])):
+                for driver in range(2):
+                    bar[A], bar[B], bar[O2], bar[O4] = moving[3, second], fixed[3, second], pivot, fixed[0, i]
+                    bar[Q1], bar[Q2], bar[J] = moving[0, i], knee, pin
+                    if driver:
+                        bar[A], bar[B], bar[O2], bar[O4] = bar[B], bar[A], bar[O4], bar[O2]
+                    make = STEPHENSON_1_IN if driver else STEPHENSON_1_OUT
+                    value = weighed(
+                        bar, make, turn[3 * driver], turn[3 - 3 * driver], points, turns, demanded, needed,
+                        limits,
+                    )  # fmt: skip
+                    _tried(bar, make, value, joints, makes, scores, found, owners)
+    return float(found[0])
+
+
+@njit(**OPTIONS)
+def searched(chains: Real, noise: Real, climbing: int, given: Given, results: Results, values: Real) -> None:
+    """Weighs chains as they are, and takes the best of them in random steps towards better sixbars.
+
+    Parameters
+    ----------
+    chains : float, shape (n, 7)
+        Replaced where a step is better.
+    noise : float, shape (steps, 6)
+        The steps, 0 in what is stated; shorter after failures, longer after successes.
+    climbing : int
+        How many chains take steps.
+    given, results
+        What is demanded, and what is filled.
+    values : float, shape (n,)
+        Filled: that of each chain.
+    """
+    tried, order = np.empty(7), np.zeros(len(chains), np.bool_)
+    for n in range(len(chains)):
+        values[n] = constrained(chains[n], n, given, results)
+    before = values.copy()
+    for m in range(climbing):
+        n = -1
+        for k in range(len(chains)):
+            if not order[k] and (n < 0 or before[k] > before[n]):
+                n = k
+        order[n] = True
+        size = FIRST_STEP
+        for k in range(len(noise)):
+            step = noise[(m * STRIDE + k) % len(noise)]
+            tried[:] = chains[n]
+            tried[:4] += size * step[:4]
+            tried[4] *= math.exp(0.5 * size * step[4])
+            tried[5] *= math.exp(0.5 * size * step[5])
+            value = constrained(tried, n, given, results)
+            if value > values[n]:
+                values[n], chains[n] = value, tried
+                size = min(1.7 * size, LONGEST_STEP)
+            else:
+                size *= 0.93
+                if size < LAST_STEP:
+                    break

@@ -1,0 +1,366 @@
+"""Dyads between two moving bodies, five relative poses of them, for many pairs of bodies at once.
+
+Seen from the first body, the second takes five positions X → r_k X + c_k, the first of them as it stands. A link that
+is pinned to both, at O of the first and A of the second, keeps its length: four conditions that are linear in
+
+    x = (p, A, O, d + ie),      with two quadrics p (d + ie) = conj(O) A     (:mod:`synthesis.kinds.motion.sections`).
+
+They leave a plane in which the quadrics are two conics. A member det(F₁ + λF₂) = 0 of their pencil is a pair of lines,
+which meet the conics in the four common points (Richter-Gebert, *Perspectives on Projective Geometry*, Sec. 11.4); real
+ones are refined by Newton's method. :func:`synthesis.kinds.motion.sections.section` proves of one pair of bodies that
+it has all; here thousands are solved in the time of one proof, and what does not converge is left out.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+CONDITIONS = 4
+"""Of five positions."""
+
+MOST = 4
+"""Dyads of five positions at most."""
+
+VANISHES = 1e-13
+"""Pivot of the elimination, beside unit rows, from which on conditions repeat one another: a family, none returned."""
+
+FAR = 100.0
+"""A pivot farther away than this, in task sizes, is of no use."""
+
+NEWTON_STEPS, CONVERGED = 8, 1e-13
+"""Steps at most, and the residual beside the square of the dyad's size at which they have arrived."""
+
+SAME = 1e-7
+"""Distance, beside the dyad's size, of two dyads that are one."""
+
+OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+
+
+@njit(**OPTIONS)
+def relative(
+    one: Complex, one_turn: Complex, other: Complex, other_turn: Complex, shift: Complex, turn: Complex
+) -> None:
+    """The poses of another body as a first one sees it: X → turn · X + shift; all have the shape (5,).
+
+    A body's pose takes its points from the first position to X → z + u (X − z₀), with u₀ = 1.
+    """
+    for k in range(len(one)):
+        back = one_turn[k].conjugate()
+        turn[k] = back * other_turn[k]
+        shift[k] = one[0] + back * (other[k] - one[k]) - turn[k] * other[0]
+
+
+@njit(**OPTIONS)
+def dyads(
+    shift: Complex, turn: Complex, known_fixed: complex, known_moving: complex, fixed: Complex, moving: Complex
+) -> int:
+    """All real dyads of five relative poses but one that is known; their number, at most four.
+
+    Parameters
+    ----------
+    shift, turn : complex, shape (5,)
+        Poses of :func:`relative`.
+    known_fixed, known_moving : complex
+        A dyad that the bodies have already; NaN for none.
+    fixed, moving : complex, shape (4,)
+        Filled: pins on the first and on the second body, in the first position.
+    """
+    basis = np.empty((7, 3))
+    if not _plane(shift, turn, basis):
+        return 0
+    first, second = np.empty((3, 3)), np.empty((3, 3))
+    _conics(basis, first, second)
+    points, x, pair = np.empty((MOST, 3)), np.empty(7), np.empty(2, np.complex128)
+    found = _common(first, second, points)
+    count = 0
+    for n in range(found):
+        for i in range(7):
+            x[i] = basis[i, 0] * points[n, 0] + basis[i, 1] * points[n, 1] + basis[i, 2] * points[n, 2]
+        if abs(x[0]) * FAR <= math.hypot(x[1], x[2]) or abs(x[0]) * FAR <= math.hypot(x[3], x[4]):
+            continue
+        pair[0], pair[1] = complex(x[3], x[4]) / x[0], complex(x[1], x[2]) / x[0]
+        if not _refined(shift, turn, pair):
+            continue
+        size = 1.0 + abs(pair[0]) + abs(pair[1])
+        new = not (abs(pair[0] - known_fixed) + abs(pair[1] - known_moving) <= SAME * size)
+        for m in range(count):
+            new &= abs(pair[0] - fixed[m]) + abs(pair[1] - moving[m]) > SAME * size
+        if new:
+            fixed[count], moving[count] = pair[0], pair[1]
+            count += 1
+    return count
+
+
+@njit(**OPTIONS)
+def _plane(shift: Complex, turn: Complex, basis: Real) -> bool:
+    """What the four conditions leave of the seven coordinates, by elimination with full pivoting: columns (7, 3)."""
+    rows = np.empty((CONDITIONS, 7))
+    for k in range(CONDITIONS):
+        r, c = turn[k + 1], shift[k + 1]
+        forward = r.conjugate() * c
+        fall = r.imag * r.imag / (1.0 + abs(r.real)) if r.real > 0.0 else 1.0 - r.real
+        rows[k, 0], rows[k, 1], rows[k, 2], rows[k, 3] = 0.5 * abs(c) ** 2, forward.real, forward.imag, -c.real
+        rows[k, 4], rows[k, 5], rows[k, 6] = -c.imag, fall, r.imag
+        size = 0.0
+        for i in range(7):
+            size += rows[k, i] * rows[k, i]
+        for i in range(7):
+            rows[k, i] /= math.sqrt(size)
+    order = np.arange(7)
+    for n in range(CONDITIONS):
+        best, row, column = 0.0, n, n
+        for i in range(n, CONDITIONS):
+            for j in range(n, 7):
+                if abs(rows[i, order[j]]) > best:
+                    best, row, column = abs(rows[i, order[j]]), i, j
+        if not best > VANISHES:
+            return False
+        for j in range(7):
+            rows[n, j], rows[row, j] = rows[row, j], rows[n, j]
+        order[n], order[column] = order[column], order[n]
+        pivot = rows[n, order[n]]
+        for j in range(7):
+            rows[n, j] /= pivot
+        for i in range(CONDITIONS):
+            factor = 0.0 if i == n else rows[i, order[n]]
+            for j in range(7):
+                rows[i, j] -= factor * rows[n, j]
+    for i in range(7):
+        for m in range(3):
+            basis[i, m] = 0.0
+    for m in range(3):
+        free = order[CONDITIONS + m]
+        basis[free, m] = 1.0
+        for n in range(CONDITIONS):
+            basis[order[n], m] = -rows[n, free]
+        size = 0.0
+        for i in range(7):
+            size += basis[i, m] * basis[i, m]
+        for i in range(7):
+            basis[i, m] /= math.sqrt(size)
+    return True
+
+
+@njit(**OPTIONS)
+def _conics(basis: Real, first: Real, second: Real) -> None:
+    """The quadrics on the plane, as symmetric matrices."""
+    sizes = np.zeros(2)
+    for i in range(3):
+        p, ax, ay, ox, oy, d, e = (
+            basis[0, i], basis[1, i], basis[2, i], basis[3, i], basis[4, i], basis[5, i], basis[6, i],
+        )  # fmt: skip
+        for j in range(3):
+            first[i, j] = p * basis[5, j] + basis[0, j] * d
+            first[i, j] -= ox * basis[1, j] + basis[3, j] * ax + oy * basis[2, j] + basis[4, j] * ay
+            second[i, j] = p * basis[6, j] + basis[0, j] * e
+            second[i, j] -= ox * basis[2, j] + basis[3, j] * ay - oy * basis[1, j] - basis[4, j] * ax
+            sizes[0] += first[i, j] ** 2
+            sizes[1] += second[i, j] ** 2
+    for i in range(3):
+        for j in range(3):
+            first[i, j] /= math.sqrt(sizes[0]) + 1e-300
+            second[i, j] /= math.sqrt(sizes[1]) + 1e-300
+
+
+@njit(**OPTIONS)
+def _adjugate(m: Real, out: Real) -> None:
+    """Of a symmetric matrix."""
+    out[0, 0] = m[1, 1] * m[2, 2] - m[1, 2] * m[1, 2]
+    out[1, 1] = m[0, 0] * m[2, 2] - m[0, 2] * m[0, 2]
+    out[2, 2] = m[0, 0] * m[1, 1] - m[0, 1] * m[0, 1]
+    out[0, 1] = out[1, 0] = m[0, 2] * m[1, 2] - m[0, 1] * m[2, 2]
+    out[0, 2] = out[2, 0] = m[0, 1] * m[1, 2] - m[0, 2] * m[1, 1]
+    out[1, 2] = out[2, 1] = m[0, 1] * m[0, 2] - m[0, 0] * m[1, 2]
+
+
+@njit(**OPTIONS)
+def _common(first: Real, second: Real, points: Real) -> int:
+    """Real common points of two conics, (count, 3)."""
+    adjugate, other = np.empty((3, 3)), np.empty((3, 3))
+    _adjugate(first, adjugate)
+    _adjugate(second, other)
+    # det(F₁ + λ F₂), by the derivatives of the determinant.
+    c0 = c1 = c2 = c3 = 0.0
+    for i in range(3):
+        c0 += adjugate[0, i] * first[0, i]
+        c3 += other[0, i] * second[0, i]
+        for j in range(3):
+            c1 += adjugate[i, j] * second[i, j]
+            c2 += other[i, j] * first[i, j]
+    roots = np.empty((3, 2))
+    pair, bars = np.empty((3, 3)), np.empty((2, 3))
+    for n in range(_cubic_roots(c0, c1, c2, c3, roots)):
+        for i in range(3):
+            for j in range(3):
+                pair[i, j] = roots[n, 0] * first[i, j] + roots[n, 1] * second[i, j]
+        if not _lines(pair, bars):
+            continue
+        count = 0
+        for i in range(2):
+            count = _on_line(bars[i], first, second, points, count)
+        if count:
+            return count
+    return 0
+
+
+@njit(**OPTIONS)
+def _cubic_roots(c0: float, c1: float, c2: float, c3: float, roots: Real) -> int:
+    """Real roots (μ, λ) of c₀μ³ + c₁μ²λ + c₂μλ² + c₃λ³, unit vectors."""
+    turned = abs(c3) < abs(c0)
+    count: int = _cubic_roots_of(c3, c2, c1, c0, roots) if turned else _cubic_roots_of(c0, c1, c2, c3, roots)
+    for n in range(count if turned else 0):
+        roots[n, 0], roots[n, 1] = roots[n, 1], roots[n, 0]
+    return count
+
+
+@njit(**OPTIONS)
+def _cubic_roots_of(c0: float, c1: float, c2: float, c3: float, roots: Real) -> int:
+    """The same where c₃ does not vanish."""
+    if c3 == 0.0:
+        return 0
+    a, b, c = c2 / c3, c1 / c3, c0 / c3
+    q, r = (a * a - 3.0 * b) / 9.0, (2.0 * a * a * a - 9.0 * a * b + 27.0 * c) / 54.0
+    values = np.empty(3)
+    if r * r < q * q * q:
+        angle = math.acos(min(max(r / math.sqrt(q * q * q), -1.0), 1.0))
+        for n in range(3):
+            values[n] = -2.0 * math.sqrt(q) * math.cos((angle + 2.0 * math.pi * n) / 3.0) - a / 3.0
+        count = 3
+    else:
+        big = -math.copysign((abs(r) + math.sqrt(r * r - q * q * q)) ** (1.0 / 3.0), r)
+        values[0] = big + (q / big if big != 0.0 else 0.0) - a / 3.0
+        count = 1
+    for n in range(count):
+        x = values[n]
+        for _ in range(3):
+            slope = (3.0 * x + 2.0 * a) * x + b
+            if slope != 0.0:
+                x -= (((x + a) * x + b) * x + c) / slope
+        size = math.hypot(1.0, x)
+        roots[n, 0], roots[n, 1] = 1.0 / size, x / size
+    return count
+
+
+@njit(**OPTIONS)
+def _lines(pair: Real, bars: Real) -> bool:
+    """Splits a conic of rank two into its two lines (2, 3); whether they are real."""
+    adjugate = np.empty((3, 3))
+    _adjugate(pair, adjugate)
+    i = 0
+    for j in range(1, 3):
+        if abs(adjugate[j, j]) > abs(adjugate[i, i]):
+            i = j
+    if not adjugate[i, i] < 0.0:
+        return False
+    root = math.sqrt(-adjugate[i, i])
+    x, y, z = adjugate[0, i] / root, adjugate[1, i] / root, adjugate[2, i] / root
+    single = pair.copy()
+    single[0, 1], single[0, 2], single[1, 2] = single[0, 1] + z, single[0, 2] - y, single[1, 2] + x
+    single[1, 0], single[2, 0], single[2, 1] = single[1, 0] - z, single[2, 0] + y, single[2, 1] - x
+    row, column = 0, 0
+    for m in range(3):
+        for n in range(3):
+            if abs(single[m, n]) > abs(single[row, column]):
+                row, column = m, n
+    if single[row, column] == 0.0:
+        return False
+    for i in range(3):
+        bars[0, i], bars[1, i] = single[row, i], single[i, column]
+    return True
+
+
+@njit(**OPTIONS)
+def _on_line(line: Real, first: Real, second: Real, points: Real, count: int) -> int:
+    """Adds the real points of a line that lie on both conics: on the one that says more of the line."""
+    i = 0
+    for j in range(1, 3):
+        if abs(line[j]) > abs(line[i]):
+            i = j
+    j, k = (i + 1) % 3, (i + 2) % 3
+    along = np.zeros((2, 3))
+    along[0, j], along[0, i] = 1.0, -line[j] / line[i]
+    along[1, k], along[1, i] = 1.0, -line[k] / line[i]
+    a = b = c = 0.0
+    for n in range(2):
+        conic = first if n == 0 else second
+        u = v = w = 0.0
+        for m in range(3):
+            for o in range(3):
+                u += along[0, m] * conic[m, o] * along[0, o]
+                v += along[0, m] * conic[m, o] * along[1, o]
+                w += along[1, m] * conic[m, o] * along[1, o]
+        if abs(u) + abs(v) + abs(w) > abs(a) + abs(b) + abs(c):
+            a, b, c = u, v, w
+    square = b * b - a * c
+    if not square >= 0.0:
+        return count
+    # a s² + 2 b s t + c t² = 0
+    q = -(b + math.copysign(math.sqrt(square), b))
+    for n in range(2):
+        s, t = (q, a) if n == 0 else (c, q)
+        if (s != 0.0 or t != 0.0) and count < len(points):
+            size = math.hypot(s, t)
+            for m in range(3):
+                points[count, m] = (s * along[0, m] + t * along[1, m]) / size
+            count += 1
+    return count
+
+
+@njit(**OPTIONS)
+def _refined(shift: Complex, turn: Complex, pair: Complex) -> bool:
+    """Newton's method on the four conditions of (O, A); whether it arrived."""
+    system, values = np.empty((CONDITIONS, 4)), np.empty(CONDITIONS)
+    for _ in range(NEWTON_STEPS):
+        o, a = pair[0], pair[1]
+        worst = 0.0
+        for k in range(CONDITIONS):
+            r, c = turn[k + 1], shift[k + 1]
+            gap = r * a + c - a
+            values[k] = (c.conjugate() * r * a).real - (o.conjugate() * gap).real + 0.5 * abs(c) ** 2
+            by_a = r.conjugate() * c - (r.conjugate() - 1.0) * o
+            system[k, 0], system[k, 1], system[k, 2], system[k, 3] = -gap.real, -gap.imag, by_a.real, by_a.imag
+            worst = max(worst, abs(values[k]))
+        size = 1.0 + abs(o) + abs(a)
+        if not size < 3.0 * FAR:
+            return False
+        if worst <= CONVERGED * size * size:
+            return True
+        if not _solved(system, values):
+            return False
+        pair[0] -= complex(values[0], values[1])
+        pair[1] -= complex(values[2], values[3])
+    return False
+
+
+@njit(**OPTIONS)
+def _solved(system: Real, values: Real) -> bool:
+    """Gaussian elimination with row pivoting, in place."""
+    n = len(values)
+    for i in range(n):
+        row = i
+        for j in range(i + 1, n):
+            if abs(system[j, i]) > abs(system[row, i]):
+                row = j
+        if not abs(system[row, i]) > 1e-300:
+            return False
+        for j in range(n):
+            system[i, j], system[row, j] = system[row, j], system[i, j]
+        values[i], values[row] = values[row], values[i]
+        for j in range(i + 1, n):
+            factor = system[j, i] / system[i, i]
+            for m in range(i, n):
+                system[j, m] -= factor * system[i, m]
+            values[j] -= factor * values[i]
+    for i in range(n - 1, -1, -1):
+        for j in range(i + 1, n):
+            values[i] -= system[i, j] * values[j]
+        values[i] /= system[i, i]
+    return True

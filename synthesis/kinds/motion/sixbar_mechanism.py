@@ -1,0 +1,37 @@
+"""Sixbars of Watt's and Stephenson's chains as answers, by their joints in the first position."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from synthesis.model.linkage_answer import SixbarMechanism
+from synthesis.model.linkages import skeleton, to_point
+
+Links = Mapping[str, tuple[str, ...]]
+"""The joints on each link by its name; P is on the link that carries the body."""
+
+
+def sixbar_mechanism(
+    kind: str, joints: Mapping[str, complex], links: Links, *, body_angle: float | None = None
+) -> SixbarMechanism:
+    """The sixbar whose joints stand as given, driven by the link ``input``.
+
+    ``links`` of the answer are the lengths between the first two joints of each link under its name and, of a link with
+    three pins, the lengths from the first and from the second to the third, under its name with ``_arm`` and ``_side``.
+    """
+    lengths: dict[str, float] = {}
+    for name, listed in links.items():
+        pins = [joint for joint in listed if joint != "P"]
+        lengths[name] = abs(joints[pins[1]] - joints[pins[0]])
+        if len(pins) > 2:
+            lengths[f"{name}_arm"] = abs(joints[pins[2]] - joints[pins[0]])
+            lengths[f"{name}_side"] = abs(joints[pins[2]] - joints[pins[1]])
+    return SixbarMechanism.model_validate(
+        {
+            "type": kind,
+            "fixed_pivots": {name: to_point(joints[name]) for name in links["ground"]},
+            "links": lengths,
+            "reference_body_angle": body_angle,
+            "skeleton": skeleton(joints, links),
+        }
+    )

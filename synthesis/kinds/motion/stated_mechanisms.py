@@ -1,0 +1,98 @@
+"""Which types of mechanism may carry the body, and what the client fixes of the chain that sixbars are made of."""
+
+from __future__ import annotations
+
+import cmath
+from typing import Annotated, Any, Literal, get_args
+
+from pydantic import Field
+
+from synthesis.kinds.motion.stated_dyads import whole_point
+from synthesis.model.statement import Contradiction, PartialPoint, PositiveLength, Statement
+
+Sixbar = Literal["watt_1", "stephenson_1", "stephenson_3"]
+"""Sixbars that carry a body by a link that a fourbar alone does not move."""
+
+SIXBARS: tuple[Sixbar, ...] = get_args(Sixbar)
+
+Mechanisms = (
+    Literal["auto"] | Annotated[list[Literal["fourbar", "slider_crank"] | Sixbar], Field(min_length=1, max_length=5)]
+)
+"""Types by their names, or the simplest that does."""
+
+
+class Chain(Statement):
+    """The chain G–H₁–H₂ that carries the body at H₂; what is left out is drawn by the search."""
+
+    links: tuple[PositiveLength | None, PositiveLength | None] | None = Field(
+        default=None, description="Lengths G–H₁ and H₁–H₂; null leaves one open."
+    )
+    fixed_pivot: PartialPoint | None = Field(default=None, description="G; null leaves a coordinate open.")
+    moving_pivot: PartialPoint | None = Field(
+        default=None, description="H₂ in the first position; null leaves a coordinate open."
+    )
+    elbow: Literal["any", "left", "right"] = Field(
+        default="any", description="On which side of the way from G to H₂ the joint H₁ lies in all positions."
+    )
+
+
+def of_sixbars(problem: Any) -> list[Contradiction]:
+    """What cannot be demanded where sixbars are looked for."""
+    listed: list[Contradiction] = []
+    stated = problem.mechanisms
+    if stated is None or not {"auto", *SIXBARS} & {stated if isinstance(stated, str) else "", *stated}:
+        if problem.chain is not None:
+            detail = "belongs to sixbars; state a type of sixbar, or auto, in mechanisms"
+            listed.append(Contradiction("/chain", detail))
+        return [*listed, *_of_types(problem)]
+    if stated != "auto" and not problem.few_enough:
+        detail = "sixbars meet up to five positions, exactly or within tolerances; take fourbars for more, or for a fit"
+        listed.append(Contradiction("/mechanisms", detail))
+    for name, of_fourbars in (
+        ("input_side", problem.input_side != type(problem.input_side)()),
+        ("output_side", problem.output_side != type(problem.output_side)()),
+        ("ground_line", problem.ground_line is not None),
+        ("driver_dyad", problem.driver is not None),
+    ):
+        if of_fourbars:
+            detail = "is of fourbars; leave it out, or take the sixbars out of mechanisms"
+            listed.append(Contradiction(f"/{name}", detail))
+    if problem.manufacture is not None:
+        listed.append(Contradiction("/manufacture", "is not built for sixbars; leave it out, or take them out"))
+    for name in ("fixed_pivots", "moving_pivots"):
+        if problem.space is not None and getattr(problem.space, name) is not None:
+            kind = name.removesuffix("s")
+            detail = f"names the sides of a fourbar; state constraints.{kind}_region, which all pivots of a sixbar keep"
+            listed.append(Contradiction(f"/space/{name}", detail))
+    return [*listed, *_faults_of_chain(problem)]
+
+
+def _of_types(problem: Any) -> list[Contradiction]:
+    """Types beside choices that exclude them."""
+    stated = problem.mechanisms
+    if stated is None or isinstance(stated, str):
+        return []
+    slider = problem.slider is not None
+    if slider and "slider_crank" not in stated:
+        return [Contradiction("/mechanisms", "a side has a slider; take slider_crank into mechanisms")]
+    if "fourbar" not in stated and not slider and problem.output_side.dyad == "RR":
+        return [Contradiction("/mechanisms", "both sides have pins; take fourbar into mechanisms")]
+    return []
+
+
+def _faults_of_chain(problem: Any) -> list[Contradiction]:
+    """A chain that does not reach, as far as all of it is stated."""
+    chain = problem.chain
+    if chain is None or chain.links is None or None in chain.links:
+        return []
+    pivot, pin = whole_point(chain.fixed_pivot), whole_point(chain.moving_pivot)
+    if pivot is None or pin is None:
+        return []
+    first, second = (length or 0.0 for length in chain.links)
+    start = problem.positions[0].point
+    for k, (position, turn) in enumerate(zip(problem.positions, problem.turns, strict=True)):
+        reach = abs(position.point + cmath.exp(1j * turn) * (pin - start) - pivot)
+        if position.tolerance is None and not abs(first - second) < reach < first + second:
+            detail = f"G and H₂ are {reach:.6g} {problem.length_unit} apart in position {k}, which these do not reach"
+            return [Contradiction("/chain/links", detail)]
+    return []

@@ -1,0 +1,140 @@
+"""A planar linkage of pins by the loops of its links, from its skeleton alone; nothing of the product is called.
+
+Around a loop of links the vectors from pin to pin add up to nothing. Each link's vector turns with the link, so that
+the loops are Σ e^{iφ} (q_out − q_in) = 0 in the rotations φ from the reference, one complex equation each. SciPy solves
+them, in small steps of the input from the reference. The determinant of their Jacobian vanishes where branches meet: as
+long as it keeps its sign, the linkage stays on one branch.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.optimize import root
+
+STEP = 0.01
+"""Radians of the input from one solution to the next."""
+
+
+class Followed(NamedTuple):
+    """P and the rotation of the link with it at inputs, and how the linkage came there.
+
+    ``branch``: the least determinant on the way over its value at the start; positive on one branch. ``angles``: the
+    least angle between two links at any moving pin on the way, degrees, by the pin and the links.
+    """
+
+    points: np.ndarray
+    turns: np.ndarray
+    branch: float
+    angles: dict[tuple[str, str, str], float]
+
+
+class Loops:
+    """The loops of a skeleton as JSON has it."""
+
+    def __init__(self, skeleton: dict[str, Any]) -> None:
+        self.joints = {name: complex(*place) for name, place in skeleton["joints"].items()}
+        self.links = {link["name"]: link["joints"] for link in skeleton["links"]}
+        self.input = skeleton["input_link"]
+        self.body = next(name for name, listed in self.links.items() if "P" in listed)
+        self.moving = [name for name in self.links if name not in ("ground", self.input)]
+        self.loops = self._loops()
+        assert len(self.moving) == 2 * len(self.loops), "a linkage of pins with one freedom"
+
+    def _loops(self) -> list[list[tuple[str, complex]]]:
+        """Independent loops: of a tree of links from the ground, one for each pin that the tree leaves out."""
+        pins = [(joint, [name for name, listed in self.links.items() if joint in listed]) for joint in self.joints]
+        pins = [(joint, on) for joint, on in pins if len(on) == 2]
+        to: dict[str, tuple[str, str]] = {}
+        reached, left = ["ground"], []
+        for link in reached:
+            for joint, on in pins:
+                if link in on:
+                    other = on[1 - on.index(link)]
+                    if other not in reached:
+                        to[other] = link, joint
+                        reached.append(other)
+        for joint, on in pins:
+            if all(to.get(one) != (other, joint) for one, other in (on, on[::-1])):
+                left.append((joint, on))
+
+        def way(link: str, end: str) -> list[tuple[str, complex]]:
+            """From the ground to a pin of a link: each link with the vector along it."""
+            vectors = []
+            while link != "ground":
+                before, joint = to[link]
+                vectors.append((link, self.joints[end] - self.joints[joint]))
+                link, end = before, joint
+            return [*vectors, ("ground", self.joints[end])]
+
+        return [[*way(on[0], joint), *((name, -z) for name, z in way(on[1], joint))] for joint, on in left]
+
+    def residuals(self, turns: np.ndarray, at: float) -> np.ndarray:
+        phi = {"ground": 0.0, self.input: at, **dict(zip(self.moving, turns, strict=True))}
+        sums = [sum(z * np.exp(1j * phi[name]) for name, z in loop) for loop in self.loops]
+        return np.array([part for s in sums for part in (s.real, s.imag)])
+
+    def jacobian(self, turns: np.ndarray, at: float) -> np.ndarray:
+        rows = np.zeros((2 * len(self.loops), len(self.moving)))
+        for n, loop in enumerate(self.loops):
+            for name, z in loop:
+                if name in self.moving:
+                    k = self.moving.index(name)
+                    by = 1j * z * np.exp(1j * turns[k])
+                    rows[2 * n, k] += by.real
+                    rows[2 * n + 1, k] += by.imag
+        return rows
+
+    def places(self, turns: np.ndarray, at: float) -> dict[str, complex]:
+        """All joints, link by link from the ground."""
+        phi = {"ground": 0.0, self.input: at, **dict(zip(self.moving, turns, strict=True))}
+        known = {joint: self.joints[joint] for joint in self.links["ground"]}
+        waiting = [name for name in self.links if name != "ground"]
+        while waiting:
+            link = next(name for name in waiting if set(self.links[name]) & set(known))
+            pin = next(joint for joint in self.links[link] if joint in known)
+            for joint in self.links[link]:
+                turned = np.exp(1j * phi[link]) * (self.joints[joint] - self.joints[pin])
+                known.setdefault(joint, complex(known[pin] + turned))
+            waiting.remove(link)
+        return known
+
+    def followed(self, inputs: np.ndarray) -> Followed:
+        """The linkage at input rotations from the reference, radians, one after the other."""
+        turns, at = np.zeros(len(self.moving)), 0.0
+        start = np.linalg.det(self.jacobian(turns, at))
+        least, points, turned = 1.0, [], []
+        angles: dict[tuple[str, str, str], float] = {}
+        for goal in inputs:
+            for step in np.linspace(at, goal, max(2, int(abs(goal - at) / STEP) + 2))[1:]:
+                rate = -np.linalg.solve(self.jacobian(turns, at), self._by_input(at))
+                solved = root(
+                    self.residuals, turns + (step - at) * rate, (step,), method="hybr",
+                    jac=self.jacobian, options={"xtol": 1e-14},
+                )  # fmt: skip
+                size = max(map(abs, self.joints.values()))
+                assert np.abs(self.residuals(solved.x, step)).max() < 1e-9 * size, "the loops do not close"
+                turns, at = solved.x, float(step)
+                least = min(least, np.linalg.det(self.jacobian(turns, at)) / start)
+                self._note(self.places(turns, at), angles)
+            points.append(self.places(turns, at)["P"])
+            turned.append(turns[self.moving.index(self.body)])
+        return Followed(np.array(points), np.array(turned), float(least), angles)
+
+    def _by_input(self, at: float) -> np.ndarray:
+        rates = [sum(1j * z * np.exp(1j * at) for name, z in loop if name == self.input) for loop in self.loops]
+        return np.array([part for s in rates for part in (complex(s).real, complex(s).imag)])
+
+    def _note(self, places: dict[str, complex], angles: dict[tuple[str, str, str], float]) -> None:
+        """Angles between the first pin of one link, a pin that it shares with another, and that one's first pin."""
+        for joint in places:
+            on = [name for name, listed in self.links.items() if joint in listed and name != "ground"]
+            for n, one in enumerate(on):
+                for other in on[n + 1 :]:
+                    ends = [next(j for j in self.links[name] if j not in (joint, "P")) for name in (one, other)]
+                    arms = [places[joint] - places[end] for end in ends]
+                    turn = abs(np.angle(arms[0] / arms[1]))
+                    angle = float(np.degrees(min(turn, np.pi - turn)))
+                    key = joint, one, other
+                    angles[key] = min(angles.get(key, 90.0), angle)

@@ -1,0 +1,246 @@
+"""Motion by sixbars through HTTP: solved, proved by another formulation, drawn, driven; a refusal names the field."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.oracles.loops import Loops
+from tests.service.answers import finished
+from tests.service.test_analyses import assert_as_documented
+
+FIVE = [
+    {"x": 0.0, "y": 0.0, "angle": 0.0},
+    {"x": 35.0, "y": 12.0, "angle": 20.0},
+    {"x": 70.0, "y": 8.0, "angle": 5.0},
+    {"x": 100.0, "y": -20.0, "angle": -25.0},
+    {"x": 115.0, "y": -60.0, "angle": -40.0},
+]
+TASK: dict[str, Any] = {"kind": "motion", "positions": FIVE, "mechanisms": ["watt_1"], "max_designs": 2}
+SIXBARS = "watt_1", "stephenson_1", "stephenson_3"
+FOURBAR_TASK = [FIVE[0], FIVE[1], {"x": 70.0, "y": 20.0, "angle": 30.0}]
+
+
+def answered(client, **more) -> dict[str, Any]:
+    body = finished(client, TASK | more)
+    assert body["status"] == "succeeded", body
+    return body
+
+
+def passed(body) -> list[dict[str, Any]]:
+    return [design for design in body["result"]["designs"] if design["verification"]["passed"]]
+
+
+def held_against_loops(design, positions) -> None:
+    """The design follows its loops through all positions on one branch, and transmits as it says."""
+    inputs = np.radians([target["input_angle"] for target in design["targets"]])
+    assert np.all(np.diff(inputs) > 0.0) or np.all(np.diff(inputs) < 0.0)
+    loops = Loops(design["mechanism"]["skeleton"])
+    met = loops.followed(inputs - inputs[0])
+    assert met.branch > 0.0
+    size = max(abs(complex(p["x"] - q["x"], p["y"] - q["y"])) for p in positions for q in positions)
+    for k, position in enumerate(positions):
+        assert abs(met.points[k] - complex(position["x"], position["y"])) < 1e-7 * size
+        turn = np.radians(position["angle"] - positions[0]["angle"])
+        assert abs(np.exp(1j * met.turns[k]) - np.exp(1j * turn)) < 1e-7
+    stated = design["metrics"]["transmission_angles"]
+    at_joint = {"coupler": "B", "link_5": "D" if design["mechanism"]["type"] == "stephenson_3" else "E"}
+    for link, angle in stated.items():
+        seen = min(value for (joint, *on), value in met.angles.items() if joint == at_joint[link] and link in on)
+        assert seen == pytest.approx(angle, abs=0.05)
+
+
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize("kind", SIXBARS)
+def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
+    body = answered(client, mechanisms=[kind])
+    designs = passed(body)
+    assert len(designs) == 2
+    for design in designs:
+        assert design["mechanism"]["type"] == kind
+        assert design["metrics"]["min_transmission_angle"] >= 20.0
+        assert design["metrics"]["reach"] <= 5.0
+        held_against_loops(design, FIVE)
+    place = f"/v1/jobs/{body['id']}/designs/0"
+    root = ET.fromstring(client.get(f"{place}.svg").text)
+    assert {e.get("data-joint") for e in root.iter()} - {None} == set(designs[0]["mechanism"]["skeleton"]["joints"])
+    name = {"watt_1": "Watt's sixbar", "stephenson_1": "Stephenson's sixbar", "stephenson_3": "Stephenson's sixbar"}
+    assert name[kind] in client.get(f"{place}.svg").text
+    for ending in ("dxf", "csv"):
+        assert client.get(f"{place}.{ending}").status_code == 200, ending
+    motion = client.get(f"{place}/motion?steps=72").json()
+    assert_as_documented(motion)
+    assert sum(motion["valid"]) > 3
+    analysed = client.post("/v1/analyses", json={"mechanism": designs[0]["mechanism"]})
+    assert analysed.status_code == 200, analysed.text
+    assert analysed.json()["classification"]["mobility"] == 1
+    assert client.get(f"/v1/jobs/{body['id']}/report.html").status_code == 200
+
+
+@pytest.mark.parametrize("count", [2, 4])
+def test_fewer_positions_are_met_by_sixbars_too(client, count):
+    positions = FIVE[:count]
+    for design in passed(answered(client, positions=positions)):
+        assert len(design["targets"]) == count
+        held_against_loops(design, positions)
+
+
+def test_positions_within_tolerances(client):
+    positions = [position | {"tolerance": {"x": 2.0, "y": 2.0, "angle": 2.0}} for position in FIVE]
+    designs = passed(answered(client, positions=positions))
+    assert len(designs) == 2
+    for design in designs:
+        check = next(c for c in design["verification"]["checks"] if c["name"] == "within_tolerance")
+        assert check["passed"]
+        assert all(t["point_residual"] <= 2.9 and t["angle_residual"] <= 2.0 for t in design["targets"])
+
+
+def test_auto_takes_the_fourbar_where_one_is_sound(client):
+    plain = {k: v for k, v in TASK.items() if k != "mechanisms"} | {"positions": FOURBAR_TASK}
+    without = finished(client, plain)["result"]
+    auto = answered(client, positions=FOURBAR_TASK, mechanisms="auto")["result"]
+    assert auto == without
+    assert {design["mechanism"]["type"] for design in auto["designs"]} == {"fourbar"}
+
+
+def test_auto_takes_sixbars_where_no_fourbar_is_sound_and_says_so(client):
+    result = answered(client, mechanisms="auto")["result"]
+    assert {design["mechanism"]["type"] for design in result["designs"]} <= set(SIXBARS)
+    assert "No linkage of two dyads does it; sixbars do." in result["summary"]
+    assert "no fourbar exists" in result["summary"]
+
+
+def test_more_than_five_positions_are_fitted_by_fourbars_under_auto(client):
+    six = [*FIVE, {"x": 118.0, "y": -80.0, "angle": -48.0}]
+    result = answered(client, positions=six, mechanisms="auto")["result"]
+    assert "Sixbars meet up to five positions; they were not looked for." in result["summary"]
+
+
+@pytest.mark.parametrize("types", [["fourbar"], ["slider_crank"]])
+def test_types_of_two_dyads_alone(client, types):
+    result = answered(client, positions=FOURBAR_TASK, mechanisms=types)["result"]
+    assert {design["mechanism"]["type"] for design in result["designs"]} == set(types)
+
+
+@pytest.mark.parametrize(
+    "chain",
+    [
+        {"links": [120.0, None], "elbow": "left"},
+        {"fixed_pivot": [20.0, -120.0], "moving_pivot": [0.0, -14.0]},
+    ],
+)
+def test_the_chain_is_kept_as_it_is_stated(client, chain):
+    designs = passed(answered(client, mechanisms=list(SIXBARS), chain=chain))
+    assert designs
+    for design in designs:
+        skeleton = design["mechanism"]["skeleton"]
+        joints = {name: complex(*place) for name, place in skeleton["joints"].items()}
+        links = {link["name"]: set(link["joints"]) for link in skeleton["links"]}
+        body = next(name for name, on in links.items() if "P" in on)
+        chains = [
+            (pivot, knee, pin)
+            for one in links.keys() - {"ground", body}
+            for two in links.keys() - {"ground", body, one}
+            for pivot in links["ground"] & links[one]
+            for knee in links[one] & links[two]
+            for pin in links[two] & links[body]
+        ]
+        assert any(kept(chain, *(joints[name] for name in names)) for names in chains)
+        assert next(c for c in design["verification"]["checks"] if c["name"] == "chain")["passed"]
+
+
+def kept(chain, pivot, knee, pin) -> bool:
+    wanted = [
+        *zip((abs(knee - pivot), abs(pin - knee)), chain.get("links", [None, None]), strict=True),
+        *zip((pivot.real, pivot.imag), chain.get("fixed_pivot", [None, None]), strict=True),
+        *zip((pin.real, pin.imag), chain.get("moving_pivot", [None, None]), strict=True),
+    ]
+    left = ((pin - pivot).conjugate() * (knee - pivot)).imag > 0.0
+    bends = chain.get("elbow", "any") in ("any", "left" if left else "right")
+    return bends and all(stated is None or abs(value - stated) < 1e-6 for value, stated in wanted)
+
+
+@pytest.mark.parametrize(
+    "constraints",
+    [
+        {"full_rotation": True, "grashof": "crank_rocker", "min_transmission_angle": 30.0},
+        {
+            "max_link_ratio": 4.0,
+            "link_length": {"min": 30.0, "max": 200.0},
+            "fixed_pivot_region": {"x": [-50.0, 100.0], "y": [-150.0, -50.0]},
+        },
+    ],
+)
+def test_constraints_hold_for_every_pivot_and_link(client, constraints):
+    designs = passed(answered(client, mechanisms=list(SIXBARS), constraints=constraints))
+    assert designs
+    for design in designs:
+        metrics, mechanism = design["metrics"], design["mechanism"]
+        lengths = mechanism["links"].values()
+        assert metrics["full_rotation"] or not constraints.get("full_rotation")
+        assert metrics["grashof"] == constraints.get("grashof", metrics["grashof"])
+        assert metrics["min_transmission_angle"] >= constraints.get("min_transmission_angle", 0.0)
+        assert max(lengths) / min(lengths) <= constraints.get("max_link_ratio", 1e9) * (1.0 + 1e-9)
+        stated = constraints.get("link_length", {"min": 0.0, "max": 1e9})
+        assert stated["min"] <= min(lengths)
+        assert max(lengths) <= stated["max"]
+        region = constraints.get("fixed_pivot_region", {"x": [-1e9, 1e9], "y": [-1e9, 1e9]})
+        for x, y in mechanism["fixed_pivots"].values():
+            assert region["x"][0] <= x <= region["x"][1]
+            assert region["y"][0] <= y <= region["y"][1]
+        held_against_loops(design, FIVE)
+
+
+def test_room_planes_and_forces_hold_together(client):
+    body = answered(
+        client,
+        mechanisms=list(SIXBARS),
+        max_designs=1,
+        space={"box": [[-60.0, -160.0], [200.0, 100.0]], "link_width": 4.0},
+        layout={"link_width": 4.0, "pin_diameter": 3.0, "thickness": 3.0},
+        dynamics={"links": {"density": 7.8e-6, "thickness": 3.0, "width": 4.0}, "speed_rpm": 10.0},
+        constraints={"max_joint_force": 1e9},
+    )
+    (design,) = passed(body)
+    names = {check["name"] for check in design["verification"]["checks"]}
+    assert {"box", "joint_force"} <= names
+    assert {link["name"] for link in design["mechanism"]["skeleton"]["links"]} - {"ground"} == set(
+        design["layout"]["planes"]
+    )
+    for x, y in design["mechanism"]["skeleton"]["joints"].values():
+        assert -60.0 <= x <= 200.0
+        assert -160.0 <= y <= 100.0
+
+
+@pytest.mark.parametrize(
+    ("changed", "path"),
+    [
+        ({"mechanisms": []}, "/problem/mechanisms"),
+        ({"mechanisms": ["watt_2"]}, "/problem/mechanisms"),
+        ({"mechanisms": "fourbar"}, "/problem/mechanisms"),
+        ({"input_side": {"fixed_pivot": [0.0, 0.0]}}, "/problem/input_side"),
+        ({"output_side": {"dyad": "PR"}}, "/problem/output_side"),
+        ({"mechanisms": "auto", "ground_line": {"point": [0.0, 0.0], "angle": 0.0}}, "/problem/ground_line"),
+        ({"driver_dyad": True}, "/problem/driver_dyad"),
+        ({"manufacture": {"tolerances": {"length": 0.1}}}, "/problem/manufacture"),
+        ({"space": {"fixed_pivots": {"input": {"circle": {"center": [0, 0], "radius": 9}}}}}, "/problem/space"),
+        ({"positions": [*FIVE, {"x": 118.0, "y": -80.0, "angle": -48.0}]}, "/problem/mechanisms"),
+        ({"method": "least_squares"}, "/problem/mechanisms"),
+        ({"mechanisms": ["fourbar"], "chain": {"elbow": "left"}}, "/problem/chain"),
+        ({"chain": {"elbow": "up"}}, "/problem/chain/elbow"),
+        ({"chain": {"links": [1.0, 0.0]}}, "/problem/chain/links"),
+        (
+            {"chain": {"links": [10.0, 10.0], "fixed_pivot": [0.0, -90.0], "moving_pivot": [0.0, 0.0]}},
+            "/problem/chain/links",
+        ),
+        ({"mechanisms": ["fourbar"], "output_side": {"dyad": "PR"}}, "/problem/mechanisms"),
+        ({"mechanisms": ["slider_crank"], "output_side": {"dyad": "RR"}}, "/problem/mechanisms"),
+    ],
+)
+def test_what_cannot_be_had_is_refused_at_its_field(client, changed, path):
+    answer = client.post("/v1/jobs", json={"problem": TASK | changed})
+    assert answer.status_code == 422, answer.text
+    assert any(fault["path"].startswith(path) for fault in answer.json()["errors"]), answer.text
