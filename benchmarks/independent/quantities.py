@@ -196,6 +196,7 @@ COMPARED: dict[str, frozenset[str]] = {
 """What is compared of each kind, where a design states it."""
 
 NEVER_STATED = {
+    "motion": "checks.chain",
     "path": "metrics.input_stroke metrics.input_travel metrics.body_travel_ratio metrics.body_turn_ratio "
     "metrics.used_stroke targets.input_place targets.angle_residual",
     "parallel_motion": "metrics.input_stroke metrics.input_travel metrics.body_travel_ratio metrics.body_turn_ratio "
@@ -207,7 +208,8 @@ NEVER_STATED = {
     "straight_line": "metrics.used_stroke",
     "cam": "checks.follower_can_be_laid_on",
 }
-"""Fields that a kind's models have from others and never fill in; and a check of which no design is left."""
+"""Fields that a kind's models have from others and never fill in; and checks of which no design is left, or which the
+campaign never states: stated chains of sixbars are measured in the tests of their jobs."""
 
 
 def stated_by(design: Any) -> set[str]:
