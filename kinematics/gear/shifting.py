@@ -20,8 +20,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from kinematics.compiling import njit
 
 KEPT = 1e-10
 """Margin by which a demand may be missed, in modules: rounding must not condemn pairs that are on a limit."""

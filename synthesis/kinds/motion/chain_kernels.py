@@ -23,9 +23,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from kinematics.compiling import njit
 from synthesis.kinds.motion.relative_dyads import MOST, OPTIONS, dyads, relative
 from synthesis.proof.carried import ease
 from synthesis.proof.measures import quality

@@ -17,8 +17,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from kinematics.compiling import njit
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
