@@ -11,7 +11,8 @@ monotonic function of x₁ as long as both gears keep an addendum: so the splits
 and their margin has one maximum, which golden sections find. The balanced split has the same greatest specific sliding
 on both flanks, a difference that falls with x₁: the split nearest to it is that split or an end of the interval.
 
-Of a range of sums the margin of the best split is taken to have one maximum too; the sums that suit are an interval.
+Over a range of sums the margin of the best split may rise and fall more than once: the sums that suit are a list of
+intervals. They are found on a grid, about every local maximum and minimum of it, and by bisection of every change.
 """
 
 from __future__ import annotations
@@ -35,8 +36,8 @@ SECTIONS = 52
 STEEP = 6.0
 """A bound of how fast a margin changes with a shift is 2 / sin φ of the ends of involutes, and this of thick tips."""
 
-SUMS = 24
-"""Parts into which a range of sums is divided in search of one that suits."""
+SUMS = 32
+"""Parts into which a range of sums is divided in search of those that suit."""
 
 HALVINGS = 36
 """Halvings of an interval of sums at whose one end no split suits."""
@@ -145,7 +146,8 @@ def _span(working: Working, demands: Demands) -> tuple[float, float]:
 def best_split(teeth: int, mate: int, working: Working, demands: Demands, enough: float) -> tuple[float, float]:
     """The shift of the first gear with the greatest margin, and that margin.
 
-    It is looked for until a margin is ``enough``, or no split can be sound; with an infinite ``enough`` to the end.
+    It is looked for until a margin is ``enough``, or no split can be sound: then the margin tells no more than its
+    sign. With an infinite ``enough`` it is looked for to the end.
     """
     low, high = _span(working, demands)
     if not low <= high:
@@ -233,42 +235,93 @@ def _of_sum(teeth: int, mate: int, total: float, demands: Demands, enough: float
 
 
 @njit(cache=True, nogil=True)
-def sum_that_suits(teeth: int, mate: int, low: float, high: float, demands: Demands) -> float:
-    """A sum of shifts between ``low`` and ``high`` that suits a pair; nan: none does."""
-    # From no shift on, where most pairs are sound, then all over the range.
-    at = min(max(0.0, low), high)
-    most = _of_sum(teeth, mate, at, demands, -KEPT)
-    for i in range(SUMS + 1):
-        if most >= -KEPT:
-            return at
-        total = low + (high - low) * i / SUMS
-        found = _of_sum(teeth, mate, total, demands, -KEPT)
-        if found > most:
-            at, most = total, found
-    step = (high - low) / SUMS
-    left, right = max(low, at - step), min(high, at + step)
+def _peak(teeth: int, mate: int, left: float, right: float, sign: float, demands: Demands) -> float:
+    """The sum between two with the greatest ``sign`` × margin, as soon as that tells it from its neighbours."""
+    # A maximum is looked for among sums that do not suit, until one does; a minimum until one does not.
     one, other = right - GOLDEN * (right - left), left + GOLDEN * (right - left)
-    first, second = _of_sum(teeth, mate, one, demands, math.inf), _of_sum(teeth, mate, other, demands, math.inf)
+    first = sign * _of_sum(teeth, mate, one, demands, math.inf)
+    second = sign * _of_sum(teeth, mate, other, demands, math.inf)
     for _ in range(SECTIONS):
-        if max(first, second) >= -KEPT:
+        most = max(first, second)
+        if most >= -KEPT if sign > 0.0 else most > KEPT:
             break
         if first < second:
             left, one, first = one, other, second
             other = left + GOLDEN * (right - left)
-            second = _of_sum(teeth, mate, other, demands, math.inf)
+            second = sign * _of_sum(teeth, mate, other, demands, math.inf)
         else:
             right, other, second = other, one, first
             one = right - GOLDEN * (right - left)
-            first = _of_sum(teeth, mate, one, demands, math.inf)
-    at, most = (one, first) if first > second else (other, second)
-    return at if most >= -KEPT else math.nan
+            first = sign * _of_sum(teeth, mate, one, demands, math.inf)
+    return one if first > second else other
 
 
 @njit(cache=True, nogil=True)
-def last_sum(teeth: int, mate: int, sound: float, end: float, demands: Demands) -> float:
-    """The last sum from one that suits towards an end of the range."""
-    if _of_sum(teeth, mate, end, demands, -KEPT) >= -KEPT:
-        return end
+def _grid(low: float, high: float) -> NDArray[np.float64]:
+    """Sums from ``low`` to ``high`` in rising order, that nearest to no shift among them."""
+    sums = np.empty(SUMS + 2)
+    for i in range(SUMS + 1):
+        sums[i] = low + (high - low) * i / SUMS
+    sums[SUMS] = high
+    sums[SUMS + 1] = min(max(0.0, low), high)
+    return np.sort(sums)
+
+
+@njit(cache=True, nogil=True)
+def _looked_at(teeth: int, mate: int, low: float, high: float, demands: Demands) -> NDArray[np.float64]:
+    """Sums in rising order, between which the margin passes its limit once at most; rows of a sum and its margin."""
+    sums = _grid(low, high)
+    n = len(sums)
+    margins = np.array([_of_sum(teeth, mate, total, demands, math.inf) for total in sums])
+    seen = np.empty((2 * n, 2))
+    seen[:n, 0], seen[:n, 1] = sums, margins
+    count = n
+    for i in range(n):
+        if margins[i] == -math.inf:
+            continue
+        before, after = max(0, i - 1), min(n - 1, i + 1)
+        sound = margins[i] >= -KEPT
+        sign = -1.0 if sound else 1.0
+        if sign * margins[i] < max(sign * margins[before], sign * margins[after]):
+            continue
+        if sound and (before == i or after == i):
+            # A margin that is least at an end of the range hides nothing beyond it.
+            continue
+        total = _peak(teeth, mate, sums[before], sums[after], sign, demands)
+        seen[count, 0], seen[count, 1] = total, _of_sum(teeth, mate, total, demands, math.inf)
+        count += 1
+    return seen[:count][np.argsort(seen[:count, 0])]
+
+
+@njit(cache=True, nogil=True)
+def sums_that_suit(teeth: int, mate: int, low: float, high: float, demands: Demands) -> NDArray[np.float64]:
+    """All sums of shifts between ``low`` and ``high`` that suit a pair.
+
+    Two maxima of the margin that are nearer to one another than two parts of the range may be taken for one.
+
+    Returns
+    -------
+    array of shape (k, 2)
+        Intervals in rising order.
+    """
+    seen = _looked_at(teeth, mate, low, high, demands)
+    found = np.empty((len(seen), 2))
+    count = 0
+    for i in range(len(seen)):
+        if not seen[i, 1] >= -KEPT:
+            continue
+        if i == 0 or not seen[i - 1, 1] >= -KEPT:
+            found[count, 0] = seen[i, 0] if i == 0 else _last_sum(teeth, mate, seen[i, 0], seen[i - 1, 0], demands)
+        if i == len(seen) - 1 or not seen[i + 1, 1] >= -KEPT:
+            last = i == len(seen) - 1
+            found[count, 1] = seen[i, 0] if last else _last_sum(teeth, mate, seen[i, 0], seen[i + 1, 0], demands)
+            count += 1
+    return found[:count].copy()
+
+
+@njit(cache=True, nogil=True)
+def _last_sum(teeth: int, mate: int, sound: float, end: float, demands: Demands) -> float:
+    """The last sum from one that suits towards one that does not."""
     for _ in range(HALVINGS):
         middle = 0.5 * (sound + end)
         if _of_sum(teeth, mate, middle, demands, -KEPT) >= -KEPT:
@@ -279,24 +332,59 @@ def last_sum(teeth: int, mate: int, sound: float, end: float, demands: Demands) 
 
 
 @njit(cache=True, nogil=True)
+def sum_that_suits(teeth: int, mate: int, low: float, high: float, demands: Demands) -> float:
+    """A sum of shifts between ``low`` and ``high`` that suits a pair; nan: none does."""
+    # From no shift on, where most pairs are sound, then all over the range.
+    at = min(max(0.0, low), high)
+    if _of_sum(teeth, mate, at, demands, -KEPT) >= -KEPT:
+        return at
+    for total in _grid(low, high):
+        if _of_sum(teeth, mate, total, demands, -KEPT) >= -KEPT:
+            return float(total)
+    for row in _looked_at(teeth, mate, low, high, demands):
+        if row[1] >= -KEPT:
+            return float(row[0])
+    return math.nan
+
+
+@njit(cache=True, nogil=True)
+def _sums_between(teeth: int, mate: int, near: float, far: float, ends: bool, demands: Demands) -> NDArray[np.float64]:
+    """Intervals of sums that suit at distances from ``near`` to ``far``; without ``ends`` one sum, twice."""
+    low, high = 2.0 * demands.least_shift, 2.0 * demands.most_shift
+    first = at_distance(teeth, mate, near, demands)
+    if first.shortening >= 0.0:
+        low = max(low, first.total)
+    if far < math.inf:
+        last = at_distance(teeth, mate, far, demands)
+        high = min(high, last.total) if last.shortening >= 0.0 else -math.inf
+    if not low <= high:
+        return np.empty((0, 2))
+    if ends:
+        return sums_that_suit(teeth, mate, low, high, demands)
+    total = sum_that_suits(teeth, mate, low, high, demands)
+    return np.full((1, 2), total) if total >= low else np.empty((0, 2))
+
+
+@njit(cache=True, nogil=True)
 def sound_between(
     least: NDArray[np.float64], most: NDArray[np.float64], ends: bool, demands: Demands
 ) -> NDArray[np.float64]:
-    """Between which distances every pair suits, of those from ``least[a, b]`` to ``most[a, b]``; nan: it does not.
+    """Between which distances every pair suits, of those from ``least[a, b]`` to ``most[a, b]``.
 
     Parameters
     ----------
     least, most : array of shape (n, n)
         Symmetric, in modules; equal for one distance, 0 and infinity for any; nan where a pair is not asked for.
     ends : bool
-        Whether the least and the greatest distance that suit are wanted; otherwise it is one that suits, twice.
+        Whether all distances that suit are wanted; otherwise it is one that suits, twice.
 
     Returns
     -------
-    array of shape (n, n, 2)
+    array of shape (n, n, k, 2)
+        Up to k intervals of each pair in rising order, then nan.
     """
     n = len(least)
-    found = np.full((n, n, 2), np.nan)
+    found = np.full((n, n, 1, 2), np.nan)
     for a in range(n):
         for b in range(a, n):
             near, far = least[a, b], most[a, b]
@@ -304,25 +392,16 @@ def sound_between(
                 continue
             if near == far:
                 working = at_distance(a, b, near, demands)
-                if not (working.shortening >= 0.0 and suits(a, b, working, demands)):
-                    continue
-            else:
-                low, high = 2.0 * demands.least_shift, 2.0 * demands.most_shift
-                first = at_distance(a, b, near, demands)
-                if first.shortening >= 0.0:
-                    low = max(low, first.total)
-                if far < math.inf:
-                    last = at_distance(a, b, far, demands)
-                    high = min(high, last.total) if last.shortening >= 0.0 else -math.inf
-                if not low <= high:
-                    continue
-                total = sum_that_suits(a, b, low, high, demands)
-                if not total >= low:
-                    continue
-                nearest = last_sum(a, b, total, low, demands) if ends else total
-                farthest = last_sum(a, b, total, high, demands) if ends else total
-                near = with_sum(a, b, nearest, demands).distance
-                far = with_sum(a, b, farthest, demands).distance
-            found[a, b, 0], found[a, b, 1] = near, far
-            found[b, a, 0], found[b, a, 1] = near, far
+                if working.shortening >= 0.0 and suits(a, b, working, demands):
+                    found[a, b, 0], found[b, a, 0] = near, near
+                continue
+            sums = _sums_between(a, b, near, far, ends, demands)
+            if len(sums) > found.shape[2]:
+                wider = np.full((n, n, len(sums), 2), np.nan)
+                wider[:, :, : found.shape[2]] = found
+                found = wider
+            for i in range(len(sums)):
+                for end in range(2):
+                    distance = with_sum(a, b, sums[i, end], demands).distance
+                    found[a, b, i, end], found[b, a, i, end] = distance, distance
     return found

@@ -1,4 +1,4 @@
-"""Sums of profile shifts and their splits: against dense grids, where the method takes one maximum for granted."""
+"""Sums of profile shifts and their splits: against dense grids, where the method takes few maxima for granted."""
 
 from __future__ import annotations
 
@@ -53,32 +53,60 @@ def grids_agree(asked: Demands, numbers: range, sums: int, splits: int) -> int:
     for teeth in numbers:
         for mate in numbers[numbers.index(teeth) :]:
             kept = np.flatnonzero(on_a_grid(teeth, mate, low, high, sums, splits, asked))
-            sound = shifting.sum_that_suits(teeth, mate, low, high, asked)
             if not len(kept):
                 continue
             suited += 1
-            assert math.isfinite(sound), (teeth, mate)
-            assert kept[-1] - kept[0] + 1 == len(kept), ("the sums that suit are no interval", teeth, mate)
-            ends = [shifting.last_sum(teeth, mate, sound, end, asked) for end in (low, high)]
-            grid = [low + (high - low) * k / sums for k in (kept[0], kept[-1])]
-            assert ends[0] <= grid[0] + 1e-9
-            assert ends[1] >= grid[1] - 1e-9
-            step = (high - low) / sums + 2.0 * (asked.most_shift - asked.least_shift) / splits
-            assert grid[0] - ends[0] <= step + 0.05, (teeth, mate)
-            assert ends[1] - grid[1] <= step + 0.05, (teeth, mate)
+            parts = shifting.sums_that_suit(teeth, mate, low, high, asked)
+            assert math.isfinite(shifting.sum_that_suits(teeth, mate, low, high, asked)), (teeth, mate)
+            for total in low + (high - low) * kept / sums:
+                assert any(near - 1e-9 <= total <= far + 1e-9 for near, far in parts), (teeth, mate, total)
+            for near, far in parts:
+                assert all(sum_suits(teeth, mate, total, asked) for total in np.linspace(near, far, 7)), (teeth, mate)
+                assert near == low or not sum_suits(teeth, mate, near - 1e-6, asked)
+                assert far == high or not sum_suits(teeth, mate, far + 1e-6, asked)
     return suited
 
 
+def sum_suits(teeth: int, mate: int, total: float, asked: Demands) -> bool:
+    working = shifting.with_sum(teeth, mate, total, asked)
+    return bool(working.distance > 0.0 and shifting.suits(teeth, mate, working, asked))
+
+
 @pytest.mark.parametrize("asked", ASKED)
-def test_sums_that_suit_are_an_interval(asked: Demands) -> None:
+def test_all_sums_that_suit_are_found(asked: Demands) -> None:
     assert grids_agree(asked, range(11, 60, 12), 120, 60) > 2
 
 
 @pytest.mark.campaign
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("asked", ASKED)
-def test_sums_of_all_pairs_are_an_interval(asked: Demands) -> None:
+def test_all_sums_of_all_pairs_are_found(asked: Demands) -> None:
     assert grids_agree(asked, range(8, 101), 150, 80) > 100
+
+
+def test_sums_that_suit_may_be_two_intervals() -> None:
+    """12:33 keeps a tip of 0.45 modules and a contact ratio of 1.22 with less shift and with more, not between."""
+    asked = demands(25.0, -0.35, 0.72, 1.22, 0.45)
+    parts = shifting.sums_that_suit(12, 33, -0.7, 1.44, asked)
+    assert parts == pytest.approx(np.array([[-0.3552, -0.2077], [0.2223, 0.9171]]), abs=1e-3)
+    grid = np.flatnonzero(on_a_grid(12, 33, -0.7, 1.44, 1000, 400, asked))
+    assert np.count_nonzero(np.diff(grid) > 100) == 1
+    for total in -0.7 + 2.14 * grid / 1000:
+        assert any(near <= total <= far for near, far in parts)
+
+
+@pytest.mark.parametrize(
+    ("pair", "asked"),
+    [
+        ((20, 59), demands(20.0, -0.1, 1.0, 1.2, 0.7339)),
+        ((16, 23), demands(20.0, -0.5, 0.72, 1.1, 0.6609)),
+        ((29, 50), demands(14.5, -0.35, 0.3, 1.6, 0.9105)),
+    ],
+)
+def test_sums_between_those_of_the_grid_are_found(pair: tuple[int, int], asked: Demands) -> None:
+    """Where sums suit over some 1e-3, the search goes by the true margins of those that do not."""
+    sound = shifting.sum_that_suits(*pair, 2.0 * asked.least_shift, 2.0 * asked.most_shift, asked)
+    assert sum_suits(*pair, sound, asked)
 
 
 @pytest.mark.parametrize("asked", ASKED)

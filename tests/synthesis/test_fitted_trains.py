@@ -114,6 +114,38 @@ def test_nothing_fits_so_far_apart() -> None:
     assert "no two gears make a stage" in result.summary
 
 
+TWO_INTERVALS: dict[str, Any] = {
+    "pressure_angle": 25.0,
+    "shift": {"min": -0.35, "max": 0.72},
+    "tolerance": 0.0,
+}
+"""With these 12:33 has sums of shifts that suit below −0.2 and above 0.2, and none between."""
+
+
+@pytest.mark.parametrize("distance", [{"min": 22.0, "max": 23.24}, 22.9])
+def test_distances_that_suit_may_be_two_intervals(distance: float | dict[str, float]) -> None:
+    """The range that contains a distance has a train wherever that distance has one."""
+    stated = {**TWO_INTERVALS, "min_contact_ratio": 1.215, "min_tip_thickness": 0.455, "reverted": True}
+    result = solved(ratio="891/240", max_stages=2, stock=[12, 20, 33, 27], centre_distance=distance, **stated)
+    assert {mesh for d in result.designs for s in d.mechanism.stages for mesh in [(s.driver, s.driven)]} == {
+        (12, 33),
+        (20, 27),
+    }
+
+
+def test_a_gap_of_the_distances_is_not_taken_for_them() -> None:
+    """Two stages of 12:33 agree on a distance on one side of the gap; alone it has the one nearest to its circles."""
+    stated = {**TWO_INTERVALS, "min_contact_ratio": 1.22, "min_tip_thickness": 0.45}
+    twice = solved(ratio="121/16", max_stages=2, stock=[12, 12, 33, 33], reverted=True, **stated).designs
+    once = solved(ratio="33/12", max_stages=1, stock=[12, 33], **stated).designs
+    beyond = solved(
+        ratio="33/12", max_stages=1, stock=[12, 33], centre_distance={"min": 22.4, "max": 24.0}, **stated
+    ).designs
+    assert twice[0].metrics.centre_distances == pytest.approx([22.2876] * 2, abs=1e-4)
+    assert once[0].metrics.centre_distances == pytest.approx([22.2876], abs=1e-4)
+    assert beyond[0].metrics.centre_distances == pytest.approx([22.7176], abs=1e-4)
+
+
 @pytest.fixture(scope="module")
 def at_120() -> tuple[GearTrainProblem, GearTrainDesign]:
     problem = parse_problem(

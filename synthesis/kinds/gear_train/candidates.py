@@ -166,7 +166,7 @@ def _half(task: Task, values: tuple[Integers, ...]) -> _Half:
 class Meshes:
     """Trains of one mesh for each of k stages; all from one group.
 
-    Between ``nearest`` and ``farthest`` are the distances that a mesh can have, where coaxial meshes have to agree.
+    In the intervals ``distances[row]`` are those that a mesh can have, where coaxial meshes have to agree.
     """
 
     k: int
@@ -176,8 +176,7 @@ class Meshes:
     ratio: Floats
     groups: Integers
     least_size: Integers
-    nearest: Floats
-    farthest: Floats
+    distances: Floats
     coaxial: bool
     combinations: int
 
@@ -206,7 +205,7 @@ class Meshes:
         return int(shortlist.ties[0])
 
     def _combine(self, first: int, last: int, rule: Rule, shortlist: Found, tied: Integers) -> None:
-        lists = self.a, self.b, self.mark, self.ratio, self.groups, self.least_size, self.nearest, self.farthest
+        lists = self.a, self.b, self.mark, self.ratio, self.groups, self.least_size, self.distances
         kernels.combine(self.k, *lists, first, last, self.coaxial, rule, shortlist, tied)
 
 
@@ -271,15 +270,15 @@ def _grouped(task: Task, k: int, stages: list[tuple[Integers, Integers, Integers
     listed = stages if task.ordered else stages[:1]
     a, b, mark = (np.concatenate([stage[column] for stage in listed]) for column in range(3))
     stage = np.repeat(np.arange(len(listed)), [len(one[0]) for one in listed])
-    ends: Floats = np.stack([np.zeros(len(a)), np.full(len(a), np.inf)])
+    ends: Floats = np.tile(np.array([[0.0, np.inf]]), (len(a), 1, 1))
     if coaxial and task.fit is not None and task.fit.shares_distance:
-        ends = np.moveaxis(task.fit.ends[mark, a, b], -1, 0)
-        fits = np.isfinite(ends[0])
-        a, b, mark, stage, ends = a[fits], b[fits], mark[fits], stage[fits], ends[:, fits]
+        ends = task.fit.ends[mark, a, b]
+        fits = np.isfinite(ends[:, 0, 0])
+        a, b, mark, stage, ends = a[fits], b[fits], mark[fits], stage[fits], ends[fits]
     key = task.pitches[mark] * (a + b) if coaxial else np.zeros(len(a), np.int64)
     order = np.lexsort((b / a, stage, key))
     a, b, mark, stage, key = (column[order] for column in (a, b, mark, stage, key))
-    near, far = np.ascontiguousarray(ends[:, order])
+    distances = np.ascontiguousarray(ends[order])
     ratio = b / a
     keys = np.unique(key)
     places = np.arange(len(listed) + 1)
@@ -298,7 +297,7 @@ def _grouped(task: Task, k: int, stages: list[tuple[Integers, Integers, Integers
         combinations = sum(math.prod(int(n) for n in row) for row in counts)
     else:
         combinations = sum(math.comb(int(n) + k - 1, k) for n in counts[:, 0])
-    return Meshes(k, a, b, mark, ratio, groups, least[rising], near, far, coaxial, combinations)
+    return Meshes(k, a, b, mark, ratio, groups, least[rising], distances, coaxial, combinations)
 
 
 def _least_size(size: Integers, group: Integers, largest: bool, k: int) -> int:

@@ -3,7 +3,7 @@
 What a pair of tooth numbers can take up is known in modules, whatever train it is part of
 (:mod:`kinematics.gear.shifting`). Stages that have a distance of their own choose for every pair the module whose pitch
 circles are nearest to it, of equally near ones the smallest; the search then meets every pair of gears once. Coaxial
-stages that have to agree on a distance keep the range of distances of every pair with every module.
+stages that have to agree on a distance keep the intervals of distances of every pair with every module.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ class Fit:
     """The meshes that can be fitted.
 
     ``module[s, a, b]`` is the place of the module that a pair has in stage s (one row for all stages where they are
-    alike), −1 where none fits. ``ends[m, a, b]`` are least and greatest distance of a pair with module m where stages
-    have to agree on one, empty otherwise. ``modules`` are lengths.
+    alike), −1 where none fits. ``ends[m, a, b]`` are the intervals of distances of a pair with module m,
+    least and greatest, filled with nan, where stages have to agree on one; empty otherwise. ``modules`` are lengths.
     """
 
     demands: Demands
@@ -73,10 +73,10 @@ class Fit:
         """
         meshes = list(zip(drivers, driven, strict=True))
         if self.shares_distance:
-            spans = [tuple(self.ends[mark, a, b]) for (a, b), mark in zip(meshes, marks, strict=True)]
-            low, high = max(span[0] for span in spans), min(span[1] for span in spans)
             wanted = sum(0.5 * self.modules[m] * (a + b) for (a, b), m in zip(meshes, marks, strict=True)) / len(meshes)
-            shared = wanted if low * (1.0 - AGREED) <= wanted <= high * (1.0 + AGREED) else min(max(wanted, low), high)
+            shared = _nearest(
+                _common([self.ends[mark, a, b] for (a, b), mark in zip(meshes, marks, strict=True)]), wanted
+            )
             return [self._fitted(a, b, mark, shared) for (a, b), mark in zip(meshes, marks, strict=True)]
         stages = []
         for number, (a, b) in enumerate(meshes):
@@ -92,11 +92,13 @@ class Fit:
         pair, standard = (min(a, b), max(a, b)), 0.5 * (a + b)
         low = max(2.0 * self.demands.least_shift, self._sum_at(pair, limits[0] / module, -math.inf))
         high = min(2.0 * self.demands.most_shift, self._sum_at(pair, limits[1] / module, math.inf))
-        sound = shifting.sum_that_suits(*pair, low, high, self.demands)
-        total = shifting.last_sum(*pair, sound, min(max(0.0, low), high), self.demands)
-        if total == 0.0:
+        sums = shifting.sums_that_suit(*pair, low, high, self.demands)
+        if any(least <= 0.0 <= most for least, most in sums):
             return module * standard
-        distance = module * float(shifting.with_sum(*pair, total, self.demands).distance)
+        spans = [
+            [module * float(shifting.with_sum(*pair, total, self.demands).distance) for total in span] for span in sums
+        ]
+        distance = _nearest([(least, most) for least, most in spans], module * standard)
         return min(max(distance, limits[0]), limits[1])
 
     def _sum_at(self, pair: tuple[int, int], distance: float, beyond: float) -> float:
@@ -115,6 +117,25 @@ class Fit:
     def _within(self, shift: float) -> float:
         """A shift without what rounding took it beyond its limits."""
         return min(max(shift, self.demands.least_shift), self.demands.most_shift)
+
+
+def _common(meshes: list[NDArray[np.float64]]) -> list[tuple[float, float]]:
+    """The intervals that lists of them, filled with nan, have in common; ends that rounding parts meet."""
+    common = [(0.0, math.inf)]
+    for spans in meshes:
+        known = spans[np.isfinite(spans[:, 0])].tolist()
+        pairs = [(max(low, near), min(high, far)) for low, high in common for near, far in known]
+        common = [(low, high) for low, high in pairs if low <= high * (1.0 + AGREED)]
+    return common
+
+
+def _nearest(spans: list[tuple[float, float]], wanted: float) -> float:
+    """The distance in one of the intervals that is nearest to a wanted one."""
+    within = (
+        wanted if low * (1.0 - AGREED) <= wanted <= high * (1.0 + AGREED) else min(max(wanted, low), high)
+        for low, high in spans
+    )
+    return min(within, key=lambda distance: abs(distance - wanted))
 
 
 def fit_meshes(problem: GearTrainProblem, numbers: Integers) -> Fit:
@@ -136,8 +157,10 @@ def fit_meshes(problem: GearTrainProblem, numbers: Integers) -> Fit:
             spans = [_between(asked, low / m, high / m, True, demands) for m in modules]
         else:
             spans = [_between(asked, 0.0, math.inf, True, demands)] * len(modules)
-        ends = np.stack([m * span for m, span in zip(modules, spans, strict=True)])
-        found = np.isfinite(ends[..., 0])
+        ends = np.full((len(modules), n, n, max(span.shape[2] for span in spans), 2), math.nan)
+        for place, (module, span) in enumerate(zip(modules, spans, strict=True)):
+            ends[place, :, :, : span.shape[2]] = module * span
+        found = np.isfinite(ends[..., 0, 0])
         chosen = np.where(found.any(axis=0), found.argmax(axis=0), -1).astype(np.int8)
         return Fit(demands, modules, ((low, high),), chosen[None], ends)
     rows = _stages_apart(problem)
@@ -148,11 +171,11 @@ def fit_meshes(problem: GearTrainProblem, numbers: Integers) -> Fit:
         # Of equally near modules the smallest: they are tried in rising order.
         for place in sorted(_choices(problem, row, modules), key=modules.__getitem__):
             module = modules[place]
-            fits = np.isfinite(_between(asked, low / module, high / module, False, demands)[..., 0])
+            fits = np.isfinite(_between(asked, low / module, high / module, False, demands)[..., 0, 0])
             apart = np.maximum(0.0, np.maximum(low - module * standard, module * standard - high))
             better = fits & (apart < nearest)
             chosen[row][better], nearest[better] = place, apart[better]
-    return Fit(demands, modules, limits, chosen, np.zeros((0, 0, 0, 2)))
+    return Fit(demands, modules, limits, chosen, np.zeros((0, 0, 0, 0, 2)))
 
 
 def demands_of(problem: GearTrainProblem) -> Demands:

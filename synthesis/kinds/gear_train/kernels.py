@@ -248,6 +248,23 @@ def tuples(values: Integers, starts: Integers, counts: Integers, ordered: bool, 
 
 
 @njit(cache=True, nogil=True)
+def _agree(distances: Floats, place: Integers, k: int) -> bool:
+    """Whether k meshes have a distance in common: if so, an interval of one of them begins at such a distance."""
+    for i in range(k):
+        for p in range(distances.shape[1]):
+            distance, agreed = distances[place[i], p, 0], 0
+            for m in range(k):
+                for q in range(distances.shape[1]):
+                    near, far = distances[place[m], q, 0], distances[place[m], q, 1]
+                    if near <= distance <= far * (1.0 + AGREED):
+                        agreed += 1
+                        break
+            if agreed == k:
+                return True
+    return False
+
+
+@njit(cache=True, nogil=True)
 def combine(
     k: int,
     a: Integers,
@@ -256,8 +273,7 @@ def combine(
     ratio: Floats,
     groups: Integers,
     least_size: Integers,
-    nearest: Floats,
-    farthest: Floats,
+    distances: Floats,
     first: int,
     last: int,
     coaxial: bool,
@@ -270,7 +286,7 @@ def combine(
     In a group the stages' lists are ``groups[g, i]`` to ``groups[g, i + 1]``, in the order of the ratio b/a; without
     ``rule.ordered`` they are one list, and every multiset is met once. All stages but one are enumerated and the
     fitting meshes of the last are found by bisection. ``least_size`` of the groups must not fall. The meshes of a train
-    agree on a distance between ``nearest`` and ``farthest`` of each. ``coaxial``: the
+    agree on a distance within one of the intervals ``distances[row]`` of each. ``coaxial``: the
     pairing is what it is, and of the places of the meshes one choice counts; else only the pairing that ``pair_up``
     would choose counts, so that gears are met once.
 
@@ -341,10 +357,7 @@ def combine(
                         for i in range(k):
                             teeth[i], teeth[MOST_STAGES + i] = a[place[i]], b[place[i]]
                             teeth[2 * MOST_STAGES + i] = mark[place[i]]
-                        near, far = nearest[j], farthest[j]
-                        for i in range(k - 1):
-                            near, far = max(near, nearest[place[i]]), min(far, farthest[place[i]])
-                        sound = near <= far * (1.0 + AGREED) and within_limits(teeth, k, rule)
+                        sound = _agree(distances, place, k) and within_limits(teeth, k, rule)
                         if sound and not coaxial and not rule.ordered:
                             for i in range(2 * MOST_STAGES):
                                 canonical[i] = teeth[i]
