@@ -344,3 +344,59 @@ def test_slots_wider_than_the_wheel_are_no_drive(drive: str) -> None:
     result = solved(drive=drive, stations=5, clearances={"slot": 30.0}, **size)
     assert not result.designs
     assert result.search.rejected.keys() == {"no_room_for_walls"}
+
+
+def test_a_crescent_is_as_thick_as_a_wall_at_a_stated_size() -> None:
+    thin = solved(drive="geneva_internal", center_distance=44.0, wall_thickness=5.0)
+    assert not thin.designs
+    assert thin.search.rejected == {"crescent": 1}
+    smallest = solved(drive="geneva_internal", wall_thickness=5.0).designs[0]
+    assert smallest.metrics.sized_by == "crescent"
+    disc = smallest.mechanism.disc
+    assert min(np.subtract(disc.outer_radius, disc.inner_radius)) == pytest.approx(5.0, rel=1e-6)
+
+
+def test_a_wheel_that_rattles_in_its_disc_is_not_held() -> None:
+    wanted = {"center_distance": 80.0, "roller_diameter": 12.0, "rollers": 1}
+    loose = solved(**wanted, clearances={"locking": 16.0})
+    assert not loose.designs
+    assert loose.search.rejected == {"play": 1}
+    assert not loose.search.complete
+    (tight,) = solved(**wanted, clearances={"locking": 1.0}).designs
+    assert 0.5 < tight.metrics.play < 1.0
+    # A small disc may fit into a slot; the wheel is held before.
+    (small,) = solved(stations=8, rollers=1).designs
+    assert small.metrics.sized_by == "locking_disc"
+    assert small.metrics.play < 1e-3
+
+
+@pytest.mark.parametrize("drive", ["geneva_external", "geneva_spherical"])
+def test_no_size_below_the_smallest_is_taken(drive: str) -> None:
+    spherical = drive == "geneva_spherical"
+    wanted = {"drive": drive, "stations": 4 if spherical else 8, "rollers": 1}
+    (smallest,) = solved(**wanted).designs
+    assert smallest.metrics.sized_by == "locking_disc"
+    name = "sphere_radius" if spherical else "center_distance"
+    least = getattr(smallest.mechanism, name)
+    below = solved(**wanted, **{name: 0.999 * least})
+    assert not below.designs
+    assert below.search.rejected == {"locking_disc": 1}
+    assert solved(**wanted, **{name: least * (1.0 + 1e-9)}).designs
+
+
+def test_a_stated_face_angle_sets_the_size_at_which_it_locks() -> None:
+    pawls = {"count": 1, "face_angle": 15.0, "tooth_height": 10.0}
+    (design,) = ratchets(wall_thickness=2.0, load_torque=10.0, pawls=pawls).designs
+    assert design.metrics.sized_by == "locking_angle"
+    assert design.metrics.locking_angle == pytest.approx(design.metrics.friction_angle + 2.0, abs=1e-6)
+    smaller = pawls | {"wheel_radius": 0.99 * design.mechanism.wheel_radius}
+    assert not ratchets(wall_thickness=2.0, load_torque=10.0, pawls=smaller).designs
+
+
+def test_a_height_that_is_chosen_proves_nothing() -> None:
+    wanted = {"wall_thickness": 4.0, "wheel_shaft_diameter": 90.0}
+    high = ratchets(**wanted, pawls={"count": 1, "wheel_radius": 50.0})
+    assert not high.designs
+    assert not high.search.complete
+    assert high.summary.startswith("None was found")
+    assert ratchets(**wanted, pawls={"count": 1, "wheel_radius": 50.0, "tooth_height": 0.9}).designs

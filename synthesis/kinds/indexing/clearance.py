@@ -87,8 +87,9 @@ def measured(design: IndexingDesign, half: float) -> Measured:
 
     rest = np.linspace(half, 2.0 * math.pi / mechanism.rollers - half, RESTING)
     still = np.full(RESTING, turn[-1])
-    play = play_of(lambda by: float(deepest(rest[RESTING // 2 :][:1], still[:1] + by)[0]))
-    tried = TRIED + 2.0 * play
+    middle = float(rest[RESTING // 2])
+    play = play_of(lambda by: deepest(np.full_like(by, middle), still[0] + by), math.pi / mechanism.stations)
+    tried = TRIED + play
     held = (deepest(rest, still + tried) > 0.0) & (deepest(rest, still - tried) > 0.0)
     overlap = max(float(deepest(alpha, turn).max()), float(deepest(rest, still).max()), 0.0)
     locked = float(held.mean())

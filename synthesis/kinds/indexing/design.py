@@ -115,7 +115,7 @@ class IndexingCourse(Answer):
     pin_force: list[Force] = Field(description="Of the roller on the slot's side, positive the way the wheel turns.")
 
 
-SizedBy = Literal["locking_disc", "crescent", "web", "bore", "crank_shaft", "pin_force"]
+SizedBy = Literal["locking_disc", "crescent", "web", "bore", "crank_shaft", "locking_angle", "pin_force"]
 
 
 class IndexingMetrics(Answer):
@@ -179,7 +179,9 @@ class RatchetMechanism(Answer):
 class RatchetMetrics(Answer):
     """Properties of a ratchet."""
 
-    step: Angle = Field(description="From stop to stop: the farthest that the wheel turns back.")
+    step: Angle = Field(
+        description="From stop to stop; just before a pawl falls in the wheel can turn back by this and the overtravel."
+    )
     tooth_force: Force = Field(description="Of each pawl that holds, square to the face.")
     locking_angle: Angle = Field(description="Least over the face, between its normal and the line to the pivot.")
     friction_angle: Angle

@@ -40,8 +40,9 @@ def measured_on_sphere(mechanism: SphericalGenevaMechanism) -> dict[str, float]:
     def inside(crank: Real, wheel: Real) -> Real:
         return _depth(edges, crank, wheel, cap, offset)
 
-    play = play_of(lambda by: float(inside(rest[RESTING // 2 :][:1], still[:1] + by)[0]))
-    tried = TRIED + 2.0 * play
+    middle = float(rest[RESTING // 2])
+    play = play_of(lambda by: inside(np.full_like(by, middle), still[0] + by), step)
+    tried = TRIED + play
     held = (inside(rest, still + tried) > 0.0) & (inside(rest, still - tried) > 0.0)
     apart = max(float(inside(alpha, turn).max()), float(inside(rest, still).max()), 0.0)
     locked = float(held.mean())

@@ -17,8 +17,8 @@ Real = NDArray[np.float64]
 ON_ARC = 1e-9
 """Share of a radius within which a corner lies on an arc."""
 
-HALVINGS = 24
-"""Of an eighth of a turn, for the play of a locked wheel."""
+HALVINGS, EVENLY = 24, 48
+"""Of half a station, for the play of a locked wheel; and its steps in which it is asked where the wheel is held."""
 
 
 def closed(outline: Complex) -> Complex:
@@ -67,15 +67,26 @@ def _edge(first: Real, second: Real, before: Real, after: Real) -> Real:
         return np.where(whole > 0.0, first * second * np.sin(before + after) / whole, 0.0)
 
 
-def play_of(deepest: Callable[[float], float]) -> float:
-    """By how much a locked wheel can be turned, radians; ``deepest`` tells how deep it then is in the disc.
+def play_of(deepest: Callable[[Real], Real], step: float) -> float:
+    """By how much a locked wheel can be turned, radians; up to half a station, where nothing holds it.
 
-    An eighth of a turn where nothing holds it.
+    Parameters
+    ----------
+    deepest : callable
+        How deep the wheel is in the disc when it is turned by angles, shape (k,).
+    step : float
+        Half the angle between stations: there a slot faces the disc, which may fit into it.
     """
-    free, held = 0.0, 0.25 * math.pi
+    # Beyond the first angle at which it is held it may be free again.
+    tried = step * np.unique(np.concatenate([2.0 ** -np.arange(HALVINGS), np.arange(1, EVENLY) / EVENLY]))
+    within = np.nonzero(deepest(tried) > 0.0)[0]
+    if not len(within):
+        return step
+    first = int(within[0])
+    free, held = float(tried[first - 1]) if first else 0.0, float(tried[first])
     for _ in range(HALVINGS):
         middle = 0.5 * (free + held)
-        if deepest(middle) > 0.0:
+        if float(deepest(np.array([middle]))[0]) > 0.0:
             held = middle
         else:
             free = middle

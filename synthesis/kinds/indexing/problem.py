@@ -350,6 +350,9 @@ class IndexingProblem(StatedProblem):
         if self.drive != "geneva_external" and self.crank_shaft_diameter > 0.0:
             detail = f"slots of {self.drive} pass the crank's axis: its crank is overhung; leave it out"
             found.append(Contradiction("/crank_shaft_diameter", detail))
+        if self.drive == "geneva_internal" and self.wheel_shaft_diameter > 0.0:
+            detail = "a ring has no bore: the crank turns inside it; leave it out"
+            found.append(Contradiction("/wheel_shaft_diameter", detail))
         for name in ("slot_end", "relief"):
             stated = getattr(self.clearances, name)
             if stated is not None and stated < LEAST_ROOM * self.roller:

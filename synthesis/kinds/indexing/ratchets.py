@@ -50,18 +50,29 @@ def solve_ratchet(problem: IndexingProblem, progress: Progress) -> IndexingResul
     Returns
     -------
     IndexingResult
-        One design for each number of pawls; complete: each has one wheel of the stated size, or one smallest.
+        One design for each number of pawls: each has one wheel of the stated size, or one smallest; complete unless one
+        is rejected for what may rest on a height or length that is not stated.
     """
     sifting = Sifting[IndexingDesign | RatchetDesign](problem)
     progress(0.0, "sizing")
     sifting.sift(problem.teeth_choices, partial(_candidate, problem))
     progress(1.0, "verified")
-    complete = not UNPROVEN & sifting.rejected.keys()
+    complete = _proven(problem, sifting)
     return IndexingResult(
         designs=sifting.designs(lambda found: found),
         search=sifting.search("closed_form", complete=complete),
-        summary=_summary(problem, sifting),
+        summary=_summary(problem, sifting, complete),
     )
+
+
+def _proven(problem: IndexingProblem, sifting: Sifting[IndexingDesign | RatchetDesign]) -> bool:
+    """Whether no other choice of what is not stated could have kept what those that are rejected break."""
+    stated = problem.pawl
+    if stated.tooth_height is None or stated.length is None:
+        # A height and a length are chosen here, and every demand depends on them.
+        return not sifting.rejected
+    unproven = UNPROVEN if stated.wheel_radius is not None else UNPROVEN | {"locking_angle"}
+    return not unproven & sifting.rejected.keys()
 
 
 def wheel_of(problem: IndexingProblem, teeth: int, radius: float) -> Ratchet | None:
@@ -76,9 +87,13 @@ def wheel_of(problem: IndexingProblem, teeth: int, radius: float) -> Ratchet | N
     if stated.face_angle is not None:
         wheel = Ratchet(teeth, radius, height, math.radians(stated.face_angle), length)
         return wheel if wheel.reach < length else None
-    wanted = math.atan(stated.friction) + math.radians(stated.reserve)
-    face = least_face(teeth, radius, height, length, wanted)
+    face = least_face(teeth, radius, height, length, _wanted(problem))
     return None if face is None else Ratchet(teeth, radius, height, face, length)
+
+
+def _wanted(problem: IndexingProblem) -> float:
+    """The least locking angle, radians."""
+    return math.atan(problem.pawl.friction) + math.radians(problem.pawl.reserve)
 
 
 def tooth_force(problem: IndexingProblem, wheel: Ratchet) -> float:
@@ -91,6 +106,8 @@ def _margin(problem: IndexingProblem, teeth: int, name: str, radius: float) -> f
     wheel = wheel_of(problem, teeth, radius)
     if wheel is None:
         return math.nan
+    if name == "locking_angle":
+        return wheel.locking_angle - _wanted(problem)
     if name == "web":
         return wheel.thickness - problem.wall
     if name == "bore":
@@ -101,13 +118,20 @@ def _margin(problem: IndexingProblem, teeth: int, name: str, radius: float) -> f
 
 
 def _smallest(problem: IndexingProblem, teeth: int) -> tuple[float, SizedBy] | None:
-    names = ["web", "bore", *(["pin_force"] if problem.constraints.pin_force is not None else [])]
+    names = ["web", "bore"]
+    if problem.constraints.pin_force is not None:
+        names.append("pin_force")
+    if problem.pawl.face_angle is not None:
+        # A face that is sought has this angle at any size.
+        names.append("locking_angle")
     least: dict[str, float] = {}
     for name in names:
         found = least_size(partial(_margin, problem, teeth, name), problem.wall)
-        if found is None:
+        if found is not None:
+            least[name] = found
+        elif name != "locking_angle":
             return None
-        least[name] = found
+        # A face that locks at no size is told by its check.
     setting = max(least, key=lambda name: least[name])
     return least[setting], cast(SizedBy, setting)
 
@@ -169,10 +193,10 @@ def _placed(wheel: Ratchet, count: int, overlap: int) -> list[Pawl]:
     return placed
 
 
-def _summary(problem: IndexingProblem, sifting: Sifting[IndexingDesign | RatchetDesign]) -> str:
+def _summary(problem: IndexingProblem, sifting: Sifting[IndexingDesign | RatchetDesign], complete: bool) -> str:
     best = sifting.passed[0] if sifting.passed else None
     if not isinstance(best, RatchetDesign):
-        told = "None was found" if UNPROVEN & sifting.rejected.keys() else "None exists"
+        told = "None exists" if complete else "None was found"
         return f"{told}: {sifting.listed()}."
     mechanism, metrics, unit = best.mechanism, best.metrics, problem.length_unit
     pawls = "one pawl" if len(mechanism.pawls) == 1 else f"{len(mechanism.pawls)} pawls"

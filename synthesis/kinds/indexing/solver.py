@@ -47,6 +47,7 @@ UNPROVEN = NUMERICAL | {
     "disc_clears_wheel",
     "roller_in_slot",
     "locked_at_rest",
+    "play",
 }
 """Reasons that rest on outlines of finite steps or on rounding: with one of them an empty answer is no proof."""
 

@@ -17,6 +17,7 @@ from synthesis.kinds.indexing.design import GenevaMechanism, IndexingDesign, Sph
 from synthesis.kinds.indexing.forces import Load
 from synthesis.kinds.indexing.problem import IndexingProblem
 from synthesis.kinds.indexing.reactions import Driven, crank_motion, driven, driven_link
+from synthesis.kinds.indexing.sphere import LEAST_CAP
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import ACCELERATION, ANGLE, FORCE, LENGTH, TORQUE
 from synthesis.proof.checks import at_least, at_most, tolerated
@@ -41,6 +42,9 @@ AS_TOLD = 1e-6
 LOCKED = 0.5
 """Share of a rest over which the disc must hold the wheel both ways; at the ends of a rest one side is about to free
 it."""
+
+MOST_PLAY = 0.1
+"""Share of half the angle between stations by which a locked wheel may turn: beyond it the wheel is not held."""
 
 
 def verify_indexing(problem: IndexingProblem, design: IndexingDesign) -> IndexingDesign:
@@ -153,10 +157,21 @@ def _walls(problem: IndexingProblem, design: IndexingDesign, found: Measured) ->
         at_least("roller_in_slot", found.roller, 0.5 * mechanism.roller_diameter, LENGTH, rounding),
         tolerated("disc_clears_wheel", found.overlap / size, AGREES),
         at_least("locked_at_rest", found.locked, LOCKED),
+        at_most("play", found.play, MOST_PLAY * 180.0 / mechanism.stations, ANGLE),
         at_least("wall", found.wall, problem.wall, LENGTH),
         at_least("web", found.web, problem.wall, LENGTH),
     ]
-    if mechanism.type != "geneva_internal":
+    if isinstance(mechanism, SphericalGenevaMechanism):
+        reaches = mechanism.cap_offset / (mechanism.sphere_radius * math.sin(math.radians(mechanism.cap_angle)))
+        checks.append(at_most("locking_disc", reaches, LEAST_CAP))
+    else:
+        disc = mechanism.disc
+        least = 0.5 * mechanism.roller_diameter
+        checks.append(at_least("locking_disc", max(disc.outer_radius), least, LENGTH, rounding))
+    if mechanism.type == "geneva_internal":
+        thinnest = float((np.array(disc.outer_radius) - np.array(disc.inner_radius)).min())
+        checks.append(at_least("crescent", thinnest, problem.wall, LENGTH, rounding))
+    else:
         checks.append(at_least("bore", found.inmost - 0.5 * problem.wheel_shaft_diameter, problem.wall, LENGTH))
     if problem.crank_shaft_diameter > 0.0:
         checks.append(at_least("crank_shaft", found.neck, 0.5 * problem.crank_shaft_diameter, LENGTH))
