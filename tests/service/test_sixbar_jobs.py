@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import cmath
+import math
 import xml.etree.ElementTree as ET
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from synthesis.kinds.motion import by_type
+from synthesis.kinds.motion.design import MotionResult
+from synthesis.model.answer import Search
 from tests.oracles.loops import Loops
 from tests.service.answers import finished
 from tests.service.test_analyses import assert_as_documented
@@ -19,6 +25,7 @@ FIVE = [
     {"x": 100.0, "y": -20.0, "angle": -25.0},
     {"x": 115.0, "y": -60.0, "angle": -40.0},
 ]
+SIX = [*FIVE, {"x": 118.0, "y": -80.0, "angle": -48.0}]
 TASK: dict[str, Any] = {"kind": "motion", "positions": FIVE, "mechanisms": ["watt_1"], "max_designs": 2}
 SIXBARS = "watt_1", "stephenson_1", "stephenson_3"
 FOURBAR_TASK = [FIVE[0], FIVE[1], {"x": 70.0, "y": 20.0, "angle": 30.0}]
@@ -113,9 +120,73 @@ def test_auto_takes_sixbars_where_no_fourbar_is_sound_and_says_so(client):
     assert "no fourbar exists" in result["summary"]
 
 
+def test_types_that_were_not_tried_are_not_said_to_fail(client):
+    result = answered(client, mechanisms=["slider_crank", "watt_1"], max_designs=1)["result"]
+    assert "None of the types named was found but sixbars." in result["summary"]
+    assert "No linkage of two dyads" not in result["summary"]
+
+
+def test_auto_looks_for_sliders_too(client):
+    turned = cmath.rect(1.0, 0.3)
+    pin, crank = 30.0 - 10.0j, 25.0
+    # P is at the slider, the crank's pin at a distance of 90 from it.
+    angles = [0.3, 0.8, 1.2, 1.6, 2.1]
+    pins = [crank * cmath.rect(1.0, angle) + pin for angle in angles]
+    along = [(z / turned).real + math.sqrt(90.0**2 - (z / turned).imag ** 2) for z in pins]
+    poses = [
+        {"x": (x * turned).real, "y": (x * turned).imag, "angle": math.degrees(cmath.phase(x * turned - z))}
+        for x, z in zip(along, pins, strict=True)
+    ]
+    plain = {k: v for k, v in TASK.items() if k != "mechanisms"} | {"positions": poses}
+    without = finished(client, plain)["result"]
+    assert {design["mechanism"]["type"] for design in without["designs"]} == {"slider_crank"}
+    assert answered(client, positions=poses, mechanisms="auto")["result"] == without
+
+
+def _as_of(sort: str, least: float) -> SimpleNamespace:
+    """As much of a design as decides what is offered."""
+    angle = SimpleNamespace(min_transmission_angle=least)
+    return SimpleNamespace(name=sort, metrics=angle, verification=SimpleNamespace(passed=True))
+
+
+@pytest.mark.parametrize(
+    ("fourbar", "sixbars", "most", "offered", "told"),
+    [
+        (10.0, [15.0, 8.0], 5, [15.0, 10.0], "sixbars that have more are offered beside it."),
+        (10.0, [9.0, 8.0], 5, [10.0], "no sixbar that was found has more."),
+        (10.0, [15.0, 14.0, 13.0], 2, [15.0, 10.0], "sixbars that have more are offered beside it."),
+        (10.0, [15.0], 1, [15.0], "sixbars that have more are offered in its place."),
+    ],
+)
+def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbar, sixbars, most, offered, told):
+    monkeypatch.setattr(by_type, "ranked", lambda designs, _: sorted(designs, key=_least, reverse=True))
+    problem = SimpleNamespace(max_designs=most, rank_by="quality")
+    results = [
+        MotionResult.model_construct(
+            designs=[_as_of("design", angle) for angle in angles],
+            search=Search(method="a", complete=False, candidates=9, accepted=len(angles),
+                          rejected={"residual": 9 - len(angles)}, seed=0),
+            summary="",
+        )
+        for angles in ([fourbar], sixbars)
+    ]  # fmt: skip
+    answer = by_type.joined(problem, *results)
+    assert [_least(design) for design in answer.designs] == offered
+    assert told in answer.summary
+    assert answer.search.accepted == len(offered)
+    assert answer.search.candidates == 18 == answer.search.accepted + sum(answer.search.rejected.values())
+
+
+def _least(design) -> float:
+    return design.metrics.min_transmission_angle
+
+
 def test_more_than_five_positions_are_fitted_by_fourbars_under_auto(client):
-    six = [*FIVE, {"x": 118.0, "y": -80.0, "angle": -48.0}]
-    result = answered(client, positions=six, mechanisms="auto")["result"]
+    stated = {"positions": SIX, "input_side": {"fixed_pivot": [40.0, -80.0]}, "include_failed": True}
+    result = answered(client, mechanisms="auto", **stated)["result"]
+    without = finished(client, {k: v for k, v in TASK.items() if k != "mechanisms"} | stated)["result"]
+    assert result["designs"] == without["designs"]
+    assert [design["mechanism"]["fixed_pivots"]["input"] for design in result["designs"]] == 2 * [[40.0, -80.0]]
     assert "Sixbars meet up to five positions; they were not looked for." in result["summary"]
 
 
@@ -227,7 +298,7 @@ def test_room_planes_and_forces_hold_together(client):
         ({"driver_dyad": True}, "/problem/driver_dyad"),
         ({"manufacture": {"tolerances": {"length": 0.1}}}, "/problem/manufacture"),
         ({"space": {"fixed_pivots": {"input": {"circle": {"center": [0, 0], "radius": 9}}}}}, "/problem/space"),
-        ({"positions": [*FIVE, {"x": 118.0, "y": -80.0, "angle": -48.0}]}, "/problem/mechanisms"),
+        ({"positions": SIX}, "/problem/mechanisms"),
         ({"method": "least_squares"}, "/problem/mechanisms"),
         ({"mechanisms": ["fourbar"], "chain": {"elbow": "left"}}, "/problem/chain"),
         ({"chain": {"elbow": "up"}}, "/problem/chain/elbow"),
@@ -235,6 +306,19 @@ def test_room_planes_and_forces_hold_together(client):
         (
             {"chain": {"links": [10.0, 10.0], "fixed_pivot": [0.0, -90.0], "moving_pivot": [0.0, 0.0]}},
             "/problem/chain/links",
+        ),
+        ({"mechanisms": "auto", "chain": {"elbow": "left"}}, "/problem/chain"),
+        ({"mechanisms": ["fourbar", "watt_1"], "chain": {"elbow": "left"}}, "/problem/chain"),
+        ({"mechanisms": "auto", "positions": SIX, "chain": {"elbow": "left"}}, "/problem/chain"),
+        ({"mechanisms": ["slider_crank"], "driver_dyad": True}, "/problem/driver_dyad"),
+        ({"mechanisms": ["slider_crank"], "constraints": {"grashof": "double_crank"}}, "/problem/constraints/grashof"),
+        (
+            {"mechanisms": ["slider_crank"], "positions": FIVE[:2], "ground_line": {"point": [0.0, 0.0], "angle": 0.0}},
+            "/problem/ground_line",
+        ),
+        (
+            {"mechanisms": ["slider_crank"], "positions": FIVE[:2], "output_side": {"fixed_pivot": [0.0, 0.0]}},
+            "/problem/output_side/fixed_pivot",
         ),
         ({"mechanisms": ["fourbar"], "output_side": {"dyad": "PR"}}, "/problem/mechanisms"),
         ({"mechanisms": ["slider_crank"], "output_side": {"dyad": "RR"}}, "/problem/mechanisms"),

@@ -2,20 +2,22 @@
 
 A fourbar or slider-crank that meets all demands stands alone where its least transmission angle is what the client
 demands or, where nothing is demanded, :data:`~synthesis.kinds.motion.chain_search.SOUND` degrees. Otherwise sixbars are
-looked for, and those that are offered beside it are sound.
+looked for, and those that transmit better are offered beside it.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 
 from synthesis.kinds.motion.chain_search import SOUND, solve_sixbars
 from synthesis.kinds.motion.design import MotionResult
-from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.problem import MOST_HELD, MotionProblem
 from synthesis.model.answer import Search
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.outcome.ranking import ranked
+from synthesis.outcome.sifting import OUTRANKED
 
 Solve = Callable[[MotionProblem, Progress], MotionResult]
 
@@ -35,43 +37,17 @@ def solve_types(problem: MotionProblem, two_dyads: Solve, progress: Progress) ->
     progress : callable
         Told how far the work is.
     """
-    sixbars = problem.sixbars
-    parts = _simple(problem)
-    results: list[MotionResult] = []
-    for n, part in enumerate(parts):
-        share = 0.4 if sixbars else 1.0
-        span = part_of(progress, share * n / len(parts), share * (n + 1) / len(parts))
-        results.append(two_dyads(part, span))
-        if any(design.verification.passed for design in results[-1].designs):
-            break
-    if not sixbars:
-        told = f" {MANY}" if problem.mechanisms == "auto" and not problem.few_enough else ""
-        return results[-1].model_copy(update={"summary": results[-1].summary + told})
-    simple = [design for result in results for design in result.designs if design.verification.passed]
-    if any(_sound(problem, design) for design in simple):
-        return results[-1]
-    found = solve_sixbars(problem, sixbars, part_of(progress, 0.4 if parts else 0.0, 1.0))
-    return _joined(problem, results, simple, found) if results else found
-
-
-def _simple(problem: MotionProblem) -> list[MotionProblem]:
-    """The problems of two dyads to be solved one after the other until one has an answer, the simpler first."""
-    if problem.mechanisms == "auto" or problem.slider is not None:
-        return [problem]
-    stated = set(problem.mechanisms or ())
-    # What is looked for where only some types are may fail: that is no reason to look for other sliders.
-    parts = []
-    if {"fourbar", "slider_crank"} <= stated:
-        return [problem]
-    if "fourbar" in stated:
-        pins = {
-            name: getattr(problem, name).model_copy(update={"dyad": "RR"}) for name in ("input_side", "output_side")
-        }
-        parts.append(problem.model_copy(update=pins))
-    if "slider_crank" in stated:
-        slide = problem.output_side.model_copy(update={"dyad": "PR"})
-        parts.append(problem.model_copy(update={"output_side": slide}))
-    return parts
+    part = problem.of_two_dyads
+    if part is None:
+        return solve_sixbars(problem, problem.sixbars, progress)
+    if not problem.sixbars:
+        result = two_dyads(part, progress)
+        told = f" {MANY}" if problem.mechanisms == "auto" else ""
+        return result.model_copy(update={"summary": result.summary + told})
+    simple = two_dyads(part, part_of(progress, 0.0, 0.4))
+    if any(_sound(problem, design) for design in _passed(simple)):
+        return simple
+    return joined(problem, simple, solve_sixbars(problem, problem.sixbars, part_of(progress, 0.4, 1.0)))
 
 
 def _sound(problem: MotionProblem, design: LinkageDesign) -> bool:
@@ -80,46 +56,82 @@ def _sound(problem: MotionProblem, design: LinkageDesign) -> bool:
     return demanded is not None or design.metrics.min_transmission_angle >= SOUND
 
 
-def _joined(
-    problem: MotionProblem, results: list[MotionResult], simple: list[LinkageDesign], found: MotionResult
-) -> MotionResult:
-    """The answers of simple linkages and of sixbars as one: sixbars beside others where they alone are sound."""
-    better = [design for design in found.designs if design.verification.passed]
-    if simple:
-        better = [design for design in better if _sound(problem, design)]
-        best = max(design.metrics.min_transmission_angle for design in simple)
-        told = f"The best linkage of two dyads has a least transmission angle of {best:.1f}°"
-        more = (
-            "; sixbars that have more are offered beside it." if better else ", and no sixbar that was found has more."
-        )
-        told += more
-    elif better:
-        told = "No linkage of two dyads does it; sixbars do."
+def _passed(result: MotionResult) -> list[LinkageDesign]:
+    return [design for design in result.designs if design.verification.passed]
+
+
+def joined(problem: MotionProblem, simple: MotionResult, found: MotionResult) -> MotionResult:
+    """The answer of linkages of two dyads that are not sound, if there are any, and that of sixbars, as one.
+
+    Sixbars stand beside those linkages only where they transmit better than the best of them. What passed and is not
+    offered counts as outranked.
+    """
+    plain, better = _passed(simple), _passed(found)
+    best = max((design.metrics.min_transmission_angle for design in plain), default=0.0)
+    if plain:
+        better = [design for design in better if design.metrics.min_transmission_angle > best]
+    offered = _offered(problem, plain, better)
+    sixbars = [design for design in offered if any(design is one for one in better)]
+    if not plain:
+        told = _without_simple(problem, simple, better)
     else:
-        told = "Neither a linkage of two dyads nor a sixbar was found."
-    failed = [design for result in (*results, found) for design in result.designs if not design.verification.passed]
-    designs = ranked([*simple, *better], problem.rank_by)
-    return results[-1].model_copy(
+        told = f"The best linkage of two dyads has a least transmission angle of {best:.1f}°"
+        if not better:
+            told += ", and no sixbar that was found has more."
+        elif not sixbars:
+            told += "; sixbars have more, for which max_designs leaves no room."
+        else:
+            beside = "beside it" if len(sixbars) < len(offered) else "in its place"
+            told += f"; sixbars that have more are offered {beside}."
+    failed = [one for result in (simple, found) for one in result.designs if not one.verification.passed]
+    searches = _offering(simple.search, len(offered) - len(sixbars)), _offering(found.search, len(sixbars))
+    return simple.model_copy(
         update={
-            "designs": [*designs, *ranked(failed, problem.rank_by)][: problem.max_designs],
-            "search": _account([result.search for result in (*results, found)]),
-            "summary": " ".join([told, results[-1].summary, found.summary]),
+            "designs": [*offered, *ranked(failed, problem.rank_by)][: problem.max_designs],
+            "search": _account(*searches),
+            "summary": " ".join([told, simple.summary, found.summary]),
         }
     )
 
 
-def _account(searches: list[Search]) -> Search:
-    """The account of several searches as one."""
-    rejected: dict[str, int] = {}
-    for search in searches:
-        for reason, count in search.rejected.items():
-            rejected[reason] = rejected.get(reason, 0) + count
-    return searches[-1].model_copy(
+def _offered(problem: MotionProblem, plain: list[LinkageDesign], better: list[LinkageDesign]) -> list[LinkageDesign]:
+    """As many as are wanted, the best first; where two are, the best of both sorts."""
+    order = ranked([*plain, *better], problem.rank_by)
+    kept = order[: problem.max_designs]
+    for sort in (plain, better):
+        if sort and len(kept) > 1 and not any(design is one for design in kept for one in sort):
+            kept[-1] = next(design for design in order if any(design is one for one in sort))
+    return kept
+
+
+def _without_simple(problem: MotionProblem, simple: MotionResult, sixbars: list[LinkageDesign]) -> str:
+    """What is said where no linkage of two dyads passed: that none exists, only where that is proven of all of them."""
+    every = problem.mechanisms == "auto" or {"fourbar", "slider_crank"} <= set(problem.mechanisms or ())
+    # Five positions that are met exactly leave a few dyads, sliders among them. With fewer, sliders are drawn.
+    exact = len(problem.positions) == MOST_HELD and all(limits == (0.0, 0.0, 0.0) for limits in problem.limits)
+    if every and exact and simple.search.complete:
+        return f"No linkage of two dyads does it{'; sixbars do' if sixbars else ', and no sixbar was found'}."
+    if problem.mechanisms == "auto":
+        none = "Neither a linkage of two dyads nor a sixbar was found."
+        return "No linkage of two dyads was found; sixbars were." if sixbars else none
+    return f"None of the types named was found{' but sixbars' if sixbars else ''}."
+
+
+def _offering(search: Search, count: int) -> Search:
+    """The account of a search of which so many designs are offered at most."""
+    withdrawn = max(search.accepted - count, 0)
+    rejected = Counter(search.rejected) + Counter({OUTRANKED: withdrawn})
+    return search.model_copy(update={"accepted": search.accepted - withdrawn, "rejected": dict(rejected)})
+
+
+def _account(first: Search, second: Search) -> Search:
+    """The account of two searches as one."""
+    return second.model_copy(
         update={
-            "method": ", ".join(search.method for search in searches),
+            "method": f"{first.method}, {second.method}",
             "complete": False,
-            "candidates": sum(search.candidates for search in searches),
-            "accepted": sum(search.accepted for search in searches),
-            "rejected": rejected,
+            "candidates": first.candidates + second.candidates,
+            "accepted": first.accepted + second.accepted,
+            "rejected": dict(Counter(first.rejected) + Counter(second.rejected)),
         }
     )

@@ -41,6 +41,8 @@ PARALLEL = 1e-9
 ON_LINE = 1e-9
 """Share of the task's size by which a stated pivot may lie off a stated line: rounding."""
 
+SIDES = "input_side", "output_side"
+
 MOST_HELD = 5
 """Positions that a linkage of two dyads can take exactly, in general (Norton, Table 5-3)."""
 
@@ -204,7 +206,8 @@ class MotionProblem(LinkageProblem):
         "none of these is sound. Left out: fourbars, and slider-cranks where pins cannot do it.",
     )
     chain: Chain | None = Field(
-        default=None, description="What is fixed of the chain of three links that sixbars are made of."
+        default=None,
+        description="What is fixed of the chain of three links that sixbars are made of; with a list of sixbars alone.",
     )
 
     @property
@@ -215,6 +218,22 @@ class MotionProblem(LinkageProblem):
         if self.mechanisms == "auto":
             return SIXBARS if self.few_enough else ()
         return tuple(name for name in SIXBARS if name in self.mechanisms)
+
+    @property
+    def of_two_dyads(self) -> MotionProblem | None:
+        """The problem of the fourbars and slider-cranks among the types, as it is stated without types; None without
+        these."""
+        named = self.mechanisms
+        sides: dict[str, DyadChoices] = {}
+        if isinstance(named, list) and self.slider is None:
+            if "fourbar" not in named and "slider_crank" not in named:
+                return None
+            # What is looked for where only some types are may fail: that is no reason to look for others.
+            if "slider_crank" not in named:
+                sides = {side: getattr(self, side).model_copy(update={"dyad": "RR"}) for side in SIDES}
+            elif "fourbar" not in named:
+                sides = {"output_side": self.output_side.model_copy(update={"dyad": "PR"})}
+        return self.model_copy(update={"mechanisms": None, "chain": None, **sides})
 
     @property
     def few_enough(self) -> bool:
@@ -382,6 +401,11 @@ class MotionProblem(LinkageProblem):
 
     def contradictions(self) -> list[Contradiction]:
         """Faults that no single field shows: equal positions, too many or colliding choices."""
+        listed = self._contradictions()
+        part = None if self.mechanisms is None else self.of_two_dyads
+        return listed if part is None else list(dict.fromkeys([*listed, *part.contradictions()]))
+
+    def _contradictions(self) -> list[Contradiction]:
         return [
             *self._equal_positions(),
             *self._misplaced_tolerances(),

@@ -37,15 +37,15 @@ class Chain(Statement):
 
 
 def of_sixbars(problem: Any) -> list[Contradiction]:
-    """What cannot be demanded where sixbars are looked for."""
+    """What cannot be demanded of the types that are looked for."""
     listed: list[Contradiction] = []
     stated = problem.mechanisms
-    if stated is None or not {"auto", *SIXBARS} & {stated if isinstance(stated, str) else "", *stated}:
-        if problem.chain is not None:
-            detail = "belongs to sixbars; state a type of sixbar, or auto, in mechanisms"
-            listed.append(Contradiction("/chain", detail))
+    if problem.chain is not None and not (isinstance(stated, list) and set(stated) <= set(SIXBARS)):
+        detail = "belongs to sixbars; name types of sixbars alone in mechanisms"
+        listed.append(Contradiction("/chain", detail))
+    if not problem.sixbars:
         return [*listed, *_of_types(problem)]
-    if stated != "auto" and not problem.few_enough:
+    if not problem.few_enough:
         detail = "sixbars meet up to five positions, exactly or within tolerances; take fourbars for more, or for a fit"
         listed.append(Contradiction("/mechanisms", detail))
     for name, of_fourbars in (
