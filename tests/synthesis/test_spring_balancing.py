@@ -17,10 +17,12 @@ from scipy.optimize import linprog
 from kinematics.dynamics.reactions import reactions
 from synthesis.analyses.driven import placed
 from synthesis.dispatch import solve
+from synthesis.kinds.spring_balancing import branching
 from synthesis.kinds.spring_balancing.branching import branched
 from synthesis.kinds.spring_balancing.effects import Setting, effects_of, hull
 from synthesis.kinds.spring_balancing.found import Spring, drive_of, value_of
 from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
+from synthesis.kinds.spring_balancing.program import NOTHING, Best
 from synthesis.kinds.spring_balancing.verification import answer_of, machine_of_answer, outside, verify_springs
 from synthesis.registry import examples
 from tests.synthesis.balanced_linkages import pair
@@ -58,6 +60,19 @@ def test_a_lever_is_balanced_by_the_rate_of_the_closed_form() -> None:
     assert design.metrics.drive < 1e-12 * design.metrics.unbalanced_drive
     assert design.metrics.energy_variation < 1e-12
     assert design.metrics.unbalanced_drive == pytest.approx(5.0 * GRAVITY * 0.3, rel=1e-6)
+
+
+@pytest.mark.parametrize("beyond", [1.0000001, 1.000001, 1.00001, 1.0001])
+def test_a_balance_that_is_nearly_exact_is_an_answer(beyond: float) -> None:
+    """The rate is given and off by a little: what is left is that share, and no share of it is the bound's distance."""
+    ends = [{"link": "ground", "point": [0.0, 250.0]}, {"link": "lever", "point": [200.0, 0.0]}]
+    rate = beyond * 5.0 * GRAVITY * 0.3 / (0.25 * 0.2)
+    result = solve(problem_of({**LEVER, "springs": [{"ends": ends, "rate": rate}]}))
+    assert result.designs, result.summary
+    metrics = result.designs[0].metrics
+    assert result.search.complete
+    assert metrics.value == pytest.approx(beyond - 1.0, rel=1e-6)
+    assert metrics.value - 3e-7 <= metrics.bound <= metrics.value
 
 
 def test_of_exact_springs_the_softest_is_given() -> None:
@@ -194,6 +209,33 @@ def test_branching_proves_what_no_end_of_a_grid_betters() -> None:
     least /= float(np.sqrt((setting.fixed**2).mean()))
     assert found.bound <= found.value <= least * (1.0 + 1e-6)
     assert least <= found.value * 1.05
+
+
+def test_a_part_whose_program_failed_keeps_the_bound_of_what_it_is_a_part_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The whole promises half of what it could, and one of its halves fails: no more is known than that promise."""
+    setting = Setting(problem_of(BOTH))
+    places = [setting.places(setting.problem.springs[0])]
+    solved_at, promised = branching.solved_at, 0.5 * branching.solved_at(setting, places).bound
+    parts = []
+
+    def failing(setting: Setting, places: branching.Places, *, bounded: bool = True) -> Best:
+        found = solved_at(setting, places, bounded=bounded)
+        if not bounded:
+            parts.append(found)
+            return NOTHING if len(parts) == 1 else found
+        return found._replace(bound=promised)
+
+    monkeypatch.setattr(branching, "solved_at", failing)
+    found = branched(setting, places, lambda share: None)
+    assert len(parts) >= 2
+    assert found.bound == promised < 0.9 * found.value
+    assert not found.proved
+
+
+def test_where_the_search_ends_before_anything_is_found_nothing_is_proved(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(branching, "NODES", 0)
+    setting = Setting(problem_of(BOTH))
+    assert branched(setting, [setting.places(setting.problem.springs[0])], lambda share: None).status == "failed"
 
 
 def test_a_search_is_no_worse_than_springs_that_are_known() -> None:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from synthesis.kinds.spring_balancing.effects import Setting, effects_of, hull
 from synthesis.kinds.spring_balancing.found import Spring, centres, springs_of
-from synthesis.kinds.spring_balancing.program import EXACT, Best, best
+from synthesis.kinds.spring_balancing.program import Best, best, left_open
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -62,11 +62,12 @@ def branched(setting: Setting, places: Places, report: Callable[[float], None]) 
         return Branched(whole.status, springs, whole.value, whole.bound, proved=whole.status == "solved")
     order = count()
     parts = [(whole.bound, next(order), places, whole)]
-    value, springs, looked, failed = np.inf, list[Spring](), 1, False
-    bound = whole.bound
+    value, springs, looked = np.inf, list[Spring](), 1
+    least = np.inf  # bound of all parts that are not looked into any more
     while parts:
         bound, _, mine, relaxed = heapq.heappop(parts)
         if _near(value, bound) or looked > NODES:
+            least = min(least, bound)
             break
         reached, given = _alternated(setting, mine, relaxed, open_both)
         if reached.value < value:
@@ -78,21 +79,20 @@ def branched(setting: Setting, places: Places, report: Callable[[float], None]) 
             child[wide] = [half, mine[wide][1]]
             found = solved_at(setting, child, bounded=False)
             looked += 1
-            failed = failed or found.status == "failed"
+            if found.status == "failed":
+                least = min(least, bound)
             if found.status == "solved" and found.bound < value:
                 # No part promises less than the whole of which it is one.
                 heapq.heappush(parts, (max(found.bound, bound), next(order), child, found))
-    else:
-        bound = value
-    bound = min(bound, value)
     if not np.isfinite(value):
-        return Branched("failed" if failed or parts else "infeasible", [], value, bound, proved=not failed)
-    return Branched("solved", springs, value, bound, proved=not failed and _near(value, bound))
+        return Branched("failed" if np.isfinite(least) else "infeasible", [], value, least, proved=False)
+    bound = min(value, least)
+    return Branched("solved", springs, value, bound, proved=_near(value, bound))
 
 
 def _near(value: float, bound: float) -> bool:
     """Whether a value is proved to be the least, but for the gap."""
-    return np.isfinite(value) and value - bound <= max(GAP * value, EXACT)
+    return np.isfinite(value) and value - bound <= left_open(value, GAP)
 
 
 def _alternated(setting: Setting, places: Places, relaxed: Best, open_both: Sequence[int]) -> tuple[Best, Places]:

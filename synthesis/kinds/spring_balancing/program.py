@@ -35,6 +35,9 @@ CLOSE = 1e-5
 TOLERANCE = 1e-7
 """Share of the unbalanced drive and of the dual value by which the bound is less than this: the solver's tolerance."""
 
+OPEN = 3.0 * TOLERANCE
+"""Difference of value and bound that the solver's tolerance leaves: near an exact balance no share of the value."""
+
 NEARLY = 1e-4
 """Value from which on an exact balance is looked for."""
 
@@ -85,6 +88,11 @@ class _Scaled(NamedTuple):
 def size_of(values: Real, norm: Norm) -> float:
     """The norm of a drive over positions."""
     return float(np.abs(values).max()) if norm == "max" else float(np.sqrt((values**2).mean()))
+
+
+def left_open(value: float, share: float) -> float:
+    """How far the bound of a proved optimum may be below the value: a share of it, or what the solver leaves."""
+    return max(share * value, OPEN)
 
 
 def best(fixed: Real, effects: Sequence[Effects], norm: Norm, *, bounded: bool = True) -> Best:

@@ -25,7 +25,7 @@ from synthesis.kinds.spring_balancing.effects import GRID, Setting
 from synthesis.kinds.spring_balancing.energy import has_potential, lengths, potential, tension
 from synthesis.kinds.spring_balancing.found import Spring, listed
 from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
-from synthesis.kinds.spring_balancing.program import size_of
+from synthesis.kinds.spring_balancing.program import left_open, size_of
 from synthesis.kinds.spring_balancing.stated_springs import SoughtSpring
 from synthesis.mechanisms.link_bodies import BlockError
 from synthesis.mechanisms.machine import machine_of
@@ -39,7 +39,7 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 GAP = 5e-3
-"""Share of the value that a proved bound may be below it."""
+"""Share of the value that a proved bound may be below it; near an exact balance it is the solver's tolerance."""
 
 AGREEMENT = 1e-6
 """Share of the peak by which two routes to the drive may differ."""
@@ -101,7 +101,7 @@ def verify_springs(
     if bound is not None and not exact:
         checks.insert(0, at_least("bound", value, bound))
     if gap is not None and proved and not exact:
-        checks.append(tolerated("gap", gap, GAP))
+        checks.append(tolerated("gap", gap, left_open(value, GAP) / value))
     if exact and varied is not None:
         checks.append(tolerated("potential_energy", varied, VANISHES))
     built = machine.loads[len(machine.loads) - len(springs) :]
