@@ -185,6 +185,21 @@ def test_a_conic_program_says_what_it_is() -> None:
     assert round_one.x == pytest.approx([-0.6, -0.8], abs=1e-6)
 
 
+def test_a_conic_program_of_reduced_accuracy_proves_nothing() -> None:
+    """A place beyond a disc by 10⁻⁵ only; and x y ≥ 1 with x ≤ 10⁻⁵, where x comes as near to 0 as one likes."""
+    disc = Rows("second_order", np.array([[0.0, 0.0], [-1.0, 0.0], [0.0, -1.0]]), np.array([1.0, 0.0, 0.0]), 3)
+    statuses = []
+    for beyond in (1e-2, 1e-5):
+        far = Rows("nonnegative", np.array([[-1.0, 0.0]]), np.array([-(1.0 + beyond)]))
+        statuses.append(minimized(np.array([0.0, 1.0]), [disc, far]).status)
+    assert statuses == ["infeasible", "failed"]
+    product = Rows("second_order", np.array([[-1.0, -1.0], [0.0, 0.0], [-1.0, 1.0]]), np.array([0.0, 2.0, 0.0]), 3)
+    small = Rows("nonnegative", np.array([[1.0, 0.0]]), np.array([1e-5]))
+    found = minimized(np.array([1.0, 0.0]), [product, small])
+    assert found.status == "solved"
+    assert found.dual == -np.inf
+
+
 @pytest.mark.parametrize("disc", [{}, {"density": 7800.0, "thickness": 20.0}])
 def test_gyration_is_limited_where_the_inertia_does_not_count(disc: dict[str, float]) -> None:
     problem = problem_of(

@@ -17,13 +17,14 @@ from scipy.optimize import linprog
 from kinematics.dynamics.reactions import reactions
 from synthesis.analyses.driven import placed
 from synthesis.dispatch import solve
-from synthesis.kinds.spring_balancing import branching
+from synthesis.kinds.spring_balancing import branching, program
 from synthesis.kinds.spring_balancing.branching import branched
 from synthesis.kinds.spring_balancing.effects import Setting, effects_of, hull
 from synthesis.kinds.spring_balancing.found import Spring, drive_of, value_of
 from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
 from synthesis.kinds.spring_balancing.program import NOTHING, Best
 from synthesis.kinds.spring_balancing.verification import answer_of, machine_of_answer, outside, verify_springs
+from synthesis.numerics.conic import minimized
 from synthesis.registry import examples
 from tests.synthesis.balanced_linkages import pair
 from tests.synthesis.sprung_linkages import GRAVITY, both_open, fourbar, lever, missed, slider_crank
@@ -73,6 +74,20 @@ def test_a_balance_that_is_nearly_exact_is_an_answer(beyond: float) -> None:
     assert result.search.complete
     assert metrics.value == pytest.approx(beyond - 1.0, rel=1e-6)
     assert metrics.value - 3e-7 <= metrics.bound <= metrics.value
+
+
+def test_where_the_solver_gives_no_bound_the_springs_are_answered_without_proof(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    proved = solve(problem_of(REAL))
+    monkeypatch.setattr(program, "minimized", lambda *stated: minimized(*stated)._replace(dual=-np.inf))
+    result = solve(problem_of(REAL))
+    assert result.designs, result.summary
+    assert proved.search.complete
+    assert not result.search.complete
+    assert result.designs[0].metrics.bound == 0.0
+    assert result.designs[0].metrics.value == pytest.approx(proved.designs[0].metrics.value, rel=1e-4)
+    assert "what lies between is open" in result.summary
 
 
 def test_of_exact_springs_the_softest_is_given() -> None:

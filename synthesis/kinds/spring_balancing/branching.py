@@ -59,7 +59,7 @@ def branched(setting: Setting, places: Places, report: Callable[[float], None]) 
     whole = solved_at(setting, places)
     if not open_both or whole.status != "solved":
         springs = springs_of(setting, places, whole.parameters) if whole.status == "solved" else []
-        return Branched(whole.status, springs, whole.value, whole.bound, proved=whole.status == "solved")
+        return Branched(whole.status, springs, whole.value, whole.bound, proved=_near(whole.value, whole.bound))
     order = count()
     parts = [(whole.bound, next(order), places, whole)]
     value, springs, looked = np.inf, list[Spring](), 1
