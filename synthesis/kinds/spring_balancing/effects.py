@@ -239,8 +239,7 @@ def _superposed(setting: Setting, spring: SoughtSpring, span: Complex, along: Re
         limited = span if np.isfinite(min(longest, strongest)) else None
         return Effects(along, kept.matrix, np.array(kept.limits), ones, limited, longest, strongest)
     length = np.abs(span[0])
-    least = 0.0 if spring.min_length is None else scale * spring.min_length
-    if length.max() > longest * (1.0 + MET) or length.min() < least * (1.0 - MET):
+    if length.max() > longest * (1.0 + MET):
         kept.at_most([1.0])
     if np.isfinite(strongest):
         kept.at_most([float(length.max()) / strongest], 1.0)
