@@ -50,7 +50,9 @@ class SpringMetrics(Answer):
     value: float = Field(description="What is left of the drive, as a share of what it was: of its peak, or its rms.")
     bound: float | None = optional("No springs that are asked for leave less. Left out where that is not known.")
     gap: float | None = optional("How far the value is above the bound, as a share of it.")
-    exact: bool = Field(description="Whether the drive vanishes, but for rounding: the energy is constant.")
+    exact: bool = Field(
+        description="Whether the drive vanishes, but for rounding; at rest with steady loads the energy is constant."
+    )
     drive: Torque = Field(description="Greatest, with the springs.")
     unbalanced_drive: Torque = Field(description="Greatest, without.")
     rms_drive: Torque = Field(description="Root of the mean square over the motion, with the springs.")

@@ -59,7 +59,7 @@ class SpringBalancingProblem(StatedProblem):
 
     Rates, preloads and free lengths at given ends, and one open end of a zero-free-length spring, are the best there
     are, with a proven bound; so are both ends of such springs where the bound is reached. Ends of other springs are
-    searched for. Where springs can balance the linkage exactly, the energy of all that moves is constant.
+    searched for. Where springs balance a linkage at rest exactly, the energy of all that it carries is constant.
     """
 
     model_config = ConfigDict(

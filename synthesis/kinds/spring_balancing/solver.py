@@ -74,7 +74,8 @@ def _summary(sifting: Sifting[SprungDesign], proved: bool) -> str:
         return f"No design was found.{sifting.reasons()}"
     metrics = min(sifting.passed, key=lambda design: design.metrics.value).metrics
     if metrics.exact:
-        return "The springs balance it exactly: the drive is zero and the potential energy constant over the motion."
+        energy = "" if metrics.energy_variation is None else " and the potential energy constant"
+        return f"The springs balance it exactly: the drive is zero{energy} over the motion."
     said = f"The drive is brought to {metrics.value:.4g} of what it was"
     if metrics.bound is None:
         return f"{said}, the least that was found; that no springs leave less is not proved."
