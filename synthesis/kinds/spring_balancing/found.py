@@ -98,8 +98,7 @@ def _needed(setting: Setting, springs: list[Spring]) -> list[Spring]:
     for spring in springs:
         stated = setting.problem.springs[spring.number]
         effect = float(np.abs(drive_of(setting, spring)).max())
-        demanded = stated.rates[0] > 0.0 or (stated.ends is not None and stated.preload > 0.0)
-        if demanded or effect > ABSENT * setting.peak:
+        if stated.demanded or effect > ABSENT * setting.peak:
             kept.append(spring)
     return kept
 

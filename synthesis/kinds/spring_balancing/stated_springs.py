@@ -167,6 +167,11 @@ class SoughtSpring(Statement):
         return self.preload, self.preload if self.max_preload is None else self.max_preload
 
     @property
+    def demanded(self) -> bool:
+        """Whether it may not be left out: a rate or a preload is asked of it."""
+        return self.rates[0] > 0.0 or self.preloads[0] > 0.0
+
+    @property
     def without_length(self) -> bool:
         """Whether it is a zero-free-length spring."""
         return self.ends is not None and self.free_lengths == (0.0, 0.0) and self.preloads == (0.0, 0.0)

@@ -33,7 +33,7 @@ from synthesis.mechanisms.skeleton import GivenSkeleton, skeleton_of
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dynamics import DynamicsBlock
 from synthesis.model.linkage_answer import Skeleton
-from synthesis.proof.checks import at_least, at_most, tolerated
+from synthesis.proof.checks import LIMIT_SLACK, at_least, at_most, tolerated
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -52,6 +52,9 @@ ROUNDING = 1e-14
 
 KEPT = 1e-4
 """Share of a limit by which a spring may be beyond it between the positions that the program has looked at."""
+
+STILL = ("rate", "free_length", "preload")
+"""Limits of what a spring is at all positions; these are kept but for rounding."""
 
 SLENDER = 4.0
 """Free length over diameter from which a compression spring buckles."""
@@ -106,6 +109,7 @@ def verify_springs(
         checks.append(tolerated("potential_energy", varied, VANISHES))
     built = machine.loads[len(machine.loads) - len(springs) :]
     told = [_told(setting, spring, load, after) for spring, load in zip(springs, built, strict=True)]
+    checks += _present(problem, told)
     checks += _limits(problem, told)
     checks += _places(setting, springs)
     metrics = SpringMetrics(
@@ -198,13 +202,24 @@ def _told(setting: Setting, spring: Spring, load: Any, after: Held) -> FoundSpri
     )
 
 
+def _present(problem: SpringBalancingProblem, told: Sequence[FoundSpring]) -> list[Check]:
+    """How many of the springs that may not be left out are missing."""
+    demanded = {n for n, spring in enumerate(problem.springs) if spring.demanded}
+    missing = demanded - {spring.number for spring in told}
+    return [tolerated("demanded_springs", float(len(missing)), 0.0)] if demanded else []
+
+
 def _limits(problem: SpringBalancingProblem, told: Sequence[FoundSpring]) -> list[Check]:
-    """Every sort of limit that is stated, each as the largest share of it that a spring takes."""
+    """Every sort of limit that is stated, each as the largest share of it that a spring takes.
+
+    Free angles may be of either sign; how far the farthest is outside of its limits is told in radians.
+    """
     shares: dict[str, list[float]] = {}
+    outside_of: list[float] = []
 
     def most(name: str, value: float | None, limit: float | None) -> None:
         if value is not None and limit is not None:
-            shares.setdefault(name, []).append(value / limit if limit > 0.0 else float(value > 0.0))
+            shares.setdefault(name, []).append(value / limit if limit > 0.0 else np.inf if value > 0.0 else 0.0)
 
     def least(name: str, value: float | None, limit: float | None) -> None:
         if value is not None and limit:
@@ -216,6 +231,9 @@ def _limits(problem: SpringBalancingProblem, told: Sequence[FoundSpring]) -> lis
         least("rate", spring.rate if asked.links is None else spring.torsion, low)
         most("rate", spring.rate if asked.links is None else spring.torsion, high)
         if asked.links is not None:
+            assert spring.free_angle is not None
+            lowest, highest = asked.free_angles
+            outside_of.append(float(np.radians(max(lowest - spring.free_angle, spring.free_angle - highest, 0.0))))
             most("max_torque", spring.max_torque, asked.max_torque)
             continue
         if not asked.without_length:
@@ -233,7 +251,11 @@ def _limits(problem: SpringBalancingProblem, told: Sequence[FoundSpring]) -> lis
             least("extension", shortest, free)
         if asked.form == "compression":
             most("compression", longest, free)
-    return [at_most(name, max(listed_shares), 1.0, slack=KEPT) for name, listed_shares in shares.items()]
+    checks = [
+        at_most(name, max(listed_shares), 1.0, slack=LIMIT_SLACK if name in STILL else KEPT)
+        for name, listed_shares in shares.items()
+    ]
+    return [*checks, tolerated("free_angle", max(outside_of), VANISHES)] if outside_of else checks
 
 
 def _places(setting: Setting, springs: Sequence[Spring]) -> list[Check]:
