@@ -20,7 +20,7 @@ from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, Mesh
 from kinematics.gear.train import OrdinaryTrain, TrainStage
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
 from synthesis.model.answer import Answer, optional
-from synthesis.model.gear_answer import MeshGeometry, Ratio, mesh_geometries, rack_contact
+from synthesis.model.gear_answer import MeshGeometry, Ratio, mesh_geometries, rack_contact, rack_undercuts
 from synthesis.model.gear_statement import PressureAngle, ShiftCoefficient, ToothNumber
 from synthesis.model.gear_strength import Loaded, PairStrength, StrengthMethod, told
 from synthesis.model.statement import Number, PositiveNumber, Statement
@@ -263,10 +263,15 @@ def _gears(
 ) -> list[dict[str, Any]]:
     """Every gear with its dimensions and its motion, from the input to the output."""
     gears = []
-    for number, (stage, speeds) in enumerate(zip(train.stages, train.speeds, strict=True), 1):
+    for number, (stage, meshes, speeds) in enumerate(zip(train.stages, train.meshes, train.speeds, strict=True), 1):
         roles = ["driver", *("idler" for _ in stage.idlers), "driven"]
         cut = stage.cut_gears(train.pressure_angle)
-        for role, teeth, gear, share in zip(roles, stage.gears, cut, speeds, strict=True):
+        if stage.shifts == (0.0, 0.0):
+            undercut = [replace(gear, addendum=FULL_DEPTH_ADDENDUM).is_undercut for gear in cut]
+        else:
+            # As the mesh tells it: a shifted stage has one.
+            undercut = list(rack_undercuts(meshes[0]))[:: 1 if stage.driver <= stage.driven else -1]
+        for role, teeth, gear, share, taken in zip(roles, stage.gears, cut, speeds, undercut, strict=True):
             turns = float(share)
             gears.append(
                 {
@@ -279,7 +284,7 @@ def _gears(
                     "root_diameter": 2.0 * gear.root_radius,
                     "base_diameter": 2.0 * gear.base_radius,
                     "tooth_thickness": gear.tooth_thickness,
-                    "undercut": replace(gear, addendum=FULL_DEPTH_ADDENDUM).is_undercut,
+                    "undercut": taken,
                     "speed_ratio": turns,
                     **request.motion.geared(turns, at, speed),
                 }

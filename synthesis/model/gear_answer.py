@@ -101,6 +101,12 @@ def rack_contact(mesh: Mesh, depths: tuple[float, float] | None = None) -> Conta
     return Contact(mesh, (one, two))
 
 
+def rack_undercuts(mesh: Mesh) -> tuple[bool, bool]:
+    """Whether the rack of full-depth teeth takes away from the flanks of the pinion, and of the gear."""
+    one, two = (form < -ON_LIMIT * mesh.centre_distance for form in rack_contact(mesh).forms)
+    return one, two
+
+
 def fitted_geometry(stage: int, driver: int, driven: int, mesh: Mesh) -> MeshGeometry:
     """Geometry of a mesh whose teeth are fitted; contact in a fillet is interference too."""
     contact, slack = rack_contact(mesh), ON_LIMIT * mesh.centre_distance
@@ -113,7 +119,7 @@ def fitted_geometry(stage: int, driver: int, driven: int, mesh: Mesh) -> MeshGeo
         centre_distance=mesh.centre_distance,
         contact_ratio=mesh.contact_ratio,
         interferes=min(*contact.margins, *contact.reaches) < -slack,
-        undercut=min(contact.forms) < -slack,
+        undercut=any(rack_undercuts(mesh)),
         working_pressure_angle=math.degrees(mesh.pressure_angle),
         tip_diameter=LengthOfGears(driver=2.0 * one.tip_radius, driven=2.0 * two.tip_radius),
         tip_shortening=(1.0 - one.addendum) * one.module,

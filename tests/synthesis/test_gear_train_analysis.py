@@ -76,6 +76,18 @@ def test_mesh_geometry_of_norton_example_9_1() -> None:
     assert (turned.approach, turned.recess) == (mesh.recess, mesh.approach)
 
 
+@pytest.mark.parametrize("shift", [0.05, 0.2])
+def test_undercut_of_a_gear_is_that_of_its_mesh(shift: float) -> None:
+    """At 25° the straight flank of the rack is deeper than a module: 11 teeth need a shift of 0.08."""
+    small, large = {"driver": shift, "driven": 0.0}, {"driver": 0.0, "driven": shift}
+    found = analysed(
+        [{"driver": 11, "driven": 40, "shift": small}, {"driver": 40, "driven": 11, "shift": large}],
+        given={"pressure_angle": 25.0},
+    )
+    assert [gear.undercut for gear in found.gears] == [shift < 0.08, False, False, shift < 0.08]
+    assert [mesh.undercut for mesh in found.meshes] == [shift < 0.08] * 2
+
+
 def test_friction_costs_about_a_hundredth() -> None:
     found = analysed([{"driver": 20, "driven": 60}], friction=0.06)
     assert found.efficiency is not None
