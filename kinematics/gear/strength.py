@@ -7,8 +7,9 @@ and the depth l below the apex, the stress is σ = K_v W / (F m Y) with the form
 AGMA puts the load where a single pair carries it highest, counts its radial part, and corrects for the fillet:
 
     σ = W K_o K_v K_s K_m K_B / (F m J),    σ_c = C_p √(W K_o K_v K_s K_m / (d F I)),
-    1/J = K_f m (cos φ_L / cos φ) (6 h / s² − tan φ_L / s),    I = cos φ sin φ / 2 · G / (G ± 1),
+    1/J = K_f m (cos φ_L / cos φ_w) (6 h / s² − tan φ_L / s),    I = cos φ_w sin φ_w / 2 · G / (G ± 1),
 
+W stands on the working pitch circles, φ_w is the working pressure angle: the normal force is W / cos φ_w.
 K_f = H + (s/ρ)^L (s/h)^M by Dolan and Broghamer (AGMA 908-B89; Budynas & Nisbett, Shigley's Mechanical Engineering
 Design, 8th ed., ch. 14, whose equation numbers stand with the factors). Newton, millimetre, MPa, metres a second.
 """
@@ -102,7 +103,7 @@ def bending_geometry(contact: Contact, second: bool) -> float:
     bent = 6.0 * height / thick**2 - math.tan(angle) / thick
     at = int(np.argmax(bent))
     phi = gear.pressure_angle
-    stress = math.cos(angle) / math.cos(phi) * float(bent[at])
+    stress = math.cos(angle) / math.cos(mesh.pressure_angle) * float(bent[at])
     if not stress > 0.0:
         raise DimensionError("tooth", "one that its load bends", gear)
     curved = _fillet_radius(gear) / gear.module

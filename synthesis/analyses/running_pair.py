@@ -246,7 +246,8 @@ class RunningPairRequest(AnalysisRequest):
         given, stated = self.mechanism, self.strength
         if stated is None:
             return []
-        faults = [(f"/strength{path}", detail) for path, detail in stated.faults()]
+        wrong = stated.faults() + (stated.faults_of_ring() if given.internal else [])
+        faults = [(f"/strength{path}", detail) for path, detail in wrong]
         if given.helix_angle != 0.0:
             faults.append(("/strength", "only spur teeth are judged; leave the helix angle out"))
         if self.speed_rpm == 0.0:

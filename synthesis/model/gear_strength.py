@@ -26,6 +26,9 @@ ESTIMATE = (
     "stated allowable stresses are not looked at. Size gears by the standard that applies."
 )
 
+OF_AGMA = ("size", "load_distribution", "rim", "bending_geometry", "contact_geometry", "elastic")
+"""Factors that Lewis's equation does not have."""
+
 WIDTHS = 400
 """Widths that are tried, in equal ratios, in search of the least that carries the load."""
 
@@ -70,9 +73,36 @@ class StrengthMethod(Statement):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows, by the path below this statement."""
-        if self.method == "lewis" and self.allowable_contact is not None:
-            return [("/allowable_contact", "Lewis's equation knows no contact stress; leave it out or take agma")]
-        return []
+        if self.method != "lewis":
+            return []
+        faults = []
+        if self.allowable_contact is not None:
+            faults.append(("/allowable_contact", "Lewis's equation knows no contact stress; leave it out or take agma"))
+        if _is_stated(self, "quality"):
+            faults.append(("/quality", "Lewis's equation knows no quality number; leave it out or take agma"))
+        return faults + [
+            (f"/factors/{name}", "Lewis's equation has no such factor; leave it out or take agma")
+            for name in OF_AGMA
+            if _is_stated(self.factors, name)
+        ]
+
+    def faults_of_ring(self) -> list[tuple[str, str]]:
+        """What is wrong where the second gear is a ring: no formula here gives the shape of its teeth."""
+        name = "form" if self.method == "lewis" else "bending_geometry"
+        if self.allowable_bending is None or getattr(self.factors, name) is not None:
+            return []
+        return [("/allowable_bending", f"the bending stress of a ring is not known without factors/{name}; state that")]
+
+    @property
+    def kept(self) -> list[str]:
+        """Names of the safeties for which allowable stresses are stated."""
+        stated = {"bending_safety": self.allowable_bending, "contact_safety": self.allowable_contact}
+        return [name for name, allowable in stated.items() if allowable is not None]
+
+
+def _is_stated(statement: Statement, name: str) -> bool:
+    """Whether a field says anything but what it says where it is left out."""
+    return bool(getattr(statement, name) != type(statement).model_fields[name].default)
 
 
 class StatedStrength(StrengthMethod):
@@ -104,7 +134,10 @@ class PairStrength(Answer):
     load_distribution: float | None
     contact_geometry: float | None
     face_width: float | None = Field(description="As stated, or the least that carries the load; the module's unit.")
-    least_face_width: float | None = optional("The least that keeps the allowable stresses; left out: there is none.")
+    least_face_width: float | None = optional(
+        "The least that keeps all stated allowable stresses; left out where none are stated, where no width up to "
+        "`max_face_width` keeps them, or where one of the stresses is not known."
+    )
     gears: list[StressedGear]
 
 
@@ -138,10 +171,10 @@ class Stresses(NamedTuple):
     contact_geometry: float | None
     gears: list[dict[str, float | None]]
 
-    def keep(self) -> bool:
-        """Whether every stated allowable stress is kept."""
-        safeties = [row[name] for row in self.gears for name in ("bending_safety", "contact_safety")]
-        return all(safety >= 1.0 for safety in safeties if safety is not None)
+    def keep(self, names: list[str]) -> bool:
+        """Whether the safeties of these names are known of both gears, and at least 1."""
+        safeties = [row[name] for row in self.gears for name in names]
+        return all(safety is not None and safety >= 1.0 for safety in safeties)
 
 
 class Judge:
@@ -218,17 +251,21 @@ class Judge:
         }
 
     def least_width(self) -> float | None:
-        """The least width that keeps the allowable stresses, millimetres; None where none does, or none is stated."""
-        stated, module = self._stated, self._loaded.contact.mesh.pinion.module
-        if stated.allowable_bending is None and stated.allowable_contact is None:
+        """The least width that keeps the allowable stresses, millimetres.
+
+        None where no width up to the widest does, where none are stated, or where one of the stresses is not known.
+        """
+        stated, module, names = self._stated, self._loaded.contact.mesh.pinion.module, self._stated.kept
+        if not names:
             return None
         most, before = stated.max_face_width * module, 0.0
         for k in range(WIDTHS + 1):
             width = most * math.pow(1e-3, 1.0 - k / WIDTHS)
-            if self.at(width).keep():
+            if self.at(width).keep(names):
                 for _ in range(60):
                     middle = 0.5 * (before + width)
-                    before, width = (before, middle) if middle > 0.0 and self.at(middle).keep() else (middle, width)
+                    kept = middle > 0.0 and self.at(middle).keep(names)
+                    before, width = (before, middle) if kept else (middle, width)
                 return width
             before = width
         return None

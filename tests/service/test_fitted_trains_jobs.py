@@ -165,10 +165,16 @@ def test_a_load_on_a_pair_and_on_a_train(client: httpx.Client) -> None:
     assert all(width > 0.0 for width in widths)
     assert "strength" not in client.post("/v1/analyses", json=body).json()["meshes"][0]
     refused = client.post(
-        "/v1/analyses", json={**body, "strength": {"method": "lewis", "allowable_contact": [1.0, 1.0]}}
+        "/v1/analyses",
+        json={**body, "strength": {"method": "lewis", "allowable_contact": [1.0, 1.0], "factors": {"rim": 1.2}}},
     )
     assert refused.status_code == 422
-    assert "/strength/allowable_contact" in [error["path"] for error in refused.json()["errors"]]
+    paths = {error["path"] for error in refused.json()["errors"]}
+    assert {"/strength/allowable_contact", "/strength/factors/rim"} <= paths
+    ring = {"type": "gear_pair", "teeth": [20, 60], "internal": True, "addendum": [1.0, 0.75], "module": 2.0}
+    stated = {"power_kw": 3.0, "allowable_bending": [200.0, 1.0]}
+    refused = client.post("/v1/analyses", json={"mechanism": ring, "speed_rpm": 1000.0, "strength": stated})
+    assert [error["path"] for error in refused.json()["errors"]] == ["/strength/allowable_bending"]
 
 
 @pytest.mark.parametrize(

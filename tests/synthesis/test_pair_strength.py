@@ -10,6 +10,7 @@ import pytest
 from kinematics.gear import strength
 from kinematics.gear.teeth import Gear
 from synthesis.analyses import parse_request
+from synthesis.model.gear_strength import StatedStrength, Stresses
 
 PSI = 0.006894757293168
 HP = 0.745699871582
@@ -20,6 +21,8 @@ STOCK = {"type": "gear_pair", "teeth": [16, 48], "module": 0.125, "face_width": 
 
 ENCLOSED = {"type": "gear_pair", "teeth": [17, 52], "module": 0.1, "face_width": 1.5}
 """Shigley, 8th ed., Example 14-4: 10 teeth an inch, 1.5 in wide, 4 hp at 1800 rev/min, quality number 6."""
+
+RING: dict[str, Any] = {"teeth": [20, 60], "internal": True, "addendum": [1.0, 0.75]}
 
 PRINTED = {"bending_geometry": [0.30, 0.40], "form": [0.303, 0.412], "elastic": 2300.0 * math.sqrt(PSI)}
 
@@ -100,6 +103,23 @@ def test_a_shift_makes_a_pinion_stronger() -> None:
     assert stresses[1] < 0.9 * stresses[0]
 
 
+def test_a_torque_bends_a_tooth_alike_at_every_distance() -> None:
+    """Fewer than one pair in contact is loaded at its tip, and the normal force is the torque over the base radius."""
+    stub = {"type": "gear_pair", "teeth": [17, 52], "module": 2.0, "face_width": 20.0, "addendum": [0.4, 0.4]}
+    factors = {"dynamic": 1.2, "load_distribution": 1.3, "size": [1.0, 1.0]}
+    stresses = [
+        judged(
+            {**stub, "pressure_angle": angle, "centre_distance": distance}, 1000.0, "mm", power_kw=2.0, factors=factors
+        )
+        for angle in (20.0, 25.0)
+        for distance in (69.0, 70.4)
+    ]
+    bending = [found["gears"][0]["bending_stress"] for found in stresses]
+    assert bending[1] == pytest.approx(bending[0], rel=1e-9)
+    assert bending[3] == pytest.approx(bending[2], rel=1e-9)
+    assert stresses[1]["tangential_force"] < 0.99 * stresses[0]["tangential_force"]
+
+
 def test_the_least_width_is_on_its_limit() -> None:
     pair = {name: value for name, value in ENCLOSED.items() if name != "face_width"}
     allowed: dict[str, Any] = {"allowable_bending": [90.0, 80.0], "allowable_contact": [600.0, 600.0]}
@@ -159,11 +179,64 @@ def test_every_field_counts(changes: dict[str, Any], told: str) -> None:
             {"strength": {"method": "lewis", "power_kw": 1.0, "allowable_contact": [1.0, 1.0]}},
             "/strength/allowable_contact",
         ),
+        *(
+            (
+                {},
+                {"strength": {"method": "lewis", "power_kw": 1.0, "factors": {name: value}}},
+                f"/strength/factors/{name}",
+            )
+            for name, value in {
+                "size": [1.1, 1.1],
+                "load_distribution": 1.2,
+                "rim": 1.3,
+                "bending_geometry": [0.3, 0.4],
+                "contact_geometry": 0.1,
+                "elastic": 160.0,
+            }.items()
+        ),
+        ({}, {"strength": {"method": "lewis", "power_kw": 1.0, "quality": 9.0}}, "/strength/quality"),
+        (RING, {"strength": {"power_kw": 1.0, "allowable_bending": [200.0, 1.0]}}, "/strength/allowable_bending"),
+        (
+            RING,
+            {
+                "strength": {
+                    "method": "lewis",
+                    "power_kw": 1.0,
+                    "allowable_bending": [200.0, 1.0],
+                    "factors": {"overload": 1.5},
+                }
+            },
+            "/strength/allowable_bending",
+        ),
     ],
 )
 def test_faults(mechanism: dict[str, Any], body: dict[str, Any], path: str) -> None:
     stated = {"mechanism": {**ENCLOSED, **mechanism}, "speed_rpm": 100.0, "strength": {"power_kw": 1.0}, **body}
     assert [fault[0] for fault in parse_request(stated).faults()] == [path]
+
+
+@pytest.mark.parametrize(("method", "name"), [("agma", "bending_geometry"), ("lewis", "form")])
+def test_the_width_of_a_ring_keeps_its_stated_bending(method: str, name: str) -> None:
+    pair = {"type": "gear_pair", **RING, "module": 2.0}
+    stated: dict[str, Any] = {"method": method, "power_kw": 3.0, "max_face_width": 50.0}
+    factors = {name: [0.35, 0.5]}
+    wide, narrow = (
+        judged(pair, 1000.0, "mm", **stated, allowable_bending=[200.0, allowable], factors=factors)
+        for allowable in (60.0, 150.0)
+    )
+    assert wide["gears"][1]["bending_safety"] == pytest.approx(1.0)
+    assert wide["least_face_width"] > narrow["least_face_width"]
+
+
+def test_no_least_width_without_all_stresses() -> None:
+    """A tooth that its load does not bend has no bending stress; stated allowable stresses cannot be kept then."""
+    unknown = {"bending_safety": None, "contact_safety": 2.0}
+    known = {"bending_safety": 1.5, "contact_safety": None}
+    load = strength.Load(1.0, 1.0, 1.0, 1.0, 1.0)
+    assert not Stresses(load, 1.0, None, None, [unknown, unknown]).keep(["bending_safety"])
+    assert not Stresses(load, 1.0, None, None, [unknown, known]).keep(["bending_safety"])
+    assert Stresses(load, 1.0, None, None, [known, known]).keep(["bending_safety"])
+    assert StatedStrength(power_kw=1.0, allowable_bending=(1.0, 1.0)).kept == ["bending_safety"]
 
 
 def test_a_ring_is_judged_by_contact() -> None:
