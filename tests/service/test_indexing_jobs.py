@@ -122,6 +122,19 @@ def test_demands_together(client: httpx.Client) -> None:
     assert tighter["search"]["rejected"]["size"] == 1
 
 
+def test_a_crank_that_enters_with_a_shock(client: httpx.Client) -> None:
+    wanted = indexing(center_distance=100.0, crank_radius=85.0, roller_diameter=12.0, rollers=4, load_inertia=0.02)
+    allowed = wanted | {"constraints": {"shock_free": False}}
+    assert outcome(client, allowed)["search"]["rejected"] == {"roller_clears_wheel": 1}
+    wide = allowed | {"clearances": {"slot": 2.3, "locking": 0.1}}
+    (design,) = outcome(client, wide)["designs"]
+    assert design["mechanism"]["rollers"] == 4
+    assert design["metrics"]["entry_speed"] > 0.1
+    loose = outcome(client, wide | {"clearances": {"slot": 2.3, "locking": 30.0}})
+    assert loose["designs"] == []
+    assert not loose["search"]["complete"]
+
+
 def test_a_drive_is_analysed(client: httpx.Client) -> None:
     body: Statement = {
         "mechanism": {"type": "geneva_external", "stations": 4, "center_distance": 100.0},
@@ -193,6 +206,7 @@ def test_a_ratchet_is_found_drawn_and_moves(client: httpx.Client) -> None:
         (indexing(crank_radius=100.0, center_distance=100.0), "/crank_radius"),
         (indexing(drive="geneva_internal", crank_shaft_diameter=5.0), "/crank_shaft_diameter"),
         (indexing(drive="geneva_internal", wheel_shaft_diameter=20.0), "/wheel_shaft_diameter"),
+        (indexing(constraints={"shock_free": False}), "/constraints/shock_free"),
         (indexing(clearances={"relief": 0.01}), "/clearances/relief"),
         (indexing(clearances={"slot_end": 0.01}), "/clearances/slot_end"),
         (indexing(clearances={"slot": 31.0}), "/clearances/slot"),

@@ -217,6 +217,7 @@ def test_rollers_shorten_the_rest() -> None:
 
 def test_an_entry_with_a_shock_is_refused_unless_it_is_allowed() -> None:
     wanted = {"center_distance": 80.0, "crank_radius": 41.0, "wall_thickness": 2.0, "rollers": 1}
+    wanted |= {"clearances": {"slot": 0.3}}
     refused = solved(**wanted)
     assert not refused.designs
     assert refused.search.rejected == {"shock_free_entry": 1}
@@ -400,3 +401,31 @@ def test_a_height_that_is_chosen_proves_nothing() -> None:
     assert not high.search.complete
     assert high.summary.startswith("None was found")
     assert ratchets(**wanted, pawls={"count": 1, "wheel_radius": 50.0, "tooth_height": 0.9}).designs
+
+
+def test_a_roller_that_enters_obliquely_needs_a_wide_slot() -> None:
+    wanted = {"stations": 4, "center_distance": 100.0, "crank_radius": 85.0, "roller_diameter": 12.0}
+    wanted |= {"constraints": {"shock_free": False}}
+    struck = solved(**wanted, rollers=1)
+    assert not struck.designs
+    assert struck.search.rejected == {"roller_clears_wheel": 1}
+    # 3/100 of a radian before it enters, beside the wheel at rest, by hand.
+    (design,) = solved(**wanted, rollers=1, include_failed=True).designs
+    mechanism = design.mechanism
+    half = 0.5 * math.radians(design.index_angle)
+    slot = cmath.phase(100.0 - 85.0 * cmath.exp(1j * half))
+    place = (100.0 - 85.0 * cmath.exp(1j * (half + 0.03))) * cmath.exp(-1j * slot)
+    outline = np.array(mechanism.profile.x) + 1j * np.array(mechanism.profile.y)
+    assert np.abs(outline - place).min() < 5.2
+    wide = solved(**wanted, clearances={"slot": 2.3})
+    # The index is short, so that more rollers than of a drive without shock leave a rest.
+    assert [one.mechanism.rollers for one in wide.designs] == [1, 2, 3, 4, 5]
+    assert wide.designs[3].dwell_share == pytest.approx(1.0 - 4.0 * 22.587 / 360.0, abs=1e-4)
+
+
+def test_a_crank_typed_with_six_digits_enters_without_shock() -> None:
+    for typed in (70.7107, 70.7106):
+        (design,) = solved(stations=4, center_distance=100.0, crank_radius=typed, rollers=1).designs
+        assert design.mechanism.crank_radius == pytest.approx(100.0 * math.sqrt(0.5), rel=1e-12)
+    other = solved(stations=4, center_distance=100.0, crank_radius=70.72, rollers=1)
+    assert not other.designs

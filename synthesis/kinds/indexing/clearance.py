@@ -18,6 +18,9 @@ Real = NDArray[np.float64]
 MOVING, RESTING = 173, 61
 """Positions of an index, none of them those of which the disc was made, and of a rest."""
 
+FREE = 721
+"""Positions of a rest in which it is asked how near the rollers come to the wheel."""
+
 FINE = 1.0 / 60.0
 """Longest straight piece of an outline, in center distances."""
 
@@ -36,6 +39,9 @@ class Measured:
     ----------
     roller : float
         Least distance of the roller's center from the wheel over an index.
+    passing : float
+        The same of all rollers while they are in no slot: over a rest, and over the index of another one. Infinite
+        where it is not measured.
     overlap : float
         Greatest depth of the wheel in the disc over an index and a rest; 0 where they stay apart.
     locked : float
@@ -55,6 +61,7 @@ class Measured:
     """
 
     roller: float
+    passing: float
     overlap: float
     locked: float
     locked_angle: float
@@ -95,6 +102,7 @@ def measured(design: IndexingDesign, half: float) -> Measured:
     locked = float(held.mean())
     return Measured(
         roller=distance(outline, np.asarray(roller * np.exp(-1j * turn))),
+        passing=_passing(mechanism, outline, alpha, turn),
         overlap=overlap,
         locked=locked,
         play=math.degrees(play),
@@ -103,6 +111,26 @@ def measured(design: IndexingDesign, half: float) -> Measured:
         neck=min(mechanism.disc.outer_radius),
         size=_extent(mechanism, outline, sense),
     )
+
+
+def _passing(mechanism: GenevaMechanism, outline: Complex, alpha: Real, turn: Real) -> float:
+    """The least distance of rollers that are in no slot; ``alpha`` and ``turn`` of the index of the first."""
+    c, sense = mechanism.center_distance, 1.0 if mechanism.type == "geneva_external" else -1.0
+    half, pitch = float(alpha[-1]), 2.0 * math.pi / mechanism.rollers
+    rest = np.linspace(half, pitch - half, FREE)
+    crank = np.concatenate([rest, *(alpha + pitch * k for k in range(1, mechanism.rollers))])
+    others = pitch * np.arange(mechanism.rollers)[:, None]
+    wheel = np.concatenate([np.full(FREE, turn[-1]), np.tile(turn, mechanism.rollers - 1)])
+    at_rest = (rest + others[1:]).ravel()
+    crank, wheel = np.append(crank, at_rest), np.append(wheel, np.full(len(at_rest), turn[-1]))
+    places: Complex = (c - sense * mechanism.crank_radius * np.exp(1j * crank)) * np.exp(-1j * wheel)
+    # A roller that is farther from the wheel's circle than its own width is nowhere near.
+    apart = sense * (np.abs(places) - mechanism.wheel_radius)
+    sampled = distance(outline, places[apart < mechanism.roller_diameter])
+    # Corners that the path passes between two positions: a circle about the crank's axis.
+    seen = (outline * np.exp(1j * turn[-1]) - c) * -sense
+    passed = np.mod(np.angle(seen) - half, pitch) <= pitch - 2.0 * half
+    return min(sampled, float(np.abs(np.abs(seen[passed]) - mechanism.crank_radius).min(initial=math.inf)))
 
 
 def _walls(mechanism: GenevaMechanism, outline: Complex, arcs: Complex) -> dict[str, float]:

@@ -55,6 +55,7 @@ def measured_on_sphere(mechanism: SphericalGenevaMechanism) -> dict[str, float]:
     floor = radius * math.cos(end) - half_slot * math.sin(end) * np.cos(rim)
     return {
         "roller": min(half_slot, above),
+        "passing": math.inf,
         "overlap": apart * radius,
         "locked": locked,
         "play": math.degrees(play),

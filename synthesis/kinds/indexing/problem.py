@@ -37,6 +37,12 @@ FEWEST_TEETH, MOST_GROUPS = 12, 4
 NEAR_ONE = 0.999
 """Crank radius over center distance up to which a plane drive is taken: at 1 the roller comes to the wheel's axis."""
 
+AS_TYPED = 1e-5
+"""Share by which a crank may differ from that of shock-free entry to be it: six digits of a number that is typed."""
+
+MOST_ROLLERS = 5
+"""On a crank."""
+
 LEAST_ROOM, MOST_ROOM = 0.01, 3.0
 """Least clearance at the end of a slot, and beside the disc, and greatest of any, in roller diameters."""
 
@@ -229,7 +235,7 @@ class IndexingProblem(StatedProblem):
     stations: Annotated[Count, Field(ge=3, le=MOST_STOPS)] = Field(
         description=f"Up to {MOST_STATIONS} of a Geneva drive; of a ratchet the places of a turn at which it is held."
     )
-    rollers: Annotated[Count, Field(ge=1, le=5)] | None = Field(
+    rollers: Annotated[Count, Field(ge=1, le=MOST_ROLLERS)] | None = Field(
         default=None,
         description="On the crank, in equal steps; left out, one design for each number with which the wheel rests.",
     )
@@ -240,7 +246,8 @@ class IndexingProblem(StatedProblem):
         default=None, description="Of a spherical drive, to the middle of the roller; left out, the smallest is found."
     )
     crank_radius: PositiveLength | None = Field(
-        default=None, description="Of a drive in the plane; left out, that of shock-free entry."
+        default=None,
+        description="Of a drive in the plane; left out, or where it differs by 1e-5 of it, that of shock-free entry.",
     )
     roller_diameter: PositiveLength | None = Field(default=None, description="Of a Geneva drive.")
     wall_thickness: PositiveLength | None = Field(
@@ -343,9 +350,20 @@ class IndexingProblem(StatedProblem):
             for name in foreign
             if getattr(self, name) is not None
         ]
+        if not self.constraints.shock_free and self.crank_radius is None:
+            detail = (
+                "only a larger crank than that of shock-free entry enters with one; state its radius, or leave it out"
+            )
+            found.append(Contradiction("/constraints/shock_free", detail))
+        if not self.spherical and self.crank_radius is not None:
+            found += self._crank_faults(self.crank_radius)
+            if found:
+                return found
         most = self.most_rollers
         if self.rollers is not None and self.rollers > most:
             detail = f"with {self.stations} stations the wheel rests with at most {most} of them"
+            if self.drive != "geneva_external":
+                detail = f"what locks the wheel of {self.drive} stands opposite one roller"
             found.append(Contradiction("/rollers", detail))
         if self.drive != "geneva_external" and self.crank_shaft_diameter > 0.0:
             detail = f"slots of {self.drive} pass the crank's axis: its crank is overhung; leave it out"
@@ -363,15 +381,30 @@ class IndexingProblem(StatedProblem):
             if stated is not None and stated > MOST_ROOM * self.roller:
                 detail = f"must be at most {MOST_ROOM:g} roller diameters"
                 found.append(Contradiction(f"/clearances/{name}", detail))
-        return found + ([] if self.crank_radius is None or self.spherical else self._crank_faults(self.crank_radius))
+        return found
 
     @property
     def most_rollers(self) -> int:
         """How many rollers leave the wheel a rest."""
         if self.driver == "drag_link":
             return 1
-        index = {"geneva_external": 0.5 - 1.0 / self.stations}.get(self.drive, 0.5)
-        return max(1, math.ceil(1.0 / index - 1e-9) - 1)
+        if self.drive != "geneva_external":
+            return 1
+        step = math.pi / self.stations
+        index = (math.asin(min(1.0, math.sin(step) / self.crank_ratio)) - step) / math.pi
+        return min(MOST_ROLLERS, max(1, math.ceil(1.0 / index - 1e-9) - 1))
+
+    @property
+    def crank_ratio(self) -> float:
+        """Crank radius over center distance of a drive in the plane.
+
+        A crank that is stated to some digits of that of shock-free entry is that one, unless a shock is allowed.
+        """
+        least = math.sin(math.pi / self.stations)
+        if self.crank_radius is None or self.center_distance is None:
+            return least
+        ratio = self.crank_radius / self.center_distance
+        return ratio if ratio > least * (1.0 + (AS_TYPED if self.constraints.shock_free else 0.0)) else least
 
     def _driver_faults(self) -> list[Contradiction]:
         if self.driver == "crank":
@@ -440,7 +473,7 @@ class IndexingProblem(StatedProblem):
             return [Contradiction("/crank_radius", "state the center distance with it, or leave both to be found")]
         least = self.center_distance * math.sin(math.pi / self.stations)
         most = NEAR_ONE * self.center_distance
-        if not least * (1.0 - 1e-9) <= radius <= most:
+        if not least * (1.0 - AS_TYPED) <= radius <= most:
             detail = f"must be from {least:.9g}, where it enters without shock, to {most:.9g}: a smaller crank reaches"
             return [Contradiction("/crank_radius", f"{detail} no slot, a larger one the wheel's axis")]
         return []

@@ -46,6 +46,7 @@ UNPROVEN = NUMERICAL | {
     "wall",
     "disc_clears_wheel",
     "roller_in_slot",
+    "roller_clears_wheel",
     "locked_at_rest",
     "play",
 }
@@ -91,10 +92,9 @@ def solve_indexing(problem: IndexingProblem, progress: Progress) -> IndexingResu
 
 def _drive(problem: IndexingProblem) -> Geneva:
     assert problem.drive != "ratchet"
-    if problem.crank_radius is not None and problem.center_distance is not None:
-        ratio = max(problem.crank_radius / problem.center_distance, math.sin(math.pi / problem.stations))
-        return Geneva(problem.drive, problem.stations, ratio)
-    return Geneva.shock_free(problem.drive, problem.stations)
+    if problem.spherical:
+        return Geneva.shock_free(problem.drive, problem.stations)
+    return Geneva(problem.drive, problem.stations, problem.crank_ratio)
 
 
 def _candidate(problem: IndexingProblem, rollers: int) -> IndexingDesign | str:

@@ -165,8 +165,9 @@ def _walls(problem: IndexingProblem, design: IndexingDesign, found: Measured) ->
         reaches = mechanism.cap_offset / (mechanism.sphere_radius * math.sin(math.radians(mechanism.cap_angle)))
         checks.append(at_most("locking_disc", reaches, LEAST_CAP))
     else:
-        disc = mechanism.disc
         least = 0.5 * mechanism.roller_diameter
+        checks.append(at_least("roller_clears_wheel", found.passing, least, LENGTH, rounding))
+        disc = mechanism.disc
         checks.append(at_least("locking_disc", max(disc.outer_radius), least, LENGTH, rounding))
     if mechanism.type == "geneva_internal":
         thinnest = float((np.array(disc.outer_radius) - np.array(disc.inner_radius)).min())

@@ -161,7 +161,12 @@ INDEXING: dict[str, Any] = {
     "load_inertia": 0.02,
     "load_torque": 1.0,
 }
-LARGER_CRANK: dict[str, Any] = {"crank_radius": 41.0, "rollers": 1, "wall_thickness": 2.0}
+LARGER_CRANK: dict[str, Any] = {
+    "crank_radius": 41.0,
+    "rollers": 1,
+    "wall_thickness": 2.0,
+    "clearances": {"slot": 1.0},
+}
 RATCHET: dict[str, Any] = {
     "drive": "ratchet",
     "stations": 36,
