@@ -429,3 +429,37 @@ def test_a_crank_typed_with_six_digits_enters_without_shock() -> None:
         assert design.mechanism.crank_radius == pytest.approx(100.0 * math.sqrt(0.5), rel=1e-12)
     other = solved(stations=4, center_distance=100.0, crank_radius=70.72, rollers=1)
     assert not other.designs
+
+
+def broken_by(problem: Any, design: Any, part: str, change: dict[str, Any]) -> set[str]:
+    verify = verify_ratchet if problem.drive == "ratchet" else verify_indexing
+    changed = design.model_copy(update={part: getattr(design, part).model_copy(update=change)})
+    return {check.name for check in verify(problem, changed).verification.checks if not check.passed}
+
+
+def test_what_is_told_is_measured_again() -> None:
+    base = {"kind": "indexing", "drive": "geneva_internal", "stations": 4, "roller_diameter": 10.0, "speed_rpm": 60.0}
+    problem = parse_problem(base | {"constraints": {"steady_share": 0.2}})
+    design = solve(problem, lambda fraction, message: None).designs[0]
+    share = design.metrics.steady_share
+    assert broken_by(problem, design, "metrics", {"steady_share": share + 0.01}) == {"steady_as_told"}
+    thin = design.mechanism.ring_radius - 1.0
+    assert broken_by(problem, design, "mechanism", {"ring_radius": thin}) == {"ring", "size_as_told"}
+    demanding = parse_problem(base | {"constraints": {"steady_share": share + 0.01}})
+    lying = design.model_copy(update={"metrics": design.metrics.model_copy(update={"steady_share": 0.9})})
+    failed = {check.name for check in verify_indexing(demanding, lying).verification.checks if not check.passed}
+    assert failed == {"steady_as_told", "steady_share"}
+    problem = parse_problem(RATCHET)
+    design = solve(problem, lambda fraction, message: None).designs[0]
+    assert broken_by(problem, design, "metrics", {"lift": 1.01 * design.metrics.lift}) == {"lift_as_told"}
+    assert "overtravel_as_told" in broken_by(
+        problem, design, "metrics", {"overtravel": 0.9 * design.metrics.overtravel}
+    )
+
+
+def test_the_profile_of_a_hemisphere_is_what_its_bore_is_measured_on() -> None:
+    problem = parse_problem(next(one for one in examples("indexing") if one["drive"] == "geneva_spherical"))
+    design = solve(problem, lambda fraction, message: None).designs[0]
+    profile = design.mechanism.profile
+    deeper = profile.model_copy(update={"x": [0.5 * x for x in profile.x], "y": [0.5 * y for y in profile.y]})
+    assert "bore" in broken_by(problem, design, "mechanism", {"profile": deeper})

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from synthesis.kinds.indexing.design import GenevaMechanism, IndexingDesign
 from synthesis.kinds.indexing.on_sphere import measured_on_sphere
-from synthesis.kinds.indexing.polygons import closed, depth, distance, play_of, split
+from synthesis.kinds.indexing.polygons import depth, distance, play_of, split
 
 Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
@@ -54,6 +54,8 @@ class Measured:
         From a slot to a locking arc; between neighbouring slots.
     inmost : float
         From the wheel's axis to the nearest point of a slot.
+    outmost : float
+        From the wheel's axis to the farthest point of its outline: of a ring, of its slots.
     neck : float
         Least radius of the disc about the crank's axis.
     size : float
@@ -69,6 +71,7 @@ class Measured:
     wall: float
     web: float
     inmost: float
+    outmost: float
     neck: float
     size: float
 
@@ -108,6 +111,7 @@ def measured(design: IndexingDesign, half: float) -> Measured:
         play=math.degrees(play),
         locked_angle=locked * math.degrees(float(rest[-1] - rest[0])),
         **_walls(mechanism, outline, arcs),
+        outmost=float(np.abs(outline).max()),
         neck=min(mechanism.disc.outer_radius),
         size=_extent(mechanism, outline, sense),
     )
@@ -123,7 +127,7 @@ def _passing(mechanism: GenevaMechanism, outline: Complex, alpha: Real, turn: Re
     wheel = np.concatenate([np.full(FREE, turn[-1]), np.tile(turn, mechanism.rollers - 1)])
     at_rest = (rest + others[1:]).ravel()
     crank, wheel = np.append(crank, at_rest), np.append(wheel, np.full(len(at_rest), turn[-1]))
-    places: Complex = (c - sense * mechanism.crank_radius * np.exp(1j * crank)) * np.exp(-1j * wheel)
+    places = np.asarray((c - sense * mechanism.crank_radius * np.exp(1j * crank)) * np.exp(-1j * wheel), np.complex128)
     # A roller that is farther from the wheel's circle than its own width is nowhere near.
     apart = sense * (np.abs(places) - mechanism.wheel_radius)
     sampled = distance(outline, places[apart < mechanism.roller_diameter])
@@ -154,5 +158,5 @@ def _walls(mechanism: GenevaMechanism, outline: Complex, arcs: Complex) -> dict[
 def _extent(mechanism: GenevaMechanism, outline: Complex, sense: float) -> float:
     if mechanism.ring_radius is not None:
         return 2.0 * mechanism.ring_radius
-    far = float(np.abs(closed(outline)).max())
+    far = float(np.abs(outline).max())
     return far + mechanism.center_distance + mechanism.crank_radius + 0.5 * mechanism.roller_diameter * sense

@@ -52,6 +52,7 @@ def measured_on_sphere(mechanism: SphericalGenevaMechanism) -> dict[str, float]:
     middles = radius * np.array([[math.cos(end) * math.cos(k), math.cos(end) * math.sin(k)] for k in (0.0, 2.0 * step)])
     hollows = radius * _hollow(mechanism, 0)
     rim = np.linspace(0.0, 2.0 * math.pi, AROUND)
+    seen = np.hypot(mechanism.profile.x, mechanism.profile.y)
     floor = radius * math.cos(end) - half_slot * math.sin(end) * np.cos(rim)
     return {
         "roller": min(half_slot, above),
@@ -62,7 +63,8 @@ def measured_on_sphere(mechanism: SphericalGenevaMechanism) -> dict[str, float]:
         "locked_angle": locked * 180.0,
         "wall": float(np.abs(hollows[:, 1]).min()) - half_slot,
         "web": float(np.hypot(*(middles[1] - middles[0]))) - 2.0 * half_slot,
-        "inmost": float(np.hypot(floor, half_slot * np.sin(rim)).min()),
+        "inmost": min(float(np.hypot(floor, half_slot * np.sin(rim)).min()), float(seen.min())),
+        "outmost": float(seen.max()),
         "neck": 0.0,
         "size": 2.0 * radius,
     }

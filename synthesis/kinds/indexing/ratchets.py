@@ -35,6 +35,8 @@ UNPROVEN = NUMERICAL | {
     "locking_as_told",
     "holds_the_torque",
     "pawl_rides",
+    "overtravel_as_told",
+    "lift_as_told",
     "falls_in",
     "no_face_locks",
 }

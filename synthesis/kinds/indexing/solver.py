@@ -43,6 +43,8 @@ UNPROVEN = NUMERICAL | {
     "peaks",
     "walls_as_told",
     "size_as_told",
+    "steady_as_told",
+    "ring",
     "wall",
     "disc_clears_wheel",
     "roller_in_slot",

@@ -7,13 +7,14 @@ lifts a pawl, and that it falls to the foot.
 
 from __future__ import annotations
 
+import cmath
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.indexing.ratchet import Ratchet
-from synthesis.kinds.indexing.design import RatchetDesign, RatchetMechanism
+from synthesis.kinds.indexing.design import RatchetDesign, RatchetMechanism, RatchetMetrics
 from synthesis.kinds.indexing.problem import IndexingProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import ANGLE, FORCE, LENGTH
@@ -24,6 +25,12 @@ Real = NDArray[np.float64]
 
 AGREES = 1e-9
 """Relative difference of closed forms from the outline: rounding."""
+
+AS_TOLD = 1e-6
+"""Degrees by which told angles may differ from those of the outline."""
+
+HALVINGS = 50
+"""Of a pitch, for the angle at which a tip leaves the nose."""
 
 ON_FACE, RIDDEN = 33, 121
 """Points of a face, and positions of a pitch."""
@@ -40,10 +47,11 @@ def verify_ratchet(problem: IndexingProblem, design: RatchetDesign) -> RatchetDe
     root = float(np.abs(feet).min())
     checks = [
         *_stops(mechanism, feet, noses),
-        tolerated("locking_as_told", abs(locking - metrics.locking_angle), 1e-6, ANGLE),
+        tolerated("locking_as_told", abs(locking - metrics.locking_angle), AS_TOLD, ANGLE),
         at_least("locking_angle", locking, friction + problem.pawl.reserve, ANGLE),
         tolerated("holds_the_torque", _torque_error(problem, design, feet, tips), AGREES),
         tolerated("pawl_rides", _ride_error(mechanism, metrics.overtravel), AGREES),
+        *_told(mechanism, metrics, tips, pivots, noses),
         Check(name="falls_in", passed=_falls_in(mechanism, feet, tips)),
         at_least("tooth_thickness", float(np.abs(np.diff(feet)).min()), problem.wall, LENGTH),
         at_least("bore", root - 0.5 * problem.wheel_shaft_diameter, problem.wall, LENGTH),
@@ -129,6 +137,25 @@ def _ride_error(mechanism: RatchetMechanism, overtravel: float) -> float:
         lifts.append(np.where(cut, lift, -math.pi))
     outermost = np.maximum(*lifts).max(axis=1)
     return float(np.abs(outermost - wheel.lifted(angle)).max())
+
+
+def _told(
+    mechanism: RatchetMechanism, metrics: RatchetMetrics, tips: Complex, pivots: Complex, noses: Complex
+) -> list[Check]:
+    """Where the held tip leaves the circle of the nose, by bisection, and how far it has lifted the pawl there."""
+    nose = noses[0] - pivots[0]
+    low, high = 0.0, 2.0 * math.pi / mechanism.teeth
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if abs(tips[0] * cmath.exp(1j * middle) - pivots[0]) < abs(nose):
+            low = middle
+        else:
+            high = middle
+    lift = abs(cmath.phase((tips[0] * cmath.exp(1j * high) - pivots[0]) / nose))
+    return [
+        tolerated("overtravel_as_told", abs(math.degrees(high) - metrics.overtravel), AS_TOLD, ANGLE),
+        tolerated("lift_as_told", abs(math.degrees(lift) - metrics.lift), AS_TOLD, ANGLE),
+    ]
 
 
 def _falls_in(mechanism: RatchetMechanism, feet: Complex, tips: Complex) -> bool:
