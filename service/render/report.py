@@ -134,14 +134,16 @@ def _sheet(design: Any, n: int, problem: StatedProblem, title: str, units: dict[
         assert isinstance(drawing, str)
     except (NoSuchExport, NotBuilt):
         drawing = ""
+    own = outline(design.mechanism, units, leave_out={"type", "skeleton"})
     parts = [
-        ("Dimensions", outline(design.mechanism, units, leave_out={"type", "skeleton"})),
+        ("Dimensions", own),
         ("Quantities", outline(design.metrics, units)),
         ("As it was driven", outline(design, units, leave_out={"mechanism", "metrics", "verification"})),
     ]
     skeleton = getattr(design.mechanism, "skeleton", None)
     if skeleton is not None:
-        parts.append(("Skeleton: the joints at the first target, and the rigid links", outline(skeleton, units)))
+        name = "Skeleton" if own.rows or own.lists else "Dimensions"
+        parts.append((f"{name}: the joints at the first target, and the rigid links", outline(skeleton, units)))
     return Sheet(
         number=n,
         name=words(design.mechanism.type),

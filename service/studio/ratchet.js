@@ -22,7 +22,7 @@ export class Ratchet {
     this.axis = view.at(0, 0);
     this.wheel = svg("path", { class: "pitch", d: `${view.path(teeth)}Z` });
     this.pawls = mechanism.pawls.map((/** @type {any} */ pawl) => {
-      const [u, v] = view.at(...pawl.pivot);
+      const [u, v] = view.at(pawl.pivot[0], pawl.pivot[1]);
       return { at: [u, v], bar: svg("path", { class: "link", d: view.path([pawl.pivot, over(pawl, mechanism.tooth_height), pawl.nose]) }) };
     });
     const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": "The ratchet, turning" },
