@@ -11,6 +11,7 @@ import httpx
 import pytest
 
 from synthesis.registry import examples
+from tests.campaign import further
 from tests.service.answers import finished
 
 Statement = dict[str, Any]
@@ -31,7 +32,7 @@ GENEVA = [one for one in examples("indexing") if one["drive"] != "ratchet" and "
 RATCHET = next(one for one in examples("indexing") if one["drive"] == "ratchet")
 
 
-@pytest.mark.parametrize("example", GENEVA, ids=lambda one: f"{one['drive']} {one['stations']}")
+@pytest.mark.parametrize("example", further(GENEVA, GENEVA[2:3]), ids=lambda one: f"{one['drive']} {one['stations']}")
 def test_every_drive_is_drawn_and_moves(client: httpx.Client, example: Statement) -> None:
     job = finished(client, example)
     design = job["result"]["designs"][0]
@@ -54,6 +55,7 @@ def test_every_drive_is_drawn_and_moves(client: httpx.Client, example: Statement
             assert omega == 0.0
 
 
+@pytest.mark.campaign
 def test_a_drag_link_through_http(client: httpx.Client) -> None:
     """The whole driven: the wheel of the answer and of its analysis move alike, and demands together are kept."""
     demands = {"steady_share": 0.3, "dwell_share": {"min": 0.45}, "min_transmission_angle": 35.0, "pin_force": 30.0}
