@@ -14,6 +14,7 @@ import pytest
 from synthesis.kinds.motion import by_type
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.model.answer import Search
+from tests.campaign import further
 from tests.oracles.loops import Loops
 from tests.service.answers import finished
 from tests.service.test_analyses import assert_as_documented
@@ -61,7 +62,7 @@ def held_against_loops(design, positions) -> None:
 
 
 @pytest.mark.timeout(300)
-@pytest.mark.parametrize("kind", SIXBARS)
+@pytest.mark.parametrize("kind", further(SIXBARS, ["watt_1"]))
 def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
     body = answered(client, mechanisms=[kind])
     designs = passed(body)
@@ -87,7 +88,7 @@ def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
     assert client.get(f"/v1/jobs/{body['id']}/report.html").status_code == 200
 
 
-@pytest.mark.parametrize("count", [2, 4])
+@pytest.mark.parametrize("count", further([2, 4], [4]))
 def test_fewer_positions_are_met_by_sixbars_too(client, count):
     positions = FIVE[:count]
     for design in passed(answered(client, positions=positions)):
@@ -95,6 +96,7 @@ def test_fewer_positions_are_met_by_sixbars_too(client, count):
         held_against_loops(design, positions)
 
 
+@pytest.mark.campaign
 def test_positions_within_tolerances(client):
     positions = [position | {"tolerance": {"x": 2.0, "y": 2.0, "angle": 2.0}} for position in FIVE]
     designs = passed(answered(client, positions=positions))
@@ -199,7 +201,7 @@ def test_types_of_two_dyads_alone(client, types):
 @pytest.mark.parametrize(
     "chain",
     [
-        {"links": [120.0, None], "elbow": "left"},
+        pytest.param({"links": [120.0, None], "elbow": "left"}, marks=pytest.mark.campaign),
         {"fixed_pivot": [20.0, -120.0], "moving_pivot": [0.0, -14.0]},
     ],
 )
@@ -223,6 +225,40 @@ def test_the_chain_is_kept_as_it_is_stated(client, chain):
         assert next(c for c in design["verification"]["checks"] if c["name"] == "chain")["passed"]
 
 
+@pytest.mark.parametrize(
+    "stated",
+    [
+        {"chain": {"links": [700.0, None]}, "constraints": {"max_link_ratio": 50.0}},
+        pytest.param(
+            {"constraints": {"fixed_pivot_region": {"x": [1100.0, 1300.0], "y": [-100.0, 100.0]}}},
+            marks=pytest.mark.campaign,
+        ),
+    ],
+)
+def test_limits_that_nobody_stated_do_not_exclude_what_is_stated(client, stated):
+    designs = passed(answered(client, **stated))
+    assert len(designs) == 2
+    assert all(design["metrics"]["reach"] > 5.0 for design in designs)
+
+
+def test_a_chain_gives_a_body_that_only_turns_its_size(client):
+    positions = [{"x": 0.0, "y": 0.0, "angle": angle} for angle in (0.0, 30.0, 60.0)]
+    for chain in ({"fixed_pivot": [100.0, None]}, {"links": [80.0, None]}):
+        designs = passed(answered(client, positions=positions, chain=chain))
+        assert len(designs) == 2
+        for design in designs:
+            assert design["metrics"]["min_transmission_angle"] >= 20.0
+            assert design["metrics"]["reach"] <= 5.0
+
+
+def test_a_chain_is_not_refused_for_a_place_of_the_body_that_may_be_missed(client):
+    chain = {"links": [60.0, 60.0], "fixed_pivot": [0.0, -120.5], "moving_pivot": [0.0, 0.0]}
+    near = {"x": 4.0, "y": 1.0, "angle": 8.0}
+    for first, status in ((FIVE[0], 422), (FIVE[0] | {"tolerance": 2.0}, 202)):
+        problem = TASK | {"positions": [first, near], "chain": chain}
+        assert client.post("/v1/jobs", json={"problem": problem}).status_code == status
+
+
 def kept(chain, pivot, knee, pin) -> bool:
     wanted = [
         *zip((abs(knee - pivot), abs(pin - knee)), chain.get("links", [None, None]), strict=True),
@@ -237,7 +273,10 @@ def kept(chain, pivot, knee, pin) -> bool:
 @pytest.mark.parametrize(
     "constraints",
     [
-        {"full_rotation": True, "grashof": "crank_rocker", "min_transmission_angle": 30.0},
+        pytest.param(
+            {"full_rotation": True, "grashof": "crank_rocker", "min_transmission_angle": 30.0},
+            marks=pytest.mark.campaign,
+        ),
         {
             "max_link_ratio": 4.0,
             "link_length": {"min": 30.0, "max": 200.0},

@@ -41,6 +41,9 @@ KEPT = 4000
 REACH, RATIO = 5.0, 20.0
 """Limits where the client states none: longest distance of two joints of a link in task sizes, and link ratio."""
 
+REACH_OF_CHAIN = 2.0
+"""What the first limit is at least, beside the longest length or way that is stated of the chain."""
+
 SOUND = 20.0
 """Degrees of transmission angle that are aimed at where the client states no limit."""
 
@@ -144,7 +147,6 @@ class SixbarSearch:
         self.wanted = np.array([make.type in types for make in MAKES])
         self.chain = Chain() if problem.chain is None else problem.chain
         self.limits = _limits(problem, self.task)
-        self.limited = problem.constraints != type(problem.constraints)()
         self.weighed = 0
 
     def run(self, progress: Progress) -> _Found:
@@ -198,8 +200,8 @@ def solve_sixbars(problem: MotionProblem, types: tuple[Sixbar, ...], progress: P
     found = search.run(part_of(progress, 0.0, 0.9))
     sifting = Sifting[LinkageDesign](problem, DEFECTS)
     progress(0.9, f"verifying the best of {search.weighed} sixbars")
-    # Those that break a limit of the client's are driven only where they are asked for.
-    rows = np.arange(len(found.values))[found.values >= (1.0 if search.limited and not problem.include_failed else 0.0)]
+    # The sound ones come first. What the others break may be no limit of the client's: that is judged by the proof.
+    rows = np.flatnonzero(found.values >= 0.0)
 
     def verified(n: int) -> LinkageDesign | None:
         return verify(problem, search.mechanism(found, n), search.target)
@@ -222,7 +224,8 @@ def _limits(problem: MotionProblem, task: MotionTask) -> Real:
     shortest = 0.0 if lengths is None else lengths.min / task.size
     longest = np.inf if lengths is None or lengths.max is None else lengths.max / task.size
     ratio = RATIO if stated.max_link_ratio is None else stated.max_link_ratio
-    plain = [math.sin(math.radians(angle)), REACH, ratio, shortest, longest]
+    reach = max(REACH, REACH_OF_CHAIN * problem.size_of_chain / task.size)
+    plain = [math.sin(math.radians(angle)), reach, ratio, shortest, longest]
     plain += [CLASSES.index(stated.grashof), stated.full_rotation]
     boxes = [_box(region, task) for region in (stated.fixed_pivot_region, stated.moving_pivot_region)]
     space = problem.space

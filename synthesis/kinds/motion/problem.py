@@ -373,12 +373,18 @@ class MotionProblem(LinkageProblem):
         """The length that tolerances and free choices are measured by, in length units.
 
         The greatest distance between two positions of P; where P moves by less than a thousandth of the way to the
-        pivots and regions that the client stated, that way; where nothing is stated either, 1.
+        pivots and regions that the client stated, or of the length of a chain, that way; where nothing is stated
+        either, 1.
         """
         points = [position.point for position in self.positions]
         moved = max(abs(p - q) for p in points for q in points)
-        reach = max((abs(z - points[0]) for z in self._stated_points()), default=0.0)
+        reach = max([self.size_of_chain, *(abs(z - points[0]) for z in self._stated_points())])
         return max(moved, 0.0 if moved >= LEAST_MOTION * reach else reach) or 1.0
+
+    @property
+    def size_of_chain(self) -> float:
+        """The longest length that is stated of a chain, or way to one of its pivots; 0 where none is stated."""
+        return 0.0 if self.chain is None else self.chain.size_from(self.positions[0].point)
 
     @property
     def turns(self) -> list[float]:

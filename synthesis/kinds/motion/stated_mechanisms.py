@@ -35,6 +35,17 @@ class Chain(Statement):
         default="any", description="On which side of the way from G to H₂ the joint H₁ lies in all positions."
     )
 
+    def size_from(self, point: complex) -> float:
+        """The longest stated length, or the way from a point to a stated pivot if that is longer; 0 without either.
+
+        An open coordinate of a pivot counts as that of the point.
+        """
+        ways = [length or 0.0 for length in self.links or ()]
+        for pivot in (self.fixed_pivot, self.moving_pivot):
+            x, y = pivot or (None, None)
+            ways.append(abs(complex(0.0 if x is None else x - point.real, 0.0 if y is None else y - point.imag)))
+        return max(ways)
+
 
 def of_sixbars(problem: Any) -> list[Contradiction]:
     """What cannot be demanded of the types that are looked for."""
@@ -83,8 +94,8 @@ def _of_types(problem: Any) -> list[Contradiction]:
 def _faults_of_chain(problem: Any) -> list[Contradiction]:
     """A chain that does not reach, as far as all of it is stated."""
     chain = problem.chain
-    if chain is None or chain.links is None or None in chain.links:
-        return []
+    if chain is None or chain.links is None or None in chain.links or problem.positions[0].tolerance is not None:
+        return []  # H₂ is stated in the first position as it is met
     pivot, pin = whole_point(chain.fixed_pivot), whole_point(chain.moving_pivot)
     if pivot is None or pin is None:
         return []
