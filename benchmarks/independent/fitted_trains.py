@@ -207,11 +207,14 @@ def _within_reach(target: Fraction, stages: list[Any], first: int) -> bool:
     return min(low for low, _ in ends) <= target <= max(high for _, high in ends)
 
 
-def same_answer(answer: dict[str, Any], best: Best | None) -> str | None:
-    """What the solver's answer has that the brute force has not; None where they agree."""
+def same_answer(answer: dict[str, Any], best: Best | None, decided: bool) -> str | None:
+    """What the solver's answer has that the brute force has not; None where they agree.
+
+    ``decided``: whether the sums of shifts are, so that the answer has to be complete.
+    """
     designs = answer["designs"]
-    if not answer["search"]["complete"]:
-        return "the search is not complete"
+    if answer["search"]["complete"] != decided:
+        return f"the search is {'not ' if decided else ''}complete"
     if not designs or best is None:
         return None if not designs and best is None else f"answer {bool(designs)}, brute force {best}"
     ratio = designs[0]["mechanism"]["ratio"]

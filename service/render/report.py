@@ -142,8 +142,10 @@ def _sheet(design: Any, n: int, problem: StatedProblem, title: str, units: dict[
     ]
     skeleton = getattr(design.mechanism, "skeleton", None)
     if skeleton is not None:
-        name = "Skeleton" if own.rows or own.lists else "Dimensions"
-        parts.append((f"{name}: the joints at the first target, and the rigid links", outline(skeleton, units)))
+        # A linkage that was stated has its skeleton for dimensions; a designed one is drawn at its first target.
+        beside = own.rows or own.lists
+        name = "Skeleton: the joints at the first target" if beside else "Dimensions: the joints as stated"
+        parts.append((f"{name}, and the rigid links", outline(skeleton, units)))
     return Sheet(
         number=n,
         name=words(design.mechanism.type),

@@ -294,6 +294,15 @@ class GearTrainProblem(StatedProblem):
         """Whether fitted stages have to agree on a distance that is not stated as one number."""
         return self.is_fitted and self.reverted and not isinstance(self.centre_distance, float)
 
+    @property
+    def searches_distances(self) -> bool:
+        """Whether the sums of shifts that suit a pair are searched in steps, not decided: no distance is given.
+
+        At a stated distance, or without shift, a pair has one sum, and whether it suits is decided.
+        """
+        open_distance = self.centre_distance is None or isinstance(self.centre_distance, DistanceRange)
+        return self.is_fitted and open_distance and self.shift_limits != (0.0, 0.0)
+
     def exact_modules(self) -> list[Fraction]:
         """The stated modules, exact."""
         if self.modules is not None:

@@ -23,6 +23,8 @@ from synthesis.model.gear_answer import OfGears, Ratio
 from synthesis.model.kind import Progress
 from synthesis.outcome.sifting import Sifting
 
+SEARCHED = "Which distances suit a pair is searched in steps of the sum of shifts, not proven."
+
 
 def solve_gear_train(problem: GearTrainProblem, progress: Progress) -> GearTrainResult:
     """The best gear trains for a ratio, proven by an exhaustive search."""
@@ -45,7 +47,7 @@ def solve_gear_train(problem: GearTrainProblem, progress: Progress) -> GearTrain
     return GearTrainResult(
         designs=sifting.designs(list),
         search=GearTrainSearch(
-            **dict(sifting.search("exhaustive", complete=not sifting.rejected)),
+            **dict(sifting.search("exhaustive", complete=not sifting.rejected and not problem.searches_distances)),
             combinations=outcome.combinations,
             ties=outcome.ties,
             least_error=_least_error(task, outcome),
@@ -141,18 +143,27 @@ def _summary(problem: GearTrainProblem, task: Task, outcome: Outcome, accepted: 
         error = best.metrics.relative_error
         how = "exactly the ratio" if error == 0.0 else f"a relative error of {error:.3g}"
         tied = "no other train is as near" if outcome.ties == 1 else f"{outcome.ties} trains are as near"
-        return f"{stages} has {how}; {tied}. Proven over all {number} trains of the tooth numbers stated."
+        return f"{stages} has {how}; {tied}. {_scope(problem, number)}"
     if accepted:
         best = accepted[0]
         stages = ", ".join(f"{s.driver}:{s.driven}" for s in best.mechanism.stages)
         within = 100.0 * float(problem.exact_tolerance or 0)
         return (
             f"{stages} is the smallest train within {within:.3g} %, with a relative error of "
-            f"{best.metrics.relative_error:.3g}. Proven over all {number} trains of the tooth numbers stated."
+            f"{best.metrics.relative_error:.3g}. {_scope(problem, number)}"
         )
     if outcome.trains:
         return "No train passed the verification."
+    if problem.searches_distances:
+        return f"No such train was found: {_why_none(problem, task, outcome)}. {SEARCHED}"
     return f"There is no such train: {_why_none(problem, task, outcome)}."
+
+
+def _scope(problem: GearTrainProblem, number: str) -> str:
+    """What the answer is the best of, and whether that is proven."""
+    if problem.searches_distances:
+        return f"It is the best of all {number} trains of the tooth numbers stated. {SEARCHED}"
+    return f"Proven over all {number} trains of the tooth numbers stated."
 
 
 def _why_none(problem: GearTrainProblem, task: Task, outcome: Outcome) -> str:
