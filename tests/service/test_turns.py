@@ -222,6 +222,8 @@ def test_the_cost_of_every_example_is_known():
         "layshaft_gearbox", "cam", "balancing", "spring_balancing", "flywheel", "engine", "indexing",
     }  # fmt: skip
     assert not KINDS["motion"].brief(parse_problem(LONG))
+    sixbars = next(example for example in KINDS["motion"].examples if "mechanisms" in example)
+    assert not KINDS["motion"].brief(parse_problem(sixbars))
 
 
 @pytest.fixture(scope="module")

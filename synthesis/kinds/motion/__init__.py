@@ -38,7 +38,8 @@ def _warm_up() -> None:
 
 def _brief(problem: MotionProblem) -> bool:
     """Positions that are met exactly, by fourbars and without a driver, are not searched for by fits."""
-    return not problem.approximate and problem.driver is None and problem.slider is None
+    fitted = problem.approximate or problem.driver is not None or problem.slider is not None
+    return not (fitted or problem.sixbars)
 
 
 KIND = Kind("motion", MotionProblem, MotionResult, _solve, _warm_up, brief=_brief, nearer=_nearer, nearly=_nearly)
