@@ -231,7 +231,8 @@ def _off(turn: float, distance: float, first: Body, second: Body, corner: float,
 def nearest(distance: float, first: Body, second: Body, of_first: bool) -> tuple[float, float, float]:
     """The least angle by which a corner of the first (or second) gear clears the mate, where, and the radius there."""
     corner = _tooth(first.tip, first) if of_first else space(second.tip, second)[0]
-    span = 4.0 * math.pi / first.teeth + 0.9
+    # Neither gear comes round far enough for the next turn of the corner to meet the mate.
+    span = min(4.0 * math.pi / first.teeth + 0.9, 2.5, 2.5 * second.teeth / first.teeth)
     number = 1600
     best, at = 9.0, 0.0
     for i in range(number + 1):

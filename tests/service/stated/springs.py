@@ -30,7 +30,7 @@ OPEN = {"mechanism": BOTH["mechanism"], "springs": BOTH["springs"]}
 
 SPRINGS_ROWS: dict[str, Any] = {
     "length_unit": "cm",
-    "max_designs": Row(1, {**SOUGHT, "max_designs": 3}),
+    "max_designs": Row(1, {**SOUGHT, "max_designs": 10}),
     "seed": 7,
     "mechanism": {**SPRINGS["mechanism"], "assembly": "crossed"},
     "motion": {"from": 40.0, "to": 100.0},
