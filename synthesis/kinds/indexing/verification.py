@@ -166,7 +166,7 @@ def _walls(problem: IndexingProblem, design: IndexingDesign, found: Measured) ->
     ]
     if isinstance(mechanism, SphericalGenevaMechanism):
         reaches = mechanism.cap_offset / (mechanism.sphere_radius * math.sin(math.radians(mechanism.cap_angle)))
-        checks.append(at_most("locking_disc", reaches, LEAST_CAP))
+        checks.append(at_most("locking_cap", reaches, LEAST_CAP))
     else:
         least = 0.5 * mechanism.roller_diameter
         checks.append(at_least("roller_clears_wheel", found.passing, least, LENGTH, rounding))
