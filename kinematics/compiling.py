@@ -64,16 +64,12 @@ def digest(root: Path, source: Path) -> str:
 class _BySources:
     """What a locator of `numba`'s cache says of a kernel's sources."""
 
-    _root: Path
-    _source: Path
-
-    def __init__(self, kernel: Any, file: str) -> None:
-        super().__init__(kernel, file)  # type: ignore[call-arg]  # of the locator beside it
-        self._source = Path(file).resolve()
-        self._root = self._source.parents[kernel.__module__.count(".")]
+    _py_file: str
 
     def get_source_stamp(self) -> str:
-        return digest(self._root, self._source)
+        source = Path(self._py_file).resolve()
+        root = next(folder for folder in source.parents if not (folder / "__init__.py").exists())
+        return digest(root, source)
 
 
 class InStatedFolder(_BySources, UserProvidedCacheLocator):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from kinematics.indexing.drag_link import Course, DragLink
-from kinematics.indexing.geneva import Geneva
+from kinematics.indexing.geneva import Drive, Geneva
 from kinematics.indexing.ratchet import Ratchet
 from kinematics.linkage.planar.catalogue import quick_return
 from kinematics.linkage.planar.drive import drive as core_drive
@@ -23,7 +23,7 @@ from synthesis.kinds.indexing.verify_ratchet import verify_ratchet
 from synthesis.registry import examples, parse_problem
 from tests.campaign import further
 
-DRIVES = ("geneva_external", "geneva_internal", "geneva_spherical")
+DRIVES: tuple[Drive, ...] = ("geneva_external", "geneva_internal", "geneva_spherical")
 
 # The handbooks' table of external drives by stations (Johnson 1956, Rothbart 1956, reprinted since): index (degrees of
 # the crank), greatest velocity and acceleration, and the acceleration as the roller enters; per radian of the crank.
@@ -94,8 +94,8 @@ def test_four_stations_as_textbooks_have_them() -> None:
 
 @pytest.mark.parametrize("drive", DRIVES)
 @pytest.mark.parametrize("stations", further(range(3, 13), [3, 4, 7, 12]))
-def test_closed_forms_are_the_derivatives_of_the_geometry(drive: str, stations: int) -> None:
-    form = Geneva.shock_free(drive, stations)  # type: ignore[arg-type]
+def test_closed_forms_are_the_derivatives_of_the_geometry(drive: Drive, stations: int) -> None:
+    form = Geneva.shock_free(drive, stations)
     # Differentiated by Chebyshev's polynomials on short pieces, where rounding leaves third derivatives ten digits.
     for centre in np.linspace(-0.9, 0.9, 7) * form.half:
         width = 0.12 * form.half
@@ -135,8 +135,8 @@ def test_a_driven_slotted_link_is_an_external_drive(stations: int) -> None:
 
 
 @pytest.mark.parametrize("drive", DRIVES)
-def test_a_turn_of_the_crank_is_one_station_for_each_roller(drive: str) -> None:
-    form = Geneva.shock_free(drive, 5)  # type: ignore[arg-type]
+def test_a_turn_of_the_crank_is_one_station_for_each_roller(drive: Drive) -> None:
+    form = Geneva.shock_free(drive, 5)
     rollers = 3 if drive == "geneva_external" else 1
     turned = form.turned(np.array([0.0, 2.0 * math.pi, 20.0 * math.pi]), rollers)
     assert turned.s == pytest.approx(np.array([0.0, 1.0, 10.0]) * rollers * 2.0 * math.pi / 5.0)
@@ -150,7 +150,7 @@ def test_a_turn_of_the_crank_is_one_station_for_each_roller(drive: str) -> None:
 def test_a_changed_dimension_is_noticed(example: dict[str, Any]) -> None:
     problem = parse_problem(example)
     design = solve(problem, lambda fraction, message: None).designs[0]
-    assert verify_indexing(problem, design).verification.passed  # type: ignore[arg-type]
+    assert verify_indexing(problem, design).verification.passed
     mechanism = design.mechanism
     changes: list[tuple[str, dict[str, Any]]] = [
         ("roller_in_slot", {"roller_diameter": 1.05 * mechanism.roller_diameter})
@@ -173,7 +173,7 @@ def test_a_changed_dimension_is_noticed(example: dict[str, Any]) -> None:
         ]
     for name, change in changes:
         broken = design.model_copy(update={"mechanism": mechanism.model_copy(update=change)})
-        failed = [check.name for check in verify_indexing(problem, broken).verification.checks if not check.passed]  # type: ignore[arg-type]
+        failed = [check.name for check in verify_indexing(problem, broken).verification.checks if not check.passed]
         assert name in failed, (name, failed)
 
 
@@ -183,7 +183,7 @@ def test_forces_that_are_told_wrong_are_noticed() -> None:
     doubled = design.course.model_copy(update={"pin_force": [2.0 * force for force in design.course.pin_force]})
     peaky = design.metrics.model_copy(update={"peak_pin_force": 0.99 * design.metrics.peak_pin_force})
     for change, name in (({"course": doubled}, "forces_by_reactions"), ({"metrics": peaky}, "peaks")):
-        checked = verify_indexing(problem, design.model_copy(update=change))  # type: ignore[arg-type]
+        checked = verify_indexing(problem, design.model_copy(update=change))
         assert name in [check.name for check in checked.verification.checks if not check.passed]
 
 
@@ -197,8 +197,8 @@ def test_the_smallest_drive_stands_at_its_demand() -> None:
     )
     drive = Geneva.shock_free("geneva_external", 8)
     size = design.mechanism.center_distance
-    assert min(margins(problem, drive, 1.000001 * size).values()) > 0.0  # type: ignore[arg-type]
-    assert min(margins(problem, drive, 0.99999 * size).values()) < 0.0  # type: ignore[arg-type]
+    assert min(margins(problem, drive, 1.000001 * size).values()) > 0.0
+    assert min(margins(problem, drive, 0.99999 * size).values()) < 0.0
 
 
 def test_a_pin_force_sets_the_size_and_is_met() -> None:
@@ -283,7 +283,7 @@ def test_a_changed_ratchet_is_noticed(count: int) -> None:
     ]
     for name, change in changes:
         broken = design.model_copy(update={"mechanism": mechanism.model_copy(update=change)})
-        failed = [check.name for check in verify_ratchet(problem, broken).verification.checks if not check.passed]  # type: ignore[arg-type]
+        failed = [check.name for check in verify_ratchet(problem, broken).verification.checks if not check.passed]
         assert name in failed, (name, failed)
 
 
