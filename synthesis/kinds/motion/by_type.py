@@ -12,7 +12,8 @@ from collections.abc import Callable
 
 from synthesis.kinds.motion.chain_search import SOUND, solve_sixbars
 from synthesis.kinds.motion.design import MotionResult
-from synthesis.kinds.motion.problem import MOST_HELD, MotionProblem
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.stated_positions import MOST_HELD
 from synthesis.model.answer import Search
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import LinkageDesign

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator
 from typing import Any, Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field
 
-from synthesis.kinds.motion.stated_dyads import DriverDyad, DyadChoices, GroundLine, whole_point
-from synthesis.kinds.motion.stated_mechanisms import SIXBARS, Chain, Mechanisms, Sixbar, of_sixbars
-from synthesis.kinds.motion.stated_positions import Position, Tolerance
+from synthesis.kinds.motion.contradictions import contradictions_of
+from synthesis.kinds.motion.stated_dyads import DriverDyad, DyadChoices, GroundLine
+from synthesis.kinds.motion.stated_mechanisms import SIXBARS, Chain, Mechanisms, Sixbar
+from synthesis.kinds.motion.stated_positions import MOST_HELD, Position, Tolerance
 from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.model.manufacture import Held, Made, kept_pivots
-from synthesis.model.statement import Contradiction, Flag, PartialPoint
-
-LEAST_LENGTH = 1e-12
-"""Positions that differ, but by less than this many length units, are refused as absurd."""
+from synthesis.model.statement import Contradiction, Flag
 
 LEAST_TOLERANCE = 1e-12
 """Share of the greatest coordinate (or of the task's size), and radians, up to which a tolerance counts as none: the
@@ -28,23 +25,7 @@ these."""
 LEAST_MOTION = 1e-3
 """A motion of P below this share of the way to stated pivots does not set the size of the task."""
 
-EQUAL_POSITIONS = 1e-9
-"""Positions closer than this share of the coordinates' size, and this many radians, count as equal.
-
-Double precision keeps about 1e-16 of the largest coordinate, so a displacement below 1e-9 of it has lost
-half its digits and no residual of 1e-9 could be shown for it."""
-
-
-PARALLEL = 1e-9
-"""Component of a unit vector below which a line counts as parallel to an axis."""
-
-ON_LINE = 1e-9
-"""Share of the task's size by which a stated pivot may lie off a stated line: rounding."""
-
 SIDES = "input_side", "output_side"
-
-MOST_HELD = 5
-"""Positions that a linkage of two dyads can take exactly, in general (Norton, Table 5-3)."""
 
 
 class MotionProblem(LinkageProblem):
@@ -407,250 +388,18 @@ class MotionProblem(LinkageProblem):
 
     def contradictions(self) -> list[Contradiction]:
         """Faults that no single field shows: equal positions, too many or colliding choices."""
-        listed = self._contradictions()
+        listed = contradictions_of(self)
         part = None if self.mechanisms is None else self.of_two_dyads
         return listed if part is None else list(dict.fromkeys([*listed, *part.contradictions()]))
-
-    def _contradictions(self) -> list[Contradiction]:
-        return [
-            *self._equal_positions(),
-            *self._misplaced_tolerances(),
-            *self._too_many_held(),
-            *self._choices_of_fits(),
-            *self._choices_of_few_tolerated(),
-            *self._choices_of_sliders(),
-            *self._overstated_sides(),
-            *self._coinciding_pivots(),
-            *self._pivots_off_the_ground_line(),
-            *self._pivots_outside_regions(),
-            *self._class_of_sliders(),
-            *of_sixbars(self),
-            *self.contradicting_demands(),
-            *self._without_room(),
-        ]
-
-    def _equal_positions(self) -> list[Contradiction]:
-        size = max(max(abs(p.x), abs(p.y)) for p in self.positions)
-        moved = max(abs(p.point - q.point) for p in self.positions for q in self.positions)
-        if 0.0 < moved < LEAST_LENGTH:
-            return [
-                Contradiction("/positions", f"less than {LEAST_LENGTH} {self.length_unit} apart; take a smaller unit")
-            ]
-        contradictions = []
-        for k, later in enumerate(self.positions):
-            for j, earlier in enumerate(self.positions[:k]):
-                turn = math.remainder(later.angle - earlier.angle, 360.0)
-                near = abs(later.point - earlier.point) <= EQUAL_POSITIONS * size
-                if near and abs(math.radians(turn)) <= EQUAL_POSITIONS:
-                    contradictions.append(
-                        Contradiction(f"/positions/{k}", f"equal to position {j}; positions must differ")
-                    )
-        return contradictions
-
-    def _without_room(self) -> list[Contradiction]:
-        if self.space is None:
-            return []
-        held = [k for k, limits in enumerate(self.limits) if limits == (0.0, 0.0, 0.0)]
-        if 0 not in held:
-            return []
-        return self.space.without_room_at(*self._places_of(held))
 
     @property
     def held_at_ends(self) -> tuple[dict[int, complex], dict[int, complex]]:
         """P and the body's rotation e^{iα} in the first position and the last, by their numbers, if these are held; of
         the last only where the first is."""
         ends = [k for k in (0, len(self.positions) - 1) if self.limits[k] == (0.0, 0.0, 0.0)]
-        return self._places_of(ends if 0 in ends else [])
+        return self.places_of(ends if 0 in ends else [])
 
-    def _places_of(self, listed: list[int]) -> tuple[dict[int, complex], dict[int, complex]]:
+    def places_of(self, listed: list[int]) -> tuple[dict[int, complex], dict[int, complex]]:
+        """P (length units) and the body's rotation e^{iα} in some positions, by their numbers."""
         turns = self.turns
         return {k: self.positions[k].point for k in listed}, {k: cmath.rect(1.0, turns[k]) for k in listed}
-
-    def _misplaced_tolerances(self) -> list[Contradiction]:
-        return [
-            Contradiction(f"/positions/{k}/exact", "a position that is met exactly has no tolerance; give one of them")
-            for k, position in enumerate(self.positions)
-            if position.exact and position.tolerance is not None
-        ]
-
-    def _too_many_held(self) -> list[Contradiction]:
-        if self.method == "exact" and len(self.positions) > MOST_HELD and not self.approximate:
-            return [Contradiction("/method", f"{MOST_HELD} positions at most can be met exactly; fit by least_squares")]
-        if self.method == "least_squares" and not (self.approximate or self.few_tolerated):
-            detail = "fewer than five positions can be met exactly; leave the method out or state tolerances"
-            return [Contradiction("/method", detail)]
-        held = [k for k, limits in enumerate(self.limits) if limits == (0.0, 0.0, 0.0)]
-        if len(held) > MOST_HELD:
-            detail = f"is the sixth position to be met exactly; give a tolerance to all but {MOST_HELD}"
-            return [Contradiction(f"/positions/{held[MOST_HELD]}", detail)]
-        return []
-
-    def _choices_of_few_tolerated(self) -> list[Contradiction]:
-        """Within a tolerance a position is met where the body comes nearest to it, however far links have turned."""
-        contradictions = []
-        for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
-            if not self.few_tolerated:
-                break
-            if any(rotation is not None for rotation in side.rotations or []):
-                detail = "are those between positions met exactly; leave out the tolerances, or take the method exact"
-                contradictions.append(Contradiction(f"/{name}/rotations", detail))
-            if side.link_angle is not None and self.positions[0].tolerance is not None:
-                detail = "holds in the first position; leave out its tolerance, or take the method exact"
-                contradictions.append(Contradiction(f"/{name}/link_angle", detail))
-        return contradictions
-
-    def _choices_of_fits(self) -> list[Contradiction]:
-        """A fit takes one pivot of a side (or the whole coupler vector) as given, and a slider's angle."""
-        contradictions = []
-        for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
-            if not self.approximate:
-                break
-            vector = side.coupler_vector
-            if side.rotations is not None or side.link_angle is not None:
-                field = "link_angle" if side.rotations is None else "rotations"
-                contradictions.append(Contradiction(f"/{name}/{field}", "cannot be stated where positions are fitted"))
-            if vector is not None and (vector.length is None or vector.angle is None):
-                contradictions.append(
-                    Contradiction(f"/{name}/coupler_vector", "state length and angle where positions are fitted")
-                )
-            if side.fixed_pivot is not None and (side.moving_pivot is not None or vector is not None):
-                contradictions.append(Contradiction(f"/{name}", "state one pivot where positions are fitted, not both"))
-            contradictions += self._partial_pivots(name, side, "where positions are fitted")
-        if self.approximate and self.ground_line is not None:
-            contradictions.append(Contradiction("/ground_line", "cannot be stated where positions are fitted"))
-        return contradictions
-
-    @staticmethod
-    def _partial_pivots(name: str, side: DyadChoices, where: str) -> list[Contradiction]:
-        return [
-            Contradiction(f"/{name}/{field}", f"state both coordinates {where}")
-            for field, pivot in (("fixed_pivot", side.fixed_pivot), ("moving_pivot", side.moving_pivot))
-            if pivot is not None and whole_point(pivot) is None
-        ]
-
-    def _choices_of_sliders(self) -> list[Contradiction]:
-        """A slider has one pivot, no link, and one free choice less than a link with two pins."""
-        contradictions = []
-        sides = ("input_side", self.input_side), ("output_side", self.output_side)
-        for name, side in sides:
-            if side.slide_angle is not None and side.dyad not in ("PR", "RP"):
-                contradictions.append(
-                    Contradiction(f"/{name}/slide_angle", "belongs to a slider; state dyad as PR or RP")
-                )
-            if side.dyad not in ("PR", "RP"):
-                continue
-            absent = ["link_angle", "rotations"]
-            absent += ["fixed_pivot"] if side.dyad == "PR" else ["moving_pivot", "coupler_vector"]
-            for field in absent:
-                if getattr(side, field) is not None:
-                    contradictions.append(Contradiction(f"/{name}/{field}", f"a {side.dyad} dyad has none"))
-            contradictions += self._partial_pivots(name, side, "of a slider's pivot")
-            if self.ground_line is not None:
-                contradictions.append(Contradiction("/ground_line", "cannot be stated with a slider"))
-            free = max(4 - len(self.positions), 0)
-            if not self.approximate and side.count() > free and not side.one_pivot:
-                detail = f"states {side.count()} numbers, but {len(self.positions)} positions leave a slider {free}"
-                contradictions.append(Contradiction(f"/{name}", detail))
-        if self.driver is not None and any(side.dyad in ("PR", "RP") for _, side in sides):
-            contradictions.append(Contradiction("/driver_dyad", "is added to fourbars; leave the slider out"))
-        if self.input_side.dyad == "RP":
-            contradictions.append(
-                Contradiction("/input_side/dyad", "a block cannot drive; state RP on the output side")
-            )
-        if all(side.dyad in ("PR", "RP") for _, side in sides):
-            contradictions.append(
-                Contradiction("/output_side/dyad", "a slider stands on one side only; the other has pins")
-            )
-        return contradictions
-
-    def _class_of_sliders(self) -> list[Contradiction]:
-        if all(side.dyad not in ("PR", "RP") for side in (self.input_side, self.output_side)):
-            return []
-        return self.constraints.of_another_class((), "classifies fourbars; a linkage with a slider has no class")
-
-    def _overstated_sides(self) -> list[Contradiction]:
-        free = 5 - len(self.positions)
-        contradictions = []
-        for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
-            if self.approximate or side.dyad in ("PR", "RP"):
-                continue
-            if side.rotations is not None and len(side.rotations) != len(self.positions) - 1:
-                contradictions.append(
-                    Contradiction(
-                        f"/{name}/rotations",
-                        f"expected {len(self.positions) - 1} rotations (one for each later position), "
-                        f"got {len(side.rotations)}",
-                    )
-                )
-            if side.moving_pivot is not None and side.coupler_vector is not None:
-                contradictions.append(
-                    Contradiction(
-                        f"/{name}/coupler_vector", "moving_pivot already states the coupler vector; give one of them"
-                    )
-                )
-            elif side.count() > free and not (len(self.positions) > 3 and side.one_pivot):
-                contradictions.append(
-                    Contradiction(
-                        f"/{name}",
-                        f"states {side.count()} numbers, but {len(self.positions)} positions leave {free} free choices "
-                        f"per side; leave some out{' or state one pivot' if len(self.positions) > 3 else ''}",
-                    )
-                )
-            elif self.ground_line is not None and whole_point(side.fixed_pivot) is None and side.count() >= free:
-                contradictions.append(
-                    Contradiction(
-                        "/ground_line",
-                        f"is one number more than the {free} free choices that {len(self.positions)} positions leave "
-                        f"for {name}, which states {side.count()}",
-                    )
-                )
-        return contradictions
-
-    def _pivots_outside_regions(self) -> list[Contradiction]:
-        contradictions = []
-        for path, pivot in self._stated_pivots():
-            region = getattr(self.constraints, f"{path.rsplit('/')[-1]}_region")
-            # An open coordinate cannot lie outside: the region's own stands for it.
-            if region is not None:
-                x, y = (region.x[0] if pivot[0] is None else pivot[0]), (region.y[0] if pivot[1] is None else pivot[1])
-                if not region.contains(complex(x, y)):
-                    contradictions.append(
-                        Contradiction(path, f"lies outside constraints.{path.rsplit('/')[-1]}_region")
-                    )
-        return contradictions
-
-    def _stated_pivots(self) -> Iterator[tuple[str, PartialPoint]]:
-        for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
-            for field, pivot in (("fixed_pivot", side.fixed_pivot), ("moving_pivot", side.moving_pivot)):
-                if pivot is not None:
-                    yield f"/{name}/{field}", pivot
-
-    def _pivots_off_the_ground_line(self) -> list[Contradiction]:
-        line = self.ground_line
-        if line is None:
-            return []
-        contradictions = []
-        along = cmath.rect(1.0, math.radians(line.angle))
-        for path, pivot in self._stated_pivots():
-            if path.endswith("/fixed_pivot"):
-                whole = whole_point(pivot)
-                parallel = abs(along.real if pivot[1] is None else along.imag) <= PARALLEL
-                if whole is not None and abs(line.offset(whole)) > ON_LINE * self.task_size:
-                    contradictions.append(Contradiction(path, "does not lie on ground_line"))
-                elif whole is None and parallel:
-                    contradictions.append(
-                        Contradiction(path, "leaves open what ground_line leaves open; state the other coordinate")
-                    )
-        return contradictions
-
-    def _coinciding_pivots(self) -> list[Contradiction]:
-        contradictions = []
-        for pivot in ("fixed_pivot", "moving_pivot"):
-            one, other = getattr(self.input_side, pivot), getattr(self.output_side, pivot)
-            if whole_point(one) is not None and one == other:
-                contradictions.append(
-                    Contradiction(
-                        f"/output_side/{pivot}", f"equal to the input side's {pivot}; the link between is lost"
-                    )
-                )
-        return contradictions

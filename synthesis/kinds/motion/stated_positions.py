@@ -9,6 +9,9 @@ from pydantic import Field, model_validator
 from synthesis.model.dimension import ANGLE
 from synthesis.model.statement import Coordinate, Degrees, Flag, PositiveLength, Sizable, Statement
 
+MOST_HELD = 5
+"""Positions that a linkage of two dyads can take exactly, in general (Norton, Table 5-3)."""
+
 
 class Tolerance(Statement):
     """How far a position may be missed, coordinate by coordinate; what is left out is met exactly."""

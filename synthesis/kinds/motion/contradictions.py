@@ -1,0 +1,273 @@
+"""What a motion problem states that cannot be together: faults that no single field shows.
+
+The problem is not named by its type here: its model asks this module.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from synthesis.kinds.motion.stated_dyads import DyadChoices, whole_point
+from synthesis.kinds.motion.stated_mechanisms import of_sixbars
+from synthesis.kinds.motion.stated_positions import MOST_HELD
+from synthesis.model.statement import Contradiction, PartialPoint
+
+LEAST_LENGTH = 1e-12
+"""Positions that differ, but by less than this many length units, are refused as absurd."""
+
+EQUAL_POSITIONS = 1e-9
+"""Positions closer than this share of the coordinates' size, and this many radians, count as equal.
+
+Double precision keeps about 1e-16 of the largest coordinate, so a displacement below 1e-9 of it has lost
+half its digits and no residual of 1e-9 could be shown for it."""
+
+PARALLEL = 1e-9
+"""Component of a unit vector below which a line counts as parallel to an axis."""
+
+ON_LINE = 1e-9
+"""Share of the task's size by which a stated pivot may lie off a stated line: rounding."""
+
+
+def contradictions_of(problem: Any) -> list[Contradiction]:
+    """All of them, of the problem as it is stated: equal positions, too many or colliding choices, sides and pivots."""
+    return [
+        *_equal_positions(problem),
+        *_misplaced_tolerances(problem),
+        *_too_many_held(problem),
+        *_choices_of_fits(problem),
+        *_choices_of_few_tolerated(problem),
+        *_choices_of_sliders(problem),
+        *_overstated_sides(problem),
+        *_coinciding_pivots(problem),
+        *_pivots_off_the_ground_line(problem),
+        *_pivots_outside_regions(problem),
+        *_class_of_sliders(problem),
+        *of_sixbars(problem),
+        *problem.contradicting_demands(),
+        *_without_room(problem),
+    ]
+
+
+def _equal_positions(problem: Any) -> list[Contradiction]:
+    size = max(max(abs(p.x), abs(p.y)) for p in problem.positions)
+    moved = max(abs(p.point - q.point) for p in problem.positions for q in problem.positions)
+    if 0.0 < moved < LEAST_LENGTH:
+        return [
+            Contradiction("/positions", f"less than {LEAST_LENGTH} {problem.length_unit} apart; take a smaller unit")
+        ]
+    contradictions = []
+    for k, later in enumerate(problem.positions):
+        for j, earlier in enumerate(problem.positions[:k]):
+            turn = math.remainder(later.angle - earlier.angle, 360.0)
+            near = abs(later.point - earlier.point) <= EQUAL_POSITIONS * size
+            if near and abs(math.radians(turn)) <= EQUAL_POSITIONS:
+                contradictions.append(Contradiction(f"/positions/{k}", f"equal to position {j}; positions must differ"))
+    return contradictions
+
+
+def _without_room(problem: Any) -> list[Contradiction]:
+    if problem.space is None:
+        return []
+    held = [k for k, limits in enumerate(problem.limits) if limits == (0.0, 0.0, 0.0)]
+    if 0 not in held:
+        return []
+    faults: list[Contradiction] = problem.space.without_room_at(*problem.places_of(held))
+    return faults
+
+
+def _misplaced_tolerances(problem: Any) -> list[Contradiction]:
+    return [
+        Contradiction(f"/positions/{k}/exact", "a position that is met exactly has no tolerance; give one of them")
+        for k, position in enumerate(problem.positions)
+        if position.exact and position.tolerance is not None
+    ]
+
+
+def _too_many_held(problem: Any) -> list[Contradiction]:
+    if problem.method == "exact" and len(problem.positions) > MOST_HELD and not problem.approximate:
+        return [Contradiction("/method", f"{MOST_HELD} positions at most can be met exactly; fit by least_squares")]
+    if problem.method == "least_squares" and not (problem.approximate or problem.few_tolerated):
+        detail = "fewer than five positions can be met exactly; leave the method out or state tolerances"
+        return [Contradiction("/method", detail)]
+    held = [k for k, limits in enumerate(problem.limits) if limits == (0.0, 0.0, 0.0)]
+    if len(held) > MOST_HELD:
+        detail = f"is the sixth position to be met exactly; give a tolerance to all but {MOST_HELD}"
+        return [Contradiction(f"/positions/{held[MOST_HELD]}", detail)]
+    return []
+
+
+def _choices_of_few_tolerated(problem: Any) -> list[Contradiction]:
+    """Within a tolerance a position is met where the body comes nearest to it, however far links have turned."""
+    contradictions = []
+    for name, side in (("input_side", problem.input_side), ("output_side", problem.output_side)):
+        if not problem.few_tolerated:
+            break
+        if any(rotation is not None for rotation in side.rotations or []):
+            detail = "are those between positions met exactly; leave out the tolerances, or take the method exact"
+            contradictions.append(Contradiction(f"/{name}/rotations", detail))
+        if side.link_angle is not None and problem.positions[0].tolerance is not None:
+            detail = "holds in the first position; leave out its tolerance, or take the method exact"
+            contradictions.append(Contradiction(f"/{name}/link_angle", detail))
+    return contradictions
+
+
+def _choices_of_fits(problem: Any) -> list[Contradiction]:
+    """A fit takes one pivot of a side (or the whole coupler vector) as given, and a slider's angle."""
+    contradictions = []
+    for name, side in (("input_side", problem.input_side), ("output_side", problem.output_side)):
+        if not problem.approximate:
+            break
+        vector = side.coupler_vector
+        if side.rotations is not None or side.link_angle is not None:
+            field = "link_angle" if side.rotations is None else "rotations"
+            contradictions.append(Contradiction(f"/{name}/{field}", "cannot be stated where positions are fitted"))
+        if vector is not None and (vector.length is None or vector.angle is None):
+            contradictions.append(
+                Contradiction(f"/{name}/coupler_vector", "state length and angle where positions are fitted")
+            )
+        if side.fixed_pivot is not None and (side.moving_pivot is not None or vector is not None):
+            contradictions.append(Contradiction(f"/{name}", "state one pivot where positions are fitted, not both"))
+        contradictions += _partial_pivots(name, side, "where positions are fitted")
+    if problem.approximate and problem.ground_line is not None:
+        contradictions.append(Contradiction("/ground_line", "cannot be stated where positions are fitted"))
+    return contradictions
+
+
+def _partial_pivots(name: str, side: DyadChoices, where: str) -> list[Contradiction]:
+    return [
+        Contradiction(f"/{name}/{field}", f"state both coordinates {where}")
+        for field, pivot in (("fixed_pivot", side.fixed_pivot), ("moving_pivot", side.moving_pivot))
+        if pivot is not None and whole_point(pivot) is None
+    ]
+
+
+def _choices_of_sliders(problem: Any) -> list[Contradiction]:
+    """A slider has one pivot, no link, and one free choice less than a link with two pins."""
+    contradictions = []
+    sides = ("input_side", problem.input_side), ("output_side", problem.output_side)
+    for name, side in sides:
+        if side.slide_angle is not None and side.dyad not in ("PR", "RP"):
+            contradictions.append(Contradiction(f"/{name}/slide_angle", "belongs to a slider; state dyad as PR or RP"))
+        if side.dyad not in ("PR", "RP"):
+            continue
+        absent = ["link_angle", "rotations"]
+        absent += ["fixed_pivot"] if side.dyad == "PR" else ["moving_pivot", "coupler_vector"]
+        for field in absent:
+            if getattr(side, field) is not None:
+                contradictions.append(Contradiction(f"/{name}/{field}", f"a {side.dyad} dyad has none"))
+        contradictions += _partial_pivots(name, side, "of a slider's pivot")
+        if problem.ground_line is not None:
+            contradictions.append(Contradiction("/ground_line", "cannot be stated with a slider"))
+        free = max(4 - len(problem.positions), 0)
+        if not problem.approximate and side.count() > free and not side.one_pivot:
+            detail = f"states {side.count()} numbers, but {len(problem.positions)} positions leave a slider {free}"
+            contradictions.append(Contradiction(f"/{name}", detail))
+    if problem.driver is not None and any(side.dyad in ("PR", "RP") for _, side in sides):
+        contradictions.append(Contradiction("/driver_dyad", "is added to fourbars; leave the slider out"))
+    if problem.input_side.dyad == "RP":
+        contradictions.append(Contradiction("/input_side/dyad", "a block cannot drive; state RP on the output side"))
+    if all(side.dyad in ("PR", "RP") for _, side in sides):
+        contradictions.append(
+            Contradiction("/output_side/dyad", "a slider stands on one side only; the other has pins")
+        )
+    return contradictions
+
+
+def _class_of_sliders(problem: Any) -> list[Contradiction]:
+    if all(side.dyad not in ("PR", "RP") for side in (problem.input_side, problem.output_side)):
+        return []
+    faults: list[Contradiction] = problem.constraints.of_another_class(
+        (), "classifies fourbars; a linkage with a slider has no class"
+    )
+    return faults
+
+
+def _overstated_sides(problem: Any) -> list[Contradiction]:
+    free = 5 - len(problem.positions)
+    contradictions = []
+    for name, side in (("input_side", problem.input_side), ("output_side", problem.output_side)):
+        if problem.approximate or side.dyad in ("PR", "RP"):
+            continue
+        if side.rotations is not None and len(side.rotations) != len(problem.positions) - 1:
+            contradictions.append(
+                Contradiction(
+                    f"/{name}/rotations",
+                    f"expected {len(problem.positions) - 1} rotations (one for each later position), "
+                    f"got {len(side.rotations)}",
+                )
+            )
+        if side.moving_pivot is not None and side.coupler_vector is not None:
+            contradictions.append(
+                Contradiction(
+                    f"/{name}/coupler_vector", "moving_pivot already states the coupler vector; give one of them"
+                )
+            )
+        elif side.count() > free and not (len(problem.positions) > 3 and side.one_pivot):
+            contradictions.append(
+                Contradiction(
+                    f"/{name}",
+                    f"states {side.count()} numbers, but {len(problem.positions)} positions leave {free} free choices "
+                    f"per side; leave some out{' or state one pivot' if len(problem.positions) > 3 else ''}",
+                )
+            )
+        elif problem.ground_line is not None and whole_point(side.fixed_pivot) is None and side.count() >= free:
+            contradictions.append(
+                Contradiction(
+                    "/ground_line",
+                    f"is one number more than the {free} free choices that {len(problem.positions)} positions leave "
+                    f"for {name}, which states {side.count()}",
+                )
+            )
+    return contradictions
+
+
+def _pivots_outside_regions(problem: Any) -> list[Contradiction]:
+    contradictions = []
+    for path, pivot in _stated_pivots(problem):
+        region = getattr(problem.constraints, f"{path.rsplit('/')[-1]}_region")
+        # An open coordinate cannot lie outside: the region's own stands for it.
+        if region is not None:
+            x, y = (region.x[0] if pivot[0] is None else pivot[0]), (region.y[0] if pivot[1] is None else pivot[1])
+            if not region.contains(complex(x, y)):
+                contradictions.append(Contradiction(path, f"lies outside constraints.{path.rsplit('/')[-1]}_region"))
+    return contradictions
+
+
+def _stated_pivots(problem: Any) -> Iterator[tuple[str, PartialPoint]]:
+    for name, side in (("input_side", problem.input_side), ("output_side", problem.output_side)):
+        for field, pivot in (("fixed_pivot", side.fixed_pivot), ("moving_pivot", side.moving_pivot)):
+            if pivot is not None:
+                yield f"/{name}/{field}", pivot
+
+
+def _pivots_off_the_ground_line(problem: Any) -> list[Contradiction]:
+    line = problem.ground_line
+    if line is None:
+        return []
+    contradictions = []
+    along = cmath.rect(1.0, math.radians(line.angle))
+    for path, pivot in _stated_pivots(problem):
+        if path.endswith("/fixed_pivot"):
+            whole = whole_point(pivot)
+            parallel = abs(along.real if pivot[1] is None else along.imag) <= PARALLEL
+            if whole is not None and abs(line.offset(whole)) > ON_LINE * problem.task_size:
+                contradictions.append(Contradiction(path, "does not lie on ground_line"))
+            elif whole is None and parallel:
+                contradictions.append(
+                    Contradiction(path, "leaves open what ground_line leaves open; state the other coordinate")
+                )
+    return contradictions
+
+
+def _coinciding_pivots(problem: Any) -> list[Contradiction]:
+    contradictions = []
+    for pivot in ("fixed_pivot", "moving_pivot"):
+        one, other = getattr(problem.input_side, pivot), getattr(problem.output_side, pivot)
+        if whole_point(one) is not None and one == other:
+            contradictions.append(
+                Contradiction(f"/output_side/{pivot}", f"equal to the input side's {pivot}; the link between is lost")
+            )
+    return contradictions
