@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Self
+from typing import Annotated
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
 from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.model.ratio_target import LONGEST, parse_target
-from synthesis.model.statement import Contradiction, Count, Number, PositiveLength, Statement
+from synthesis.model.statement import Contradiction, Count, Number, PositiveLength, Range, Statement
 
 FEWEST_TEETH = 3
 """Full-depth gears with fewer have no root circle."""
@@ -58,30 +58,18 @@ TipThickness = Annotated[float, Field(strict=True, ge=0.0, le=1.5)]
 """Least thickness of a tooth at its tip, in modules."""
 
 
-class ShiftRange(Statement):
+class ShiftRange(Range):
     """Least and greatest profile shift of a gear, in modules; equal to fix it."""
 
     min: ShiftCoefficient
     max: ShiftCoefficient
 
-    @model_validator(mode="after")
-    def _min_below_max(self) -> Self:
-        if self.min > self.max:
-            raise ValueError("min must not be above max")
-        return self
 
-
-class DistanceRange(Statement):
+class DistanceRange(Range):
     """Least and greatest centre distance."""
 
     min: PositiveLength
     max: PositiveLength
-
-    @model_validator(mode="after")
-    def _min_below_max(self) -> Self:
-        if self.min > self.max:
-            raise ValueError("min must not be above max")
-        return self
 
 
 class ToothRange(Statement):

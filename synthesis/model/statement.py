@@ -6,9 +6,9 @@ freedoms). Each kind lists such faults by field in ``contradictions``, so that a
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple, Self
 
-from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, model_validator
 
 from synthesis.model.dimension import ANGLE, LENGTH, Measured
 
@@ -59,6 +59,19 @@ class Statement(Measured):
     """Base of every model that a client writes: unknown fields are refused, values cannot change."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Range(Statement):
+    """Base of what has a least and a greatest value, `min` and `max`: equal to fix it, and one of them may be open."""
+
+    @model_validator(mode="after")
+    def _min_to_max(self) -> Self:
+        least, most = getattr(self, "min", None), getattr(self, "max", None)
+        if least is None and most is None:
+            raise ValueError("give min, max or both")
+        if least is not None and most is not None and least > most:
+            raise ValueError("min must not be above max")
+        return self
 
 
 def _ordered(interval: tuple[float, float]) -> tuple[float, float]:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, JsonValue, model_validator
+from pydantic import ConfigDict, Field, JsonValue
 
 from synthesis.model.dimension import DENSITY, ROTATIONAL_SPEED, SPEED
 from synthesis.model.dynamics import METRES, StatedFlywheel, WeighedLinkage
 from synthesis.model.loads import FULL_TURN, Interpolation, PairRows, Turns, period_fault
-from synthesis.model.statement import Contradiction, PositiveLength, PositiveNumber, StatedProblem, Statement
+from synthesis.model.statement import Contradiction, PositiveLength, PositiveNumber, Range, StatedProblem, Statement
 
 PULSE: list[JsonValue] = [[0.0, 10.0], [60.0, 10.0], [90.0, 160.0], [120.0, 160.0], [150.0, 10.0], [360.0, 10.0]]
 """A press that works over a sixth of a turn: the torque of the examples, N·m over degrees."""
@@ -59,19 +59,11 @@ class Flattest(Statement):
     max: PositiveNumber
 
 
-class Thickness(Statement):
+class Thickness(Range):
     """Least and greatest thickness of the wheel, along its axis."""
 
     min: PositiveLength | None = None
     max: PositiveLength | None = None
-
-    @model_validator(mode="after")
-    def _min_to_max(self) -> Self:
-        if self.min is None and self.max is None:
-            raise ValueError("give min, max or both")
-        if self.min is not None and self.max is not None and self.min > self.max:
-            raise ValueError("min must not be above max")
-        return self
 
 
 class FlywheelLimits(Statement):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field
 
 from synthesis.model.dimension import INVERSE_LENGTH
 from synthesis.model.gear_statement import (
@@ -22,7 +22,7 @@ from synthesis.model.gear_statement import (
     ToothNumber,
 )
 from synthesis.model.ratio_target import Target, decimal, parse_target
-from synthesis.model.statement import Contradiction, Count, Flag, PositiveLength, StatedProblem, Statement
+from synthesis.model.statement import Contradiction, Count, Flag, PositiveLength, Range, StatedProblem, Statement
 
 MOST_HALVES = 10_000_000
 """Choices of the drivers (or of the driven gears) of all stages that a search holds at most; about 200 MB."""
@@ -52,19 +52,13 @@ MOST_FITTED = 500
 """Tooth numbers of which pairs are fitted to a range of distances; some 10⁵ pairs."""
 
 
-class TeethRange(Statement):
+class TeethRange(Range):
     """Fewest and most teeth of a gear."""
 
     min: ToothNumber | None = Field(
         default=None, description="Left out: the fewest that no mate can undercut at the pressure angle (18 at 20°)."
     )
     max: ToothNumber = DEFAULT_MOST_TEETH
-
-    @model_validator(mode="after")
-    def _min_below_max(self) -> Self:
-        if self.min is not None and self.min > self.max:
-            raise ValueError("min must not be above max")
-        return self
 
 
 class StockedGear(Statement):

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field
 
 from synthesis.model.dimension import (
     ACCELERATION,
@@ -24,6 +24,7 @@ from synthesis.model.statement import (
     NonNegative,
     PositiveLength,
     PositiveNumber,
+    Range,
     StatedProblem,
     Statement,
 )
@@ -52,19 +53,11 @@ TRANSMISSION = 40.0
 Share = Annotated[float, Field(strict=True, gt=0.0, lt=1.0, allow_inf_nan=False)]
 
 
-class DwellShare(Statement):
+class DwellShare(Range):
     """Least and greatest share of the time in which the wheel rests."""
 
     min: Share | None = None
     max: Share | None = None
-
-    @model_validator(mode="after")
-    def _min_to_max(self) -> Self:
-        if self.min is None and self.max is None:
-            raise ValueError("give min, max or both")
-        if self.min is not None and self.max is not None and self.min > self.max:
-            raise ValueError("min must not be above max")
-        return self
 
 
 class IndexingConstraints(Statement):

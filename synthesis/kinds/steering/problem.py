@@ -2,29 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field
 
 from synthesis.model.dimension import ANGLE
 from synthesis.model.linkage_statement import LinkageProblem
-from synthesis.model.statement import Contradiction, PositiveLength, Sizable, Statement
+from synthesis.model.statement import Contradiction, PositiveLength, Range, Sizable
 
 ARM = (0.1, 0.25)
 """Least and greatest length of the steering arms where none is stated, in distances of the kingpins."""
 
 
-class ArmLimits(Statement):
+class ArmLimits(Range):
     """Least and greatest length of the steering arms; equal to fix it."""
 
     min: PositiveLength
     max: PositiveLength
-
-    @model_validator(mode="after")
-    def _min_to_max(self) -> Self:
-        if self.min > self.max:
-            raise ValueError("min must not be above max")
-        return self
 
 
 class SteeringProblem(LinkageProblem):
