@@ -1,4 +1,4 @@
-"""Gaussian elimination for small dense complex systems inside compiled kernels.
+"""Gaussian elimination for small dense systems inside compiled kernels: complex ones, `factor` and `solve` real too.
 
 LAPACK's calls cost more than the arithmetic of a system of ten unknowns, and allocate.
 """
@@ -16,7 +16,7 @@ Complex = NDArray[np.complex128]
 
 
 @njit(cache=True, nogil=True)
-def factor(matrix: Complex, pivots: Any) -> bool:
+def factor(matrix: NDArray[Any], pivots: Any) -> bool:
     """LU decomposition with partial pivoting in place.
 
     ``matrix``, shape (n, n), becomes L below the diagonal, U above it and the reciprocals of U's diagonal on it;
@@ -46,7 +46,7 @@ def factor(matrix: Complex, pivots: Any) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def solve(factors: Complex, pivots: Any, b: Complex) -> None:
+def solve(factors: NDArray[Any], pivots: Any, b: NDArray[Any]) -> None:
     """Replace ``b``, shape (n,), by the solution of the system that :func:`factor` has decomposed."""
     n = factors.shape[0]
     for k in range(n):

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.compiling import njit
+from synthesis.numerics.elimination import factor, solve
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -318,7 +319,7 @@ def _on_line(line: Real, first: Real, second: Real, points: Real, count: int) ->
 @njit(**OPTIONS)
 def _refined(shift: Complex, turn: Complex, pair: Complex) -> bool:
     """Newton's method on the four conditions of (O, A); whether it arrived."""
-    system, values = np.empty((CONDITIONS, 4)), np.empty(CONDITIONS)
+    system, values, pivots = np.empty((CONDITIONS, 4)), np.empty(CONDITIONS), np.empty(CONDITIONS, np.int64)
     for _ in range(NEWTON_STEPS):
         o, a = pair[0], pair[1]
         worst = 0.0
@@ -334,34 +335,9 @@ def _refined(shift: Complex, turn: Complex, pair: Complex) -> bool:
             return False
         if worst <= CONVERGED * size * size:
             return True
-        if not _solved(system, values):
+        if not factor(system, pivots):
             return False
+        solve(system, pivots, values)
         pair[0] -= complex(values[0], values[1])
         pair[1] -= complex(values[2], values[3])
     return False
-
-
-@njit(**OPTIONS)
-def _solved(system: Real, values: Real) -> bool:
-    """Gaussian elimination with row pivoting, in place."""
-    n = len(values)
-    for i in range(n):
-        row = i
-        for j in range(i + 1, n):
-            if abs(system[j, i]) > abs(system[row, i]):
-                row = j
-        if not abs(system[row, i]) > 1e-300:
-            return False
-        for j in range(n):
-            system[i, j], system[row, j] = system[row, j], system[i, j]
-        values[i], values[row] = values[row], values[i]
-        for j in range(i + 1, n):
-            factor = system[j, i] / system[i, i]
-            for m in range(i, n):
-                system[j, m] -= factor * system[i, m]
-            values[j] -= factor * values[i]
-    for i in range(n - 1, -1, -1):
-        for j in range(i + 1, n):
-            values[i] -= system[i, j] * values[j]
-        values[i] /= system[i, i]
-    return True
