@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.compiling import njit
+from kinematics.gear.teeth import involute, tangent_of_involute
 
 KEPT = 1e-10
 """Margin by which a demand may be missed, in modules: rounding must not condemn pairs that are on a limit."""
@@ -66,10 +67,7 @@ class Working(NamedTuple):
     line: float
 
 
-@njit(cache=True, nogil=True)
-def inv(angle: float) -> float:
-    """The involute function tan φ − φ."""
-    return math.tan(angle) - angle
+inv, _tangent = njit(cache=True, nogil=True)(involute), njit(cache=True, nogil=True)(tangent_of_involute)
 
 
 @njit(cache=True, nogil=True)
@@ -92,13 +90,7 @@ def with_sum(teeth: int, mate: int, total: float, demands: Demands) -> Working:
     value = inv(phi) + 2.0 * math.tan(phi) * total / (teeth + mate)
     if not value > 0.0:
         return Working(total, math.nan, math.nan, math.nan)
-    # t − atan t is convex and increasing in t = tan φ_w: from above Newton falls onto the root.
-    t = min(value + 0.5 * math.pi, 1.2 * (3.0 * value) ** (1.0 / 3.0) + value)
-    for _ in range(60):
-        step = (t - math.atan(t) - value) * (1.0 + t * t) / (t * t)
-        t -= step
-        if abs(step) <= 4e-16 * t:
-            break
+    t = _tangent(value)
     standard = 0.5 * (teeth + mate)
     distance = standard * math.cos(phi) * math.sqrt(1.0 + t * t)
     return Working(total, distance, max(0.0, total - (distance - standard)), standard * math.cos(phi) * t)

@@ -37,6 +37,19 @@ def involute(angle: float) -> float:
     return math.tan(angle) - angle
 
 
+def tangent_of_involute(value: float) -> float:
+    """tan φ of the angle φ in (0, π/2) with tan φ − φ = ``value`` > 0, by Newton's method; kernels compile it."""
+    # In t = tan φ the function t − atan t is convex and increasing: from a start above the root Newton falls onto it.
+    # t − atan t ≥ t³/3/(1 + t²) gives the start for small values, t ≤ value + π/2 the one for large.
+    t: float = min(value + 0.5 * math.pi, 1.2 * (3.0 * value) ** (1.0 / 3.0) + value)
+    for _ in range(60):
+        step = (t - math.atan(t) - value) * (1.0 + t * t) / (t * t)
+        t -= step
+        if abs(step) <= 4e-16 * t:
+            break
+    return t
+
+
 def inverse_involute(value: float) -> float:
     """The angle φ in [0, π/2) with tan φ − φ = ``value`` ≥ 0, by Newton's method from above.
 
@@ -49,15 +62,7 @@ def inverse_involute(value: float) -> float:
         raise DimensionError("value", "zero or positive", value)
     if value == 0.0:
         return 0.0
-    # In t = tan φ the function t − atan t is convex and increasing: from a start above the root Newton falls onto it.
-    # t − atan t ≥ t³/3/(1 + t²) gives the start for small values, t ≤ value + π/2 the one for large.
-    t = min(value + 0.5 * math.pi, 1.2 * (3.0 * value) ** (1.0 / 3.0) + value)
-    for _ in range(60):
-        step = (t - math.atan(t) - value) * (1.0 + t * t) / (t * t)
-        t -= step
-        if abs(step) <= 4e-16 * t:
-            break
-    return math.atan(t)
+    return math.atan(tangent_of_involute(value))
 
 
 @dataclass(frozen=True)
