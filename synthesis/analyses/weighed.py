@@ -11,10 +11,12 @@ from typing import Any
 from pydantic import ValidationError
 
 from kinematics.errors import MechanismError as KinematicsError
+from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.analyses.linkage import LinkageAnalysisRequest
 from synthesis.mechanisms import MechanismError
 from synthesis.mechanisms.link_bodies import token
 from synthesis.model.dynamics import DynamicsBlock, LengthUnit, WeighedLinkage
+from synthesis.model.motions import Sweep
 from synthesis.model.stated_path import stated_steps
 
 
@@ -52,6 +54,19 @@ def weighed_faults(
     if shaft and built.driven_by_slide:
         return [("/mechanism", "a slider drives this; a shaft has to")]
     return request.faults()
+
+
+def driven_faults(
+    mechanism: dict[str, Any], dynamics: WeighedLinkage, unit: LengthUnit, motion: Sweep
+) -> tuple[Mechanism | None, list[tuple[str, str]]]:
+    """The mechanism that is to be driven over a motion, None where it is none, and what is wrong with them."""
+    faults = weighed_faults(mechanism, dynamics, unit)
+    if faults:
+        return None, faults
+    built = weighed_request(mechanism, dynamics, unit).mechanism.mechanism()
+    if built.driven_by_slide and motion.speed_rpm is not None:
+        faults.append(("/motion/speed_rpm", "a slider drives this; state its speed as `speed`, length units a second"))
+    return built, faults
 
 
 def _pointer(steps: Sequence[str | int]) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from kinematics.linkage.planar.mechanism import GROUND
-from synthesis.analyses.weighed import weighed_faults, weighed_request
+from synthesis.analyses.weighed import driven_faults
 from synthesis.kinds.balancing.stated_weights import Counterweights
 from synthesis.mechanisms.link_bodies import token
 from synthesis.mechanisms.machine import machine_of
@@ -26,12 +26,9 @@ def linkage_faults(
 
     ``joints`` are names of joints by the fields that have them.
     """
-    faults = weighed_faults(stated, dynamics, unit)
-    if faults:
+    mechanism, faults = driven_faults(stated, dynamics, unit, motion)
+    if mechanism is None:
         return faults
-    mechanism = weighed_request(stated, dynamics, unit).mechanism.mechanism()
-    if mechanism.driven_by_slide and motion.speed_rpm is not None:
-        faults.append(("/motion/speed_rpm", "a slider drives this; state its speed as `speed`, length units a second"))
     machine, _ = machine_of(dynamics, mechanism, unit)
     masses = [*(float(part.mass) for part in machine.bodies.values()), *map(float, machine.pin_masses.values())]
     if not any(masses):

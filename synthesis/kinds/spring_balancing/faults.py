@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from kinematics.linkage.planar.mechanism import GROUND
-from synthesis.analyses.weighed import weighed_faults, weighed_request
+from synthesis.analyses.weighed import driven_faults
 from synthesis.kinds.spring_balancing.stated_springs import SoughtSpring
 from synthesis.mechanisms.machine import place_on
 from synthesis.model.dynamics import DynamicsBlock, LengthUnit
@@ -20,12 +20,9 @@ def spring_faults(
     stated: dict[str, Any], dynamics: DynamicsBlock, unit: LengthUnit, motion: Sweep, springs: Sequence[SoughtSpring]
 ) -> list[tuple[str, str]]:
     """Faults of a mechanism, what it weighs and carries, its motion and the sought springs, by their fields."""
-    faults = weighed_faults(stated, dynamics, unit)
-    if faults:
+    mechanism, faults = driven_faults(stated, dynamics, unit, motion)
+    if mechanism is None:
         return faults
-    mechanism = weighed_request(stated, dynamics, unit).mechanism.mechanism()
-    if mechanism.driven_by_slide and motion.speed_rpm is not None:
-        faults.append(("/motion/speed_rpm", "a slider drives this; state its speed as `speed`, length units a second"))
     weighs = any(body.shape is not None or body.mass for body in dynamics.bodies.values())
     weighs = weighs or any(mass.mass > 0.0 for mass in dynamics.point_masses)
     pulled = dynamics.gravity is not None and dynamics.gravity.magnitude > 0.0
