@@ -123,15 +123,20 @@ def _path(count: int, tolerance: float | None) -> Callable[[np.random.Generator]
     return made
 
 
+def _table(rng: np.random.Generator, mechanism: Mechanism, turned: float, count: int) -> list[dict[str, float]]:
+    """What the output does while the input turns."""
+    inputs, found = _driven(rng, mechanism, turned, count)
+    outputs = np.degrees(found.angles["output"][0] - found.angles["output"][0][0])
+    rows = zip(np.degrees(inputs - inputs[0]), outputs, strict=True)
+    return [{"input": float(x), "output": float(y)} for x, y in rows]
+
+
 def _pairs(count: int) -> Callable[[np.random.Generator], Planted]:
     def made(rng: np.random.Generator) -> Planted:
         mechanism = fourbar(rng)
-        inputs, found = _driven(rng, mechanism, 2.0, count)
-        outputs = np.degrees(found.angles["output"][0] - found.angles["output"][0][0])
-        rows = zip(np.degrees(inputs - inputs[0]), outputs, strict=True)
         stated = {
             "kind": "function",
-            "pairs": [{"input": float(x), "output": float(y)} for x, y in rows],
+            "pairs": _table(rng, mechanism, 2.0, count),
             "zeros": None,
             "fixed_pivots": _pivots(mechanism),
         }
@@ -148,12 +153,9 @@ def _pivots(mechanism: Mechanism) -> dict[str, list[float]]:
 def _function(rng: np.random.Generator) -> Planted:
     """A table of what a known linkage does, approximated, in any place and size within limits."""
     mechanism = fourbar(rng)
-    inputs, found = _driven(rng, mechanism, 1.6, 12)
-    outputs = np.degrees(found.angles["output"][0] - found.angles["output"][0][0])
-    rows = zip(np.degrees(inputs - inputs[0]), outputs, strict=True)
     stated = {
         "kind": "function",
-        "pairs": [{"input": float(x), "output": float(y)} for x, y in rows],
+        "pairs": _table(rng, mechanism, 1.6, 12),
         "zeros": None,
         "constraints": {"link_length": {"min": 25.0, "max": 400.0}},
     }
