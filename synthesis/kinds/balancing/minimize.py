@@ -33,7 +33,11 @@ ROUNDS = 10
 """Programs that are solved at most."""
 
 CLOSE = 1e-4
-"""Share of the value, and of a cap, by which the grid may exceed the program when nothing more is added."""
+"""Share of the value by which the grid may exceed the program when nothing more is added."""
+
+KEPT = 1e-8
+"""Share of a cap by which the grid may exceed it. The bound is of weights that keep the cap, and the least value falls
+by many times the share by which a cap is exceeded."""
 
 TOLERANCE = 1e-7
 """Share of the dual value, and of the sum of the weights of the objective, that the solver's tolerance may be off: the
@@ -186,9 +190,9 @@ def minimum(setting: Setting, task: Task) -> Minimum:
             (float(of.max()) / level.cap - 1.0 for level, of in zip(levels, reached, strict=True) if level.cap),
             default=0.0,
         )
-        if beyond <= CLOSE and value < least:
+        if beyond <= KEPT and value < least:
             best, least = parameters, value
-        if beyond <= CLOSE and value - bound <= CLOSE * max(value, NOTHING * weighed):
+        if beyond <= KEPT and value - bound <= CLOSE * max(value, NOTHING * weighed):
             break
         if not _add(levels, reached, found, used):
             break
@@ -203,7 +207,10 @@ def _add(levels: list[Level], reached: list[Real], found: Answer, used: dict[str
     for level, of, promised in zip(levels, reached, found.levels.tolist(), strict=True):
         if level.mean:
             continue
-        peaks = np.flatnonzero((of >= np.roll(of, 1)) & (of >= np.roll(of, -1)) & (of > promised * (1.0 + 0.1 * CLOSE)))
+        most = promised * (1.0 + 0.1 * CLOSE)
+        if level.cap is not None:
+            most = min(most, level.cap * (1.0 + KEPT))
+        peaks = np.flatnonzero((of >= np.roll(of, 1)) & (of >= np.roll(of, -1)) & (of > most))
         for at in peaks[np.argsort(-of[peaks])][:MOST_ADDED].tolist():
             if at not in used[level.name]:
                 used[level.name].append(at)

@@ -30,6 +30,9 @@ GAP = 5e-3
 """Share of the value that the bound may be below it."""
 
 KEPT = 1e-3
+"""Share of a greatest radius of gyration by which one may be above it."""
+
+CAPPED = 1e-6
 """Share of a cap by which a peak may be above it."""
 
 NEARLY_NOTHING = 1e-6
@@ -93,7 +96,7 @@ def verify_minimum(problem: BalancingProblem, task: Task, found: Minimum) -> Bal
     ]
     for level in levels:
         if level.cap is not None:
-            checks.append(at_most(f"max_{level.name.replace(' ', '_')}", level.ratio, level.cap, slack=KEPT))
+            checks.append(at_most(f"max_{level.name.replace(' ', '_')}", level.ratio, level.cap, slack=CAPPED))
     masses = [weight.mass for weight in weights]
     if stated.total_mass is not None:
         checks.append(at_most("total_mass", math.fsum(masses), stated.total_mass, MASS, BUILT))
