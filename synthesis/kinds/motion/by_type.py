@@ -1,24 +1,22 @@
 """Which type of linkage carries the body: the simplest that is sound, sixbars where none of those is.
 
 A fourbar or slider-crank that meets all demands stands alone where its least transmission angle is what the client
-demands or, where nothing is demanded, :data:`~synthesis.kinds.motion.chain_search.SOUND` degrees. Otherwise sixbars are
+demands or, where nothing is demanded, :data:`~synthesis.outcome.simplest.SOUND` degrees. Otherwise sixbars are
 looked for, and those that transmit better are offered beside it.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable
 
-from synthesis.kinds.motion.chain_search import SOUND, solve_sixbars
+from synthesis.kinds.motion.chain_search import solve_sixbars
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.stated_positions import MOST_HELD
-from synthesis.model.answer import Search
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.outcome.ranking import ranked
-from synthesis.outcome.sifting import OUTRANKED
+from synthesis.outcome.simplest import both_searches, offered_beside, offering, passing, transmits
 
 Solve = Callable[[MotionProblem, Progress], MotionResult]
 
@@ -46,19 +44,9 @@ def solve_types(problem: MotionProblem, two_dyads: Solve, progress: Progress) ->
         told = f" {MANY}" if problem.mechanisms == "auto" else ""
         return result.model_copy(update={"summary": result.summary + told})
     simple = two_dyads(part, part_of(progress, 0.0, 0.4))
-    if any(_sound(problem, design) for design in _passed(simple)):
+    if any(transmits(problem, design) for design in passing(simple.designs)):
         return simple
     return joined(problem, simple, solve_sixbars(problem, problem.sixbars, part_of(progress, 0.4, 1.0)))
-
-
-def _sound(problem: MotionProblem, design: LinkageDesign) -> bool:
-    """Whether a linkage that meets all demands transmits force well enough to stand alone."""
-    demanded = problem.constraints.min_transmission_angle
-    return demanded is not None or design.metrics.min_transmission_angle >= SOUND
-
-
-def _passed(result: MotionResult) -> list[LinkageDesign]:
-    return [design for design in result.designs if design.verification.passed]
 
 
 def joined(problem: MotionProblem, simple: MotionResult, found: MotionResult) -> MotionResult:
@@ -67,11 +55,15 @@ def joined(problem: MotionProblem, simple: MotionResult, found: MotionResult) ->
     Sixbars stand beside those linkages only where they transmit better than the best of them. What passed and is not
     offered counts as outranked.
     """
-    plain, better = _passed(simple), _passed(found)
+    plain, better = passing(simple.designs), passing(found.designs)
     best = max((design.metrics.min_transmission_angle for design in plain), default=0.0)
     if plain:
         better = [design for design in better if design.metrics.min_transmission_angle > best]
-    offered = _offered(problem, plain, better)
+
+    def order(designs: list[LinkageDesign]) -> list[LinkageDesign]:
+        return ranked(designs, problem.rank_by)
+
+    offered = offered_beside(problem.max_designs, plain, better, order)
     sixbars = [design for design in offered if any(design is one for one in better)]
     if not plain:
         told = _without_simple(problem, simple, better)
@@ -85,24 +77,14 @@ def joined(problem: MotionProblem, simple: MotionResult, found: MotionResult) ->
             beside = "beside it" if len(sixbars) < len(offered) else "in its place"
             told += f"; sixbars that have more are offered {beside}."
     failed = [one for result in (simple, found) for one in result.designs if not one.verification.passed]
-    searches = _offering(simple.search, len(offered) - len(sixbars)), _offering(found.search, len(sixbars))
+    searches = offering(simple.search, len(offered) - len(sixbars)), offering(found.search, len(sixbars))
     return simple.model_copy(
         update={
-            "designs": [*offered, *ranked(failed, problem.rank_by)][: problem.max_designs],
-            "search": _account(*searches),
+            "designs": [*offered, *order(failed)][: problem.max_designs],
+            "search": both_searches(*searches),
             "summary": " ".join([told, simple.summary, found.summary]),
         }
     )
-
-
-def _offered(problem: MotionProblem, plain: list[LinkageDesign], better: list[LinkageDesign]) -> list[LinkageDesign]:
-    """As many as are wanted, the best first; where two are, the best of both sorts."""
-    order = ranked([*plain, *better], problem.rank_by)
-    kept = order[: problem.max_designs]
-    for sort in (plain, better):
-        if sort and len(kept) > 1 and not any(design is one for design in kept for one in sort):
-            kept[-1] = next(design for design in order if any(design is one for one in sort))
-    return kept
 
 
 def _without_simple(problem: MotionProblem, simple: MotionResult, sixbars: list[LinkageDesign]) -> str:
@@ -116,23 +98,3 @@ def _without_simple(problem: MotionProblem, simple: MotionResult, sixbars: list[
         none = "Neither a linkage of two dyads nor a sixbar was found."
         return "No linkage of two dyads was found; sixbars were." if sixbars else none
     return f"None of the types named was found{' but sixbars' if sixbars else ''}."
-
-
-def _offering(search: Search, count: int) -> Search:
-    """The account of a search of which so many designs are offered at most."""
-    withdrawn = max(search.accepted - count, 0)
-    rejected = Counter(search.rejected) + Counter({OUTRANKED: withdrawn})
-    return search.model_copy(update={"accepted": search.accepted - withdrawn, "rejected": dict(rejected)})
-
-
-def _account(first: Search, second: Search) -> Search:
-    """The account of two searches as one."""
-    return second.model_copy(
-        update={
-            "method": f"{first.method}, {second.method}",
-            "complete": False,
-            "candidates": first.candidates + second.candidates,
-            "accepted": first.accepted + second.accepted,
-            "rejected": dict(Counter(first.rejected) + Counter(second.rejected)),
-        }
-    )

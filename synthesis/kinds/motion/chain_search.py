@@ -19,15 +19,16 @@ from synthesis.kinds.motion.chain_draws import drawn_chains, drawn_poses, needed
 from synthesis.kinds.motion.demanded import Complex, Real, demanded
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.kinds.motion.sixbar_mechanism import Links, sixbar_mechanism
 from synthesis.kinds.motion.stated_mechanisms import Chain, Sixbar
 from synthesis.kinds.motion.task import MotionTask, motion_task
 from synthesis.kinds.motion.verification import verify
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import LinkageDesign, SixbarMechanism
 from synthesis.model.linkage_statement import Region
+from synthesis.model.sixbars import Links, sixbar_mechanism
 from synthesis.outcome.ranking import distinct, ranked
 from synthesis.outcome.sifting import DEFECTS, Sifting
+from synthesis.outcome.simplest import SOUND
 
 CHAINS, CLIMBING, STEPS = 1500, 40, 200
 """Chains that are drawn at a time, those of them that are moved, and steps of each at most."""
@@ -43,9 +44,6 @@ REACH, RATIO = 5.0, 20.0
 
 REACH_OF_CHAIN = 2.0
 """What the first limit is at least, beside the longest length or way that is stated of the chain."""
-
-SOUND = 20.0
-"""Degrees of transmission angle that are aimed at where the client states no limit."""
 
 MARGIN = 0.5
 """Degrees by which a demanded transmission angle is exceeded: between the steps of the drive it is less."""

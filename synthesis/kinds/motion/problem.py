@@ -15,6 +15,7 @@ from synthesis.kinds.motion.stated_mechanisms import SIXBARS, Chain, Mechanisms,
 from synthesis.kinds.motion.stated_positions import MOST_HELD, Position, Tolerance
 from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.model.manufacture import Held, Made, kept_pivots
+from synthesis.model.stated_types import named_among
 from synthesis.model.statement import Contradiction, Flag
 
 LEAST_TOLERANCE = 1e-12
@@ -194,11 +195,9 @@ class MotionProblem(LinkageProblem):
     @property
     def sixbars(self) -> tuple[Sixbar, ...]:
         """The types of sixbars that are looked for."""
-        if self.mechanisms is None:
+        if self.mechanisms == "auto" and not self.few_enough:
             return ()
-        if self.mechanisms == "auto":
-            return SIXBARS if self.few_enough else ()
-        return tuple(name for name in SIXBARS if name in self.mechanisms)
+        return named_among(self.mechanisms, SIXBARS)
 
     @property
     def of_two_dyads(self) -> MotionProblem | None:

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import Field
 
 from synthesis.kinds.motion.stated_dyads import whole_point
+from synthesis.model.stated_types import Auto
 from synthesis.model.statement import Contradiction, PartialPoint, PositiveLength, Statement
 
 Sixbar = Literal["watt_1", "stephenson_1", "stephenson_3"]
@@ -15,9 +16,7 @@ Sixbar = Literal["watt_1", "stephenson_1", "stephenson_3"]
 
 SIXBARS: tuple[Sixbar, ...] = get_args(Sixbar)
 
-Mechanisms = (
-    Literal["auto"] | Annotated[list[Literal["fourbar", "slider_crank"] | Sixbar], Field(min_length=1, max_length=5)]
-)
+Mechanisms = Auto | Annotated[list[Literal["fourbar", "slider_crank"] | Sixbar], Field(min_length=1, max_length=5)]
 """Types by their names, or the simplest that does."""
 
 

@@ -1,20 +1,13 @@
-"""Sixbars: how many random tasks have a sound one, how long that takes, and whether what is claimed of them is true.
+"""Motion: tasks of five positions of three sorts, and how many of them have a sound fourbar and a sound sixbar.
 
-    python -m benchmarks.sixbars motion [--tasks 200] [--seed 0]
-    python -m benchmarks.sixbars auto [--tasks 100] [--seed 0]
-
-``motion``: tasks of five positions of three sorts. *On a way*: the body goes along a bent way and turns by up to 30°
-from position to position. *Within a box*: positions anywhere in a square, turned by up to ±30°. *Anyhow*: the same, up
-to ±90°. Sound is one branch and circuit, in order, no toggle, a transmission angle of 20° and no link longer than five
-task sizes. Each sixbar is driven once more by its loops (tests/oracles/loops.py), which know nothing of the product.
-
-``auto``: tasks of three positions that have a sound fourbar, with ``mechanisms`` and without. Times are of a processor,
-and of the wall.
+*On a way*: the body goes along a bent way and turns by up to 30° from position to position. *Within a box*: positions
+anywhere in a square, turned by up to ±30°. *Anyhow*: the same, up to ±90°. Sound is one branch and circuit, in order,
+no toggle, a transmission angle of 20° and no link longer than five task sizes. Each sixbar is driven once more by its
+loops (tests/oracles/loops.py), which know nothing of the product.
 """
 
 from __future__ import annotations
 
-import argparse
 import statistics
 import time
 from collections.abc import Callable
@@ -26,6 +19,8 @@ from synthesis.dispatch import solve
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.registry import parse_problem
 from tests.oracles.loops import Loops
+
+TASKS = 200
 
 SIXBARS = ["watt_1", "stephenson_1", "stephenson_3"]
 SOUND, REACH = 20.0, 5.0
@@ -96,7 +91,7 @@ def false_claim(design: Any, task: Task) -> str:
     return ""
 
 
-def motion_table(tasks: int, seed: int) -> None:
+def table(tasks: int, seed: int) -> None:
     print(
         f"{'five positions':<44}{'tasks':>6}{'fourbar %':>11}{'sixbar %':>10}"
         f"{'CPU s':>8}{'most':>7}{'wall s':>8}{'false':>7}"
@@ -122,31 +117,3 @@ def motion_table(tasks: int, seed: int) -> None:
             f"{name:<44}{tasks:>6}{100.0 * fourbars / tasks:>11.1f}{100.0 * sixbars / tasks:>10.1f}"
             f"{statistics.median(times):>8.2f}{max(times):>7.1f}{max(walls):>8.1f}{wrong:>4}/{driven}"
         )
-
-
-def auto_table(tasks: int, seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    without, auto = [], []
-    for _ in range(tasks):
-        task = on_a_way(rng, 3)
-        result, processor, _ = solved(task)
-        if sound(result):
-            again, longer, _ = solved(task, mechanisms="auto")
-            assert again.designs == result.designs
-            without.append(processor)
-            auto.append(longer)
-    share = 100.0 * (sum(auto) / sum(without) - 1.0)
-    print(f"auto on {len(auto)} tasks with a sound fourbar: {share:+.1f} % time, the same answers")
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("table", choices=["motion", "auto"])
-    parser.add_argument("--tasks", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=0)
-    asked = parser.parse_args()
-    {"motion": motion_table, "auto": auto_table}[asked.table](asked.tasks, asked.seed)
-
-
-if __name__ == "__main__":
-    main()
