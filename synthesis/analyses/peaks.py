@@ -1,4 +1,8 @@
-"""Extremes of quantities along a motion, refined between its positions by looking there again."""
+"""Extremes of quantities along a motion, refined between its positions by looking there again.
+
+Near a toggle a force can rise and fall between two positions. Wherever the bend of a quantity allows a value above the
+highest one that is known, the motion is looked at more closely, until none does.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +15,17 @@ from numpy.typing import NDArray
 Real = NDArray[np.float64]
 Samples = dict[str, Real]
 
-FINER = 17
-"""Places at which a peak is looked for between the neighbours of the highest position."""
+PARTS, ROUNDS = 8, 5
+"""Into how many parts an interval is divided in which a higher value may be, and how often at most."""
+
+BEND = 4.0
+"""How many times its neighbours' second difference a quantity may bend between two positions."""
+
+CLOSE = 1e-5
+"""Share of the highest value by which one between positions may be above it, before a parabola is laid through them."""
+
+MOST = 4096
+"""Positions that are added in a round, at most."""
 
 
 class Peak(NamedTuple):
@@ -39,49 +52,68 @@ def peaks(
     closed : bool
         Whether the motion closes, so that a peak may lie beyond its end.
     """
+    known = {name: values for name, values in samples.items() if np.isfinite(values).any()}
     found = {name: Peak(np.nan, np.nan) for name in samples}
-    looked = {name: int(np.nanargmax(values)) for name, values in samples.items() if np.isfinite(values).any()}
-    if len(positions) < 3 or not looked:
-        return found | {name: Peak(float(samples[name][k]), float(positions[k])) for name, k in looked.items()}
-    last = len(positions) - 1
-    shares = np.linspace(-1.0, 1.0, FINER)
-    inputs, rates = [], []
-    for k in looked.values():
-        middle = min(max(k, 1), last - 1)
-        share = shares + (k - middle)
-        if not closed:
-            share = np.clip(share, -1.0, 1.0)
-        near = slice(middle - 1, middle + 2)
-        inputs.append(_between(positions[near], share))
-        rates.append(_between(speeds[near], share))
-    finer = measure(np.concatenate(inputs), np.concatenate(rates))
-    for n, name in enumerate(looked):
-        found[name] = _vertex(inputs[n], finer[name][n * FINER : (n + 1) * FINER])
-        at_first = Peak(float(samples[name][looked[name]]), float(positions[looked[name]]))
-        if not found[name].value >= at_first.value:
-            found[name] = at_first
-    return found
+    if len(positions) < 3 or not known:
+        at = {name: int(np.nanargmax(values)) for name, values in known.items()}
+        return found | {name: Peak(float(samples[name][k]), float(positions[k])) for name, k in at.items()}
+    places = np.arange(len(positions), dtype=np.float64)
+    for _ in range(ROUNDS):
+        fresh = _doubtful(places, known)
+        if not len(fresh):
+            break
+        more = measure(_between(positions, fresh), _between(speeds, fresh))
+        order = np.argsort(np.concatenate([places, fresh]), kind="stable")
+        places = np.concatenate([places, fresh])[order]
+        known = {name: np.concatenate([values, more[name]])[order] for name, values in known.items()}
+    return found | {name: _vertex(positions, places, values, closed) for name, values in known.items()}
 
 
-def _between(three: Real, share: Real) -> Real:
-    """The parabola through three values at −1, 0 and 1."""
-    before, middle, after = three
-    return np.asarray(middle + 0.5 * share * (after - before) + 0.5 * share**2 * (after - 2.0 * middle + before))
+def _doubtful(places: Real, known: Samples) -> Real:
+    """Places between those of ``places`` where some quantity may be above its highest value."""
+    steps = np.diff(places)
+    doubtful = np.zeros(len(steps), dtype=bool)
+    for values in known.values():
+        slopes = np.diff(values) / steps
+        bends = np.abs(np.nan_to_num(2.0 * np.diff(slopes) / (steps[1:] + steps[:-1])))
+        bend = np.maximum(np.concatenate([bends[:1], bends]), np.concatenate([bends, bends[-1:]]))
+        highest = np.nanmax(values)
+        reached = np.maximum(values[:-1], values[1:]) + BEND * bend * steps**2 / 8.0
+        doubtful |= reached > highest + CLOSE * abs(highest)
+    chosen = np.flatnonzero(doubtful)[: MOST // (PARTS - 1)]
+    shares = np.arange(1, PARTS) / PARTS
+    return np.asarray((places[chosen, None] + steps[chosen, None] * shares).ravel())
 
 
-def _vertex(at: Real, values: Real) -> Peak:
+def _between(values: Real, places: Real) -> Real:
+    """What stands at whole numbers, between them by the parabola through the nearest three."""
+    middle = np.clip(np.rint(places).astype(int), 1, len(values) - 2)
+    share = places - middle
+    before, at, after = values[middle - 1], values[middle], values[middle + 1]
+    return np.asarray(at + 0.5 * share * (after - before) + 0.5 * share**2 * (after - 2.0 * at + before))
+
+
+def _vertex(positions: Real, places: Real, values: Real, closed: bool) -> Peak:
     """The top of the parabola through the highest value and its neighbours."""
-    if not np.isfinite(values).any():
-        return Peak(np.nan, np.nan)
-    k = int(np.nanargmax(values))
-    # At an end of a motion that does not close the places are one and the same: nothing lies beyond.
-    if not 0 < k < len(at) - 1 or at[k] in (at[k - 1], at[k + 1]):
-        return Peak(float(values[k]), float(at[k]))
-    before, top, after = (float(values[n]) for n in (k - 1, k, k + 1))
-    bend = after - 2.0 * top + before
-    step = float(at[k + 1] - at[k - 1]) / 2.0
-    share = 0.5 * (before - after) / bend if bend < 0.0 else 0.0
+    k, last = int(np.nanargmax(values)), len(values) - 1
+    place, top = places[k], float(values[k])
+    stands = Peak(top, float(_between(positions, places[k : k + 1])[0]))
+    if 0 < k < last:
+        sides = (k - 1, k + 1)
+        reach = (place - places[k - 1], places[k + 1] - place)
+    elif closed:  # the first and the last position are one
+        sides = (last - 1, 1)
+        reach = (places[last] - places[last - 1], places[1] - places[0])
+    else:
+        return stands
+    left, right = ((top - float(values[side])) / far for side, far in zip(sides, reach, strict=True))
     # At a corner, or beside a position without value, the parabola tells nothing: the highest value stands.
-    if not abs(share) <= 1.0:
-        return Peak(top, float(at[k]))
-    return Peak(top + 0.25 * (after - before) * share, float(at[k]) + share * step)
+    bend = (left + right) / (reach[0] + reach[1])
+    slope = (left * reach[1] - right * reach[0]) / (reach[0] + reach[1])
+    if not bend > 0.0:
+        return stands
+    off = float(slope / (2.0 * bend))
+    if not -reach[0] <= off <= reach[1]:
+        return stands
+    at = float(_between(positions, np.array([place + off]))[0])
+    return Peak(top + float(slope) * off - float(bend) * off**2, at)

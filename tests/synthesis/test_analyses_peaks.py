@@ -23,3 +23,36 @@ def test_a_peak_at_an_end_is_that_of_the_end_and_one_between_is_that_of_the_func
     else:
         assert found["sine"] == pytest.approx((1.0, 0.5 * np.pi), rel=1e-6)
     assert all(low <= peak.at <= high for peak in found.values())
+
+
+@pytest.mark.parametrize("place", [3.3, 3.337, 3.35])
+def test_a_narrow_peak_between_positions_is_found_beside_a_broad_one_of_higher_positions(place):
+    """The broad one has the highest position; the narrow one, a step wide, is a third higher between two."""
+    at = np.linspace(0.0, 2.0 * np.pi, 73)
+
+    def measure(inputs, _speeds):
+        return {"both": 0.9 * np.cos(inputs - 0.7) ** 4 + 1.2 / (1.0 + ((inputs - place) / 0.05) ** 2)}
+
+    found = peaks(at, np.ones_like(at), measure(at, at), measure, closed=True)["both"]
+    dense = np.linspace(0.0, 2.0 * np.pi, 2_000_001)
+    assert found.value == pytest.approx(measure(dense, dense)["both"].max(), rel=1e-7)
+
+
+def test_a_peak_at_the_end_of_a_motion_that_closes_is_beyond_it():
+    at = np.linspace(0.0, 2.0 * np.pi, 73)
+
+    def measure(inputs, _speeds):
+        return {"cosine": np.cos(inputs + 1e-5)}
+
+    found = peaks(at, np.ones_like(at), measure(at, at), measure, closed=True)["cosine"]
+    assert found.value == pytest.approx(1.0, abs=1e-12)
+
+
+def test_positions_without_values_hide_no_peak_beside_them():
+    at = np.linspace(0.0, 4.0, 41)
+
+    def measure(inputs, _speeds):
+        return {"sine": np.where(inputs > 2.0, np.nan, np.sin(inputs))}
+
+    found = peaks(at, np.ones_like(at), measure(at, at), measure, closed=False)["sine"]
+    assert found == pytest.approx((1.0, 0.5 * np.pi), rel=1e-6)
