@@ -28,6 +28,7 @@ from synthesis.kinds import (
     spring_balancing,
     steering,
     straight_line,
+    train_series,
 )
 from synthesis.model.kind import Kind
 from synthesis.model.statement import StatedProblem
@@ -44,6 +45,7 @@ KINDS: dict[str, Kind[Any, Any]] = {
         parallel_motion,
         gear_train,
         planetary_train,
+        train_series,
         gearbox,
         layshaft_gearbox,
         function,

@@ -25,7 +25,8 @@ FILES: dict[str, tuple[Form, ...]] = {
     "cam": ("svg", "gif", "dxf", "csv"),
     "barrel_cam": ("svg", "gif", "dxf", "csv"),
     "gear_train": ("svg", "gif", "dxf", "csv"),
-    "planetary_train": ("svg", "dxf", "csv"),
+    "planetary_train": ("svg", "gif", "dxf", "csv"),
+    "train_series": ("svg", "gif", "dxf", "csv"),
     "gearbox": ("svg", "dxf", "csv"),
     "layshaft_gearbox": ("svg", "dxf", "csv"),
     "rotor": ("svg", "dxf", "csv"),
@@ -52,6 +53,7 @@ def _sheets() -> dict[str, Maker]:
     from service.render.cam.sheet import barrel_sheet, cam_sheet
     from service.render.gears.gearbox_sheet import gearbox_sheet, layshaft_sheet
     from service.render.gears.planetary_sheet import planetary_sheet
+    from service.render.gears.series_sheet import series_sheet
     from service.render.gears.train_sheet import gear_train_sheet
     from service.render.linkage.sheet import linkage_sheet
     from service.render.rotor.sheet import rotor_sheet
@@ -66,6 +68,7 @@ def _sheets() -> dict[str, Maker]:
         "barrel_cam": barrel_sheet,
         "gear_train": gear_train_sheet,
         "planetary_train": planetary_sheet,
+        "train_series": series_sheet,
         "gearbox": gearbox_sheet,
         "layshaft_gearbox": layshaft_sheet,
         "rotor": rotor_sheet,
@@ -79,6 +82,7 @@ def _sheets() -> dict[str, Maker]:
 def _animations() -> dict[str, Maker]:
     from service.render.cam.animation import barrel_animation, cam_animation
     from service.render.gears.train_animation import gear_train_animation
+    from service.render.gears.turning import planetary_animation, series_animation
     from service.render.linkage.animation import linkage_animation
     from service.render.shafts.indexing import indexing_animation
 
@@ -87,13 +91,15 @@ def _animations() -> dict[str, Maker]:
         "cam": cam_animation,
         "barrel_cam": barrel_animation,
         "gear_train": gear_train_animation,
+        "planetary_train": planetary_animation,
+        "train_series": series_animation,
         **dict.fromkeys(GENEVA, indexing_animation),
     }
 
 
 def _drawings() -> dict[str, Maker]:
     from service.render.cam.dxf import barrel_drawing, cam_drawing
-    from service.render.gears.dxf import gear_train_drawing, planetary_drawing
+    from service.render.gears.dxf import gear_train_drawing, planetary_drawing, series_drawing
     from service.render.gears.gearbox_dxf import gearbox_drawing, layshaft_drawing
     from service.render.linkage.dxf import linkage_drawing
     from service.render.rotor.dxf import rotor_drawing
@@ -108,6 +114,7 @@ def _drawings() -> dict[str, Maker]:
         "barrel_cam": barrel_drawing,
         "gear_train": gear_train_drawing,
         "planetary_train": planetary_drawing,
+        "train_series": series_drawing,
         "gearbox": gearbox_drawing,
         "layshaft_gearbox": layshaft_drawing,
         "rotor": rotor_drawing,
@@ -120,7 +127,13 @@ def _drawings() -> dict[str, Maker]:
 
 def _tables() -> dict[str, Maker]:
     from service.render.cam.csv import barrel_table, cam_table
-    from service.render.gears.csv import gear_train_table, gearbox_table, layshaft_table, planetary_table
+    from service.render.gears.csv import (
+        gear_train_table,
+        gearbox_table,
+        layshaft_table,
+        planetary_table,
+        series_table,
+    )
     from service.render.linkage.csv import function_table, linkage_table
     from service.render.rotor.csv import rotor_table
     from service.render.shafts.engine import engine_table
@@ -135,6 +148,7 @@ def _tables() -> dict[str, Maker]:
         "barrel_cam": barrel_table,
         "gear_train": gear_train_table,
         "planetary_train": planetary_table,
+        "train_series": series_table,
         "gearbox": gearbox_table,
         "layshaft_gearbox": layshaft_table,
         "rotor": rotor_table,

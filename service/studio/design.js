@@ -27,7 +27,7 @@ const TURN_STEPS = 360;
 
 /** What shows a mechanism that is no linkage. @type {Record<string, new (place: HTMLElement, design: any, motion: any, problem: any) => Moving>} */
 const VIEWS = {
-  cam: Disc, barrel_cam: Barrel, gear_train: Gears, planetary_train: Gears, gearbox: Gears, layshaft_gearbox: Gears, rotor: Rotor,
+  cam: Disc, barrel_cam: Barrel, gear_train: Gears, planetary_train: Gears, train_series: Gears, gearbox: Gears, layshaft_gearbox: Gears, rotor: Rotor,
   flywheel: Flywheel, engine: Engine, geneva_external: Geneva, geneva_internal: Geneva, geneva_spherical: Geneva,
   ratchet: Ratchet,
 };

@@ -40,7 +40,7 @@ export class Gears {
     // Rings lie behind, and what is not engaged behind those.
     const order = [...listed].sort((one, other) => Number(other.internal ?? false) - Number(one.internal ?? false));
     this.drawings = order.map((wheel) => drawn(view, wheel));
-    const arms = listed.filter((wheel) => wheel.orbit !== undefined && (wheel.centre[0] || wheel.centre[1]));
+    const arms = listed.filter((wheel) => wheel.orbit !== undefined && (wheel.centre[0] !== (wheel.axis?.[0] ?? 0) || wheel.centre[1]));
     this.arms = arms.map((wheel) => ({ wheel, line: svg("line", { class: "arm" }) }));
     this.view = view;
     this.picture.replaceChildren(svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
@@ -53,6 +53,7 @@ export class Gears {
     const { bodies, shafts, gears } = this.motion;
     const told = (/** @type {number | null} */ ratio) => (ratio === null ? "open" : `${shown(Number(ratio.toPrecision(6)))} × input`);
     if (bodies) return bodies.map((/** @type {any} */ body) => [words(body.name), body.speed === 0 ? "held" : told(body.speed)]);
+    if (this.motion.units) return shafts.map((/** @type {any} */ shaft, /** @type {number} */ k) => [k === 0 ? "Input" : k === shafts.length - 1 ? "Output" : `Shaft ${k + 1}`, told(shaft.speed_ratio)]);
     if (shafts?.[0]?.name) return shafts.map((/** @type {any} */ shaft) => [words(shaft.name), told(shaft.speed_ratio)]);
     return gears.map((/** @type {any} */ gear) => [`Stage ${gear.stage} ${gear.role}, ${gear.teeth} teeth`, told(gear.speed_ratio)]);
   }
@@ -97,7 +98,7 @@ export class Gears {
     const input = (this.degrees(at) * Math.PI) / 180;
     for (const { turn } of this.drawings ?? []) turn(input);
     for (const { wheel, line } of this.arms ?? []) {
-      const [[u, v], [x, y]] = [this.view.at(0, 0), this.view.at(...place(wheel, input))];
+      const [[u, v], [x, y]] = [this.view.at(...(wheel.axis ?? /** @type {[number, number]} */ ([0, 0]))), this.view.at(...place(wheel, input))];
       for (const [name, value] of Object.entries({ x1: u, y1: v, x2: x, y2: y })) line.setAttribute(name, value.toFixed(2));
     }
   }

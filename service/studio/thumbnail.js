@@ -79,6 +79,16 @@ function circles(mechanism, metrics) {
       return row(pairs.map((/** @type {any} */ pair) => [from, at, (size * pair.driver) / 2, (size * pair.driven) / 2]));
     });
   }
+  if (mechanism.units) {
+    let right = 0;
+    return mechanism.units.flatMap((/** @type {any} */ unit, /** @type {number} */ n) => {
+      const own = circles(unit, metrics?.units?.[n]);
+      const left = Math.min(...own.map((one) => one.centre[0] - one.radius));
+      const aside = right - left;
+      right = 1.1 * (Math.max(...own.map((one) => one.centre[0] + one.radius)) + aside);
+      return own.map((one) => /** @type {Circle} */ ({ ...one, centre: [one.centre[0] + aside, one.centre[1]] }));
+    });
+  }
   if (!mechanism.teeth) return [];
   const far = Object.fromEntries((metrics?.meshes ?? []).flatMap((/** @type {any} */ mesh) => mesh.gears.map((/** @type {string} */ name) => [name, mesh.centre_distance])));
   return Object.entries(mechanism.teeth).map(([name, teeth]) =>

@@ -12,11 +12,31 @@ export function wheels(mechanism, motion, design, problem) {
       return ordinary(motion, problem);
     case "planetary_train":
       return planetary(mechanism, motion, design);
+    case "train_series":
+      return series(mechanism, motion, design, problem);
     case "gearbox":
       return gearbox(mechanism, motion);
     default:
       return layshaft(mechanism, motion);
   }
+}
+
+/** Trains in series: each as it is alone, side by side, at the speed that its input has. @param {any} mechanism @param {any} motion @param {any} design @param {any} problem */
+function series(mechanism, motion, design, problem) {
+  /** @type {Wheel[]} */
+  const found = [];
+  let right = 0;
+  mechanism.units.forEach((/** @type {any} */ unit, /** @type {number} */ n) => {
+    const own = wheels(unit, motion.units[n], { mechanism: unit, metrics: design.metrics.units[n] }, problem.units[n]);
+    const ends = own.map((wheel) => [wheel.centre[0] - radius(wheel) - wheel.module, wheel.centre[0] + radius(wheel) + wheel.module]);
+    const [low, high] = [Math.min(...ends.map(([end]) => end)), Math.max(...ends.map(([, end]) => end))];
+    const aside = n ? right + 0.15 * (high - low) - low : 0;
+    right = high + aside;
+    const share = motion.shafts[n].speed_ratio;
+    found.push(...own.map((wheel) => ({ ...wheel, name: `Unit ${n + 1}, ${wheel.name}`, centre: /** @type {Point} */ ([wheel.centre[0] + aside, wheel.centre[1]]),
+      axis: /** @type {Point} */ ([aside, 0]), speed: share * wheel.speed, ...(wheel.orbit === undefined ? {} : { orbit: share * wheel.orbit }) })));
+  });
+  return found;
 }
 
 /** An ordinary train: shafts in a line; those of a reverted train go to and fro, or round a triangle. @param {any} motion @param {any} problem */

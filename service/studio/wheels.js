@@ -14,6 +14,7 @@ import { svg } from "./dom.js";
  * @property {number} tooth angle of one tooth's middle at input angle 0, radians
  * @property {number} speed its rotation over the input's
  * @property {number} [orbit] rotation of the carrier that its pin is on, over the input's
+ * @property {Point} [axis] about which it goes round, the origin where there is none
  * @property {number} tone which colour it has
  * @property {boolean} [idle] not engaged
  */
@@ -77,5 +78,6 @@ export function place(wheel, input) {
   const [x, y] = wheel.centre;
   if (!wheel.orbit) return [x, y];
   const [c, s] = [Math.cos(wheel.orbit * input), Math.sin(wheel.orbit * input)];
-  return [c * x - s * y, s * x + c * y];
+  const [u, v] = wheel.axis ?? [0, 0];
+  return [u + c * (x - u) - s * (y - v), v + s * (x - u) + c * (y - v)];
 }

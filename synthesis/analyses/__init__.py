@@ -24,6 +24,7 @@ from synthesis.analyses import (
     ratchet,
     rotor,
     running_pair,
+    train_series,
     universal_joint,
 )
 from synthesis.analyses.base import AnalysisRequest, Family
@@ -49,6 +50,7 @@ FAMILIES: dict[str, Family] = {
         ratchet.FAMILY,
         rotor.FAMILY,
         running_pair.FAMILY,
+        train_series.FAMILY,
         universal_joint.FAMILY,
     )
     for name in mechanism_types(family.request)

@@ -34,6 +34,7 @@ FIELDS = {
     "parallel_motion": ("max_designs", "2", 2),
     "gear_train": ("teeth/max", "90", 90),
     "planetary_train": ("mesh_efficiency", "0.97", 0.97),
+    "train_series": ("ratio", "24", 24),
     "gearbox": ("module", "2.5", 2.5),
     "layshaft_gearbox": ("ratios", "3.4, 2.2, 1.5, 1", [3.4, 2.2, 1.5, 1]),
     "function": ("input_range", "85", 85),

@@ -124,7 +124,14 @@ def test_a_barrels_roller_stays_in_its_groove(studio, server):
 
 @pytest.mark.parametrize(
     ("kind", "n"),
-    [("gear_train", 0), ("gear_train", 1), ("planetary_train", 0), ("gearbox", 0), ("layshaft_gearbox", 0)],
+    [
+        ("gear_train", 0),
+        ("gear_train", 1),
+        ("planetary_train", 0),
+        ("train_series", 2),
+        ("gearbox", 0),
+        ("layshaft_gearbox", 0),
+    ],
 )
 def test_gears_turn_at_their_speeds(studio, server, kind, n):
     page = studio.page
@@ -147,6 +154,15 @@ def test_gears_turn_at_their_speeds(studio, server, kind, n):
         axis = places["sun"]
         angle = [math.atan2(-(p[1] - axis[1]), p[0] - axis[0]) for p in (there, places["planet 1"])]
         assert math.degrees(angle[1] - angle[0]) == pytest.approx(20.0 * speeds["carrier"], abs=0.05)
+    elif kind == "train_series":
+        shafts = [shaft["speed_ratio"] for shaft in motion["shafts"]]
+        expected = {}
+        for n, (share, unit) in enumerate(zip(shafts[:-1], motion["units"], strict=True), 1):
+            for gear in unit.get("gears", []):
+                expected[f"Unit {n}, Stage {gear['stage']} {gear['role']}"] = share * gear["speed_ratio"]
+            speeds = {body["name"]: body["speed"] for body in unit.get("bodies", [])}
+            own = [name for name in names if speeds and name.startswith(f"Unit {n}, ")]
+            expected |= {name: share * speeds[name.split()[2]] for name in own}
     else:
         ratios = [shaft["speed_ratio"] for shaft in motion["shafts"]]
         assert {round(x, 3) for x in turned.values()} == {round(x, 3) for x in ratios}

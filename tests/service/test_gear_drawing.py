@@ -57,7 +57,7 @@ def task(request: pytest.FixtureRequest) -> tuple[GearTrainDesign, GearTrainProb
 
 
 def drawn(task: tuple[GearTrainDesign, GearTrainProblem]) -> list[TrainGear]:
-    return placed_gears(task[0], task[1].reverted)
+    return placed_gears(task[0].mechanism, task[1].reverted)
 
 
 def test_meshing_pitch_circles_touch(task: tuple[GearTrainDesign, GearTrainProblem]) -> None:

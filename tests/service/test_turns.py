@@ -218,8 +218,8 @@ def test_the_cost_of_every_example_is_known():
     """The first examples of most kinds are brief; whatever is fitted or searched for is not."""
     brief = {name for name, kind in KINDS.items() if kind.brief(parse_problem(kind.examples[0]))}
     assert brief == {
-        "motion", "quick_return", "straight_line", "parallel_motion", "gear_train", "planetary_train", "gearbox",
-        "layshaft_gearbox", "cam", "balancing", "spring_balancing", "flywheel", "engine", "indexing",
+        "motion", "quick_return", "straight_line", "parallel_motion", "gear_train", "planetary_train", "train_series",
+        "gearbox", "layshaft_gearbox", "cam", "balancing", "spring_balancing", "flywheel", "engine", "indexing",
     }  # fmt: skip
     assert not KINDS["motion"].brief(parse_problem(LONG))
     sixbars = next(example for example in KINDS["motion"].examples if "mechanisms" in example)

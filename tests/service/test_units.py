@@ -62,6 +62,7 @@ PURE = {
     "IdleFlywheel": {"coefficient"},
     "Overbalance": {"share"},
     "StatedGear": {"ratio"},
+    "GearTrainUnit": {"max_stage_ratio", "min_contact_ratio", "min_tip_thickness"},
     "GearTrainMetrics": {"error", "relative_error", "largest_stage_ratio"},
     "GearTrainProblem": {"ratio", "max_stage_ratio", "tolerance", "min_contact_ratio", "min_tip_thickness"},
     "GearTrainSearch": {"least_error"},
@@ -86,12 +87,14 @@ PURE = {
     "ParallelMotionMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
     "ParetoLayshaft": {"max_error"},
     "ParetoPlanetaryTrain": {"error"},
+    "ParetoSeries": {"error"},
     "ParetoTrain": {"relative_error"},
     "PathConstraints": {"max_link_ratio", "max_joint_force_index"},
     "PathMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
     "PathProblem": {"gear_ratio"},
     "PinFriction": {"mu"},
     "PlanetaryMechanism": {"addendum"},  # in modules
+    "PlanetaryUnit": {"mesh_efficiency", "min_contact_ratio"},
     "PlanetaryMetrics": {"error", "speeds", "efficiency", "rolling_power", "branch_power"},  # over the input's
     "PlanetaryProblem": {"ratio", "tolerance", "min_contact_ratio", "mesh_efficiency"},
     "Pulse": {"area"},  # an energy
@@ -119,6 +122,9 @@ PURE = {
     "SteeringMetrics": {"link_ratio"},
     "StraightLineMetrics": {"link_ratio", "reach", "quality"},
     "StructureVerdict": {"max_error"},
+    "TrainSeriesMetrics": {"error", "speeds", "efficiency"},  # over the input's
+    "TrainSeriesProblem": {"ratio", "tolerance"},
+    "TrainSeriesSearch": {"least_error"},
     "SuggestedShift": {"driver", "driven", "contact_ratio"},  # shifts in modules
     "TablePoint": {"x", "y"},
     "Holding": {"from", "to", "speed", "acceleration"},  # of an input that turns or slides

@@ -18,6 +18,7 @@ from synthesis.registry import KINDS, examples, parse_problem
 GEARS = {
     "gear_train",
     "planetary_train",
+    "train_series",
     "gearbox",
     "layshaft_gearbox",
     "balancing",

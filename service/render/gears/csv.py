@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from kinematics.gear.teeth import Gear
 from service.render.gears.planetary_layout import placed_planetary_gears
+from service.render.gears.series_layout import series_layout
 from service.render.gears.train_layout import placed_gears
 from service.render.page.table import Cell, table
 from synthesis.kinds.gear_train.design import GearTrainDesign
@@ -14,6 +15,8 @@ from synthesis.kinds.layshaft_gearbox.design import LayshaftDesign
 from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 from synthesis.kinds.planetary_train.design import PlanetaryDesign
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
+from synthesis.kinds.train_series.design import TrainSeriesDesign
+from synthesis.kinds.train_series.problem import TrainSeriesProblem
 
 
 def gear_train_table(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
@@ -30,7 +33,7 @@ def gear_train_table(design: GearTrainDesign, problem: GearTrainProblem, title: 
                 f"{placed.speed.numerator}/{placed.speed.denominator}",
                 *([placed.gear.shift] if fitted else []),
             ]
-            for placed in placed_gears(design, problem.reverted)
+            for placed in placed_gears(design.mechanism, problem.reverted)
         ),
     )
 
@@ -49,6 +52,25 @@ def planetary_table(design: PlanetaryDesign, problem: PlanetaryProblem, title: s
                 design.metrics.speeds[placed.body],
             ]
             for placed in placed_planetary_gears(design.mechanism)
+        ),
+    )
+
+
+def series_table(design: TrainSeriesDesign, problem: TrainSeriesProblem, title: str) -> str:
+    """Unit, name, copy, teeth, circles, profile shift, centre and speed of every gear, one row a gear and copy."""
+    return table(
+        ["unit", "gear", "copy", "teeth", *_lengths("tip", problem.length_unit), "profile_shift", "speed_over_input"],
+        (
+            [
+                gear.unit,
+                gear.name,
+                gear.copy,
+                f"{gear.placed.gear.teeth:g}",
+                *_sizes(gear.placed.gear, gear.placed.centre),
+                gear.placed.gear.shift,
+                gear.speed,
+            ]
+            for gear in series_layout(design, problem)
         ),
     )
 

@@ -3,14 +3,15 @@
 =====================  ==============================================================
 layer                  what is on it (n: number of the stage; PLANE_n of a planetary train)
 =====================  ==============================================================
-STAGE_n_PITCH          pitch circles
+STAGE_n_PITCH          pitch circles; layers of trains in series begin with UNIT_n_
 STAGE_n_TEETH          closed outlines of all teeth: involutes, fillets, tips, roots
 CENTRES                crosses at the shafts; points at the axes of a planetary train
 TEXT                   tooth numbers, modules and profile shifts, of ordinary trains
 =====================  ==============================================================
 
 Stages lie one above the other in the plane as their shafts do; the input shaft is at the origin, and so is the axis of
-a planetary train. Bevel gears have pitch circles only. Lengths are in the problem's unit, which the header names.
+a planetary train. Trains in series stand side by side. Bevel gears have pitch circles only. Lengths are in the unit of
+the problem, which the header names.
 """
 
 from __future__ import annotations
@@ -22,12 +23,15 @@ from ezdxf.layouts.layout import Modelspace
 from kinematics.gear.arrangements import ARRANGEMENTS
 from service.render.gears.placed import PlacedGear, box_around
 from service.render.gears.planetary_layout import placed_planetary_gears
+from service.render.gears.series_layout import series_layout
 from service.render.gears.train_layout import placed_gears
 from service.render.page import dxf
 from synthesis.kinds.gear_train.design import GearTrainDesign
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.planetary_train.design import PlanetaryDesign
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
+from synthesis.kinds.train_series.design import TrainSeriesDesign
+from synthesis.kinds.train_series.problem import TrainSeriesProblem
 
 COLOURS = (5, 3, 30, 6)
 """Colour indices of the stages."""
@@ -55,7 +59,7 @@ def add_gear(space: Modelspace, placed: PlacedGear, names: Iterable[str], *, too
 
 def gear_train_drawing(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
     """The drawing of a gear train as a DXF document (R2010)."""
-    gears = placed_gears(design, problem.reverted)
+    gears = placed_gears(design.mechanism, problem.reverted)
     layers = {"CENTRES": (7, "CONTINUOUS"), "TEXT": (7, "CONTINUOUS")}
     for number in range(1, len(design.mechanism.stages) + 1):
         layers |= gear_layers(f"STAGE_{number}", COLOURS[number - 1])
@@ -85,4 +89,25 @@ def planetary_drawing(design: PlanetaryDesign, problem: PlanetaryProblem, title:
     for placed in gears:
         add_gear(space, placed, [f"PLANE_{plane}" for plane in placed.planes], toothed=not bevel)
         space.add_point((placed.centre.real, placed.centre.imag), dxfattribs={"layer": "CENTRES"})
+    return dxf.written(document)
+
+
+def series_drawing(design: TrainSeriesDesign, problem: TrainSeriesProblem, title: str) -> str:
+    """The drawing of trains in series as a DXF document (R2010)."""
+    placed = series_layout(design, problem)
+    layers = {"CENTRES": (7, "CONTINUOUS"), "TEXT": (7, "CONTINUOUS")}
+    for gear in placed:
+        for layer in gear.layers:
+            layers |= gear_layers(layer, COLOURS[(gear.unit - 1) % len(COLOURS)])
+    document = dxf.new_drawing(title or "Trains in series", problem.length_unit, layers)
+    space = document.modelspace()
+    height = LETTERS * box_around(gear.placed for gear in placed).diagonal
+    for gear in placed:
+        add_gear(space, gear.placed, gear.layers, toothed=gear.toothed)
+        at = gear.placed.centre
+        space.add_point((at.real, at.imag), dxfattribs={"layer": "CENTRES"})
+        if gear.copy == 0:
+            dxf.add_words(
+                space, at - 1j * height * LINE_STEP * gear.line, f"{gear.name}: z={gear.placed.gear.teeth:g}", height
+            )
     return dxf.written(document)

@@ -15,7 +15,7 @@ from service.render.page.numbers import length
 from service.render.page.sheet import EDGE, TOP, beside, framed, sheet, stacked
 from service.render.page.svg import Box, Element, Viewport, circle, line, text
 from service.render.page.symbols import COUPLER, CURVE, GREY, GROUND, INPUT, OUTPUT, scale_bar
-from synthesis.kinds.planetary_train.design import PlanetaryDesign
+from synthesis.kinds.planetary_train.design import PlanetaryDesign, PlanetaryMechanism
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 
 LARGEST = "largest pitch diameter"
@@ -36,19 +36,24 @@ def planetary_sheet(design: PlanetaryDesign, problem: PlanetaryProblem, title: s
     mechanism, unit = design.mechanism, problem.length_unit
     gears = placed_planetary_gears(mechanism)
     planes = sorted({plane for placed in gears for plane in placed.planes})
-    reach = max((abs(placed.centre) + placed.gear.pitch_radius for placed in gears), default=1.0) + mechanism.module
     height = HEIGHT_OF_SEVERAL if len(planes) > 1 else HEIGHT
     parts, low = [], TOP
     for plane in planes:
-        panel = Box(EDGE, low, EDGE + beside(), low + height)
-        view = Viewport.fit(Box(-reach, -reach, reach, reach), panel, MARGIN, MARGIN)
+        view = Viewport.fit(around(gears), Box(EDGE, low, EDGE + beside(), low + height), MARGIN, MARGIN)
         shown = [placed for placed in gears if plane in placed.planes]
-        parts.append(_panel(design, view, shown, f"plane {plane}" if len(planes) > 1 else "", unit))
+        parts.append(planetary_panel(mechanism, view, shown, f"plane {plane}" if len(planes) > 1 else "", unit))
         low += height + APART
     tables, y = stacked(_tables(design, problem))
     listed = ", ".join(f"{gear} {teeth}" for gear, teeth in mechanism.teeth.items())
     described = f"Pitch circles of a planetary train to scale, {mechanism.arrangement}: {listed} teeth."
     return sheet(title or "Planetary train", _words(design), described, [*parts, *tables], max(low, y))
+
+
+def around(gears: list[PlanetaryGear]) -> Box:
+    """The box about the axis with all gears in it."""
+    module = max((placed.gear.module for placed in gears), default=1.0)
+    reach = max((abs(placed.centre) + placed.gear.pitch_radius for placed in gears), default=1.0) + module
+    return Box(-reach, -reach, reach, reach)
 
 
 def _words(design: PlanetaryDesign) -> str:
@@ -59,21 +64,23 @@ def _words(design: PlanetaryDesign) -> str:
     return f"{title.capitalize()}; {parts}, ratio {ratio}; {verdict(design.verification)}".replace("-", "−")
 
 
-def _colour(placed: PlanetaryGear, design: PlanetaryDesign) -> str:
-    mechanism = design.mechanism
+def _colour(placed: PlanetaryGear, mechanism: PlanetaryMechanism) -> str:
     colours = {mechanism.input: INPUT, mechanism.output: OUTPUT, mechanism.fixed: GROUND}
     arrangement = ARRANGEMENTS[mechanism.arrangement]
     return colours.get(placed.body, COUPLER if placed.body in arrangement.carriers else CURVE)
 
 
-def _panel(design: PlanetaryDesign, view: Viewport, gears: list[PlanetaryGear], name: str, unit: str) -> Element:
+def planetary_panel(
+    mechanism: PlanetaryMechanism, view: Viewport, gears: list[PlanetaryGear], name: str, unit: str
+) -> Element:
+    """The gears of one plane in a panel."""
     panel = view.panel
     group = framed(panel, name or "main", PAPER)
     if name:
         group.add(text(panel.left + 10.0, panel.low + 18.0, name, 11.0, fill=GREY))
     for placed in sorted(gears, key=lambda p: -p.gear.pitch_radius):
         marks = {"data_gear": placed.name, "data_teeth": f"{placed.gear.teeth:g}", "data_copy": f"{placed.copy}"}
-        group.add(circles(placed.gear, placed.centre, view, _colour(placed, design), "pitch", 0.05, **marks))
+        group.add(circles(placed.gear, placed.centre, view, _colour(placed, mechanism), "pitch", 0.05, **marks))
     arms = {placed.body: placed.centre for placed in gears if placed.centre and placed.copy == 0}
     for placed in gears:
         if placed.body in arms and placed.centre:
@@ -83,7 +90,7 @@ def _panel(design: PlanetaryDesign, view: Viewport, gears: list[PlanetaryGear], 
     group.add(circle(view.point(0j), 3.5, fill="#fff", stroke=GROUND, stroke_width=1.6))
     for placed in gears:
         if placed.copy == 0:
-            group.add(_label(placed, view, _colour(placed, design)))
+            group.add(_label(placed, view, _colour(placed, mechanism)))
     group.add(scale_bar(view, unit)[0])
     return group
 

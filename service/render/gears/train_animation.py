@@ -28,7 +28,7 @@ PITCHES = 6
 
 def gear_train_animation(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> bytes:
     """Some teeth of a gear train's input as GIF."""
-    gears = placed_gears(design, problem.reverted)
+    gears = placed_gears(design.mechanism, problem.reverted)
     outlines = [_outline(gear) for gear in gears]
     turn = math.tau * PITCHES / gears[0].gear.teeth
 

@@ -13,7 +13,7 @@ from fractions import Fraction
 
 from kinematics.gear.teeth import Gear
 from service.render.gears.placed import PlacedGear, facing
-from synthesis.kinds.gear_train.design import GearTrainDesign
+from synthesis.kinds.gear_train.design import GearTrainMechanism
 from synthesis.kinds.gear_train.verification import driven_train
 
 SAME_DISTANCE = 1e-9
@@ -29,9 +29,8 @@ class TrainGear(PlacedGear):
     speed: Fraction
 
 
-def placed_gears(design: GearTrainDesign, reverted: bool) -> list[TrainGear]:
+def placed_gears(mechanism: GearTrainMechanism, reverted: bool) -> list[TrainGear]:
     """All gears in the order of the power, the input shaft at 0."""
-    mechanism = design.mechanism
     train = driven_train(mechanism)
     distances = train.centre_distances
     coaxial = reverted and max(distances) - min(distances) <= SAME_DISTANCE * max(distances)

@@ -37,10 +37,10 @@ PLACES = (90.0, 65.0, 115.0, 40.0, 140.0, 270.0, 245.0, 295.0, 220.0, 320.0, 15.
 
 def gear_train_sheet(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
     """The drawing of a gear train as a complete SVG document."""
-    gears = placed_gears(design, problem.reverted)
+    gears = placed_gears(design.mechanism, problem.reverted)
     view = fitted(box_around(gears), beside(), HEIGHTS, MARGIN, FOOT)
     tables, y = stacked(_tables(design, problem, gears))
-    drawn = _drawing(gears, view, problem.length_unit)
+    drawn = train_panel(gears, view, problem.length_unit)
     bottom = max(view.panel.high, y)
     words = _words(design, problem)
     return sheet(title or "Gear train", words, _description(design, problem), [drawn, *tables], bottom)
@@ -65,8 +65,9 @@ def _description(design: GearTrainDesign, problem: GearTrainProblem) -> str:
     return f"Pitch circles of a gear train to scale: {listed}{idlers}."
 
 
-def _drawing(gears: list[TrainGear], view: Viewport, unit: str) -> Element:
-    group = framed(view.panel, "main", PAPER)
+def train_panel(gears: list[TrainGear], view: Viewport, unit: str, name: str = "main") -> Element:
+    """All gears with their shafts and directions in a panel."""
+    group = framed(view.panel, name, PAPER)
     for placed in gears:
         marks = {"data_stage": f"{placed.stage}", "data_gear": placed.role, "data_teeth": f"{placed.gear.teeth}"}
         group.add(circles(placed.gear, placed.centre, view, COLOURS[placed.stage - 1], "tip", 0.06, **marks))

@@ -248,7 +248,7 @@ def tuples(values: Integers, starts: Integers, counts: Integers, ordered: bool, 
 
 
 @njit(cache=True, nogil=True)
-def _agree(distances: Floats, place: Integers, k: int) -> bool:
+def agree(distances: Floats, place: Integers, k: int) -> bool:
     """Whether k meshes have a distance in common: if so, an interval of one of them begins at such a distance."""
     for i in range(k):
         for p in range(distances.shape[1]):
@@ -357,7 +357,7 @@ def combine(
                         for i in range(k):
                             teeth[i], teeth[MOST_STAGES + i] = a[place[i]], b[place[i]]
                             teeth[2 * MOST_STAGES + i] = mark[place[i]]
-                        sound = _agree(distances, place, k) and within_limits(teeth, k, rule)
+                        sound = agree(distances, place, k) and within_limits(teeth, k, rule)
                         if sound and not coaxial and not rule.ordered:
                             for i in range(2 * MOST_STAGES):
                                 canonical[i] = teeth[i]

@@ -41,7 +41,7 @@ def solve_gear_train(problem: GearTrainProblem, progress: Progress) -> GearTrain
         trains = order(task, [*trains, *hunting.trains], set(hunting.trains))[: problem.max_designs]
     sifting = Sifting[GearTrainDesign](problem, undriven="gears")
     for train in trains:
-        mechanism = _mechanism(problem, task, train)
+        mechanism = mechanism_of(problem, task, train)
         sifting.add("idler" if mechanism is None else verify(problem, mechanism))
     progress(1.0, "verified")
     return GearTrainResult(
@@ -97,7 +97,7 @@ def _stages(problem: GearTrainProblem, task: Task, train: Train) -> list[Stage]:
     return stages
 
 
-def _mechanism(problem: GearTrainProblem, task: Task, train: Train) -> GearTrainMechanism | None:
+def mechanism_of(problem: GearTrainProblem, task: Task, train: Train) -> GearTrainMechanism | None:
     """The train with an idler where it turns the wrong way; None where no idler keeps the demands."""
     ratio, idlers = train.ratio * (-1) ** len(train.drivers), []
     if needs_idler(problem, len(train.drivers)):

@@ -115,7 +115,7 @@ def nearest(
     if len(tables) == 1:
         form = arrangement_form(arrangement.name, *roles)
         return _of_one_set(arrangement.name, tables[0], roles, form, target, count)
-    coupling = _Coupling.of(arrangement, roles)
+    coupling = Coupling.of(arrangement, roles)
     return None if coupling is None else _TwoSets(arrangement.name, tables, roles, coupling, target).nearest(count)
 
 
@@ -242,14 +242,14 @@ class TrainValues:
 
 
 @dataclass(frozen=True)
-class _Coupling:
+class Coupling:
     """How the train values of two sets make the ratio; coefficients of d₁d₂, n₁d₂, d₁n₂, n₁n₂ for x = n/d."""
 
     over: tuple[int, int, int, int]
     under: tuple[int, int, int, int]
 
     @classmethod
-    def of(cls, arrangement: Arrangement, roles: Roles) -> _Coupling | None:
+    def of(cls, arrangement: Arrangement, roles: Roles) -> Coupling | None:
         """The coupling of an arrangement of two sets; None where the ratio does not depend on one of them."""
         rows = []
         for k, planets in enumerate(arrangement.planet_sets):
@@ -283,13 +283,13 @@ class _Coupling:
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.nan_to_num(-(a * one[1] + b * one[0]) / (c * one[1] + d * one[0]))
 
-    def swapped(self) -> _Coupling:
+    def swapped(self) -> Coupling:
         """The same coupling with the sets in the other order."""
 
         def turned(side: tuple[int, int, int, int]) -> tuple[int, int, int, int]:
             return side[0], side[2], side[1], side[3]
 
-        return _Coupling(turned(self.over), turned(self.under))
+        return Coupling(turned(self.over), turned(self.under))
 
 
 def _bilinear(polynomial: Polynomial) -> tuple[int, int, int, int]:
@@ -304,7 +304,7 @@ class _TwoSets:
     """The search over pairs of rows of two coupled sets."""
 
     def __init__(
-        self, name: str, tables: Sequence[SetTable], roles: Roles, coupling: _Coupling, target: Fraction
+        self, name: str, tables: Sequence[SetTable], roles: Roles, coupling: Coupling, target: Fraction
     ) -> None:
         self._name, self._tables, self._roles = name, tables, roles
         self._coupling, self._target = coupling, target

@@ -52,7 +52,7 @@ def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> Plan
     for k, arrangement in enumerate(rows):
         progress(k / len(rows), f"{arrangement.name}: tooth numbers")
         numbers = [
-            ToothNumbers(arrangement, planets, _demands(problem, arrangement)) for planets in arrangement.planet_sets
+            ToothNumbers(arrangement, planets, demands_of(problem, arrangement)) for planets in arrangement.planet_sets
         ]
         coupled = len(numbers) > 1
         tables = [
@@ -67,7 +67,7 @@ def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> Plan
     return ranking.result()
 
 
-def _demands(problem: PlanetaryProblem, arrangement: Arrangement) -> Demands:
+def demands_of(problem: PlanetaryProblem, arrangement: Arrangement) -> Demands:
     """The demands on tooth numbers of one arrangement, lengths in half modules."""
     return Demands(
         {gear.name: problem.teeth.limits(gear.name, gear.internal) for gear in arrangement.gears},
@@ -162,7 +162,7 @@ class _Ranking:
 
 
 def _design(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryDesign:
-    mechanism = _mechanism(problem, candidate)
+    mechanism = mechanism_of(problem, candidate)
     return PlanetaryDesign(
         mechanism=mechanism, verification=verify(problem, mechanism), metrics=measure(problem, mechanism)
     )
@@ -170,7 +170,7 @@ def _design(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryDesign:
 
 def _holds(problem: PlanetaryProblem, candidate: Candidate) -> bool:
     """Whether a train passes its checks, the tolerance apart: a smaller train may be less exact than was asked."""
-    verification = verify(problem.model_copy(update={"tolerance": None}), _mechanism(problem, candidate))
+    verification = verify(problem.model_copy(update={"tolerance": None}), mechanism_of(problem, candidate))
     return verification.passed
 
 
@@ -189,7 +189,7 @@ def _pareto(problem: PlanetaryProblem, candidate: Candidate) -> ParetoPlanetaryT
     )
 
 
-def _mechanism(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryMechanism:
+def mechanism_of(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryMechanism:
     """The dimensions of a train."""
     arrangement = ARRANGEMENTS[candidate.arrangement]
     known = dict(candidate.teeth)

@@ -98,6 +98,43 @@ PLANETARY_ROWS: dict[str, Any] = {
     "rank_by": Row("size", {"tolerance": 0.1}),
 }
 
+UNITS: dict[str, tuple[int, dict[str, Any]]] = {"PlanetaryUnit": (0, PLANETARY_ROWS), "GearTrainUnit": (1, TRAIN_ROWS)}
+OF_THE_SERIES = {"length_unit", "seed", "max_designs", "ratio", "tolerance", "rank_by", "size"}
+
+
+def unit_rows(model: str) -> dict[str, Any]:
+    """The rows of a unit's fields: those of its kind, each stated in its unit of the series."""
+    place, rows = UNITS[model]
+    found: dict[str, Any] = {f"units[]<{model}>.type": Row("wheel", at=f"units[{place}].type")}
+    for name, stated in rows.items():
+        if name not in OF_THE_SERIES:
+            row = stated if isinstance(stated, Row) else Row(stated)
+            base = {f"units[{place}].{field}": value for field, value in row.base.items() if field not in OF_THE_SERIES}
+            found[f"units[]<{model}>.{name}"] = Row(row.value, base, at=f"units[{place}].{row.at or name}")
+    return found
+
+
+SERIES_OF_TRAINS: dict[str, Any] = {
+    "kind": "train_series",
+    "ratio": 12.0,
+    "units": [
+        {"type": "planetary_train"} | {k: v for k, v in PLANETARY.items() if k not in ("kind", "ratio", "max_designs")},
+        {"type": "gear_train", "max_stages": 2, "teeth": {"min": 15, "max": 40}},
+    ],
+    "max_designs": 3,
+}
+SERIES_ROWS: dict[str, Any] = {
+    "length_unit": Row("in", file="csv"),
+    "seed": 7,
+    "max_designs": 2,
+    "ratio": 13.0,
+    "units": Row([SERIES_OF_TRAINS["units"][0]] * 2),
+    "tolerance": 0.5,
+    "rank_by": Row("size", {"tolerance": 0.1}),
+    **unit_rows("PlanetaryUnit"),
+    **unit_rows("GearTrainUnit"),
+}
+
 GEARBOX: dict[str, Any] = {
     "kind": "gearbox",
     "input_speed": 200.0,

@@ -1,0 +1,97 @@
+"""Where the gears of trains in series stand, and how each turns: units side by side, each as its kind lays it out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from kinematics.gear.arrangements import ARRANGEMENTS
+from service.render.gears.placed import PlacedGear, box_around
+from service.render.gears.planetary_layout import placed_planetary_gears
+from service.render.gears.train_layout import placed_gears
+from synthesis.kinds.planetary_train.design import PlanetaryMechanism, PlanetaryMetrics
+from synthesis.kinds.train_series.design import TrainSeriesDesign
+from synthesis.kinds.train_series.problem import TrainSeriesProblem
+
+APART = 0.15
+"""Room between two units, as a share of the wider one."""
+
+
+@dataclass(frozen=True)
+class SeriesGear:
+    """A gear of a unit.
+
+    ``speed`` and ``orbit`` are its own speed and that of its carrier about ``axis``, over the input's of the series.
+    ``layers`` are the names of what it is drawn on, ``line`` tells its words from those of others at one centre.
+    """
+
+    placed: PlacedGear
+    unit: int
+    name: str
+    copy: int
+    layers: tuple[str, ...]
+    speed: float
+    orbit: float
+    axis: complex
+    line: int
+    toothed: bool
+
+
+def series_layout(design: TrainSeriesDesign, problem: TrainSeriesProblem) -> list[SeriesGear]:
+    """All gears from the input on, the first unit's axis at the origin."""
+    layout: list[SeriesGear] = []
+    right = 0.0
+    for k in range(len(design.mechanism.units)):
+        gears = unit_layout(design, problem, k)
+        if not gears:
+            continue
+        box = box_around(gear.placed for gear in gears)
+        aside = 0j if not layout else complex(right + APART * box.width - box.left)
+        right = box.right + aside.real
+        layout += [
+            replace(gear, placed=replace(gear.placed, centre=gear.placed.centre + aside), axis=gear.axis + aside)
+            for gear in gears
+        ]
+    return layout
+
+
+def unit_layout(design: TrainSeriesDesign, problem: TrainSeriesProblem, number: int) -> Sequence[SeriesGear]:
+    """The gears of one unit, counted from 0, about its own origin."""
+    unit, metrics = design.mechanism.units[number], design.metrics.units[number]
+    share = design.metrics.speeds[number]
+    name = f"UNIT_{number + 1}"
+    if isinstance(unit, PlanetaryMechanism):
+        assert isinstance(metrics, PlanetaryMetrics)
+        arrangement = ARRANGEMENTS[unit.arrangement]
+        names = list(unit.teeth)
+        return [
+            SeriesGear(
+                placed,
+                number + 1,
+                placed.name.replace("_", " "),
+                placed.copy,
+                tuple(f"{name}_PLANE_{plane}" for plane in placed.planes),
+                share * metrics.speeds[placed.body] + 0.0,
+                share * metrics.speeds.get(arrangement.carriers.get(placed.body, ""), 0.0),
+                0j,
+                names.index(placed.name),
+                not arrangement.bevel,
+            )
+            for placed in placed_planetary_gears(unit)
+        ]
+    gears = placed_gears(unit, problem.units[number].reverted)
+    return [
+        SeriesGear(
+            placed,
+            number + 1,
+            f"stage {placed.stage} {placed.role}",
+            0,
+            (f"{name}_STAGE_{placed.stage}",),
+            share * float(placed.speed),
+            0.0,
+            0j,
+            2 * placed.stage + (placed.role == "driven"),
+            True,
+        )
+        for placed in gears
+    ]

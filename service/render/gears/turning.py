@@ -1,0 +1,145 @@
+"""Trains with axes that go round, as GIF: true outlines in mesh, each gear at its own speed, planets on their arms."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from kinematics.gear.arrangements import ARRANGEMENTS
+from service.render.gears.placed import PlacedGear
+from service.render.gears.planetary_layout import placed_planetary_gears
+from service.render.gears.series_layout import series_layout
+from service.render.page.animation import FRAMES, Stroke, animated, ring
+from service.render.page.svg import Box, Points
+from service.render.page.symbols import COUPLER, CURVE, GREY, GROUND, INPUT, OUTPUT
+from synthesis.kinds.planetary_train.design import PlanetaryDesign
+from synthesis.kinds.planetary_train.problem import PlanetaryProblem
+from synthesis.kinds.train_series.design import TrainSeriesDesign
+from synthesis.kinds.train_series.problem import TrainSeriesProblem
+
+PITCHES = 9.0
+"""Teeth of the gear that turns fastest past its mates that go by in a cycle: few enough for the eye to follow."""
+
+RIM = 3.0
+"""Width of a ring beyond its pitch circle, modules."""
+
+SPOKE, HUB = 0.8, 0.08
+"""Length of the line that shows how a gear turns, and radius of its shaft, as shares of the pitch radius."""
+
+COLOURS = (INPUT, OUTPUT, COUPLER, CURVE)
+FACES = ("#e8eef6", "#e6f1ea", "#f8eee2", "#f1ecf6")
+"""Of the units of a series, or of what the gears of one train are."""
+
+
+class Turning(NamedTuple):
+    """A gear with its speed, and that of its carrier about ``axis``, over the input's; ``tone`` is its colour."""
+
+    placed: PlacedGear
+    speed: float
+    orbit: float
+    axis: complex
+    tone: int
+    toothed: bool
+
+
+@dataclass(frozen=True)
+class _Drawn:
+    """A gear's outline about its centre, and what surrounds it where it is a ring."""
+
+    gear: Turning
+    points: Points
+    rim: Points | None
+
+    @property
+    def reach(self) -> float:
+        """Radius of all that is drawn about its centre."""
+        return float(max(np.abs(self.points).max(), 0.0 if self.rim is None else np.abs(self.rim).max()))
+
+
+def planetary_animation(design: PlanetaryDesign, problem: PlanetaryProblem, title: str) -> bytes:
+    """Some teeth of a planetary train as GIF: the input blue, the output green, what else turns in other colours."""
+    mechanism, speeds = design.mechanism, design.metrics.speeds
+    arrangement = ARRANGEMENTS[mechanism.arrangement]
+    tones = {mechanism.input: 0, mechanism.output: 1}
+    return animation(
+        Turning(
+            placed,
+            speeds[placed.body],
+            speeds.get(arrangement.carriers.get(placed.body, ""), 0.0),
+            0j,
+            tones.get(placed.body, 2 if placed.body in arrangement.carriers else 3),
+            not arrangement.bevel,
+        )
+        for placed in placed_planetary_gears(mechanism)
+    )
+
+
+def series_animation(design: TrainSeriesDesign, problem: TrainSeriesProblem, title: str) -> bytes:
+    """Some teeth of trains in series as GIF, each unit in a colour of its own."""
+    return animation(
+        Turning(gear.placed, gear.speed, gear.orbit, gear.axis, (gear.unit - 1) % len(COLOURS), gear.toothed)
+        for gear in series_layout(design, problem)
+    )
+
+
+def animation(gears: Iterable[Turning]) -> bytes:
+    """A GIF of gears that turn as long as :data:`PITCHES` teeth of the fastest take to pass."""
+    # Rings lie behind what runs in them.
+    drawn = sorted((_drawn(gear) for gear in gears), key=lambda one: -one.reach * (one.rim is not None))
+    passing = max(abs(one.gear.speed - one.gear.orbit) * one.gear.placed.gear.teeth for one in drawn)
+    turn = math.tau * PITCHES / passing if passing > 0.0 else 0.0
+
+    def frames() -> Iterator[list[Stroke]]:
+        for k in range(FRAMES):
+            yield [stroke for one in drawn for stroke in _strokes(one, turn * k / FRAMES)] + _arms(
+                drawn, turn * k / FRAMES
+            )
+
+    shown = [
+        ring(one.gear.axis, abs(one.gear.placed.centre - one.gear.axis) + one.reach) for one in drawn if one.gear.orbit
+    ]
+    shown += [ring(one.gear.placed.centre, one.reach) for one in drawn if not one.gear.orbit]
+    return animated(frames(), Box.around(np.concatenate(shown)))
+
+
+def _drawn(gear: Turning) -> _Drawn:
+    placed = gear.placed
+    teeth = placed.teeth() if gear.toothed else None
+    points = ring(0j, placed.pitch_radius) if teeth is None else teeth
+    rim = ring(0j, placed.pitch_radius + RIM * placed.gear.module) if placed.gear.internal else None
+    return _Drawn(gear, points, rim)
+
+
+def _centre(gear: Turning, turned: float) -> complex:
+    """Where the centre is when the input has turned so far, radians."""
+    return gear.axis + (gear.placed.centre - gear.axis) * complex(np.exp(1j * gear.orbit * turned))
+
+
+def _strokes(one: _Drawn, turned: float) -> list[Stroke]:
+    """A gear with a line that shows how it turns."""
+    gear, placed = one.gear, one.gear.placed
+    centre, spin = _centre(gear, turned), complex(np.exp(1j * gear.speed * turned))
+    colour, face = COLOURS[gear.tone], FACES[gear.tone]
+    outline = Stroke(
+        centre + one.points * spin, colour, 1.3, closed=True, fill="#ffffff" if one.rim is not None else face
+    )
+    if one.rim is not None:
+        inner, outer = placed.gear.root_radius, float(np.abs(one.rim).max())
+        mark = np.array([centre + inner * spin, centre + outer * spin])
+        return [Stroke(centre + one.rim, colour, 1.3, closed=True, fill=face), outline, Stroke(mark, colour, 2.0)]
+    spoke = np.array([centre, centre + SPOKE * placed.pitch_radius * spin])
+    hub = Stroke(ring(centre, HUB * placed.pitch_radius), GROUND, 1.3, True, "#ffffff")
+    return [outline, Stroke(spoke, colour, 1.6), hub]
+
+
+def _arms(drawn: Sequence[_Drawn], turned: float) -> list[Stroke]:
+    """Carriers as lines from the axis to the planets."""
+    return [
+        Stroke(np.array([one.gear.axis, _centre(one.gear, turned)]), GREY, 2.2)
+        for one in drawn
+        if abs(one.gear.placed.centre - one.gear.axis) > 0.0 and one.gear.orbit
+    ]

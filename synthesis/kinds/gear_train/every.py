@@ -1,0 +1,114 @@
+"""Every train that keeps the demands of a task, whatever its ratio: each set of gears once, as it is paired."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.compiling import njit
+from synthesis.kinds.gear_train.candidates import Halves, coaxial_meshes
+from synthesis.kinds.gear_train.kernels import Gears, agree
+from synthesis.kinds.gear_train.pairing import MOST_STAGES, Integers, Rule, foremost, pair_up, within_limits
+from synthesis.kinds.gear_train.shortlist import Floats
+from synthesis.kinds.gear_train.task import UNLIMITED, Task
+
+GROWTH = 4
+"""By how much the room for trains grows where it was too small."""
+
+FIRST_ROOM = 1 << 16
+
+
+class EveryTrain(NamedTuple):
+    """Trains as rows of a₁...a₄ b₁...b₄ and marks₁...₄; N, D of their ratios N/D, and the sum of their teeth."""
+
+    rows: Gears
+    over: Integers
+    under: Integers
+    total: Integers
+
+
+def every_train(task: Task) -> EveryTrain:
+    """All trains of a task, of few stages first."""
+    listed = [np.zeros((0, 3 * MOST_STAGES), np.int16), *(_of_stages(task, k) for k in task.stage_counts)]
+    rows = np.concatenate(listed)
+    drivers, driven = rows[:, :MOST_STAGES].astype(np.int64), rows[:, MOST_STAGES : 2 * MOST_STAGES].astype(np.int64)
+    return EveryTrain(
+        rows,
+        np.maximum(driven, 1).prod(axis=1),
+        np.maximum(drivers, 1).prod(axis=1),
+        drivers.sum(axis=1) + driven.sum(axis=1),
+    )
+
+
+def _of_stages(task: Task, k: int) -> Gears:
+    rule = task.rule(UNLIMITED, k)
+    room = FIRST_ROOM
+    if task.reverted:
+        meshes = coaxial_meshes(task, k)
+        lists = meshes.a, meshes.b, meshes.mark, meshes.groups, meshes.distances
+    else:
+        halves = Halves(task, k)
+    while True:
+        rows = np.zeros((room, 3 * MOST_STAGES), np.int16)
+        if task.reverted:
+            number = _coaxial(k, *lists, rule, rows)
+        else:
+            number = _paired(k, halves.drivers.teeth, halves.driven.teeth, rule, rows)
+        if number <= room:
+            return rows[:number]
+        room = max(number, GROWTH * room)
+
+
+@njit(cache=True, nogil=True)
+def _paired(k: int, drivers: Gears, driven: Gears, rule: Rule, rows: Gears) -> int:
+    """All drivers with all driven gears; returns how many trains there are, and writes them while there is room."""
+    teeth, number = np.zeros(3 * MOST_STAGES, np.int64), 0
+    for i in range(len(drivers)):
+        for j in range(len(driven)):
+            teeth[:] = 0
+            for stage in range(k):
+                teeth[stage], teeth[MOST_STAGES + stage] = drivers[i, stage], driven[j, stage]
+            if within_limits(teeth, k, rule) and pair_up(teeth, k, rule):
+                if number < len(rows):
+                    rows[number] = teeth
+                number += 1
+    return number
+
+
+@njit(cache=True, nogil=True)
+def _coaxial(
+    k: int,
+    a: Integers,
+    b: Integers,
+    mark: Integers,
+    groups: NDArray[np.int64],
+    distances: Floats,
+    rule: Rule,
+    rows: Gears,
+) -> int:
+    """All choices of a mesh for each stage from one group of coaxial ones; as :func:`_paired`."""
+    teeth, place, number = np.zeros(3 * MOST_STAGES, np.int64), np.zeros(MOST_STAGES, np.int64), 0
+    for g in range(len(groups)):
+        stage, place[0] = 0, groups[g, 0]
+        while stage >= 0:
+            if place[stage] >= (groups[g, stage + 1] if rule.ordered else groups[g, 1]):
+                stage -= 1
+                if stage >= 0:
+                    place[stage] += 1
+                continue
+            if stage < k - 1:
+                stage += 1
+                place[stage] = groups[g, stage] if rule.ordered else place[stage - 1]
+                continue
+            for i in range(k):
+                teeth[i], teeth[MOST_STAGES + i] = a[place[i]], b[place[i]]
+                teeth[2 * MOST_STAGES + i] = mark[place[i]]
+            sound = agree(distances, place, k) and within_limits(teeth, k, rule)
+            if sound and (not rule.ordered or foremost(teeth, k, rule, True)):
+                if number < len(rows):
+                    rows[number] = teeth
+                number += 1
+            place[stage] += 1
+    return number

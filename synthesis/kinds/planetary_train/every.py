@@ -1,0 +1,79 @@
+"""Every sound train of a problem, whatever its ratio, as exact quotients of whole numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from kinematics.gear.arrangements import Arrangement
+from synthesis.kinds.planetary_train.nearest import Candidate, Coupling, Roles, SetTable, train_value
+from synthesis.kinds.planetary_train.problem import PlanetaryProblem
+from synthesis.kinds.planetary_train.ratio_form import arrangement_form, evaluated
+from synthesis.kinds.planetary_train.solver import demands_of
+from synthesis.kinds.planetary_train.tooth_numbers import ToothNumbers, Whole
+
+
+@dataclass(frozen=True)
+class SoundTrains:
+    """The trains of one arrangement and choice of members: N and D of the ratios N/D, and teeth of one copy of all.
+
+    Where two planet sets are coupled, every row of the one stands with every row of the other. N and D may be 0.
+    """
+
+    arrangement: str
+    roles: Roles
+    tables: tuple[SetTable, ...]
+    over: Whole
+    under: Whole
+    total: Whole
+
+    def candidate(self, row: int) -> Candidate:
+        """One train, as it is ranked for its own ratio."""
+        places = [row] if len(self.tables) == 1 else list(divmod(row, len(self.tables[1].size)))
+        teeth = tuple(gear for table, at in zip(self.tables, places, strict=True) for gear in table.row(at))
+        size = max(int(table.size[at]) for table, at in zip(self.tables, places, strict=True))
+        ratio = Fraction(int(self.over[row]), int(self.under[row]))
+        return Candidate(Fraction(0), size, int(self.total[row]), self.arrangement, self.roles, teeth, ratio)
+
+
+def every_train(problem: PlanetaryProblem) -> Iterator[SoundTrains]:
+    """The trains of every arrangement and choice of members that the statement leaves; locked ones have none."""
+    for arrangement in problem.arrangements:
+        numbers = [
+            ToothNumbers(arrangement, planets, demands_of(problem, arrangement)) for planets in arrangement.planet_sets
+        ]
+        tables = tuple(SetTable(each.teeth, each.size) for each in numbers)
+        for roles in problem.roles(arrangement):
+            found = _coupled(arrangement, tables, roles) if len(tables) > 1 else _of_one(arrangement, tables[0], roles)
+            if found is not None:
+                yield found
+
+
+def _of_one(arrangement: Arrangement, table: SetTable, roles: Roles) -> SoundTrains | None:
+    form, count = arrangement_form(arrangement.name, *roles), len(table.size)
+    if not form.over:
+        return None
+    over, under = (evaluated(part, table.values, count).astype(np.int64) for part in form)
+    return SoundTrains(arrangement.name, roles, (table,), over, under, table.total)
+
+
+def _coupled(arrangement: Arrangement, tables: tuple[SetTable, ...], roles: Roles) -> SoundTrains | None:
+    coupling = Coupling.of(arrangement, roles)
+    if coupling is None:
+        return None
+    parts = []
+    for table, planets in zip(tables, arrangement.planet_sets, strict=True):
+        over, under = (
+            evaluated(part, table.values, len(table.size)) for part in train_value(arrangement.name, planets).form
+        )
+        common = np.gcd(over.astype(np.int64), under.astype(np.int64))
+        parts.append((over / common, under / common))
+    first, second = (len(table.size) for table in tables)
+    one = tuple(np.repeat(part, second) for part in parts[0])
+    other = tuple(np.tile(part, first) for part in parts[1])
+    over, under = coupling.quotient((one[0], one[1]), (other[0], other[1]))
+    total = np.repeat(tables[0].total, second) + np.tile(tables[1].total, first)
+    return SoundTrains(arrangement.name, roles, tables, over.astype(np.int64), under.astype(np.int64), total)

@@ -1,0 +1,26 @@
+"""Trains in series for a speed ratio: the output of one is the input of the next."""
+
+from __future__ import annotations
+
+from synthesis.kinds.train_series.design import TrainSeriesResult
+from synthesis.kinds.train_series.problem import TrainSeriesProblem
+from synthesis.model.kind import Kind, Progress
+
+__all__ = ["KIND"]
+
+FEW = 5_000_000
+"""Series of trains of a unit each that are gone through in a fraction of a second."""
+
+
+def _solve(problem: TrainSeriesProblem, progress: Progress) -> TrainSeriesResult:
+    from synthesis.kinds.train_series.solver import solve_train_series
+
+    return solve_train_series(problem, progress)
+
+
+def _brief(problem: TrainSeriesProblem) -> bool:
+    """Series of few trains are all looked at in no time."""
+    return problem.combinations <= FEW
+
+
+KIND = Kind("train_series", TrainSeriesProblem, TrainSeriesResult, _solve, brief=_brief)

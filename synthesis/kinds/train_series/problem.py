@@ -1,0 +1,149 @@
+"""The problem of trains in series: a speed ratio that one train alone does not reach."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import Annotated, Any, Literal
+
+from pydantic import ConfigDict, Field
+
+from synthesis.kinds.train_series.stated_units import Unit, Units, contradictions_of, trains_of
+from synthesis.model.gear_statement import ExactRatio
+from synthesis.model.ratio_target import Target, decimal, parse_target
+from synthesis.model.statement import Contradiction, StatedProblem
+
+MOST_TRAINS = 50_000_000
+"""Trains of a planetary unit at most, by the tooth numbers that can be chosen freely; most of them are not sound."""
+
+MOST_ORDINARY = 5_000_000
+"""Trains of a unit of ordinary gears at most: all of them are held."""
+
+MOST_HALF, LEAST_HALF = 2_000_000_000, 100_000_000
+"""Series of the units on the two sides of the search at most, counted as the trains are: minutes, at worst."""
+
+SET: dict[str, Any] = {
+    "type": "planetary_train",
+    "arrangement": "simple",
+    "input": "sun",
+    "output": "carrier",
+    "fixed": "ring",
+    "teeth": {"min": 17, "max": 60, "ring_max": 130},
+    "module": 2.0,
+}
+
+
+class TrainSeriesProblem(StatedProblem):
+    """Trains in series: two to four trains, each driving the next, for a speed ratio; proven to be the best.
+
+    Every unit has its own demands and its own held member. All trains of all units are covered in exact arithmetic, so
+    that an empty answer is a proof.
+    """
+
+    model_config = ConfigDict(
+        title="Trains in series",
+        json_schema_extra={
+            "examples": [
+                {"kind": "train_series", "ratio": 25, "units": [SET, SET], "tolerance": 0.0, "max_designs": 3},
+                {"kind": "train_series", "ratio": 333, "units": [SET, SET, SET], "max_designs": 3},
+                {
+                    "kind": "train_series",
+                    "ratio": -40,
+                    "units": [{"type": "gear_train", "teeth": {"min": 18, "max": 100}, "module": 1.5}, SET],
+                    "tolerance": 1e-3,
+                    "rank_by": "size",
+                    "max_designs": 3,
+                },
+            ]
+        },
+    )
+
+    kind: Literal["train_series"]
+    ratio: ExactRatio = Field(
+        description="Input speed of the first unit over output speed of the last, negative for opposite directions: a "
+        'number or an exact expression such as "127/50", "pi", "-sqrt(2)".'
+    )
+    units: Units = Field(
+        description="The trains, from the input on: statements of planetary_train or gear_train with `type` in place "
+        "of `kind`, without ratio, tolerance and ranking. Units that are stated alike may change places: of their "
+        "series the one is listed that has the larger ratio first."
+    )
+    tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(
+        default=None, description="Largest relative error of the ratio; null takes the best there is."
+    )
+    rank_by: Literal["error", "size"] = Field(
+        default="error",
+        description="`error`: the nearest first, of equally near ones the smallest. `size`: of the series within the "
+        "tolerance the smallest first, of equally small ones the nearest. Size is the number of teeth of all units, of "
+        "one copy of every gear.",
+    )
+
+    @property
+    def sign(self) -> int:
+        """+1: input and output turn alike; −1: opposite."""
+        return parse_target(self.ratio)[0]
+
+    @property
+    def target(self) -> Target:
+        """Size of the demanded ratio, exact."""
+        return parse_target(self.ratio)[1]
+
+    @property
+    def exact_tolerance(self) -> Fraction | None:
+        """The tolerance as the decimal that was written."""
+        return None if self.tolerance is None else decimal(self.tolerance)
+
+    @property
+    def alike(self) -> list[int]:
+        """For every unit the first that is stated like it."""
+        return [self.units.index(unit) for unit in self.units]
+
+    @property
+    def combinations(self) -> int:
+        """About how many series there are, at most; of a consistent problem."""
+        return math.prod(trains_of(unit, self.length_unit) for unit in self.units)
+
+    def contradictions(self) -> list[Contradiction]:
+        """Faults of the units, an order that needs a tolerance, and searches that would take hours."""
+        faults = [
+            Contradiction(f"/units/{k}{fault.path}", fault.detail)
+            for k, unit in enumerate(self.units)
+            for fault in contradictions_of(unit, self.length_unit)
+        ]
+        if self.rank_by == "size" and self.tolerance is None:
+            faults.append(Contradiction("/tolerance", "ranking by size needs a tolerance for the ratio"))
+        return faults or self._extent()
+
+    def _extent(self) -> list[Contradiction]:
+        counts = [trains_of(unit, self.length_unit) for unit in self.units]
+        faults = []
+        for k, (unit, count) in enumerate(zip(self.units, counts, strict=True)):
+            most, way = (
+                (MOST_ORDINARY, "state its stages as units of their own")
+                if unit.type == "gear_train"
+                else (MOST_TRAINS, "state an arrangement and its members")
+            )
+            if count > most:
+                detail = f"about {count:.0e} trains are more than the {most:.0e} of a unit"
+                faults.append(Contradiction(f"/units/{k}/teeth", f"{detail}; narrow the tooth numbers, or {way}"))
+        if not faults and not any(
+            least <= LEAST_HALF and most <= MOST_HALF for least, most in map(sorted, _halves(counts))
+        ):
+            detail = f"about {math.prod(counts):.0e} series are more than a search covers"
+            faults.append(Contradiction("/units", f"{detail}; narrow the tooth numbers, or state members"))
+        return faults
+
+
+def _halves(counts: list[int]) -> list[tuple[int, int]]:
+    """The numbers of series of some units and of all others, for every choice of them."""
+    n = len(counts)
+    return [
+        (
+            math.prod(counts[k] for k in range(n) if chosen >> k & 1),
+            math.prod(counts[k] for k in range(n) if not chosen >> k & 1),
+        )
+        for chosen in range(1, 1 << (n - 1))
+    ]
+
+
+__all__ = ["TrainSeriesProblem", "Unit"]

@@ -1,0 +1,131 @@
+"""The best series of trains for a ratio: all trains of every unit, the search over their products, the proof."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import islice
+from typing import Any
+
+from synthesis.kinds.gear_train.problem import NEAR, GearTrainProblem
+from synthesis.kinds.train_series.catalogue import Catalogue, catalogue_of
+from synthesis.kinds.train_series.design import (
+    ParetoSeries,
+    TrainSeriesDesign,
+    TrainSeriesMechanism,
+    TrainSeriesResult,
+    TrainSeriesSearch,
+)
+from synthesis.kinds.train_series.problem import TrainSeriesProblem
+from synthesis.kinds.train_series.search import Found, Search, Series
+from synthesis.kinds.train_series.stated_units import problem_of
+from synthesis.kinds.train_series.verification import verify
+from synthesis.model.gear_answer import Ratio
+from synthesis.model.kind import Progress
+from synthesis.outcome.sifting import Sifting
+
+
+def solve_train_series(problem: TrainSeriesProblem, progress: Progress) -> TrainSeriesResult:
+    """The best series of trains for a ratio, each verified.
+
+    Parameters
+    ----------
+    problem : TrainSeriesProblem
+        A statement without contradictions.
+    progress : callable
+        Told which unit's trains are listed.
+
+    Returns
+    -------
+    TrainSeriesResult
+        Complete unless a unit's teeth are fitted to distances that are searched in steps, or an idler was not found.
+    """
+    listed: dict[int, Catalogue] = {}
+    for k, first in enumerate(problem.alike):
+        progress(0.5 * k / len(problem.units), f"unit {k + 1}: tooth numbers")
+        if first not in listed:
+            listed[first] = catalogue_of(problem.units[first], problem.length_unit)
+    catalogues = [listed[first] for first in problem.alike]
+    search = Search(catalogues, problem.alike, problem.target, problem.sign)
+    progress(0.5, f"{search.combinations:.3g} series")
+    tolerance = problem.exact_tolerance
+    near = NEAR if tolerance is None else tolerance
+    found = search.found(tolerance, near, problem.max_designs, problem.rank_by == "size")
+    progress(0.9, "verifying")
+    sifting = Sifting[TrainSeriesDesign](problem, undriven="gears")
+    chosen = ((rows, series) for series in found.best for rows in search.rows(series))
+    for rows, one in islice(chosen, problem.max_designs):
+        mechanism = _mechanism(catalogues, rows, one)
+        sifting.add("idler" if mechanism is None else verify(problem, mechanism))
+    progress(1.0, "verified")
+    least = None if found.nearest is None else abs(problem.target.relative_error(abs(found.nearest.ratio)))
+    return TrainSeriesResult(
+        designs=sifting.designs(list),
+        search=TrainSeriesSearch(
+            **dict(sifting.search("exhaustive", complete=not sifting.rejected and not _searched(problem))),
+            combinations=search.combinations,
+            ties=found.ties,
+            least_error=least,
+        ),
+        summary=_summary(problem, search, found, catalogues, sifting.passed),
+        pareto=[entry for one in found.front if (entry := _pareto(problem, search, catalogues, one)) is not None],
+    )
+
+
+def _searched(problem: TrainSeriesProblem) -> bool:
+    """Whether the distances that a unit's gears may have are searched in steps, not proven."""
+    units = (problem_of(unit, Fraction(1), problem.length_unit) for unit in problem.units)
+    return any(isinstance(unit, GearTrainProblem) and unit.searches_distances for unit in units)
+
+
+def _mechanism(catalogues: list[Catalogue], rows: tuple[int, ...], one: Series) -> TrainSeriesMechanism | None:
+    units: list[Any] = [catalogue.train(row) for catalogue, row in zip(catalogues, rows, strict=True)]
+    if any(unit is None for unit in units):
+        return None
+    return TrainSeriesMechanism(units=units, ratio=Ratio.of(one.ratio))
+
+
+def _pareto(
+    problem: TrainSeriesProblem, search: Search, catalogues: list[Catalogue], one: Series
+) -> ParetoSeries | None:
+    """A series of the Pareto set, the first of its trains that can be made."""
+    for rows in search.rows(one):
+        mechanism = _mechanism(catalogues, rows, one)
+        design = None if mechanism is None else verify(problem, mechanism)
+        if design is not None and design.verification.passed:
+            return ParetoSeries(
+                total_teeth=one.total,
+                error=design.metrics.error,
+                ratio=design.mechanism.ratio,
+                units=design.mechanism.units,
+            )
+    return None
+
+
+def _summary(
+    problem: TrainSeriesProblem,
+    search: Search,
+    found: Found,
+    catalogues: list[Catalogue],
+    accepted: list[TrainSeriesDesign],
+) -> str:
+    """One or two sentences: what was found, or why there is nothing."""
+    covered = f"{search.combinations:,} series covered".replace(",", " ")
+    if accepted:
+        first = accepted[0]
+        parts = " × ".join(f"{unit.ratio.value:.6g}" for unit in first.mechanism.units).replace("-", "−")
+        exact = "exactly" if first.metrics.error == 0.0 else f"with an error of {100.0 * first.metrics.error:.4g} %"
+        alike = f"; {found.ties:,} series have the least error" if found.ties > 1 else ""
+        return f"{parts} reaches {problem.ratio} {exact}; {covered}{alike}."
+    for k, catalogue in enumerate(catalogues, 1):
+        if not len(catalogue.value):
+            return f"There is no such series: no train keeps the demands on unit {k}."
+    if found.nearest is None:
+        direction = "the same" if problem.sign > 0 else "the opposite"
+        return f"There is no such series: none turns input and output in {direction} direction; {covered}."
+    if found.best:
+        return f"No series passed the verification; {covered}."
+    error = abs(problem.target.relative_error(abs(found.nearest.ratio)))
+    return (
+        f"There is no such series: the nearest of all has the ratio {float(found.nearest.ratio):.6g}, an error of "
+        f"{100.0 * error:.4g} %; {covered}."
+    )

@@ -1,0 +1,130 @@
+"""A finished series measured against its problem, from its tooth numbers alone.
+
+All units are one list of meshes: the output of one is the body of the next one's input, what is held is the ground. The
+speed equations of this one train give the ratio in exact fractions. What each unit has to keep is measured as its own
+kind does, for the ratio that the unit has.
+"""
+
+from __future__ import annotations
+
+import itertools
+from fractions import Fraction
+from typing import Any
+
+from kinematics.gear.arrangements import ARRANGEMENTS
+from kinematics.gear.planetary import GROUND, Mesh, Train, speeds
+from synthesis.kinds.gear_train.design import GearTrainMechanism, GearTrainMetrics
+from synthesis.kinds.gear_train.verification import driven_train
+from synthesis.kinds.gear_train.verification import verify as verify_ordinary
+from synthesis.kinds.planetary_train.design import PlanetaryMechanism, PlanetaryMetrics
+from synthesis.kinds.planetary_train.verification import measure
+from synthesis.kinds.planetary_train.verification import verify as verify_planetary
+from synthesis.kinds.train_series.design import TrainSeriesDesign, TrainSeriesMechanism, TrainSeriesMetrics
+from synthesis.kinds.train_series.problem import TrainSeriesProblem
+from synthesis.kinds.train_series.stated_units import problem_of
+from synthesis.model.answer import Check, Verification
+
+
+def joined(mechanism: TrainSeriesMechanism) -> Train:
+    """All units as one train; the shafts between them are the bodies ``shaft_0``, ``shaft_1``, ..."""
+    meshes: list[Mesh] = []
+    planets: set[str] = set()
+    for k, unit in enumerate(mechanism.units):
+        ends = f"shaft_{k}", f"shaft_{k + 1}"
+        if isinstance(unit, PlanetaryMechanism):
+            train = ARRANGEMENTS[unit.arrangement].train(unit.teeth)
+            names = {body: f"unit_{k + 1}_{body}" for body in train.bodies}
+            names |= {unit.input: ends[0], unit.output: ends[1], unit.fixed: GROUND, GROUND: GROUND}
+            planets |= {names[body] for body in train.planets}
+            meshes += [
+                Mesh(names[m.first], names[m.second], names[m.carrier], m.first_teeth, m.second_teeth, m.sense)
+                for m in train.meshes
+            ]
+        else:
+            meshes += _ordinary(unit, k, *ends)
+    return Train(tuple(meshes), frozenset(planets))
+
+
+def _ordinary(unit: GearTrainMechanism, number: int, driving: str, driven: str) -> list[Mesh]:
+    """Meshes of ordinary gears on shafts that stand still."""
+    meshes = []
+    stages = driven_train(unit).stages
+    shaft = driving
+    for k, stage in enumerate(stages):
+        bodies = [shaft, *(f"unit_{number + 1}_idler_{k}_{i}" for i in range(len(stage.idlers)))]
+        shaft = driven if k == len(stages) - 1 else f"unit_{number + 1}_shaft_{k + 1}"
+        for (one, other), (a, b) in zip(
+            itertools.pairwise([*bodies, shaft]), itertools.pairwise(stage.gears), strict=True
+        ):
+            meshes.append(Mesh(one, other, GROUND, a, b))
+    return meshes
+
+
+def verify(problem: TrainSeriesProblem, mechanism: TrainSeriesMechanism) -> TrainSeriesDesign | None:
+    """Drive a series and measure it; None where gears of a unit cannot be made at all, or do not stand on its axis."""
+    turning = speeds(joined(mechanism), {"shaft_0": 1})
+    shafts = [turning.values[f"shaft_{k}"] for k in range(len(mechanism.units) + 1)]
+    known = [speed for speed in shafts if speed]
+    checks = [Check(name="ratio", passed=False)]
+    error = Fraction(0)
+    if len(known) == len(shafts) and turning.contradiction is None:
+        error, ratio_checks = _ratio(problem, mechanism, 1 / known[-1])
+        checks = ratio_checks
+    metrics: list[PlanetaryMetrics | GearTrainMetrics] = []
+    for k, (stated, unit, (before, after)) in enumerate(
+        zip(problem.units, mechanism.units, itertools.pairwise(shafts), strict=True), 1
+    ):
+        if not before or not after:
+            return None
+        measured = _unit(problem_of(stated, before / after, problem.length_unit), unit)
+        if measured is None:
+            return None
+        metrics.append(measured[1])
+        checks += [check.model_copy(update={"name": f"unit_{k}_{check.name}"}) for check in measured[0].checks]
+    planetary = [one for one in metrics if isinstance(one, PlanetaryMetrics)]
+    efficiency = None
+    if len(planetary) == len(metrics):
+        efficiency = 1.0
+        for one in planetary:
+            efficiency *= one.efficiency
+    return TrainSeriesDesign(
+        mechanism=mechanism,
+        verification=Verification.of(checks),
+        metrics=TrainSeriesMetrics(
+            error=float(error),
+            total_teeth=sum(one.total_teeth for one in metrics),
+            speeds=[float(speed) for speed in known],
+            efficiency=efficiency,
+            self_locking=any(one.self_locking for one in planetary),
+            units=metrics,
+        ),
+    )
+
+
+def _ratio(
+    problem: TrainSeriesProblem, mechanism: TrainSeriesMechanism, ratio: Fraction
+) -> tuple[Fraction, list[Check]]:
+    """Relative error of the ratio, and whether ratio, direction and tolerance are kept, in exact fractions."""
+    signed = ratio * problem.sign
+    low, high = problem.target.enclosure(512)
+    error = signed / ((low + high) / 2) - 1
+    stated = mechanism.ratio.exact
+    checks = [
+        Check(name="ratio", passed=stated == ratio and mechanism.ratio.value == float(stated)),
+        Check(name="direction", passed=signed > 0),
+    ]
+    tolerance = problem.exact_tolerance
+    if tolerance is not None:
+        passed = signed > 0 and problem.target.within(signed, tolerance)
+        checks.append(Check(name="ratio_error", passed=passed, value=abs(float(error)), limit=float(tolerance)))
+    return error, checks
+
+
+def _unit(problem: Any, unit: Any) -> tuple[Verification, PlanetaryMetrics | GearTrainMetrics] | None:
+    """What the unit's own kind finds, asked for exactly the ratio that the unit has."""
+    if isinstance(unit, PlanetaryMechanism):
+        verification = verify_planetary(problem, unit)
+        coaxial = all(check.passed for check in verification.checks if check.name == "coaxial")
+        return (verification, measure(problem, unit)) if coaxial else None
+    design = verify_ordinary(problem, unit)
+    return None if design is None else (design.verification, design.metrics)
