@@ -192,10 +192,11 @@ class SixbarMechanism(Answer):
     A fourbar with a driver dyad: crank O6–D and link D–C, where C is a point of the driven link; Watt's sixbar of the
     second kind, two fourbars in series, where input or output is driven, Stephenson's of the third kind where the
     coupler is. Or a linkage that carries the body by a link that is joined neither to the ground nor to the fourbar
-    alone: the one with P. ``links`` are lengths by name; the skeleton says all.
+    alone: the one with P. Or a function generator, which has no P. ``links`` are lengths by name; the skeleton says
+    all.
     """
 
-    type: Literal["watt_1", "watt_2", "stephenson_1", "stephenson_3"]
+    type: Literal["watt_1", "watt_2", "stephenson_1", "stephenson_2", "stephenson_3"]
     fixed_pivots: dict[str, Point] = Field(description="By the names of the joints: O2, O4, O6.")
     links: dict[str, Length] = Field(
         description="ground, input, coupler and output of the fourbar; crank and driver_coupler of the driver; "

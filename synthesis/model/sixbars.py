@@ -11,13 +11,11 @@ Links = Mapping[str, tuple[str, ...]]
 """The joints on each link by its name; P is on the link that carries the body."""
 
 
-def sixbar_mechanism(
-    kind: str, joints: Mapping[str, complex], links: Links, *, body_angle: float | None = None
-) -> SixbarMechanism:
-    """The sixbar whose joints stand as given, driven by the link ``input``.
+def lengths_of(joints: Mapping[str, complex], links: Links) -> dict[str, float]:
+    """Lengths between the first two joints of each link under its name.
 
-    ``links`` of the answer are the lengths between the first two joints of each link under its name and, of a link with
-    three pins, the lengths from the first and from the second to the third, under its name with ``_arm`` and ``_side``.
+    Of a link with three pins also those from the first and from the second to the third, under its name with ``_arm``
+    and ``_side``.
     """
     lengths: dict[str, float] = {}
     for name, listed in links.items():
@@ -26,11 +24,18 @@ def sixbar_mechanism(
         if len(pins) > 2:
             lengths[f"{name}_arm"] = abs(joints[pins[2]] - joints[pins[0]])
             lengths[f"{name}_side"] = abs(joints[pins[2]] - joints[pins[1]])
+    return lengths
+
+
+def sixbar_mechanism(
+    kind: str, joints: Mapping[str, complex], links: Links, *, body_angle: float | None = None
+) -> SixbarMechanism:
+    """The sixbar whose joints stand as given, driven by the link ``input``."""
     return SixbarMechanism.model_validate(
         {
             "type": kind,
             "fixed_pivots": {name: to_point(joints[name]) for name in links["ground"]},
-            "links": lengths,
+            "links": lengths_of(joints, links),
             "reference_body_angle": body_angle,
             "skeleton": skeleton(joints, links),
         }

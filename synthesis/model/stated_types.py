@@ -5,8 +5,11 @@ A kind names its types by a literal of its own; left out, the field changes noth
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Literal, TypeVar
+
+from synthesis.model.linkage_statement import LinkageProblem
+from synthesis.model.statement import Contradiction
 
 Name = TypeVar("Name", bound=str)
 
@@ -19,3 +22,14 @@ def named_among(stated: Auto | Sequence[str] | None, every: Sequence[Name]) -> t
     if stated is None:
         return ()
     return tuple(name for name in every if stated == "auto" or name in stated)
+
+
+def beside_sixbars(problem: LinkageProblem) -> Iterator[Contradiction]:
+    """What is stated of linkages and cannot be had of sixbars, whatever they are for."""
+    if problem.manufacture is not None:
+        yield Contradiction("/manufacture", "is not built for sixbars; leave it out, or take them out")
+    for name in ("fixed_pivots", "moving_pivots"):
+        if problem.space is not None and getattr(problem.space, name) is not None:
+            kind = name.removesuffix("s")
+            detail = f"names the sides of a fourbar; state constraints.{kind}_region, which all pivots of a sixbar keep"
+            yield Contradiction(f"/space/{name}", detail)

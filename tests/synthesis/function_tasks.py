@@ -81,19 +81,24 @@ def scaled_pairs(rng, lengths_and_pairs):
     return lengths, pairs_of((inputs - inputs[0]) / k, (outputs - outputs[0]) / scale)
 
 
-def measured(design, problem_task, shares):
-    """Structural error in degrees at shares of the range, by the triangle A B O4 and the dials."""
-    m, dials = design.mechanism, design.dials
-    (low, high), name = problem_task["function"]["x"], problem_task["function"]["name"]
-    x = low + (high - low) * shares
-    y = {
+def measured_function(function, x):
+    """Values of a function that a statement names, in its own words."""
+    return {
         "logarithm": np.log10,
-        "power": lambda x: x ** problem_task["function"].get("exponent", 1.0),
+        "power": lambda x: x ** function.get("exponent", 1.0),
         "sine": lambda x: np.sin(np.radians(x)),
         "exponential": np.exp,
         "reciprocal": lambda x: 1.0 / x,
         "tangent": lambda x: np.tan(np.radians(x)),
-    }[name](x)
+    }[function["name"]](x)
+
+
+def measured(design, problem_task, shares):
+    """Structural error in degrees at shares of the range, by the triangle A B O4 and the dials."""
+    m, dials = design.mechanism, design.dials
+    low, high = problem_task["function"]["x"]
+    x = low + (high - low) * shares
+    y = measured_function(problem_task["function"], x)
     o2, o4 = complex(*m.fixed_pivots.input), complex(*m.fixed_pivots.output)
     theta = np.radians(dials.input.place + dials.input.scale * (x - dials.input.at))
     away = o4 - o2 - m.links.input * np.exp(1j * theta)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from synthesis.kinds.function.approximation import Descent
+from synthesis.kinds.function.descent import Descent
 from synthesis.kinds.function.levelling import levelled
 from synthesis.kinds.function.precision import many_exact
 from synthesis.kinds.function.problem import FunctionProblem

@@ -83,6 +83,15 @@ CARRIER_NAMES = {
 }
 """Sixbars without a driver, which carry a body by themselves."""
 
+GENERATOR_NAMES = {
+    "fourbar": "Fourbar",
+    "slider_crank": "Slider-crank",
+    "watt_2": "Watt's sixbar of the second kind as",
+    "stephenson_2": "Stephenson's sixbar of the second kind as",
+    "stephenson_3": "Stephenson's sixbar of the third kind as",
+}
+"""What begins the title of a function generator."""
+
 STROKE_NAMES = NAMES | {"fourbar": "Crank-rocker", "slider_crank": "Offset slider-crank"}
 
 LINE_NAMES = {
@@ -182,14 +191,16 @@ def function(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLi
     ]
     mechanism = design.mechanism
     more = [("offset", length(mechanism.offset))] if mechanism.type == "slider_crank" else []
-    name = f"{'Slider-crank' if slides else 'Fourbar'} function generator"
+    if not isinstance(mechanism, SixbarMechanism):
+        more.append(("assembly", mechanism.assembly))
+    name = f"{GENERATOR_NAMES[mechanism.type]} function generator"
     return Content(
         name,
         name,
         f"a linkage at {len(design.targets)} targets; structural error at most {off(error.max)}",
         PlanarPicture(scene, unit, lambda view: range_arc(design, scene, view), heights=(380.0, 640.0)),
         [blocks.rows("Dials", readings), blocks.rows("Targets", _first(met))],
-        more_dimensions=[*more, ("assembly", mechanism.assembly)],
+        more_dimensions=more,
         hidden={"P"},
         diagrams=[function_diagram(design, problem, linkage)],
     )

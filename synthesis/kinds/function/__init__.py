@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from synthesis.kinds.function.design import FunctionDesign, FunctionResult
+from synthesis.kinds.function.design import FunctionDesign, FunctionMechanism, FunctionResult
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.model.kind import Kind, Progress
-from synthesis.model.linkage_answer import FourbarMechanism, SliderCrankMechanism
 
 __all__ = ["KIND"]
 
@@ -16,9 +15,7 @@ def _solve(problem: FunctionProblem, progress: Progress) -> FunctionResult:
     return solve_function(problem, progress)
 
 
-def _nearly(
-    problem: FunctionProblem, design: FunctionDesign, mechanism: FourbarMechanism | SliderCrankMechanism
-) -> FunctionDesign | None:
+def _nearly(problem: FunctionProblem, design: FunctionDesign, mechanism: FunctionMechanism) -> FunctionDesign | None:
     from synthesis.kinds.function.verification import verify_nearly
 
     return verify_nearly(problem, design, mechanism)
@@ -31,8 +28,8 @@ def _warm_up() -> None:
 
 
 def _brief(problem: FunctionProblem) -> bool:
-    """Precision points are met exactly; errors over the whole range are made small by search."""
-    return problem.aim == "precision"
+    """Precision points are met exactly; errors over the whole range are made small by search, and sixbars are."""
+    return problem.aim == "precision" and not problem.sixbars
 
 
 KIND = Kind("function", FunctionProblem, FunctionResult, _solve, _warm_up, brief=_brief, nearly=_nearly)

@@ -18,11 +18,12 @@ from synthesis.model.linkage_answer import (
     Layout,
     LinkageMetrics,
     LinkageResult,
+    SixbarMechanism,
     SliderCrankMechanism,
 )
 from synthesis.model.manufacture_answer import MANUFACTURE, Manufactured
 
-FunctionMechanism = Annotated[FourbarMechanism | SliderCrankMechanism, Discriminator("type")]
+FunctionMechanism = Annotated[FourbarMechanism | SliderCrankMechanism | SixbarMechanism, Discriminator("type")]
 
 
 class InputDial(Answer):

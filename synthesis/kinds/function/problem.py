@@ -11,9 +11,11 @@ import numpy as np
 from pydantic import ConfigDict, Field
 
 from synthesis.kinds.function.functions import FunctionStatement, Real
+from synthesis.kinds.function.stated_mechanisms import SIXBARS, Mechanisms, Sixbar, of_types
 from synthesis.model.dimension import ANGLE, OUTPUT
 from synthesis.model.linkage_statement import Constraints, LinkageProblem
 from synthesis.model.manufacture import Held, Made, kept_pivots
+from synthesis.model.stated_types import beside_sixbars, named_among
 from synthesis.model.statement import (
     ABSURD,
     Contradiction,
@@ -42,6 +44,9 @@ EXACT_PAIRS = 3
 """Pairs that a linkage meets with everything but its three proportions given; each open zero or scale adds one."""
 
 MOST_EXACT = 7
+
+MOST_BY_SIXBARS = 8
+"""Pairs that sixbars are made to meet at most. Watt II has nine numbers of its own, the others eleven."""
 
 HELD_PLACES = 41
 """Places of the range, ends included, at which a function that is approximated is held to as it is made."""
@@ -108,7 +113,7 @@ def _one_way(values: Real) -> bool:
 
 
 class FunctionProblem(LinkageProblem):
-    """Function generation: the output of a fourbar or slider-crank follows its input.
+    """Function generation: the output of a fourbar, a slider-crank or a sixbar follows its input.
 
     Pairs of input and output, or a function over an interval with the ranges through which input and output turn. A
     linkage meets 2 to 5 pairs exactly, 6 or 7 where scales are open; or it follows them, or the whole function, with
@@ -144,6 +149,15 @@ class FunctionProblem(LinkageProblem):
                     "output_range": 50.0,
                     "precision_points": 4,
                 },
+                {
+                    "kind": "function",
+                    "function": {"name": "logarithm", "x": [1.0, 10.0]},
+                    "input_range": 60.0,
+                    "output_range": 60.0,
+                    "mechanisms": ["watt_2", "stephenson_2", "stephenson_3"],
+                    "constraints": {"max_link_ratio": 10.0, "min_transmission_angle": 30.0},
+                    "max_designs": 2,
+                },
             ]
         },
     )
@@ -177,11 +191,16 @@ class FunctionProblem(LinkageProblem):
         "or its extension, and leaves the zeros open where no such linkage satisfies all demands; it leaves them open "
         "for everything else.",
     )
-    precision_points: Annotated[Count, Field(ge=2, le=MOST_EXACT)] | None = Field(
+    precision_points: Annotated[Count, Field(ge=2, le=MOST_BY_SIXBARS)] | None = Field(
         default=None, description="Points of the function that are met exactly."
     )
     spacing: Literal["chebyshev", "equal"] = Field(default="chebyshev", description="Of the precision points.")
     mechanism: Literal["fourbar", "slider_crank"] = "fourbar"
+    mechanisms: Mechanisms | None = Field(
+        default=None,
+        description="The types of linkages that are looked for; auto: fourbars, and sixbars where none of these is "
+        "sound and precise. Left out: that of `mechanism`.",
+    )
     criterion: Literal["precision", "least_squares", "minimax"] | None = Field(
         default=None,
         description="Left out: `precision` where precision points are asked for, or there are no more pairs than can "
@@ -203,6 +222,40 @@ class FunctionProblem(LinkageProblem):
         if self.pairs is not None:
             return "precision" if len(self.pairs) <= self.most_exact else "minimax"
         return "precision" if self.precision_points is not None else "minimax"
+
+    @property
+    def sixbars(self) -> tuple[Sixbar, ...]:
+        """The types of sixbars that are looked for."""
+        if self.mechanisms == "auto" and (self.slides or self.stated_zeros_alone or self.sided):
+            return ()
+        return named_among(self.mechanisms, SIXBARS)
+
+    @property
+    def of_simple(self) -> FunctionProblem | None:
+        """The problem of the fourbars or slider-cranks among the types, as it is stated without types; None without
+        these."""
+        return None if self.sixbars_alone else self.model_copy(update={"mechanisms": None})
+
+    @property
+    def of_sixbars(self) -> FunctionProblem:
+        """The problem of the sixbars among the types alone: by the same criterion, with open zeros."""
+        alone = {"mechanisms": list(self.sixbars), "criterion": self.aim, "zeros": None}
+        return self.model_copy(update=alone)
+
+    @property
+    def sixbars_alone(self) -> bool:
+        """Whether neither fourbars nor slider-cranks are looked for."""
+        return isinstance(self.mechanisms, list) and set(self.mechanisms) <= set(SIXBARS)
+
+    @property
+    def stated_zeros_alone(self) -> bool:
+        """Whether a zero is stated: they are counted from the ground line of a fourbar."""
+        return isinstance(self.zeros, Zeros) and (self.zeros.input, self.zeros.output) != (None, None)
+
+    @property
+    def sided(self) -> bool:
+        """Whether something is stated that sixbars cannot keep."""
+        return any(True for _ in beside_sixbars(self))
 
     @property
     def slides(self) -> bool:
@@ -258,7 +311,8 @@ class FunctionProblem(LinkageProblem):
     @property
     def from_ground(self) -> bool:
         """Whether pairs are at first read as angles from the ground line, of a link or its extension."""
-        return self.zeros == "auto" and self.pairs is not None and len(self.pairs) <= EXACT_PAIRS
+        few = self.pairs is not None and len(self.pairs) <= EXACT_PAIRS
+        return self.zeros == "auto" and few and not self.sixbars_alone
 
     @property
     def stated_zeros(self) -> tuple[float | None, float | None]:
@@ -270,6 +324,8 @@ class FunctionProblem(LinkageProblem):
     @property
     def most_exact(self) -> int:
         """Pairs that can be met at most: proportions, zeros and scales that are open."""
+        if self.sixbars_alone:
+            return MOST_BY_SIXBARS
         zeros = [self.zeros.input, self.zeros.output].count(None) if isinstance(self.zeros, Zeros) else 2
         if self.function is not None:
             free = [self.input_range, self.output_range].count(None)
@@ -296,7 +352,7 @@ class FunctionProblem(LinkageProblem):
         """Scales of pairs, None where they are open."""
         if self.scales is not None:
             return self.scales.input, self.scales.output
-        if self.aim != "precision" or self.pairs is None:
+        if self.aim != "precision" or self.pairs is None or self.sixbars_alone:
             return 1.0, 1.0
         zeros = sum(zero is None for zero in self.stated_zeros)
         beyond = len(self.pairs) - EXACT_PAIRS - zeros
@@ -315,6 +371,14 @@ class FunctionProblem(LinkageProblem):
         assert self.pairs is not None
         return _onward(tuple((pair.input, pair.output) for pair in self.pairs), self.slides)
 
+    @property
+    def output_open(self) -> bool:
+        """Whether the output's range, or the scale of its values, is for the search to choose."""
+        if self.pairs is None:
+            return self.span("output") is None and self.range_limits[0] < self.range_limits[1]
+        low, high = self.open_scale(1)
+        return self.scale_choice[1] is None and low < high
+
     def open_scale(self, side: int) -> tuple[float, float]:
         """Limits of an open scale of the input (0) or the output (1) of pairs, with which no link turns through."""
         low, high = self.scale_limits
@@ -331,7 +395,7 @@ class FunctionProblem(LinkageProblem):
 
     def contradictions(self) -> list[Contradiction]:
         """Faults of pairs, function and ranges, and demands that exclude one another."""
-        found = [*self._asked(), *self._zeros_and_scales(), *self.contradicting_demands()]
+        found = [*self._asked(), *self._zeros_and_scales(), *self.contradicting_demands(), *of_types(self)]
         if self.slides:
             found += self.constraints.of_another_class((), "classifies fourbars; a slider-crank has no class")
         if self.fixed_pivots is not None and self.fixed_pivots.input == self.fixed_pivots.output:

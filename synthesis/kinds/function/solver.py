@@ -9,14 +9,16 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.function.approximation import Descent, approximations
+from synthesis.kinds.function.approximation import GeneratorDescent, approximations
+from synthesis.kinds.function.by_type import REASONS, solve_types
 from synthesis.kinds.function.design import FunctionDesign, FunctionResult
 from synthesis.kinds.function.limits import GeneratorLimits
+from synthesis.kinds.function.order import error_of, ordered
 from synthesis.kinds.function.precision import exact, family, many_exact, polished
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.scales import Scaling, one_scale, two_scales
@@ -24,8 +26,7 @@ from synthesis.kinds.function.structural_error import STEPS
 from synthesis.kinds.function.task import FunctionTask, built, function_task
 from synthesis.kinds.function.verification import verify_function
 from synthesis.model.kind import Progress, part_of
-from synthesis.outcome.ranking import ranked
-from synthesis.outcome.sifting import DEFECTS, LENGTHS, OUTRANKED, Sifting
+from synthesis.outcome.sifting import OUTRANKED, Sifting
 
 Real = NDArray[np.float64]
 
@@ -64,14 +65,8 @@ SAME = 1e-7
 USABLE = math.sin(math.radians(30.0))
 """Sine of the transmission angle below which a member of a family is offered only where none reaches it."""
 
-UNCHANGED = 1e-7
-"""Scales this near to 1 leave the pairs as they are."""
-
 HELD_SHARE = 0.5
 """Share of the progress that pairs as angles from the ground line count for, before their zeros are left open."""
-
-_REASONS = DEFECTS | LENGTHS | {"covers_range": "branch_defect", "dials": "reversed_link"}
-"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
 
 _NUMERICAL = {"residual", "cannot_be_driven"}
 """Reasons that say what could not be shown, not what cannot be."""
@@ -81,7 +76,14 @@ _PLACES = {"fixed_pivot_zones", "moving_pivot_zones", "box", "obstacles"}
 
 
 def solve_function(problem: FunctionProblem, progress: Progress) -> FunctionResult:
-    """Solve a problem of function generation."""
+    """Solve a problem of function generation, each type of linkage by its own search."""
+    if problem.mechanisms is not None:
+        return solve_types(problem, _of_simple, progress)
+    return _of_simple(problem, progress)
+
+
+def _of_simple(problem: FunctionProblem, progress: Progress) -> FunctionResult:
+    """Fourbars, or slider-cranks."""
     if not problem.from_ground:
         return _with_zeros(problem, progress)
     held = _with_zeros(problem, part_of(progress, 0.0, HELD_SHARE), steered=False)
@@ -240,7 +242,7 @@ def _into_limits(
     task: FunctionTask, limits: GeneratorLimits, harvest: _Harvest, rng: np.random.Generator, progress: Progress
 ) -> None:
     """Members of a family that lack least are moved within it, until they satisfy the demands."""
-    descent = Descent(task, limits)
+    descent = GeneratorDescent(task, limits)
     enough = min(ENOUGH_STEERED, task.problem.max_designs)
     for n in range(STEERINGS):
         progress(0.7 + 0.3 * n / STEERINGS, "moving members into the limits")
@@ -316,7 +318,7 @@ class _Harvest(Sifting[FunctionDesign]):
     """Linkages, verified, and what became of them."""
 
     def __init__(self, task: FunctionTask) -> None:
-        super().__init__(task.problem, _REASONS)
+        super().__init__(task.problem, REASONS)
         self.task, self.problem = task, task.problem
         self.points = task.points()
         self._seen: list[Real] = []
@@ -346,7 +348,7 @@ class _Harvest(Sifting[FunctionDesign]):
     def approximated(self, judged: int, improved: int) -> FunctionResult:
         """The answer of an approximation."""
         if self.passed:
-            best = min(self.passed, key=self._error)
+            best = min(self.passed, key=partial(error_of, self.problem))
             error = best.structural_error
             unit = "°" if error.unit == "degrees" else f" {self.problem.length_unit}"
             if self.problem.aim == "minimax":
@@ -376,29 +378,11 @@ class _Harvest(Sifting[FunctionDesign]):
         text = f"{len(self.passed)} linkages found among {self.candidates} candidates.{self.reasons()}"
         return self._result(method, False, text)
 
-    def _error(self, design: FunctionDesign) -> float:
-        error = design.structural_error.rms if self.problem.aim == "least_squares" else design.structural_error.max
-        # With the output's range open errors are shares of it.
-        return error / abs(design.metrics.output_range) if self.task.free[6] else error
-
-    def _ranked(self, designs: list[FunctionDesign]) -> list[FunctionDesign]:
-        """Pairs as they were stated come before pairs on other scales."""
-        approximates = self.problem.aim != "precision"
-        own: dict[str, Callable[[FunctionDesign], float]] = {"accuracy": self._error}
-        if approximates or self.problem.function is not None:
-            own["quality"] = self._error
-        if self.problem.pairs is not None and not approximates:
-            own["accuracy"] = lambda design: 0.0  # all of them meet the pairs to rounding
-
-        def rescaled(design: FunctionDesign) -> bool:
-            off = [abs(dial.scale - 1.0) for dial in (design.dials.input, design.dials.output)]
-            return self.problem.pairs is not None and max(off) > UNCHANGED
-
-        return ranked(designs, self.problem.rank_by, own, group=rescaled)
-
     def _result(self, method: str, complete: bool, summary: str) -> FunctionResult:
         return FunctionResult(
-            designs=self.designs(self._ranked), search=self.search(method, complete=complete), summary=summary
+            designs=self.designs(partial(ordered, self.problem)),
+            search=self.search(method, complete=complete),
+            summary=summary,
         )
 
 

@@ -37,6 +37,10 @@ class Generators:
     def __init__(self, slides: bool, inputs: Real, outputs: Real) -> None:
         self.slides, self.inputs, self.outputs = slides, inputs, outputs
 
+    def some(self, rows: NDArray[np.int64]) -> Generators:
+        """The same at some of the places."""
+        return Generators(self.slides, self.inputs[rows], self.outputs[rows])
+
     def errors(self, dimensions: Real, signs: Real) -> Real:
         """Errors of generators of shape (k, 7) with assembly signs (k,) or (k, n): shape (k, n), NaN where none is."""
         signs = signs if signs.ndim == dimensions.ndim else signs[..., None]
@@ -62,8 +66,8 @@ class Generators:
         joint = 1.0 + c * np.exp(1j * (zero + scale * self.outputs))
         return np.asarray(np.sign(((1.0 - pin).conj() * (joint - pin)).imag))
 
-    def derivatives(self, dimensions: Real, errors: Real) -> Real:
-        """Of the errors of one generator by the steps: shape (n, 7)."""
+    def derivatives(self, dimensions: Real, errors: Real, _sign: float = 0.0) -> Real:
+        """Of the errors of one generator by the steps, which tell its assembly: shape (n, 7)."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return self._derivatives(dimensions, errors)
 

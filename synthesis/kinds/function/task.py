@@ -134,7 +134,7 @@ def built(task: FunctionTask, generator: Real, sign: float) -> tuple[FourbarMech
         Its assembly.
     """
     problem = task.problem
-    a, b, c, start, zero, k, scale = (float(x) for x in generator[:STEPS])
+    a, b, c, start, _, k, _ = (float(x) for x in generator[:STEPS])
     place = float(task.inputs[0])
     theta = start + k * place
     pin = cmath.rect(a, theta)
@@ -148,35 +148,43 @@ def built(task: FunctionTask, generator: Real, sign: float) -> tuple[FourbarMech
     origin, along = _placed(task, Moving(np.array([1.0, a, b, c]), sign, turns, theta), pin, joint)
     pin, joint = origin + along * pin, origin + along * joint
     frame = math.degrees(cmath.phase(along))
+    dials = dials_of(task, generator, frame, 0.0 if problem.slides else frame)
+    if problem.slides:
+        return slider_crank_mechanism(origin, pin, joint, cmath.phase(along), pin), dials
+    return fourbar_mechanism(FourbarConfiguration(origin, pin, joint, origin + along, pin)), dials
+
+
+def dials_of(task: FunctionTask, generator: Real, frame: float, turned: float) -> Dials:
+    """The dials of a generator whose input and output are counted from lines at these angles, degrees.
+
+    ``generator`` begins with the seven numbers of a fourbar or a slider-crank.
+    """
+    problem = task.problem
+    start, zero, k, scale = (float(x) for x in generator[3:STEPS])
     to_input = 180.0 / math.pi
     to_output = task.unit if problem.slides else to_input
-    turned = 0.0 if problem.slides else frame
     if problem.pairs is not None:
         shift = [
             value if zero is None else 0.0
             for value, zero in zip((problem.pairs[0].input, problem.pairs[0].output), task.zeros, strict=True)
         ]
-        dials = Dials(
+        return Dials(
             input=InputDial(at=shift[0], place=frame + start * to_input, scale=k),
             output=OutputDial(at=shift[1], place=turned + zero * to_output, scale=scale),
         )
-    else:
-        function = problem.function
-        assert function is not None
-        low, high = function.interval
-        least, greatest = function.extent()
-        first = float(function.values(np.array([low]))[0])
-        dials = Dials(
-            input=InputDial(at=low, place=frame + start * to_input, scale=k * to_input / (high - low)),
-            output=OutputDial(
-                at=first,
-                place=turned + zero * to_output,
-                scale=scale * to_output * function.direction / (greatest - least),
-            ),
-        )
-    if problem.slides:
-        return slider_crank_mechanism(origin, pin, joint, cmath.phase(along), pin), dials
-    return fourbar_mechanism(FourbarConfiguration(origin, pin, joint, origin + along, pin)), dials
+    function = problem.function
+    assert function is not None
+    low, high = function.interval
+    least, greatest = function.extent()
+    first = float(function.values(np.array([low]))[0])
+    return Dials(
+        input=InputDial(at=low, place=frame + start * to_input, scale=k * to_input / (high - low)),
+        output=OutputDial(
+            at=first,
+            place=turned + zero * to_output,
+            scale=scale * to_output * function.direction / (greatest - least),
+        ),
+    )
 
 
 def _placed(task: FunctionTask, linkage: Moving, pin: complex, joint: complex) -> tuple[complex, complex]:

@@ -9,7 +9,6 @@ error is measured at two thousand places, with its extremes looked for more and 
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Literal, NamedTuple, TypeVar
 
@@ -18,42 +17,29 @@ from numpy.typing import NDArray
 from scipy.integrate import simpson
 
 from kinematics.errors import DimensionError
-from kinematics.linkage import SliderCrank, slider_crank
-from kinematics.linkage.fourbar import (
-    CROSSED,
-    OPEN,
-    BarkerClass,
-    barker_class,
-    can_assemble,
-    positions,
-    same_circuit,
-    stays_on_branch,
-    transmission_extremes,
-)
-from kinematics.linkage.slider_crank import range as slider_range
 from synthesis.kinds.function.design import (
     Dials,
     ErrorCurve,
     ErrorExtreme,
     FunctionDesign,
+    FunctionMechanism,
     FunctionMetrics,
     FunctionTarget,
     InputDial,
     OutputDial,
     StructuralError,
 )
+from synthesis.kinds.function.drives import Drive, Driven, drive_of
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.model.answer import Check, Verification
-from synthesis.model.linkage_answer import FourbarMechanism, SliderCrankMechanism
-from synthesis.model.linkages import driven_fourbar, to_complex
+from synthesis.model.linkage_answer import FourbarMechanism
+from synthesis.model.linkages import driven_fourbar
 from synthesis.proof.checks import REACHES_TARGETS, TARGET_REACHED, reaches_targets, tolerated
 from synthesis.proof.closer import least_near
 from synthesis.proof.constraints import constraint_checks
-from synthesis.proof.measures import TURNS_THROUGH, link_lengths, measured
+from synthesis.proof.measures import link_lengths, measured
 
 Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
 DRIVEN = 2001
 """Places of the range at which the structural error is measured at first."""
 
@@ -73,103 +59,6 @@ DIAL_KEPT = 1e-9
 """Deviation of a dial from what was stated, radians or shares of the range: what rounding leaves."""
 
 
-class _Driven(NamedTuple):
-    """The linkage at input angles: whether it closes, the output's place (radians or lengths), and its joints."""
-
-    valid: NDArray[np.bool_]
-    place: Real
-    a: Complex
-    b: Complex
-
-
-class _Drive(ABC):
-    """A linkage that is driven at its input, by the analysis core."""
-
-    assembly: int
-    pivots: list[complex]
-    turns: float
-    """A turn of the output, radians; infinite for a slider."""
-    frame: float
-    """Direction of the ground line or of the slide, radians."""
-    full: bool
-    """Whether the input turns through."""
-    barker: BarkerClass | None = None
-
-    @abstractmethod
-    def at(self, angles: Real, assembly: int) -> _Driven:
-        """Positions at absolute input angles, radians."""
-
-    @abstractmethod
-    def on_branch(self, start: float, end: float) -> bool:
-        """Whether the input turns from start to end without a toggle."""
-
-    @abstractmethod
-    def least_transmission(self, start: float, end: float) -> float:
-        """Least transmission angle on the way, radians."""
-
-    @abstractmethod
-    def one_circuit(self, angles: Real, assemblies: NDArray[np.int64]) -> bool:
-        """Whether the configurations lie on one circuit."""
-
-
-class _Fourbar(_Drive):
-    turns = math.tau
-
-    def __init__(self, mechanism: FourbarMechanism) -> None:
-        fourbar = driven_fourbar(mechanism)
-        self.linkage, self.assembly = fourbar.linkage, fourbar.assembly
-        if not can_assemble(self.linkage):
-            raise DimensionError("input", "lengths that can be assembled", math.nan)
-        self.pivots = [complex(self.linkage.input_pivot), complex(self.linkage.output_pivot)]
-        self.frame = float(self.linkage.ground_angle)
-        self.barker = barker_class(self.linkage)
-        self.full = self.barker.motion in TURNS_THROUGH
-
-    def at(self, angles: Real, assembly: int) -> _Driven:
-        at = positions(self.linkage, angles, assembly)
-        return _Driven(at.valid, at.output_angle, at.a, at.b)
-
-    def on_branch(self, start: float, end: float) -> bool:
-        return bool(stays_on_branch(self.linkage, start, end))
-
-    def least_transmission(self, start: float, end: float) -> float:
-        return float(transmission_extremes(self.linkage, start, end)[0])
-
-    def one_circuit(self, angles: Real, assemblies: NDArray[np.int64]) -> bool:
-        return bool(np.all(same_circuit(self.linkage, angles[0], assemblies[0], angles, assemblies)))
-
-
-class _Slider(_Drive):
-    turns = math.inf
-
-    def __init__(self, mechanism: SliderCrankMechanism) -> None:
-        pivot, angle = to_complex(mechanism.fixed_pivot), math.radians(mechanism.slide.angle)
-        along = complex(math.cos(angle), math.sin(angle))
-        line = to_complex(mechanism.slide.point)
-        # Travel is counted from the foot of the pivot.
-        foot = line + along * ((pivot - line) * along.conjugate()).real
-        self.linkage = SliderCrank(pivot, foot, angle, mechanism.links.crank, mechanism.links.coupler)
-        self.assembly = OPEN if mechanism.assembly == "open" else CROSSED
-        self.pivots = [pivot]
-        self.frame = angle
-        self.full = bool(slider_crank.full_rotation(self.linkage))
-
-    def at(self, angles: Real, assembly: int) -> _Driven:
-        at = slider_crank.positions(self.linkage, angles, assembly)
-        return _Driven(at.valid, at.travel, at.a, at.b)
-
-    def on_branch(self, start: float, end: float) -> bool:
-        return slider_range.stays_on_branch(self.linkage, start, end)
-
-    def least_transmission(self, start: float, end: float) -> float:
-        return slider_range.least_transmission_angle(self.linkage, start, end)
-
-    def one_circuit(self, angles: Real, assemblies: NDArray[np.int64]) -> bool:
-        first = float(angles[0]), int(assemblies[0])
-        rest = zip(angles, assemblies, strict=True)
-        return all(slider_range.same_circuit(self.linkage, *first, float(x), int(sign)) for x, sign in rest)
-
-
 class _Wanted(NamedTuple):
     """What the dials ask for: input angles (radians) and places of the output (radians or lengths)."""
 
@@ -179,17 +68,15 @@ class _Wanted(NamedTuple):
     places: Real
 
 
-def verify_function(
-    problem: FunctionProblem, mechanism: FourbarMechanism | SliderCrankMechanism, dials: Dials
-) -> FunctionDesign | None:
+def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dials: Dials) -> FunctionDesign | None:
     """Drive a linkage through a problem's range and measure its structural error.
 
     Parameters
     ----------
     problem : FunctionProblem
         What was asked.
-    mechanism : FourbarMechanism or SliderCrankMechanism
-        Dimensions only; the skeleton is not looked at.
+    mechanism : FunctionMechanism
+        Its dimensions; of a sixbar these are its skeleton.
     dials : Dials
         How the values are read off the links.
 
@@ -199,7 +86,7 @@ def verify_function(
         None where the dimensions make no linkage, or it cannot be assembled at a target or somewhere in the range.
     """
     try:
-        drive = _Fourbar(mechanism) if isinstance(mechanism, FourbarMechanism) else _Slider(mechanism)
+        drive = drive_of(mechanism)
     except DimensionError:
         return None
     targets = _wanted(problem, dials, _target_values(problem), drive)
@@ -217,16 +104,16 @@ def verify_function(
     start, end = _range(problem, dials, targets)
     same_branch = own and drive.on_branch(start, end)
     on_circuit = same_branch or drive.one_circuit(targets.angles, assemblies)
-    least = drive.least_transmission(start, end) if same_branch else 0.0
+    least = drive.least_transmissions(start, end) if same_branch else dict.fromkeys(drive.dyads, 0.0)
     steps = np.diff(targets.angles)
     in_order = on_circuit and bool(np.all(steps > 0.0) or np.all(steps < 0.0))
-    joints = np.concatenate([met.a, met.b, drive.pivots])
+    joints = np.concatenate([met.moving.ravel(), drive.pivots])
     lengths = link_lengths(mechanism)
     measures = measured(
         lengths,
         max(lengths),
         unit if problem.slides else math.inf,  # angles have no size
-        {"coupler": least},
+        least,
         joints,
         barker=drive.barker,
         same_branch=same_branch,
@@ -251,7 +138,7 @@ def verify_function(
         checks.append(Check(name="covers_range", passed=whole and drive.on_branch(start, end)))
     kept = _dials_off(problem, dials, drive)
     checks.append(tolerated("dials", kept, DIAL_KEPT))
-    first = [complex(met.a[0]), complex(met.b[0])]
+    first = [complex(z) for z in met.moving[:, 0]]
     checks += constraint_checks(problem.constraints, measures, drive.pivots, first)
     return FunctionDesign(
         mechanism=mechanism,
@@ -275,7 +162,7 @@ def verify_function(
 
 
 def verify_nearly(
-    problem: FunctionProblem, design: FunctionDesign, mechanism: FourbarMechanism | SliderCrankMechanism
+    problem: FunctionProblem, design: FunctionDesign, mechanism: FunctionMechanism
 ) -> FunctionDesign | None:
     """Drive another linkage by the dials of a design, whose targets it meets as nearly as it can: one on a grid.
 
@@ -314,7 +201,7 @@ def _target_values(problem: FunctionProblem) -> Real:
     return np.asarray(low + (high - low) * shares)
 
 
-def _wanted(problem: FunctionProblem, dials: Dials, values: Real, drive: _Drive) -> _Wanted:
+def _wanted(problem: FunctionProblem, dials: Dials, values: Real, drive: Drive) -> _Wanted:
     """What the dials ask for at values of the input: pairs, or x of the function."""
     if problem.pairs is not None:
         outputs = problem.values[:, 1]
@@ -337,15 +224,15 @@ def _off(place: Real, wanted: Real, turn: float) -> Real:
     return np.asarray(off - turn * np.round(off / turn) if math.isfinite(turn) else off)
 
 
-def _met(drive: _Drive, targets: _Wanted) -> tuple[_Driven, NDArray[np.int64]]:
+def _met(drive: Drive, targets: _Wanted) -> tuple[Driven, NDArray[np.int64]]:
     """The linkage at the targets, in its own assembly unless the other one is clearly meant; NaN where in none."""
     both = [drive.at(targets.angles, sign) for sign in (drive.assembly, -drive.assembly)]
     off = [np.where(d.valid, np.abs(_off(d.place, targets.places, drive.turns)), np.inf) for d in both]
     opposite = (off[0] > TARGET_REACHED) & (off[1] < CLEARLY_NEARER * off[0])
     # The reference is the first target's configuration: it is met there, or not at all.
     opposite[0] = False
-    place, a, b = (np.where(opposite, getattr(both[1], part), getattr(both[0], part)) for part in ("place", "a", "b"))
-    return _Driven(both[0].valid, place, a, b), np.where(opposite, -drive.assembly, drive.assembly)
+    place, moving = (np.where(opposite, getattr(both[1], part), getattr(both[0], part)) for part in ("place", "moving"))
+    return Driven(both[0].valid, place, moving), np.where(opposite, -drive.assembly, drive.assembly)
 
 
 def _range(problem: FunctionProblem, dials: Dials, targets: _Wanted) -> tuple[float, float]:
@@ -369,7 +256,7 @@ def _output_range(problem: FunctionProblem, dials: Dials) -> float:
 
 
 def _structural_error(
-    problem: FunctionProblem, dials: Dials, drive: _Drive, targets: _Wanted, at_targets: Real
+    problem: FunctionProblem, dials: Dials, drive: Drive, targets: _Wanted, at_targets: Real
 ) -> tuple[StructuralError, bool] | None:
     """The error over the range or at the pairs, and whether the linkage goes through all of it; None where nowhere."""
     if problem.function is None:
@@ -453,7 +340,7 @@ def _unit(problem: FunctionProblem) -> float:
     return abs(problem.span("output") or 1.0)
 
 
-def _dials_off(problem: FunctionProblem, dials: Dials, drive: _Drive) -> float:
+def _dials_off(problem: FunctionProblem, dials: Dials, drive: Drive) -> float:
     """How far the dials are from what was stated: radians, and shares of a range."""
     off = [0.0]
     radians = math.pi / 180.0

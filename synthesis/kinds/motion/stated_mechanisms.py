@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import Field
 
 from synthesis.kinds.motion.stated_dyads import whole_point
-from synthesis.model.stated_types import Auto
+from synthesis.model.stated_types import Auto, beside_sixbars
 from synthesis.model.statement import Contradiction, PartialPoint, PositiveLength, Statement
 
 Sixbar = Literal["watt_1", "stephenson_1", "stephenson_3"]
@@ -67,14 +67,7 @@ def of_sixbars(problem: Any) -> list[Contradiction]:
         if of_fourbars:
             detail = "is of fourbars; leave it out, or take the sixbars out of mechanisms"
             listed.append(Contradiction(f"/{name}", detail))
-    if problem.manufacture is not None:
-        listed.append(Contradiction("/manufacture", "is not built for sixbars; leave it out, or take them out"))
-    for name in ("fixed_pivots", "moving_pivots"):
-        if problem.space is not None and getattr(problem.space, name) is not None:
-            kind = name.removesuffix("s")
-            detail = f"names the sides of a fourbar; state constraints.{kind}_region, which all pivots of a sixbar keep"
-            listed.append(Contradiction(f"/space/{name}", detail))
-    return [*listed, *_faults_of_chain(problem)]
+    return [*listed, *beside_sixbars(problem), *_faults_of_chain(problem)]
 
 
 def _of_types(problem: Any) -> list[Contradiction]:

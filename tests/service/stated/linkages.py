@@ -460,6 +460,7 @@ FUNCTION_ROWS: dict[str, Any] = {
     "input_range": Row(80.0, FITS),
     "output_range": Row(80.0, FITS),
     "either_direction": Row(True, {**FITS, "max_designs": 5}),
+    "mechanisms": Row(["watt_2"], {**FITS, "criterion": "minimax"}),
     "range_limits": Row([30.0, 60.0], {**FITS, "output_range": None}),
     "scales": {"input": 1.0, "output": 1.1},
     "scales.input": Row(1.1, {"scales": {"input": 1.0, "output": 1.0}}),

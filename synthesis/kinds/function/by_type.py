@@ -1,0 +1,168 @@
+"""Which type of linkage generates the function: the simplest that does it well, sixbars where none of those does.
+
+A fourbar that meets all demands stands alone where it transmits as is demanded, or with
+:data:`~synthesis.outcome.simplest.SOUND` degrees where nothing is, and where its structural error is at most
+:data:`WELL` of the output's range. Otherwise sixbars are looked for; they are offered beside it where they have at most
+half of its error, and in its place where it is not sound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from synthesis.kinds.function.design import FunctionDesign, FunctionResult
+from synthesis.kinds.function.order import error_of, ordered
+from synthesis.kinds.function.problem import FunctionProblem
+from synthesis.kinds.function.sixbar_build import built
+from synthesis.kinds.function.sixbar_search import SixbarSearch
+from synthesis.kinds.function.task import function_task
+from synthesis.kinds.function.verification import verify_function
+from synthesis.model.kind import Progress, part_of
+from synthesis.outcome.sifting import DEFECTS, LENGTHS, OUTRANKED, Sifting
+from synthesis.outcome.simplest import both_searches, offered_beside, offering, passing, transmits
+
+Solve = Callable[[FunctionProblem, Progress], FunctionResult]
+
+WELL = 2e-4
+"""Share of the output's range that the error of a fourbar may be for no sixbars to be looked for: a hundredth of a
+degree of 50."""
+
+HALF = 0.5
+"""Share of a fourbar's error that a sixbar offered beside it has at most."""
+
+ATTEMPTS = 6
+"""Sixbars that are verified at most, for each design wanted."""
+
+NOT_LOOKED_FOR = "Sixbars were not looked for: what is stated is a fourbar's or a slider-crank's alone."
+"""What is said where ``auto`` has no sixbars."""
+
+REASONS = DEFECTS | LENGTHS | {"covers_range": "branch_defect", "dials": "reversed_link"}
+"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
+
+
+def solve_types(problem: FunctionProblem, simple: Solve, progress: Progress) -> FunctionResult:
+    """The answer of the types that a problem states.
+
+    Parameters
+    ----------
+    problem : FunctionProblem
+        With :attr:`FunctionProblem.mechanisms`.
+    simple : callable
+        Solves for fourbars and slider-cranks, as without that field.
+    progress : callable
+        Told how far the work is.
+    """
+    part = problem.of_simple
+    if part is None:
+        return solve_sixbars(problem.of_sixbars, progress)
+    if not problem.sixbars:
+        result = simple(part, progress)
+        told = f" {NOT_LOOKED_FOR}" if problem.mechanisms == "auto" else ""
+        return result.model_copy(update={"summary": result.summary + told})
+    plain = simple(part, part_of(progress, 0.0, 0.4))
+    if any(transmits(problem, design) and _well(part, design) for design in passing(plain.designs)):
+        return plain
+    return joined(part, plain, solve_sixbars(problem.of_sixbars, part_of(progress, 0.4, 1.0)))
+
+
+def _well(problem: FunctionProblem, design: FunctionDesign) -> bool:
+    """Whether the error of a linkage is so small that no sixbar needs to be looked for."""
+    if problem.aim == "precision":
+        return True
+    error = design.structural_error.rms if problem.aim == "least_squares" else design.structural_error.max
+    return bool(error <= WELL * abs(design.metrics.output_range))
+
+
+def solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResult:
+    """Sixbars of the types that are listed, the best by the criterion first."""
+    task = function_task(problem)
+    search = SixbarSearch(task)
+    sifting = Sifting[FunctionDesign](problem, REASONS)
+    types = problem.sixbars
+    found = []
+    for n, name in enumerate(types):
+        rng = np.random.default_rng([problem.seed, n])
+        found += search.of_type(name, rng, part_of(progress, 0.9 * n / len(types), 0.9 * (n + 1) / len(types)))
+    found.sort(key=lambda one: one.error)
+    progress(0.9, f"verifying the best of {search.weighed} sixbars")
+
+    def verified(n: int) -> FunctionDesign | None:
+        return verify_function(problem, *built(task, found[n]))
+
+    rows = range(min(len(found), ATTEMPTS * problem.max_designs))
+    tried = sifting.sift(rows, verified, enough=problem.max_designs)
+    sifting.reject(OUTRANKED, search.weighed - tried)
+    progress(1.0, "verified")
+    return FunctionResult(
+        designs=sifting.designs(partial(ordered, problem)),
+        search=sifting.search("sixbar_search"),
+        summary=_summary(problem, sifting),
+    )
+
+
+def joined(problem: FunctionProblem, simple: FunctionResult, found: FunctionResult) -> FunctionResult:
+    """The answer of fourbars and that of sixbars as one."""
+    plain, better = passing(simple.designs), passing(found.designs)
+    sound = [design for design in plain if transmits(problem, design)]
+    least = min((error_of(problem, design) for design in sound or plain), default=np.inf)
+    if sound:
+        better = [design for design in better if error_of(problem, design) <= HALF * least]
+    elif plain:
+        angle = max(design.metrics.min_transmission_angle for design in plain)
+        better = [design for design in better if design.metrics.min_transmission_angle > angle]
+    offered = offered_beside(problem.max_designs, plain, better, partial(ordered, problem))
+    sixbars = [design for design in offered if any(design is one for one in better)]
+    told = _told(problem, sound, plain, better, sixbars)
+    failed = [one for result in (simple, found) for one in result.designs if not one.verification.passed]
+    searches = offering(simple.search, len(offered) - len(sixbars)), offering(found.search, len(sixbars))
+    return simple.model_copy(
+        update={
+            "designs": [*offered, *ordered(problem, failed)][: problem.max_designs],
+            "search": both_searches(*searches),
+            "summary": " ".join([told, simple.summary, found.summary]),
+        }
+    )
+
+
+def _told(
+    problem: FunctionProblem,
+    sound: list[FunctionDesign],
+    plain: list[FunctionDesign],
+    better: list[FunctionDesign],
+    offered: list[FunctionDesign],
+) -> str:
+    """What the types have to do with one another, in a sentence."""
+    if not plain:
+        return "No fourbar was found; sixbars were." if better else "Neither a fourbar nor a sixbar was found."
+    what = "transmission angle" if not sound else "error"
+    if not better:
+        return f"No sixbar that was found is clearly better than the best fourbar in its {what}."
+    if not offered:
+        return f"Sixbars are clearly better in their {what}, for which max_designs leaves no room."
+    if not sound:
+        angle = max(design.metrics.min_transmission_angle for design in plain)
+        return f"The best fourbar transmits with {angle:.1f}° only; sixbars that transmit better are offered."
+    share = min(error_of(problem, one) for one in offered) / min(error_of(problem, one) for one in sound)
+    return f"Sixbars have down to {100.0 * share:.2g} % of the best fourbar's error and are offered beside it."
+
+
+def _summary(problem: FunctionProblem, sifting: Sifting[FunctionDesign]) -> str:
+    weighed = f"{sifting.candidates} sixbars were drawn and composed"
+    if not sifting.passed:
+        return (
+            f"{weighed}, and none was found that satisfies all demands.{sifting.reasons()} "
+            "That does not prove that none exists."
+        )
+    best = min(sifting.passed, key=lambda design: error_of(problem, design))
+    error = best.structural_error
+    if problem.aim == "precision":
+        return f"{weighed}; {len(sifting.passed)} that differ meet all pairs."
+    if problem.aim == "least_squares":
+        text = f"the least root mean square structural error found is {error.rms:.4g}° (at most {error.max:.4g}°)"
+    else:
+        text = f"the least greatest structural error found is {error.max:.4g}°"
+    name = best.mechanism.type.replace("_", " ")
+    return f"{weighed}; {text}, of a {name}; no proof that none is better."

@@ -1,0 +1,36 @@
+"""How function generators are ordered: by the error of the criterion, and those on the pairs' own scales first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from synthesis.kinds.function.design import FunctionDesign
+from synthesis.kinds.function.problem import FunctionProblem
+from synthesis.outcome.ranking import ranked
+
+UNCHANGED = 1e-7
+"""Scales this near to 1 leave the pairs as they are."""
+
+
+def error_of(problem: FunctionProblem, design: FunctionDesign) -> float:
+    """The error by the criterion of a problem; where the output's range is open, as a share of it."""
+    error = design.structural_error.rms if problem.aim == "least_squares" else design.structural_error.max
+    return error / abs(design.metrics.output_range) if problem.output_open else error
+
+
+def ordered(problem: FunctionProblem, designs: list[FunctionDesign]) -> list[FunctionDesign]:
+    """Designs in the order that a problem asks for; pairs as they were stated come before pairs on other scales."""
+    approximates = problem.aim != "precision"
+    error = partial(error_of, problem)
+    own: dict[str, Callable[[FunctionDesign], float]] = {"accuracy": error}
+    if approximates or problem.function is not None:
+        own["quality"] = error
+    if problem.pairs is not None and not approximates:
+        own["accuracy"] = lambda design: 0.0  # all of them meet the pairs to rounding
+
+    def rescaled(design: FunctionDesign) -> bool:
+        off = [abs(dial.scale - 1.0) for dial in (design.dials.input, design.dials.output)]
+        return problem.pairs is not None and max(off) > UNCHANGED
+
+    return ranked(designs, problem.rank_by, own, group=rescaled)

@@ -1,0 +1,147 @@
+"""A sixbar function generator and its limits as the descents of function generators take them."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.function import sixbar_kernels as kernels
+from synthesis.kinds.function.limits import INSIDE, GeneratorLimits
+from synthesis.kinds.function.sixbar_kernels import LOGARITHMIC, NUMBERS, STEPHENSON_2, WATT_2
+from synthesis.kinds.function.structural_error import STEPS
+from synthesis.kinds.function.task import FunctionTask
+
+Real = NDArray[np.float64]
+
+MARGIN = math.radians(0.02)
+"""By which a demanded transmission angle is exceeded at the places that are looked at: between them it is less."""
+
+FELT = 0.25
+"""Cosines of a transmission angle that are less than the greatest allowed one by this are no rows of a program."""
+
+IMPOSSIBLE = 1e3
+"""What a sixbar lacks of its limits that cannot be assembled."""
+
+
+class Followed(NamedTuple):
+    """What the kernel fills of one sixbar: see :func:`~synthesis.kinds.function.sixbar_kernels.follow`."""
+
+    tau: float
+    errors: Real
+    slopes: Real
+    cosines: Real
+    by_cosine: Real
+
+
+def followed(kind: int, assembly: int, at: Real, inputs: Real, outputs: Real, felt: float = math.inf) -> Followed:
+    """A sixbar at places."""
+    m = len(inputs)
+    filled = np.empty(m), np.zeros((m, NUMBERS)), np.zeros((m, 2)), np.zeros((m, 2, NUMBERS))
+    return Followed(kernels.follow(kind, assembly, at, inputs, outputs, felt, *filled), *filled)
+
+
+class SixbarFollower:
+    """Sixbars of one type in one assembly at common places of the input, in one direction from place to place."""
+
+    def __init__(self, kind: int, assembly: int, inputs: Real, outputs: Real) -> None:
+        self.kind, self.assembly, self.inputs, self.outputs = kind, assembly, inputs, outputs
+
+    def some(self, rows: NDArray[np.int64]) -> SixbarFollower:
+        """The same at some of the places, the first among them."""
+        return SixbarFollower(self.kind, self.assembly, self.inputs[rows], self.outputs[rows])
+
+    def errors(self, dimensions: Real, _signs: Real) -> Real:
+        """Errors of sixbars (k, NUMBERS): shape (k, places), NaN where none is."""
+        return np.array([followed(self.kind, self.assembly, at, self.inputs, self.outputs).errors for at in dimensions])
+
+    def derivatives(self, dimensions: Real, _errors: Real, _sign: float) -> Real:
+        """Of the errors of one sixbar by its steps: shape (places, NUMBERS)."""
+        return followed(self.kind, self.assembly, dimensions, self.inputs, self.outputs).slopes
+
+    def stepped(self, dimensions: Real, step: Real) -> Real:
+        """A sixbar after a step."""
+        found = dimensions.copy()
+        logs = LOGARITHMIC[self.kind]
+        found[logs] *= np.exp(step[logs])
+        found[~logs] += step[~logs]
+        if self.kind == STEPHENSON_2:
+            tau = followed(self.kind, self.assembly, found, self.inputs[:1], self.outputs[:1]).tau
+            found[-1] = tau if math.isfinite(tau) else found[-1]
+        return found
+
+
+class SixbarLimits:
+    """Inequalities g ≤ 0 of sixbars of one type in one assembly.
+
+    Parameters
+    ----------
+    task : FunctionTask
+        The task.
+    kind, assembly : int
+    inputs : float, shape (m,)
+        Where transmission angles are looked at, in one direction.
+    least : float
+        Transmission angle, degrees, that is kept.
+    every : bool
+        Whether transmission angles far from that are rows too, so that there are always as many.
+    """
+
+    def __init__(
+        self, task: FunctionTask, kind: int, assembly: int, inputs: Real, least: float, *, every: bool = False
+    ) -> None:
+        free = {"fixed_pivot_region": None, "moving_pivot_region": None, "min_transmission_angle": least}
+        constraints = task.problem.constraints.model_copy(update=free)
+        alone = task.problem.model_copy(update={"constraints": constraints, "fixed_pivots": None})
+        self.fourbar = GeneratorLimits(task._replace(problem=alone))
+        self.kind, self.assembly, self.inputs = kind, assembly, inputs
+        self.cosine = greatest_cosine(least)
+        self.logratio = math.log(self.fourbar.ratio)
+        self.felt = 0.0 if every else self.cosine - FELT
+        self._rows = 1
+
+    def put(self, generator: Real) -> Real:
+        """The sixbar as it is: its place is chosen when it is found."""
+        return generator
+
+    def values(self, generator: Real, *, derivatives: bool = False) -> tuple[Real, Real]:
+        """g and, where asked for, its derivatives by the steps: shapes (m,) and (m, NUMBERS)."""
+        felt = self.felt if derivatives else math.inf
+        there = followed(self.kind, self.assembly, generator, self.inputs, np.zeros_like(self.inputs), felt)
+        if not math.isfinite(there.tau):
+            return np.full(self._rows, IMPOSSIBLE), np.zeros((self._rows, NUMBERS))
+        parts = [self._ratios(generator)]
+        if self.kind != STEPHENSON_2:
+            g, slopes = self.fourbar.values(generator[:STEPS], derivatives=derivatives)
+            parts.append((g, np.pad(slopes, ((0, 0), (0, NUMBERS - STEPS)))))
+        cosines, by_cosine = there.cosines[:, 1], there.by_cosine[:, 1]
+        near = np.abs(cosines) >= self.felt
+        side = np.sign(cosines[near])
+        parts.append((np.abs(cosines[near]) - self.cosine, side[:, None] * by_cosine[near]))
+        self._rows = sum(len(g) for g, _ in parts)
+        return np.concatenate([g for g, _ in parts]), np.concatenate([slopes for _, slopes in parts])
+
+    def _ratios(self, at: Real) -> tuple[Real, Real]:
+        """Ratios of the lengths that the rows of the fourbar do not have."""
+        columns = lengths_of(self.kind)
+        logs = np.array([0.0 if column < 0 else math.log(at[column]) for column in columns])
+        by = np.zeros((len(columns), NUMBERS))
+        for n, column in enumerate(columns):
+            if column >= 0:
+                by[n, column] = 1.0
+        one, other = np.nonzero(~np.eye(len(columns), dtype=np.bool_))
+        return logs[one] - logs[other] - self.logratio, by[one] - by[other]
+
+
+def lengths_of(kind: int) -> list[int]:
+    """Columns of the lengths whose ratios are limited beside those of the first fourbar; −1 for a ground of 1."""
+    if kind == WATT_2:
+        return [-1, 7, 8, 9]
+    return [-1, 0, 1, 2, *((9, 10) if kind == STEPHENSON_2 else (11, 12))]
+
+
+def greatest_cosine(least: float) -> float:
+    """The cosine of a transmission angle, degrees, that is kept with a margin."""
+    return math.cos(math.radians(least) + MARGIN) - INSIDE

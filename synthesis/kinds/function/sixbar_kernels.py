@@ -1,0 +1,337 @@
+"""Sixbar function generators, compiled: the output's place, the transmission, and both by the dimensions.
+
+A sixbar has a row of :data:`NUMBERS` numbers, of which the first seven are those of a fourbar O2 A B O4 with ground 1
+as :mod:`synthesis.kinds.function.structural_error` has them: a, b, c, φ₀, ψ₀, k and l. The input stands at φ₀ + k u,
+and the output should at ψ₀ + l v. What follows them is the type's:
+
+* Watt II: a₂, b₂, c₂ and α. The rocker O4 B C drives a second fourbar, O4 C D O6 with ground 1 in a frame of its own;
+  its crank stands at the rocker's angle + α. Its size and direction beside the first are free.
+* Stephenson III: x, y of C from A, along A → B and across; x, y of O6; lengths of the links C D and O6 D.
+* Stephenson II: x, y of C from O2 when A is on +x; lengths of B D and C D; x, y of E from B, along B → D and across. b
+  is the length of A B, and c that of the output O4 E. The angle τ of A B from the input is solved for.
+
+All but Stephenson II close by dyads. Of a pin Q and a pivot O, with d = |Q D|, e = |O D|, r = |Q O|, D − O = e e^{iψ}
+and v the unit vector from Q to D,
+
+    cos μ = (d² + e² − r²) / 2de,        δψ = (δd + (δQ − δO − δe e^{iψ}) · v) / (i e e^{iψ} · v),
+
+where the divisor is e times the sine of the transmission angle μ. Of Stephenson II, E has a place in the frame of the
+input for each τ, and |E − O4| = c tells τ; its transmission angle is that of
+:mod:`kinematics.linkage.planar.triad_transmission`.
+
+Assemblies are numbered: bit 0 is the first dyad's, bit 1 the second's; set where D is to the left of the way from Q to
+O. Stephenson II has its only dyad, C D B, in bit 0.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.compiling import njit
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+WATT_2, STEPHENSON_3, STEPHENSON_2 = 0, 1, 2
+"""Numbers of the types."""
+
+NUMBERS = 14
+"""Of a row; those that a type does not have are 0, and the last is Stephenson II's τ at the first place."""
+
+A, B, C, START, ZERO, K, L = range(7)
+"""Where the numbers of the fourbar are."""
+
+LOGARITHMIC = np.array(
+    [
+        [1, 1, 1, 0, 0, 1, 1, 1, 1, 1, 0, 0, 0, 0],
+        [1, 1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0],
+        [1, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 0],
+    ],
+    np.bool_,
+)
+"""Which numbers of each type are changed by their logarithms."""
+
+OWN = np.array(
+    [
+        [1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0],
+        [1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0],
+        [1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0],
+    ],
+    np.bool_,
+)
+"""Which numbers each type has."""
+
+NEWTON, SETTLED = 12, 1e-13
+"""Steps for τ at a place at most, and the last of them, radians."""
+
+NEARLY_SETTLED = 1e-9
+"""Last step with which τ counts as known where rounding leaves no less."""
+
+DIFFERENCE = 1e-6
+"""Step of the differences by which the transmission angle of Stephenson II is derived."""
+
+FARTHEST = 0.5
+"""Radians that τ changes at most in one step of Newton's method."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _wrapped(angle: float) -> float:
+    return angle - 2.0 * math.pi * round(angle / (2.0 * math.pi))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _dyad(
+    q: complex,
+    by_q: Complex,
+    o: complex,
+    by_o: Complex,
+    lengths: tuple[float, float],
+    columns: tuple[int, int],
+    left: bool,
+    by_psi: Real,
+    by_cosine: Real,
+) -> tuple[float, float]:
+    """ψ of the link at the pivot and cos μ, with their derivatives; ψ is NaN where the dyad does not close.
+
+    ``columns``: of the logarithms of both lengths.
+    """  # fmt: skip
+    d, e = lengths
+    across = q - o
+    r2 = across.real * across.real + across.imag * across.imag
+    cosine = (d * d + e * e - r2) / (2.0 * d * e)
+    r = math.sqrt(r2)
+    along = (e * e + r2 - d * d) / (2.0 * r)
+    height2 = e * e - along * along
+    if not height2 > 0.0:
+        return math.nan, cosine
+    height = math.sqrt(height2)
+    unit = across / r
+    # To the left of Q → O is to the right of O → Q.
+    arm = unit * complex(along, -height if left else height)
+    v = (o + arm - q) / d
+    turned = 1j * arm
+    divisor = turned.real * v.real + turned.imag * v.imag
+    for n in range(by_psi.size):
+        moved = by_q[n] - by_o[n]
+        by_psi[n] = (moved.real * v.real + moved.imag * v.imag) / divisor
+        by_cosine[n] = -(moved.real * across.real + moved.imag * across.imag) / (d * e)
+    one, other = columns
+    by_psi[one] += d / divisor
+    by_psi[other] -= (arm.real * v.real + arm.imag * v.imag) / divisor
+    by_cosine[one] += d / e - cosine
+    by_cosine[other] += e / d - cosine
+    return math.atan2(arm.imag, arm.real), cosine
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _relative_point(at: Real, left: bool, tau: float, by: Complex) -> tuple[complex, complex, bool]:
+    """Stephenson II: E from O2 in the frame of the input, A on +x, and its derivatives by the numbers and by τ.
+
+    ``by`` (NUMBERS,) gets the derivatives, the last by τ.
+    """
+    a, b = at[A], at[B]
+    c = complex(at[7], at[8])
+    bd, cd = at[9], at[10]
+    link = b * complex(math.cos(tau), math.sin(tau))
+    pin = a + link
+    by_pin, by_c = np.zeros(NUMBERS, np.complex128), np.zeros(NUMBERS, np.complex128)
+    by_pin[A], by_pin[B], by_pin[NUMBERS - 1] = a, link, 1j * link
+    by_c[7], by_c[8] = 1.0, 1j
+    turned, unused = np.zeros(NUMBERS), np.zeros(NUMBERS)
+    # The dyad C–D–B: D turns about B.
+    angle, _ = _dyad(c, by_c, pin, by_pin, (cd, bd), (10, 9), left, turned, unused)
+    if not math.isfinite(angle):
+        return 0j, 0j, False
+    unit = complex(math.cos(angle), math.sin(angle))
+    arm = complex(at[11], at[12]) * unit
+    for n in range(NUMBERS):
+        by[n] = by_pin[n] + 1j * arm * turned[n]
+    by[11] += unit
+    by[12] += 1j * unit
+    return pin + arm, by[NUMBERS - 1], True
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _settled(at: Real, left: bool, turn: complex, tau: float, by: Complex) -> float:
+    """The angle τ with which Stephenson II closes, from one near it; NaN where it is not met."""
+    step = math.inf
+    for _ in range(NEWTON):
+        point, moves, found = _relative_point(at, left, tau, by)
+        arm, rate = turn * point - 1.0, turn * moves
+        slope = 2.0 * (arm.real * rate.real + arm.imag * rate.imag)
+        step = (arm.real * arm.real + arm.imag * arm.imag - at[C] * at[C]) / slope
+        if not found or not math.isfinite(step):
+            return math.nan
+        step = min(max(step, -FARTHEST), FARTHEST)
+        tau -= step
+        if abs(step) < SETTLED:
+            break
+    return tau if abs(step) < NEARLY_SETTLED else math.nan
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _slant(arm: complex, rate: complex) -> float:
+    """The cosine of the angle between the output link and the normal of the way on which it is pushed."""
+    return (arm.real * rate.imag - arm.imag * rate.real) / (abs(arm) * abs(rate))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _triad(
+    at: Real, left: bool, phi: float, tau: float, felt: float, by_psi: Real, by_cosine: Real
+) -> tuple[float, float, float]:
+    """Stephenson II at an input: ψ, τ, and the cosine at the output link; NaN where it does not close nearby.
+
+    The derivatives of the cosine are left alone where it is less than ``felt``.
+    """
+    by, by_tau = np.zeros(NUMBERS, np.complex128), np.zeros(NUMBERS)
+    turn = complex(math.cos(phi), math.sin(phi))
+    tau = _settled(at, left, turn, tau, by)
+    if not math.isfinite(tau):
+        return math.nan, tau, 0.0
+    point, moves, _ = _relative_point(at, left, tau, by)
+    arm, rate = turn * point - 1.0, turn * moves
+    along = arm.real * rate.real + arm.imag * rate.imag
+    square = at[C] * at[C]
+    for n in range(NUMBERS - 1):
+        moved = turn * by[n]
+        if n == START:
+            moved += 1j * turn * point
+        # Of c itself: |E − O4|² grows with it.
+        lack = arm.real * moved.real + arm.imag * moved.imag - (square if n == C else 0.0)
+        by_tau[n] = -lack / along
+        moved += rate * by_tau[n]
+        by_psi[n] = (arm.real * moved.imag - arm.imag * moved.real) / square
+    cosine = _slant(arm, rate)
+    if abs(cosine) < felt:
+        return math.atan2(arm.imag, arm.real), tau, cosine
+    other = at.copy()
+    for n in range(NUMBERS - 1):
+        turned = turn
+        if n == START:
+            turned *= complex(math.cos(DIFFERENCE), math.sin(DIFFERENCE))
+        other[n] = at[n] * (1.0 + DIFFERENCE) if LOGARITHMIC[STEPHENSON_2, n] else at[n] + DIFFERENCE
+        point, moves, found = _relative_point(other, left, tau + DIFFERENCE * by_tau[n], by)
+        other[n] = at[n]
+        by_cosine[n] = (_slant(turned * point - 1.0, turned * moves) - cosine) / DIFFERENCE if found else 0.0
+    return math.atan2(arm.imag, arm.real), tau, cosine
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _second_pin(
+    kind: int, at: Real, angle: float, pin: complex, q: Complex, o: Complex, turned: Real
+) -> tuple[complex, complex]:
+    """The pin and the pivot of the second dyad, from the first's output angle and the pin A.
+
+    ``q`` and ``o`` have the derivatives of A and of O4, and get those of the second dyad's; ``turned`` are those of the
+    angle.
+    """
+    if kind == WATT_2:
+        crank = at[7] * complex(math.cos(angle + at[10]), math.sin(angle + at[10]))
+        for n in range(NUMBERS):
+            q[n] = 1j * crank * turned[n]
+        q[7] += crank
+        q[10] += 1j * crank
+        return crank, complex(1.0, 0.0)
+    arm = at[C] * complex(math.cos(angle), math.sin(angle))
+    unit = (1.0 + arm - pin) / at[B]
+    carried = complex(at[7], at[8])
+    for n in range(NUMBERS):
+        moved = 1j * arm * turned[n] - q[n]
+        if n == C:
+            moved += arm
+        q[n] += carried * (moved / at[B] - (unit if n == B else 0.0))
+    q[7] += unit
+    q[8] += 1j * unit
+    o[9], o[10] = 1.0, 1j
+    return pin + carried * unit, complex(at[9], at[10])
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _dyads(
+    kind: int,
+    at: Real,
+    assembly: int,
+    theta: float,
+    turned_by_k: float,
+    q: Complex,
+    o: Complex,
+    by_psi: Real,
+    cosines: Real,
+    by_cosine: Real,
+) -> float:
+    """ψ of a sixbar that closes by dyads, with what :func:`follow` fills for a place; NaN where it does not close."""
+    first, second = assembly & 1 == 1, assembly & 2 == 2
+    pin = at[A] * complex(math.cos(theta), math.sin(theta))
+    q[:] = 0.0
+    o[:] = 0.0
+    q[A], q[START], q[K] = pin, 1j * pin, 1j * pin * turned_by_k
+    turned = by_psi.copy()
+    angle, cosines[0] = _dyad(pin, q, complex(1.0, 0.0), o, (at[B], at[C]), (B, C), first, turned, by_cosine[0])
+    if not math.isfinite(angle):
+        return math.nan
+    pin, pivot = _second_pin(kind, at, angle, pin, q, o, turned)
+    d, e = (8, 9) if kind == WATT_2 else (11, 12)
+    place, cosines[1] = _dyad(pin, q, pivot, o, (at[d], at[e]), (d, e), second, by_psi, by_cosine[1])
+    return place
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def follow(
+    kind: int,
+    assembly: int,
+    at: Real,
+    inputs: Real,
+    outputs: Real,
+    felt: float,
+    errors: Real,
+    slopes: Real,
+    cosines: Real,
+    by_cosine: Real,
+) -> float:
+    """Structural errors of a sixbar at places, their derivatives by its steps, and the cosines of transmission angles.
+
+    Parameters
+    ----------
+    kind, assembly : int
+    at : float, shape (NUMBERS,)
+    inputs, outputs : float, shape (m,)
+        u and v, in one direction from place to place.
+    felt : float
+        Cosines of Stephenson II that are less have no derivatives.
+    errors : float, shape (m,)
+        Radians, wrapped; NaN from the first place on at which the sixbar cannot be assembled.
+    slopes : float, shape (m, NUMBERS)
+    cosines, by_cosine : float, shapes (m, 2) and (m, 2, NUMBERS)
+        Of both dyads; of Stephenson II the first are 0. What is not filled is left as it is.
+
+    Returns
+    -------
+    float
+        Stephenson II's τ at the first place; NaN where the sixbar is not assembled at all places.
+    """
+    q, o = np.zeros(NUMBERS, np.complex128), np.zeros(NUMBERS, np.complex128)
+    tau = begun = float(at[NUMBERS - 1])
+    errors[:] = math.nan
+    for j in range(inputs.size):
+        turned_by_k = at[K] * inputs[j]
+        theta = at[START] + turned_by_k
+        row = slopes[j]
+        if kind == STEPHENSON_2:
+            row[:] = 0.0
+            cosines[j, 0] = 0.0
+            place, tau, cosines[j, 1] = _triad(at, assembly & 1 == 1, theta, tau, felt, row, by_cosine[j, 1])
+            row[K] = row[START] * turned_by_k
+            by_cosine[j, 1, K] = by_cosine[j, 1, START] * turned_by_k
+            if j == 0:
+                begun = tau
+        else:
+            place = _dyads(kind, at, assembly, theta, turned_by_k, q, o, row, cosines[j], by_cosine[j])
+        if not math.isfinite(place):
+            return math.nan
+        errors[j] = _wrapped(place - at[ZERO] - at[L] * outputs[j])
+        row[ZERO] -= 1.0
+        row[L] -= at[L] * outputs[j]
+    return begun

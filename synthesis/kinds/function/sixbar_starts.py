@@ -1,0 +1,135 @@
+"""Sixbars to begin with: compositions of generators that meet some places exactly.
+
+Watt II: the function is split into two steps. The first is a drawn fourbar; the second a fourbar through five places of
+what is left (:func:`~synthesis.kinds.function.precision.many_exact`). Stephenson III: of a drawn fourbar with a coupler
+point C and a drawn pivot O6 the dyad C–D–O6 is the one with the least squares of the equation
+
+    |C − O6|² = 2 Re((C − O6) w̄ e^{−iψ}) + const,        w = |O6 D| e^{iψ₀},
+
+which is linear in w and const. Stephenson II: drawn whole.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.function import sixbar_kernels as kernels
+from synthesis.kinds.function.precision import many_exact
+from synthesis.kinds.function.structural_error import Generators
+from synthesis.kinds.function.task import FunctionTask
+
+Real = NDArray[np.float64]
+
+WIDEST = 1.3
+"""Logarithm of the drawn lengths, either way, in grounds."""
+
+LEAST_SWING, GREATEST_SWING = 0.15, math.radians(170.0)
+"""What the rocker of a Watt II, the first step, turns at least, as a share of the input, and at most."""
+
+PLACES = 5
+"""That the second fourbar meets exactly."""
+
+
+class Starts(NamedTuple):
+    """Rows (k, NUMBERS) and the assembly of each."""
+
+    at: Real
+    assemblies: NDArray[np.int64]
+
+
+def starts(kind: int, task: FunctionTask, inputs: Real, outputs: Real, count: int, rng: np.random.Generator) -> Starts:
+    """Sixbars of a type to begin with, of so many drawn ones.
+
+    ``inputs``, ``outputs`` (m,): places that they are to follow, in the order of the input.
+    """
+    at = np.zeros((count, kernels.NUMBERS))
+    at[:, :3] = np.exp(rng.uniform(-WIDEST, WIDEST, (count, 3)))
+    at[:, kernels.START] = rng.uniform(-math.pi, math.pi, count)
+    for side, column in ((0, kernels.K), (1, kernels.L)):
+        choices = task.scales[side]
+        picked = rng.integers(len(choices), size=count)
+        low, high = np.array(choices)[picked].T
+        at[:, column] = low + (high - low) * rng.random(count)
+    if kind == kernels.STEPHENSON_2:
+        return _second_stephensons(at, rng)
+    signs = rng.choice([-1.0, 1.0], count)
+    # The rocker's angle, as the error against an output that stands still.
+    still = np.concatenate([at[:, :4], np.zeros((count, 1)), at[:, 5:6], np.zeros((count, 1))], axis=1)
+    angles = Generators(False, inputs, outputs).errors(still, signs)
+    known = np.isfinite(angles).all(axis=1)
+    at, signs, angles = at[known], signs[known], np.unwrap(angles[known], axis=1)
+    if kind == kernels.WATT_2:
+        swing = np.ptp(angles, axis=1)
+        turned = np.abs(at[:, kernels.K]) * np.ptp(inputs)
+        kept = (swing > LEAST_SWING * turned) & (swing < GREATEST_SWING)
+        return _watts(task, at[kept], signs[kept], angles[kept], outputs, rng)
+    return _third_stephensons(at, signs, angles, inputs, outputs, rng)
+
+
+def _coded(first: Real, second: Real) -> NDArray[np.int64]:
+    """Numbers of assemblies by the signs of both dyads; the dyad A B O4 is open where its sign is +1."""
+    return np.asarray((first > 0.0) + 2 * (second > 0.0), np.int64)
+
+
+def _watts(task: FunctionTask, at: Real, signs: Real, angles: Real, outputs: Real, rng: np.random.Generator) -> Starts:
+    m, count = len(outputs), len(at)
+    spaced = 0.5 - 0.5 * np.cos((2.0 * np.arange(PLACES) + 1.0 + rng.uniform(-0.8, 0.8, (count, PLACES))) * math.pi
+                                / (2.0 * PLACES))  # fmt: skip
+    columns = np.clip(np.round(spaced * (m - 1)), 0, m - 1).astype(np.int64)
+    distinct = (np.diff(columns, axis=1) > 0).all(axis=1)
+    at, signs, angles, columns = at[distinct], signs[distinct], angles[distinct], columns[distinct]
+    turned = np.take_along_axis(angles, columns, axis=1) - angles[:, :1]
+    wanted = at[:, kernels.L, None] * outputs[columns]
+    found = many_exact(task.closure, turned, wanted, (None, None))
+    own = found[:, 5].astype(np.int64)
+    rows = at[own]
+    rows[:, kernels.ZERO] = found[:, 4]
+    rows[:, 7:10] = found[:, :3]
+    rows[:, 10] = found[:, 3] - angles[own, 0]
+    ones = np.ones((len(rows), 1))
+    second = np.concatenate([found[:, :5], ones, ones], axis=1)
+    there = Generators(False, turned[own], wanted[own]).signs(second)
+    same = np.abs(there.sum(axis=1)) > PLACES - 0.5
+    return Starts(rows[same], _coded(signs[own[same]], there[same, 0]))
+
+
+def _third_stephensons(
+    at: Real, signs: Real, angles: Real, inputs: Real, outputs: Real, rng: np.random.Generator
+) -> Starts:
+    count = len(at)
+    at[:, 7:9] = rng.uniform(-2.0, 2.0, (count, 2))
+    at[:, 9:11] = rng.uniform(-3.0, 3.0, (count, 2))
+    theta = at[:, kernels.START, None] + at[:, kernels.K, None] * inputs
+    pin = at[:, :1] * np.exp(1j * theta)
+    unit = (1.0 + at[:, 2:3] * np.exp(1j * angles) - pin) / at[:, 1:2]
+    away = pin + (at[:, 7] + 1j * at[:, 8])[:, None] * unit - (at[:, 9] + 1j * at[:, 10])[:, None]
+    seen = away * np.exp(-1j * at[:, kernels.L, None] * outputs)
+    # |away|² = 2 Re(seen w̄) + const, by least squares in Re w, Im w and const.
+    table = np.stack([2.0 * seen.real, 2.0 * seen.imag, np.ones_like(seen.real)], axis=2)
+    normal = np.einsum("kmi,kmj->kij", table, table)
+    right = np.einsum("kmi,km->ki", table, np.abs(away) ** 2)
+    sound = np.linalg.cond(normal) < 1e12
+    at, signs, seen, normal, right = at[sound], signs[sound], seen[sound], normal[sound], right[sound]
+    x = np.linalg.solve(normal, right[..., None])[..., 0]
+    w = x[:, 0] + 1j * x[:, 1]
+    square = x[:, 2] + np.abs(w) ** 2
+    at[:, kernels.ZERO] = np.angle(w)
+    at[:, 11], at[:, 12] = np.sqrt(np.maximum(square, 0.0)), np.abs(w)
+    # To the left of the way from C to O6 is where D lies on the right of that from O6 to C.
+    sides = np.sign((w[:, None] * seen.conj()).imag)
+    closes = (square > 0.0) & (np.abs(w) > 0.0) & (np.abs(sides.sum(axis=1)) > 0.9 * seen.shape[1])
+    return Starts(at[closes], _coded(signs[closes], -sides[closes].sum(axis=1)))
+
+
+def _second_stephensons(at: Real, rng: np.random.Generator) -> Starts:
+    count = len(at)
+    at[:, kernels.ZERO] = rng.uniform(-math.pi, math.pi, count)
+    at[:, 7:9] = rng.uniform(-1.5, 1.5, (count, 2))
+    at[:, 9:11] = np.exp(rng.uniform(-1.0, 1.0, (count, 2)))
+    at[:, 11:13] = rng.uniform(-1.5, 1.5, (count, 2))
+    at[:, 13] = rng.uniform(-math.pi, math.pi, count)
+    return Starts(at, rng.integers(4, size=count))

@@ -1,0 +1,214 @@
+"""Functions by sixbars through HTTP: solved, proved by another formulation, drawn, driven; refusals name the field."""
+
+from __future__ import annotations
+
+import math
+import xml.etree.ElementTree as ET
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.campaign import further
+from tests.oracles.loops import Loops
+from tests.service.answers import finished
+from tests.service.test_analyses import assert_as_documented
+
+SINE: dict[str, Any] = {
+    "kind": "function",
+    "function": {"name": "sine", "x": [0.0, 90.0]},
+    "input_range": 90.0,
+    "output_range": 90.0,
+    "max_designs": 2,
+}
+FOURBARS_BEST = 0.1903
+"""Degrees, the least greatest structural error of a fourbar for this."""
+
+TYPES = "watt_2", "stephenson_2", "stephenson_3"
+PAIRS = [{"input": x, "output": round(20.0 + 0.9 * x + 12.0 * math.sin(x / 20.0), 6)} for x in range(0, 80, 10)]
+
+
+def answered(client, **more) -> dict[str, Any]:
+    body = finished(client, SINE | more)
+    assert body["status"] == "succeeded", body
+    return body
+
+
+def passed(body) -> list[dict[str, Any]]:
+    return [design for design in body["result"]["designs"] if design["verification"]["passed"]]
+
+
+def held_against_loops(design, values, outputs, *, off: float) -> None:
+    """The output, driven by its loops through values of the input, is off what its dial should show by ``off`` degrees
+    at most, and the linkage stays on one branch and transmits as it says."""
+    dials, skeleton = design["dials"], design["mechanism"]["skeleton"]
+    at = {name: complex(*place) for name, place in skeleton["joints"].items()}
+    links = {link["name"]: link["joints"] for link in skeleton["links"]}
+    # The body that the loops follow is the output.
+    traced = {
+        **skeleton,
+        "joints": {**skeleton["joints"], "P": skeleton["joints"][links["output"][1]]},
+        "links": [
+            {**link, "joints": [*link["joints"], "P"]} if link["name"] == "output" else link
+            for link in skeleton["links"]
+        ],
+    }
+    inputs = np.radians(
+        [dials["input"]["place"] + dials["input"]["scale"] * (x - dials["input"]["at"]) for x in values]
+    )
+    first = np.angle(at["A"] - at["O2"])
+    assert abs(math.remainder(inputs[0] - first, math.tau)) < 1e-9
+    met = Loops(traced).followed(inputs - inputs[0])
+    assert met.branch > 0.0
+    pivot, pin = links["output"]
+    stands = np.degrees(np.angle(at[pin] - at[pivot]) + met.turns)
+    wanted = [dials["output"]["place"] + dials["output"]["scale"] * (y - dials["output"]["at"]) for y in outputs]
+    errors = [math.remainder(one - other, 360.0) for one, other in zip(stands, wanted, strict=True)]
+    assert max(map(abs, errors)) <= off + 1e-7
+    for link, joint in (("coupler", "B"), ("link_5", "D")):
+        if link in design["metrics"]["transmission_angles"]:
+            seen = min(value for (pin, *on), value in met.angles.items() if pin == joint and link in on)
+            assert seen >= design["metrics"]["transmission_angles"][link] - 0.05
+
+
+def sine_is_met(design) -> None:
+    x = np.linspace(0.0, 90.0, 31)
+    held_against_loops(design, x, np.sin(np.radians(x)), off=design["structural_error"]["max"])
+
+
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize("kind", further(TYPES, ["watt_2"]))
+def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
+    constraints = {"min_transmission_angle": 25.0, "max_link_ratio": 50.0}
+    body = answered(client, mechanisms=[kind], constraints=constraints)
+    designs = passed(body)
+    assert len(designs) == 2
+    for design in designs:
+        assert design["mechanism"]["type"] == kind
+        assert design["metrics"]["min_transmission_angle"] >= 25.0
+        assert design["metrics"]["link_ratio"] <= 50.0
+        assert design["structural_error"]["max"] < FOURBARS_BEST / 2.0
+        sine_is_met(design)
+    assert kind != "watt_2" or designs[0]["structural_error"]["max"] < FOURBARS_BEST / 20.0
+    assert body["result"]["search"]["complete"] is False
+    place = f"/v1/jobs/{body['id']}/designs/0"
+    drawing = client.get(f"{place}.svg").text
+    root = ET.fromstring(drawing)
+    assert {e.get("data-joint") for e in root.iter()} - {None} == set(designs[0]["mechanism"]["skeleton"]["joints"])
+    assert "function generator" in drawing
+    for ending in ("dxf", "csv"):
+        assert client.get(f"{place}.{ending}").status_code == 200, ending
+    motion = client.get(f"{place}/motion?steps=72").json()
+    assert_as_documented(motion)
+    assert sum(motion["valid"]) > 3
+    analysed = client.post("/v1/analyses", json={"mechanism": designs[0]["mechanism"]})
+    assert analysed.status_code == 200, analysed.text
+    assert client.get(f"/v1/jobs/{body['id']}/report.html").status_code == 200
+
+
+def test_auto_takes_the_fourbar_where_one_is_precise(client):
+    precise = {"function": {"name": "reciprocal", "x": [1.0, 2.0]}, "constraints": {"min_transmission_angle": 10.0}}
+    auto = answered(client, mechanisms="auto", **precise)["result"]
+    assert auto == answered(client, **precise)["result"]
+    assert {design["mechanism"]["type"] for design in auto["designs"]} == {"fourbar"}
+
+
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize("types", further(["auto", ["fourbar", "watt_2"]], [["fourbar", "watt_2"]]))
+def test_sixbars_are_offered_beside_a_fourbar_and_the_summary_says_so(client, types):
+    result = answered(client, mechanisms=types, max_designs=3)["result"]
+    plain = answered(client, max_designs=3)["result"]["designs"]
+    errors = {design["mechanism"]["type"]: design["structural_error"]["max"] for design in result["designs"]}
+    assert [one for one in result["designs"] if one["mechanism"]["type"] == "fourbar"] == plain[:1]
+    assert all(error <= 0.5 * errors["fourbar"] for kind, error in errors.items() if kind != "fourbar")
+    assert set(errors) - {"fourbar"} <= set(TYPES)
+    assert "of the best fourbar's error and are offered beside it." in result["summary"]
+
+
+@pytest.mark.timeout(300)
+def test_demands_are_kept_together(client):
+    constraints = {
+        "min_transmission_angle": 30.0,
+        "max_link_ratio": 12.0,
+        "link_length": {"min": 4.0, "max": 160.0},
+        "fixed_pivot_region": {"x": [0.0, 120.0], "y": [0.0, 150.0]},
+        "moving_pivot_region": {"x": [-20.0, 200.0], "y": [-40.0, 180.0]},
+    }
+    space = {"box": [[-30.0, -50.0], [210.0, 190.0]], "link_width": 6.0}
+    designs = passed(answered(client, mechanisms=["watt_2"], constraints=constraints, space=space))
+    assert designs
+    for design in designs:
+        names = {check["name"] for check in design["verification"]["checks"]}
+        assert {"transmission_angle", "link_ratio", "longest_link", "fixed_pivot_region", "box"} <= names
+        lengths = design["mechanism"]["links"].values()
+        assert min(lengths) >= 4.0
+        assert max(lengths) <= 160.0
+        for x, y in design["mechanism"]["fixed_pivots"].values():
+            assert 0.0 <= x <= 120.0
+            assert 0.0 <= y <= 150.0
+        sine_is_met(design)
+
+
+def test_pivots_that_are_stated_are_those_of_input_and_output(client):
+    pivots = {"input": [10.0, 5.0], "output": [90.0, 30.0]}
+    design = passed(answered(client, mechanisms=["watt_2"], fixed_pivots=pivots, max_designs=1))[0]
+    assert design["mechanism"]["fixed_pivots"]["O2"] == pytest.approx(pivots["input"])
+    assert design["mechanism"]["fixed_pivots"]["O6"] == pytest.approx(pivots["output"])
+    sine_is_met(design)
+
+
+def test_pairs_are_met_exactly(client):
+    task = {"kind": "function", "pairs": PAIRS[:6], "mechanisms": ["stephenson_3"], "max_designs": 1}
+    body = finished(client, task)
+    design = passed(body)[0]
+    assert design["verification"]["checks"][0]["name"] == "reaches_targets"
+    assert max(target["residual"] for target in design["targets"]) < 1e-9
+    values, outputs = zip(*((pair["input"], pair["output"]) for pair in PAIRS[:6]), strict=True)
+    held_against_loops(design, values, outputs, off=1e-6)
+    assert design["dials"]["input"]["scale"] == design["dials"]["output"]["scale"] == 1.0
+
+
+@pytest.mark.campaign
+def test_least_squares_are_no_greater_than_those_of_minimax(client):
+    by = {
+        criterion: passed(answered(client, mechanisms=["stephenson_3"], criterion=criterion, max_designs=1))[0]
+        for criterion in ("least_squares", "minimax")
+    }
+    for design in by.values():
+        sine_is_met(design)
+    assert by["least_squares"]["structural_error"]["rms"] < FOURBARS_BEST / 100.0
+
+
+@pytest.mark.parametrize(
+    ("more", "path"),
+    [
+        ({"mechanisms": []}, "/mechanisms"),
+        ({"mechanisms": ["watt_1"]}, "/mechanisms"),
+        ({"mechanisms": "sixbar"}, "/mechanisms"),
+        ({"mechanisms": ["slider_crank"]}, "/mechanisms"),
+        ({"mechanisms": ["watt_2"], "mechanism": "slider_crank", "output_range": 50.0}, "/mechanisms"),
+        ({"mechanisms": ["watt_2"], "zeros": {"input": 10.0}}, "/zeros"),
+        ({"mechanisms": ["watt_2"], "manufacture": {"round": {"length": 0.5}}}, "/manufacture"),
+        (
+            {"mechanisms": ["watt_2"], "space": {"fixed_pivots": {"input": {"box": {"x": [0, 9], "y": [0, 9]}}}}},
+            "/space/fixed_pivots",
+        ),
+        ({"mechanisms": ["watt_2"], "precision_points": 9}, "/precision_points"),
+        ({"mechanisms": "auto", "precision_points": 8}, "/precision_points"),
+    ],
+)
+def test_what_cannot_be_is_refused_at_its_field(client, more, path):
+    answer = client.post("/v1/jobs", json={"problem": SINE | more})
+    assert answer.status_code == 422, answer.text
+    assert any(path in str(error) for error in answer.json()["errors"]), answer.text
+
+
+@pytest.mark.parametrize(
+    "more",
+    [{"mechanism": "slider_crank", "output_range": 50.0}, {"zeros": {"input": 30.0}, "criterion": "least_squares"}],
+)
+def test_auto_says_where_it_has_no_sixbars(client, more):
+    auto, plain = (answered(client, max_designs=1, **more, **types)["result"] for types in ({"mechanisms": "auto"}, {}))
+    assert auto["designs"] == plain["designs"]
+    assert "Sixbars were not looked for" in auto["summary"]
+    assert "Sixbars" not in plain["summary"]
