@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from kinematics.linkage import warm
-from synthesis.model.answer import Result
+from synthesis.model.answer import Reachable, Result
 from synthesis.model.kind import Kind, Progress, part_of
 from synthesis.model.linkage_statement import FORCES, LinkageProblem
 from synthesis.model.statement import StatedProblem
@@ -93,8 +93,7 @@ def _relaxed(problem: StatedProblem, result: Result[Any], found: Relaxation) -> 
     """An answer without designs, with those that were found without the demands, or with the nearest miss."""
     if not found.sound:
         miss = found.nearest_miss
-        longest = None if miss is None else miss.reachable.dwell_angle
-        told = "" if longest is None else f" Dwells of up to {longest:.4g}° were found."
+        told = "" if miss is None else _longest_dwells(miss.reachable)
         return result.model_copy(update={"nearest_miss": miss, "summary": result.summary + told})
     designs = found.sound[: problem.max_designs]
     count, search = len(designs), result.search
@@ -107,6 +106,11 @@ def _relaxed(problem: StatedProblem, result: Result[Any], found: Relaxation) -> 
             "summary": summary,
         }
     )
+
+
+def _longest_dwells(reachable: Reachable) -> str:
+    longest = reachable.dwell_angles or ([] if reachable.dwell_angle is None else [reachable.dwell_angle])
+    return f" Dwells of up to {' and '.join(f'{angle:.4g}°' for angle in longest)} were found." if longest else ""
 
 
 def warm_up() -> None:

@@ -146,7 +146,7 @@ def relaxation(
         Designs that satisfy all demands although they were found without one; where there are none, the nearest miss,
         which is None where nothing is found without the demands either.
     """
-    reachable: dict[str, float] = {}
+    reachable: dict[str, Any] = {}
     purse = Allowance() if allowance is None else allowance
     search, onward = purse.sort(solve), purse.sort(_nothing if nearer is None else nearer)
     sound, misses = _without_room(problem, search, part_of(progress, 0.0, 0.4))
@@ -282,7 +282,7 @@ def _without_tolerance(problem: Any, solve: Metered, progress: Progress, reachab
 
 
 def _with_shorter_dwells(
-    problem: Any, solve: Metered, verify: Verify | None, progress: Progress, reachable: dict[str, float]
+    problem: Any, solve: Metered, verify: Verify | None, progress: Progress, reachable: dict[str, Any]
 ) -> tuple[list[Any], list[_Miss]]:
     """What rests for longest where nothing rests for as long as is demanded, approached by bisection.
 
@@ -290,19 +290,24 @@ def _with_shorter_dwells(
     """
     if problem.kind != "dwell" or verify is None:
         return [], []
-    reached, unreached = 0.0, problem.dwell_angle
+    reached, unreached = 0.0, 1.0
     misses: list[_Miss] = []
     for n in range(APPROACHES):
         if misses and not solve.fits:
             break
         tried = 0.5 * (reached + unreached)
-        update = {"dwell_angle": tried, "include_failed": False, "max_designs": _most(problem)}
+        update = {"include_failed": False, "max_designs": _most(problem)}
         span = part_of(progress, n / APPROACHES, (n + 1) / APPROACHES)
-        found = solve(problem.model_copy(update=update), span).designs
+        shorter = problem.shortened(tried)
+        found = solve(shorter.model_copy(update=update), span).designs
         if not found:
             unreached = tried
             continue
-        reached = reachable["dwell_angle"] = tried
+        reached = tried
+        if shorter.dwells is None:
+            reachable["dwell_angle"] = shorter.dwell_angle
+        else:
+            reachable["dwell_angles"] = [dwell.angle for dwell in shorter.dwells]
         verified = [design for one in found if (design := verify(problem, one.mechanism)) is not None]
         sound = [design for design in verified if design.verification.passed]
         if sound:

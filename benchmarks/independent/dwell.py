@@ -136,25 +136,19 @@ def _compare_rests(
 ) -> list[float]:
     """Each rest: how much the output moves, where, and for how long; the jitters."""
     foot, top = ends
-    wide, way = math.radians(stated["dwell_angle"]), (top - foot) * unit
+    way = (top - foot) * unit
+    wanted = stated.get("dwells") or stated.get("count", 1) * [{"angle": stated["dwell_angle"]}]
     allowed = stated.get("tolerance") or 0.01 * stated["output"].get("swing", stated["output"].get("stroke"))
-    means = np.array([turn.mean(math.tau * k / STARTS, wide) for k in range(STARTS)])
-    halves = [means > 0.5 * (foot + top), means <= 0.5 * (foot + top)]
-    bests = [_least_spread(turn, half, wide) for half in halves if half.any()]
-    jitters, found = [], []
-    for k, rest in enumerate(beside.design.targets):
+    jitters, timed = [], []
+    for k, (rest, dwell) in enumerate(zip(beside.design.targets, wanted, strict=True)):
+        wide = math.radians(dwell["angle"])
         begin = math.radians(rest.input_angle) - drive.reference
-        found.append(begin)
+        timed.append((begin, wide))
         own = float(turn.spread(np.array([begin]), wide)[0]) * unit
         jitters.append(own)
         beside.add("targets.jitter", rest.jitter, own, way)
         # Where it begins is as sharp as the least movement is: it is compared by how much the output moves from there.
-        if len(beside.design.targets) == 1:
-            smallest = min(bests) * unit
-        else:
-            middle = turn.mean(begin, wide) > 0.5 * (foot + top)
-            smallest = bests[0 if middle else -1] * unit
-        beside.add("targets.input_angle", own, smallest, way)
+        beside.add("targets.input_angle", own, _smallest(turn, dwell, begin, ends, len(wanted)) * unit, way)
         values = turn.at(begin + wide * np.linspace(0.0, 1.0, 4 * WINDOW))[None]
         level = 0.5 * float((_peak(values) - _peak(-values))[0]) * unit
         level += 360.0 * round((rest.level - level) / 360.0) if unit != 1.0 else 0.0
@@ -163,11 +157,43 @@ def _compare_rests(
         beside.add("targets.off_end", rest.off_end, min(top - off, off - foot) / (top - foot), 1.0)
         beside.add("targets.width", rest.width, math.degrees(_width(turn, begin + 0.5 * wide, allowed / unit)), 360.0)
         beside.check(f"dwell_{k + 1}", own, way)
-        beside.check(f"dwell_{k + 1}_at_end", min(top - off, off - foot) / (top - foot))
-    if len(found) == 2:
-        apart = abs(math.remainder(found[1] - found[0], math.tau))
-        beside.check("dwells_apart", apart >= wide * (1.0 - 1e-6))
+        share = (off - foot) / (top - foot)
+        if "at" not in dwell:
+            beside.check(f"dwell_{k + 1}_at_end", min(share, 1.0 - share))
+            continue
+        beside.check(f"dwell_{k + 1}_at_place", abs(share - _place(dwell)))
+        placed = beside.design.dwells[k]
+        beside.add("dwells.angle", placed.angle, dwell["angle"], 360.0)
+        beside.add("dwells.at", placed.at, share, 1.0)
+        beside.add("dwells.error", placed.error, own, way)
+    if len(timed) > 1:
+        clear = [
+            (other - begin) % math.tau >= wide * (1.0 - 1e-6)
+            for begin, wide in timed
+            for other, _ in timed
+            if other != begin
+        ]
+        beside.check("dwells_apart", all(clear))
     return jitters
+
+
+def _place(dwell: dict[str, Any]) -> float:
+    return float({"low": 0.0, "high": 1.0}.get(dwell["at"], dwell["at"]))
+
+
+def _smallest(turn: Turn, dwell: dict[str, Any], begin: float, ends: tuple[float, float], count: int) -> float:
+    """The least that the output moves of all rests that might be this one: of two in its half of the way."""
+    foot, top = ends
+    wide = math.radians(dwell["angle"])
+    means = np.array([turn.mean(math.tau * k / STARTS, wide) for k in range(STARTS)])
+    if "at" in dwell:
+        off = np.abs((means - foot) / (top - foot) - _place(dwell))
+        return _least_spread(turn, off <= max(0.05, float(off.min())), wide)
+    halves = [means > 0.5 * (foot + top), means <= 0.5 * (foot + top)]
+    bests = [_least_spread(turn, half, wide) for half in halves if half.any()]
+    if count == 1:
+        return min(bests)
+    return bests[0 if turn.mean(begin, wide) > 0.5 * (foot + top) else -1]
 
 
 def _width(turn: Turn, middle: float, allowed: float) -> float:

@@ -30,6 +30,8 @@ OWN_PINS = {
     "whitworth": {"rocker": ("O4", "C"), "coupler": ("C", "D")},
     "drag_link_rocker": {"output_ground": ("O4", "O6")},
     "geared_fivebar": {"ground": ("O2", "O5"), "coupler_1": ("A", "C")},
+    "dwell_watt_rocker": {"rocker_arm": ("O4", "P")},
+    "dwell_watt_slider": {"rocker_arm": ("O4", "P")},
 }
 """The same of single types."""
 

@@ -13,6 +13,7 @@ SWINGS = {
     "fourbar": ("O4", "B"),
     "drag_link_rocker": ("O6", "C"),
     "dwell_rocker": ("O6", "D"),
+    "dwell_watt_rocker": ("O6", "D"),
     "dwell_slot": ("O6", "C"),
 }
 """Pivot and pin of outputs that turn."""

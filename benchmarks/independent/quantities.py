@@ -107,8 +107,9 @@ COMPARED: dict[str, frozenset[str]] = {
             """
             metrics.same_branch metrics.way metrics.jitter metrics.peak_velocity metrics.peak_acceleration
             targets.input_angle targets.level targets.jitter targets.width targets.off_end
+            dwells.angle dwells.at dwells.error
             checks.crank_turns checks.way checks.dwell_1 checks.dwell_1_at_end checks.dwell_2 checks.dwell_2_at_end
-            checks.dwells_apart
+            checks.dwell_3 checks.dwell_1_at_place checks.dwell_2_at_place checks.dwell_3_at_place checks.dwells_apart
             """,
         ),
         "quick_return": (

@@ -244,6 +244,24 @@ def _dwell(**demands: Any) -> Draw:
     return stated
 
 
+def _placed_dwells(rng: np.random.Generator) -> Statement:
+    """Two unequal dwells of a slider, or one within the stroke, or a long one of a rocker."""
+    angles = [float(round(one, 1)) for one in rng.uniform(25.0, 55.0, 2)]
+    sorts: list[Statement] = [
+        {"dwells": [{"angle": angles[0], "at": "low"}, {"angle": angles[1], "at": "high"}]},
+        {"dwells": [{"angle": angles[0], "at": float(round(rng.uniform(0.2, 0.8), 2))}]},
+    ]
+    sort = int(rng.integers(3))
+    if sort < 2:
+        return {"kind": "dwell", "output": {"type": "slider", "stroke": 50.0}, **sorts[sort], "max_designs": 4}
+    return {
+        "kind": "dwell",
+        "dwells": [{"angle": angles[0], "at": "high"}],
+        "mechanism": "watt_2",
+        "output": {"type": "rocker", "swing": 40.0},
+    }
+
+
 def _slider_dwell(rng: np.random.Generator) -> Statement:
     stroke = float(rng.uniform(30.0, 80.0))
     return {
@@ -320,6 +338,7 @@ MORE: list[tuple[str, Draw]] = [
     ("geared fivebar", _other_path("geared_fivebar")),
     ("functions", _function),
     ("slider that dwells", _slider_dwell),
+    ("dwells at their places", _placed_dwells),
     ("two dwells", _dwell(count=2, output={"type": "rocker", "swing": 40.0})),
     ("slot that dwells", _dwell(output={"type": "rocker", "swing": 40.0}, mechanism="straight_slot")),
     ("body on a rocker", _body_on_rocker),

@@ -71,7 +71,8 @@ function known(search, found) {
 
 /** What comes nearest where no design satisfies all demands. @param {any} miss @param {any} problem */
 function missed({ design, gaps, reachable }, problem) {
-  const within = Object.entries(reachable).map(([name, value]) => `${words(name).toLowerCase()} ${shown(Number(value.toPrecision(4)))}`);
+  const short = (/** @type {any} */ value) => [value].flat().map((one) => shown(Number(one.toPrecision(4)))).join(" and ");
+  const within = Object.entries(reachable).map(([name, value]) => `${words(name).toLowerCase()} ${short(value)}`);
   return el("section", { id: "miss", class: "card" }, thumbnail(design),
     el("strong", {}, `Nearest miss: ${words(design.mechanism.type)}`),
     ...gaps.map((/** @type {any} */ gap) => el("span", { class: "bad" }, `✗ ${words(gap.check)}`,

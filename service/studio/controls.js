@@ -20,6 +20,15 @@ export function numberBox(value, fallback, set) {
   return box;
 }
 
+/** @param {any} value @param {any} fallback @param {(value: any) => void} set @param {(text: string) => any} read */
+export function textBox(value, fallback, set, read) {
+  const written = (/** @type {any} */ one) => Array.isArray(one) ? one.map((part) => part ?? "open").join(", ") : String(one ?? "");
+  const box = el("input", { type: "text", spellcheck: "false", placeholder: written(fallback),
+    oninput: () => set(box.value.trim() === "" ? undefined : read(box.value.trim())) });
+  if (value !== undefined && value !== null) box.value = written(value);
+  return box;
+}
+
 /** Points as text, one to a line. @param {any} points */
 export function lines(points) {
   return Array.isArray(points) ? points.map((point) => (Array.isArray(point) ? point.join(", ") : String(point))).join("\n") : "";

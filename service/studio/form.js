@@ -5,7 +5,7 @@
  * default holds. Each control carries its JSON pointer as `data-path`, by which errors find it.
  */
 
-import { choice, choices, jsonBox, numberBox, plain, pointsBox, stockBox } from "./controls.js";
+import { choice, choices, jsonBox, numberBox, plain, pointsBox, stockBox, textBox } from "./controls.js";
 import { el, words } from "./dom.js";
 import { discriminator, initial, kinded, optionOf, resolved, shapeOf, tagsOf } from "./schema.js";
 import { table } from "./table.js";
@@ -272,15 +272,6 @@ function flag(name, note, path, value, set) {
   box.checked = Boolean(value);
   return el("div", { class: "field" }, el("label", { class: "flag", for: id }, box, words(name)),
     el("p", { class: "error", id: `${id}e` }), el("p", { class: "note", id: `${id}n` }, note));
-}
-
-/** @param {any} value @param {any} fallback @param {(value: any) => void} set @param {(text: string) => any} read */
-function textBox(value, fallback, set, read) {
-  const written = (/** @type {any} */ one) => Array.isArray(one) ? one.map((part) => part ?? "open").join(", ") : String(one ?? "");
-  const box = el("input", { type: "text", spellcheck: "false", placeholder: written(fallback),
-    oninput: () => set(box.value.trim() === "" ? undefined : read(box.value.trim())) });
-  if (value !== undefined && value !== null) box.value = written(value);
-  return box;
 }
 
 /** Names between commas. @param {string} text */

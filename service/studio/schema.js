@@ -129,9 +129,9 @@ export function shapeOf(options, value) {
   return options.find((one) => (numeric(one) ? "number" : one.type) === type);
 }
 
-/** A field that is a number, or something more. @param {Kinded} what */
+/** A field that is a number, or something else: a word, or something more. @param {Kinded} what */
 function perhapsNumber(what) {
-  return what.control === "number" || (what.control === "shapes" && what.options.some(numeric));
+  return what.control === "number" || (["shapes", "text"].includes(what.control) && what.options.some(numeric));
 }
 
 /**

@@ -1,6 +1,6 @@
 /** A list of objects as a table; rows can be pasted from a spreadsheet. */
 
-import { choice, numberBox } from "./controls.js";
+import { choice, numberBox, plain, textBox } from "./controls.js";
 import { el, words } from "./dom.js";
 import { alternatives, beyond, columns, discriminator, initial, kinded, optionOf } from "./schema.js";
 import { unitOf } from "./units.js";
@@ -70,6 +70,8 @@ function cell(sheet, head, row, path, k, item) {
     const box = el("input", { type: "checkbox", onchange: () => set(box.checked) });
     box.checked = Boolean(value ?? head.schema.default);
     control = box;
+  } else if (head.kinded.control === "text") {
+    control = textBox(value, head.schema.default, set, plain);
   } else if (typeof value === "object" && value !== null) return "below";
   else control = numberBox(value, head.schema.default, set);
   control.setAttribute("data-path", path);

@@ -87,6 +87,8 @@ class GivenSkeleton(Statement):
         "dwell_rocker",
         "dwell_slider",
         "dwell_slot",
+        "dwell_watt_rocker",
+        "dwell_watt_slider",
         "peaucellier",
         "hart",
         "scott_russell",

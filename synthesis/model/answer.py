@@ -84,6 +84,9 @@ class Reachable(Answer):
     max_link_ratio: float | None = optional()
     tolerance: float | None = optional("Of a gear ratio: the least relative error.")
     dwell_angle: Annotated[float, ANGLE] | None = optional("Degrees of the crank: the longest dwell that was found.")
+    dwell_angles: list[Annotated[float, ANGLE]] | None = optional(
+        "The same of several dwells, each of its own length: the longest of which all were found, by one share of each."
+    )
 
 
 class NearestMiss(Answer, Generic[Design]):

@@ -127,6 +127,15 @@ def test_choices_names_and_stocks(studio):
     page.fill(at("output/stroke"), "30")
     assert stated(page)["output"] == {"type": "slider", "stroke": 30}
 
+    show(page, examples("dwell")[2])
+    page.fill(at("dwells/0/angle"), "80")
+    page.fill(at("dwells/1/at"), "0.6")
+    assert stated(page)["dwells"] == [{"angle": 80, "at": "low"}, {"angle": 40, "at": 0.6}]
+    page.fill(at("dwells/1/at"), "high")
+    page.locator('[data-path="/problem/dwells"]').get_by_role("button", name="Add a row").click()
+    assert len(stated(page)["dwells"]) == 3
+    assert stated(page)["dwells"][1]["at"] == "high"
+
 
 def test_the_page_is_worked_by_keys_alone(studio):
     page = studio.page

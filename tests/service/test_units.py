@@ -24,6 +24,8 @@ PURE = {
     "CylinderPressure": {"table"},  # columns of two units
     "DesignForces": {"joint_force_index"},
     "DwellMetrics": {"link_ratio", "reach", "quality"},
+    "PlacedDwell": {"at"},
+    "StatedDwell": {"at"},
     "EngineCylinder": {"place"},  # in spacings of the throws
     "EngineFlywheel": {"coefficient"},
     "EngineHarmonic": {"coefficient", "cos", "place_cos", "place_sin", "sin", "torque"},

@@ -59,11 +59,15 @@ def output_over_a_turn(design: DwellDesign, steps: int) -> np.ndarray:
         return 1 if (base.conjugate() * arm).imag > 0.0 else -1
 
     b = meet(a, joints["O4"], links["coupler"], links["rocker"], side("A", "O4", "B"))
-    p = a + point.distance * np.exp(1j * math.radians(point.angle)) * (b - a) / links["coupler"]
+    if point is None:
+        on_rocker = (joints["P"] - joints["O4"]) / (joints["B"] - joints["O4"])
+        p = joints["O4"] + on_rocker * (b - joints["O4"])
+    else:
+        p = a + point.distance * np.exp(1j * math.radians(point.angle)) * (b - a) / links["coupler"]
     assert np.isfinite(p).all()
     if mechanism.type == "dwell_slot":
         return np.degrees(np.unwrap(np.angle(p - joints["O6"])))
-    if mechanism.type == "dwell_rocker":
+    if mechanism.type in ("dwell_rocker", "dwell_watt_rocker"):
         d = meet(p, joints["O6"], links["link_5"], links["output"], side("P", "O6", "D"))
         return np.degrees(np.unwrap(np.angle(d - joints["O6"])))
     (slide,) = mechanism.skeleton.slides
@@ -86,16 +90,23 @@ def assert_measured(problem: DwellProblem, design: DwellDesign) -> None:
     periodic = np.concatenate([out[:-1], out[:-1]])
     for rest in design.targets:
         first = round(((rest.input_angle - start) % 360.0) * per)
-        held = periodic[first : first + round(problem.dwell_angle * per) + 1]
+        demanded = problem.wanted[rest.index].angle
+        held = periodic[first : first + round(demanded * per) + 1]
         assert np.ptp(held) <= problem.allowed
         assert np.isclose(np.ptp(held), rest.jitter, rtol=0.02, atol=1e-9 * problem.way)
-        assert rest.width >= problem.dwell_angle - 0.2
-        assert rest.off_end <= 0.05
+        assert rest.width >= demanded - 0.2
+        place = problem.wanted[rest.index].place
+        if place is None:
+            assert rest.off_end <= 0.05
+        else:
+            share = (held.mean() - out.min()) / np.ptp(out)
+            assert abs(share - place) <= 0.051
+            assert np.isclose(design.dwells[rest.index].at, share, atol=1e-3)
     second = np.diff(out, 2) / math.radians(1.0 / per) ** 2
     second = np.radians(second) if problem.output.type == "rocker" else second
     assert np.isclose(np.abs(second).max(), design.metrics.peak_acceleration, rtol=1e-2)
     assert design.metrics.full_rotation
-    assert design.metrics.grashof == "crank_rocker"
+    assert design.metrics.grashof in problem.turning
 
 
 TASKS = [

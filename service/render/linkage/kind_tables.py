@@ -28,7 +28,7 @@ from service.units import symbols
 from synthesis.kinds.balancing.curves import shaking_curves
 from synthesis.kinds.balancing.design import BalancedDesign
 from synthesis.kinds.balancing.problem import BalancingProblem
-from synthesis.kinds.dwell.design import DwellDesign
+from synthesis.kinds.dwell.design import DwellDesign, DwellMechanism
 from synthesis.kinds.dwell.problem import DwellProblem
 from synthesis.kinds.function.design import FunctionDesign
 from synthesis.kinds.function.problem import FunctionProblem
@@ -72,6 +72,8 @@ NAMES = {
     "dwell_rocker": "Dwell sixbar with a rocker",
     "dwell_slider": "Dwell sixbar with a slider",
     "dwell_slot": "Dwell sixbar with a slotted rocker",
+    "dwell_watt_rocker": "Watt's dwell sixbar with a rocker",
+    "dwell_watt_slider": "Watt's dwell sixbar with a slider",
     "watt_1": "Watt sixbar for parallel motion",
 }
 """What the types are called on a sheet."""
@@ -322,12 +324,14 @@ def dwell(design: DwellDesign, problem: DwellProblem, linkage: DrivenLinkage) ->
     """A dwell sixbar: as a dwell begins and ends, and away from it; the output over a turn from the first dwell."""
     unit, mechanism = problem.length_unit, design.mechanism
     begun = [float(at) for at in linkage.targets(design)]
-    rotation, slides = math.radians(problem.dwell_angle), mechanism.type == "dwell_slider"
+    rotations, slides = [math.radians(wanted.angle) for wanted in problem.wanted], problem.slides
+    rotation = rotations[0]
     # The last place is that in which the output stands farthest from its first rest, or the second rest.
-    away = begun[1] if len(begun) == 2 else begun[0] + 0.5 * rotation + math.pi
+    away = begun[1] if len(begun) > 1 else begun[0] + 0.5 * rotation + math.pi
     traced = [joint for joint in ("P", "D") if joint in linkage.mechanism.joints]
     scene = Scene(linkage, np.array([begun[0], begun[0] + rotation, away]), traced)
-    resting = [linkage.path("P", at, at + rotation, SAMPLES) for at in begun]
+    spans = [(at, at + wide) for at, wide in zip(begun, rotations, strict=True)]
+    resting = [linkage.path("P", *span, SAMPLES) for span in spans]
     turned = np.linspace(0.0, 360.0, SAMPLES)
     motion = linkage.driven(begun[0] + np.radians(turned), order=2)
     jet = motion.slides["D"] if slides else motion.angles["output"]
@@ -345,8 +349,11 @@ def dwell(design: DwellDesign, problem: DwellProblem, linkage: DrivenLinkage) ->
 
     rests = []
     for rest in design.targets:
+        rests.append((f"dwell {rest.index + 1} from", angle(rest.input_angle, 2)))
+        if design.dwells is not None:
+            placed = design.dwells[rest.index]
+            rests.append((f"over {angle(placed.angle, 2)}, at", f"{length(100.0 * placed.at, digits=3)} % of the way"))
         rests += [
-            (f"dwell {rest.index + 1} from", angle(rest.input_angle, 2)),
             ("jitter", measure(rest.jitter)),
             (f"width at {measure(problem.allowed)}", angle(rest.width, 2)),
         ]
@@ -359,12 +366,12 @@ def dwell(design: DwellDesign, problem: DwellProblem, linkage: DrivenLinkage) ->
         [blocks.rows("Dwells", rests)],
         titles={"way": "stroke" if slides else "swing"},
         standing="there",
-        more_dimensions=_coupler_point(mechanism),
+        more_dimensions=_point_of_dwell(mechanism),
         diagrams=[
             Diagram(f"{what} {over}", "output", turned, place - place[0], CURVE),
             Diagram(bend, "acceleration", turned, jet[2], OUTPUT),
         ],
-        marks=[math.degrees(at - begun[0] + by) % 360.0 for at in begun for by in (0.0, rotation)],
+        marks=[math.degrees(at - begun[0]) % 360.0 for span in spans for at in span],
     )
 
 
@@ -407,9 +414,19 @@ def parallel_motion(design: ParallelMotionDesign, problem: ParallelMotionProblem
 
 
 def _coupler_point(mechanism: Any) -> list[tuple[str, str]]:
+    point = mechanism.coupler_point
+    on_coupler = [("coupler point A–P", length(point.distance)), ("its angle from A–B", angle(point.angle))]
+    return [*on_coupler, ("reference input angle", angle(mechanism.reference_input_angle))]
+
+
+def _point_of_dwell(mechanism: DwellMechanism) -> list[tuple[str, str]]:
+    """P on the coupler, or on the rocker by its angle at O4: its distance is among the links."""
+    if mechanism.coupler_point is not None:
+        return _coupler_point(mechanism)
+    o4, b, p = (complex(*mechanism.skeleton.joints[name]) for name in ("O4", "B", "P"))
+    turned = math.degrees(cmath.phase((p - o4) / (b - o4)))
     return [
-        ("coupler point A–P", length(mechanism.coupler_point.distance)),
-        ("its angle from A–B", angle(mechanism.coupler_point.angle)),
+        ("angle from O4–B to O4–P", angle(turned)),
         ("reference input angle", angle(mechanism.reference_input_angle)),
     ]
 

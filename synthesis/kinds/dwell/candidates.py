@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from kinematics.compiling import njit
 from kinematics.linkage.fourbar import OPEN, Fourbar, coupler_points
 from synthesis.kinds.dwell.arcs import arcs, lines
-from synthesis.kinds.dwell.outputs import CYCLE, Kind
+from synthesis.kinds.dwell.outputs import CYCLE, Carrier, Kind, Turning
 from synthesis.kinds.dwell.scoring import ROCKER, SLIDER, SLOT, judge
 
 Real = NDArray[np.float64]
@@ -47,15 +47,30 @@ MOST_PAIRS, JUDGED = 1_000_000, 60_000
 
 
 class Start(NamedTuple):
-    """A shape of :mod:`outputs`, the sign of its output's assembly, and the end of the way of each dwell."""
+    """A shape of :mod:`outputs`, the sign of its output's assembly, and the place in the way of each dwell."""
 
     shape: Real
     sign: int
-    ends: tuple[int, ...]
+    places: tuple[float, ...]
     score: float
+    carrier: Carrier = "coupler"
+    turning: Turning = "crank_rocker"
 
 
-class _Outputs(NamedTuple):
+class Pieces(NamedTuple):
+    """All pieces of curves that are ``length`` samples long: the arc or line of each, shapes (m, N).
+
+    Places are centres of arcs or points of lines, sizes radii or angles; ``share`` is how far the piece is from its arc
+    or line, as a share of the curve's extent.
+    """
+
+    places: Complex
+    sizes: Real
+    share: Real
+    length: int
+
+
+class Outputs(NamedTuple):
     """Outputs to be tried: row of the curve, first samples of the dwells, and up to four numbers of the output."""
 
     rows: Integers
@@ -68,7 +83,7 @@ def starts(
     kind: Kind, dwells: int, dwell: float, way: float, transmission: float, rng: np.random.Generator, most: int
 ) -> list[Start]:
     """The most promising shapes, each of another fourbar; dwell and way in radians, the way NaN for a slider."""
-    shapes = _drawn(rng, transmission)
+    shapes = drawn(rng, transmission)
     linkage = Fourbar.from_lengths(
         np.ones(len(shapes)), shapes[:, 0], shapes[:, 1], shapes[:, 2], shapes[:, 3] + 1j * shapes[:, 4]
     )
@@ -76,7 +91,11 @@ def starts(
     curves = np.ascontiguousarray(coupler_points(linkage, turn, OPEN).p)
     looked_at = dwell if dwells == 1 else max(dwell, LONG)
     length = max(FEWEST, round(looked_at / (2.0 * np.pi) * CYCLE) + 1)
-    tried = (_of_lines if kind == "slot" else _of_arcs)(curves, length, dwells, kind, way)
+    found_on = pieces_of(curves, length, kind)
+    if dwells == 1:
+        tried = (of_lines if kind == "slot" else of_arcs)(curves, found_on, kind)
+    else:
+        tried = (of_two_lines if kind == "slot" else of_two_arcs)(curves, (found_on, found_on), kind, way)
     if not len(tried.rows):
         return []
     number = {"rocker": ROCKER, "slider": SLIDER, "slot": SLOT}[kind]
@@ -100,11 +119,12 @@ def starts(
         angles = angles + 0.5 * ((length - 1) * 2.0 * np.pi / CYCLE - dwell)
         numbers = tried.numbers[n, : {"rocker": 4, "slider": 3, "slot": 2}[kind]]
         shape = np.concatenate([shapes[row], numbers, angles])
-        found.append(Start(shape, int(signs[n]), tuple(ends[n, :dwells].tolist()), float(scores[n])))
+        places = tuple(1.0 if end > 0 else 0.0 for end in ends[n, :dwells])
+        found.append(Start(shape, int(signs[n]), places, float(scores[n])))
     return found
 
 
-def _drawn(rng: np.random.Generator, transmission: float) -> Real:
+def drawn(rng: np.random.Generator, transmission: float) -> Real:
     """Crank-rockers with a crank of 1: b, c, d, and P in the coupler's frame."""
     count = 12 * DRAWN
     b, c, d = np.exp(rng.uniform(math.log(1.2), math.log(6.0), (3, count)))
@@ -125,14 +145,22 @@ def _extent(curves: Complex) -> Real:
     return np.asarray(np.hypot(np.ptp(curves.real, axis=1), np.ptp(curves.imag, axis=1)))
 
 
-def _of_arcs(curves: Complex, length: int, dwells: int, kind: Kind, way: float) -> _Outputs:
-    """Outputs whose pin rests in the centres of arcs."""
-    centres, radii, off = np.empty_like(curves), np.empty(curves.shape), np.empty(curves.shape)
-    arcs(curves, length, centres, radii, off)
+def pieces_of(curves: Complex, length: int, kind: Kind) -> Pieces:
+    """The arcs of all pieces of a length, or for a slotted output their lines."""
+    places, sizes, off = np.empty_like(curves), np.empty(curves.shape), np.empty(curves.shape)
+    extent = _extent(curves)[:, None]
+    if kind == "slot":
+        lines(curves, length, places, sizes, off)
+        return Pieces(places, sizes, off / extent, length)
+    arcs(curves, length, places, sizes, off)
+    share = np.where((sizes > 0.2 * extent) & (sizes < 4.0 * extent), off / extent, np.inf)
+    return Pieces(places, sizes, share, length)
+
+
+def of_arcs(curves: Complex, pieces: Pieces, kind: Kind) -> Outputs:
+    """Outputs whose pin rests in the centre of a curve's best arc."""
+    centres, radii, share, _ = pieces
     extent = _extent(curves)
-    share = np.where((radii > 0.2 * extent[:, None]) & (radii < 4.0 * extent[:, None]), off / extent[:, None], np.inf)
-    if dwells == 2:
-        return _of_two_arcs(centres, radii, share, extent, length, kind, way)
     first = share.argmin(axis=1)
     best = share[np.arange(len(curves)), first]
     rows = np.argsort(best)[:PIECES]
@@ -143,99 +171,113 @@ def _of_arcs(curves: Complex, length: int, dwells: int, kind: Kind, way: float) 
         angle = np.tile(np.linspace(0.0, np.pi, DIRECTIONS, endpoint=False), len(rows))
         rows, first, centre, radius = (np.repeat(part, DIRECTIONS) for part in (rows, first, centre, radius))
         offset = (centre * np.exp(-1j * angle)).imag
-        return _Outputs(rows, first, first, np.stack([radius, offset, angle, 0.0 * angle], axis=1))
+        return Outputs(rows, first, first, np.stack([radius, offset, angle, 0.0 * angle], axis=1))
     reach = np.geomspace(0.25, 2.5, REACHES)
     direction = np.exp(2j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
     each = REACHES * DIRECTIONS
     arm = np.tile((reach[:, None] * direction).ravel(), len(rows)) * np.repeat(extent[rows], each)
     rows, first, centre, radius = (np.repeat(part, each) for part in (rows, first, centre, radius))
     pivot = centre + arm
-    return _Outputs(rows, first, first, np.stack([radius, pivot.real, pivot.imag, np.abs(arm)], axis=1))
+    return Outputs(rows, first, first, np.stack([radius, pivot.real, pivot.imag, np.abs(arm)], axis=1))
 
 
-def _of_two_arcs(
-    centres: Complex, radii: Real, share: Real, extent: Real, length: int, kind: Kind, way: float
-) -> _Outputs:
-    """Outputs whose pin rests in the centres of two arcs of nearly one radius."""
-    rows, first, second = _best_pairs(centres, radii, share, extent, length, 0.0)
-    one, other = centres[rows, first], centres[rows, second]
-    radius = 0.5 * (radii[rows, first] + radii[rows, second])
+def of_two_arcs(curves: Complex, pieces: tuple[Pieces, Pieces], kind: Kind, way: float) -> Outputs:
+    """Outputs whose pin rests in the centres of two arcs of nearly one radius, ``way`` apart."""
+    rows, first, second = _best_pairs(pieces, _extent(curves), 0.0)
+    one, other = pieces[0].places[rows, first], pieces[1].places[rows, second]
+    radius = 0.5 * (pieces[0].sizes[rows, first] + pieces[1].sizes[rows, second])
     chord = other - one
     if kind == "slider":
         angle = np.angle(chord)
         offset = (0.5 * (one + other) * np.exp(-1j * angle)).imag
-        return _Outputs(rows, first, second, np.stack([radius, offset, angle, 0.0 * angle], axis=1))
+        return Outputs(rows, first, second, np.stack([radius, offset, angle, 0.0 * angle], axis=1))
     sides = []
     for side in (1j, -1j):
         pivot = 0.5 * (one + other) + side * chord / (2.0 * math.tan(0.5 * way))
         sides.append(np.stack([radius, pivot.real, pivot.imag, np.abs(one - pivot)], axis=1))
-    return _Outputs(np.tile(rows, 2), np.tile(first, 2), np.tile(second, 2), np.concatenate(sides))
+    return Outputs(np.tile(rows, 2), np.tile(first, 2), np.tile(second, 2), np.concatenate(sides))
 
 
-def _best_pairs(
-    places: Complex, radii: Real, share: Real, extent: Real, length: int, way: float
-) -> tuple[Integers, Integers, Integers]:
+def _best_pairs(pieces: tuple[Pieces, Pieces], extent: Real, way: float) -> tuple[Integers, Integers, Integers]:
     """Row, first and second piece of the best pairs."""
     found, score = np.empty((3, MOST_PAIRS), np.int64), np.empty(MOST_PAIRS)
-    count = _pairs(places, radii, share, extent, length, way, found, score)
+    one, other = pieces
+    alike = one is other
+    count = _pairs(*one, *other, extent, way, alike, found, score)
     best = np.argsort(score[:count])[:JUDGED]
     return found[0, best], found[1, best], found[2, best]
 
 
-def _of_lines(curves: Complex, length: int, dwells: int, kind: Kind, way: float) -> _Outputs:
-    """Slotted outputs along lines: their pivots lie on the line, or where two cross at the angle of the swing."""
-    points, angles, off = np.empty_like(curves), np.empty(curves.shape), np.empty(curves.shape)
-    lines(curves, length, points, angles, off)
+def of_lines(curves: Complex, pieces: Pieces, _kind: Kind) -> Outputs:
+    """Slotted outputs along the straightest piece of each curve: their pivots lie on its line."""
+    points, angles, share, _ = pieces
     extent = _extent(curves)
-    share = off / extent[:, None]
-    if dwells == 1:
-        first = share.argmin(axis=1)
-        best = share[np.arange(len(curves)), first]
-        rows = np.argsort(best)[: 4 * PIECES]
-        first = first[rows]
-        away = np.concatenate([-np.geomspace(0.15, 4.0, 2 * REACHES), np.geomspace(0.15, 4.0, 2 * REACHES)])
-        pivot = points[rows, first][:, None] + (extent[rows, None] * away * np.exp(1j * angles[rows, first])[:, None])
-        rows, first = np.repeat(rows, len(away)), np.repeat(first, len(away))
-        pivot = pivot.ravel()
-        none = np.zeros(len(pivot))
-        return _Outputs(rows, first, first, np.stack([pivot.real, pivot.imag, none, none], axis=1))
-    rows, first, second = _best_pairs(points, angles, share, extent, length, way)
-    one, other = np.exp(1j * angles[rows, first]), np.exp(1j * angles[rows, second])
-    apart = points[rows, second] - points[rows, first]
+    first = share.argmin(axis=1)
+    best = share[np.arange(len(curves)), first]
+    rows = np.argsort(best)[: 4 * PIECES]
+    first = first[rows]
+    away = np.concatenate([-np.geomspace(0.15, 4.0, 2 * REACHES), np.geomspace(0.15, 4.0, 2 * REACHES)])
+    pivot = points[rows, first][:, None] + (extent[rows, None] * away * np.exp(1j * angles[rows, first])[:, None])
+    rows, first = np.repeat(rows, len(away)), np.repeat(first, len(away))
+    pivot = pivot.ravel()
+    none = np.zeros(len(pivot))
+    return Outputs(rows, first, first, np.stack([pivot.real, pivot.imag, none, none], axis=1))
+
+
+def of_two_lines(curves: Complex, pieces: tuple[Pieces, Pieces], _kind: Kind, way: float) -> Outputs:
+    """Slotted outputs whose pivots lie where two lines cross at the angle ``way``."""
+    points, angles = pieces[0].places, pieces[0].sizes
+    rows, first, second = _best_pairs(pieces, _extent(curves), way)
+    one, other = np.exp(1j * angles[rows, first]), np.exp(1j * pieces[1].sizes[rows, second])
+    apart = pieces[1].places[rows, second] - points[rows, first]
     pivot = points[rows, first] + one * (apart * other.conj()).imag / (one * other.conj()).imag
     none = np.zeros(len(pivot))
-    return _Outputs(rows, first, second, np.stack([pivot.real, pivot.imag, none, none], axis=1))
+    return Outputs(rows, first, second, np.stack([pivot.real, pivot.imag, none, none], axis=1))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _pairs(
-    places: Complex, radii: Real, share: Real, extent: Real, length: int, way: float, found: Integers, score: Real
+    places: Complex,
+    radii: Real,
+    share: Real,
+    length: int,
+    other_places: Complex,
+    other_radii: Real,
+    other_share: Real,
+    other_length: int,
+    extent: Real,
+    way: float,
+    alike: bool,
+    found: Integers,
+    score: Real,
 ) -> int:
     """All pairs of pieces of a curve, clear of each other, that may rest an output twice; how many were found.
 
     For arcs ``places`` are their centres, which must lie apart, and the radii should be equal. For lines, with ``way``
-    the angle at which they should cross, ``radii`` are their angles. Filled are row, first and second piece, and a
-    score.
+    the angle at which they should cross, ``radii`` are their angles. Of pieces that are ``alike`` each pair is looked
+    at once. Filled are row, first and second piece, and a score.
     """
     n, count = share.shape[1], 0
     for row in range(len(share)):
         for i in range(n):
             if not share[row, i] < GOOD:
                 continue
-            for j in range(i + length, min(n, i + n - length + 1)):
-                if not share[row, j] < GOOD:
+            last = i + n - other_length + 1
+            for beyond in range(i + length, min(n, last) if alike else last):
+                j = beyond % n
+                if not other_share[row, j] < GOOD:
                     continue
                 if way == 0.0:
-                    wrong = abs(radii[row, i] - radii[row, j]) / extent[row]
-                    if wrong > ALIKE or abs(places[row, i] - places[row, j]) <= APART * extent[row]:
+                    wrong = abs(radii[row, i] - other_radii[row, j]) / extent[row]
+                    if wrong > ALIKE or abs(places[row, i] - other_places[row, j]) <= APART * extent[row]:
                         continue
                 else:
                     # Lines have no direction: they cross at an angle and its supplement.
-                    crossing = abs(radii[row, i] - radii[row, j]) % math.pi
+                    crossing = abs(radii[row, i] - other_radii[row, j]) % math.pi
                     wrong = 0.3 * min(abs(crossing - way), abs(math.pi - crossing - way))
                 if wrong > ALIKE or count == len(score):
                     continue
                 found[0, count], found[1, count], found[2, count] = row, i, j
-                score[count] = max(share[row, i], share[row, j]) + wrong
+                score[count] = max(share[row, i], other_share[row, j]) + wrong
                 count += 1
     return count

@@ -6,26 +6,29 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Point, Verification
+from synthesis.model.answer import Answer, Point, Verification, optional
 from synthesis.model.dimension import Angle, Length, Output, OutputPerRadian, OutputPerRadianSquared
 from synthesis.model.forces_answer import DesignForces
 from synthesis.model.linkage_answer import LAYOUT, PEAKS, CouplerPoint, Layout, LinkageResult, MotionMetrics, Skeleton
 
+MechanismType = Literal["dwell_rocker", "dwell_slider", "dwell_slot", "dwell_watt_rocker", "dwell_watt_slider"]
+
 
 class DwellMechanism(Answer):
-    """A sixbar with a dwell: a crank-rocker O2 A B O4, and an output that its coupler point P leaves at rest.
+    """A sixbar with a dwell: a fourbar O2 A B O4 whose crank turns through, and an output that P leaves at rest.
 
     ``dwell_rocker``: link 5 from P to D, the output O6–D. ``dwell_slider``: link 5 from P to D on a slide.
-    ``dwell_slot``: P in a slot of the output, which turns about O6; C marks the slot's end.
+    ``dwell_slot``: P in a slot of the output, which turns about O6; C marks the slot's end. In these P is on the
+    coupler. ``dwell_watt_rocker`` and ``dwell_watt_slider`` are the first two with P on the rocker O4–B.
     """
 
-    type: Literal["dwell_rocker", "dwell_slider", "dwell_slot"]
+    type: MechanismType
     fixed_pivots: dict[str, Point] = Field(description="By the names of the joints: O2, O4 and, but for a slider, O6.")
     links: dict[str, Length] = Field(
         description="ground (O2–O4), input, coupler, rocker; link_5 and output, where there are such, the latter of a "
-        "slot to its end."
+        "slot to its end; rocker_arm (O4–P), where P is on the rocker."
     )
-    coupler_point: CouplerPoint
+    coupler_point: CouplerPoint | None = optional("P on the coupler; left out where P is on the rocker.")
     reference_input_angle: Angle = Field(description="Crank angle where the first dwell begins, absolute, degrees.")
     skeleton: Skeleton
 
@@ -41,6 +44,14 @@ class Rest(Answer):
     jitter: Output = Field(description="Greatest less least output during the demanded crank rotation.")
     width: Angle = Field(description="Crank rotation, degrees, during which the output stays within the tolerance.")
     off_end: float = Field(description="Distance of the mean from the nearer end of the way, as a share of the way.")
+
+
+class PlacedDwell(Answer):
+    """A dwell that was asked for by its place, in the order of the statement: what was found where."""
+
+    angle: Angle = Field(description="Rotation of the crank that is demanded, degrees.")
+    at: float = Field(description="Where the output's mean lies, as a share of the way from its least to its greatest.")
+    error: Output = Field(description="Greatest less least output meanwhile.")
 
 
 class DwellMetrics(MotionMetrics):
@@ -64,6 +75,7 @@ class DwellDesign(Answer):
 
     mechanism: DwellMechanism
     targets: list[Rest]
+    dwells: list[PlacedDwell] | None = optional("Of a statement with `dwells`: each of them, in its order.")
     verification: Verification
     metrics: DwellMetrics
     layout: Layout | None = LAYOUT

@@ -2,7 +2,8 @@
 
 A shape is a row of numbers in a frame with the crank's pivot O2 at the origin, a crank of 1 and O4 on the real axis:
 
-    b, c, d, x, y        coupler, rocker, ground, and P in the coupler's frame; B to the left of A → O4
+    b, c, d, x, y        coupler, rocker, ground, and P in the coupler's frame, or in the rocker's with O4 at its origin
+                         and B on its real axis; B to the left of A → O4
     rocker               R = P D, O6 (x, y), O6 D
     slider               R = P D, the line's distance from O2 to its left, its angle
     slot                 O6 (x, y)
@@ -28,7 +29,8 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 Kind = Literal["rocker", "slider", "slot"]
-
+Carrier = Literal["coupler", "rocker"]
+Turning = Literal["crank_rocker", "double_crank"]
 
 CYCLE = 72
 """Crank angles of the turn at which the output is looked at."""
@@ -53,24 +55,56 @@ NEAREST = 0.3
 
 
 class Task(NamedTuple):
-    """What a shape is for: kind of output, sign of its assembly, dwell (radians), ends (+1: greatest, −1: least).
+    """What a shape is for.
 
-    ``way`` is the swing in radians, or NaN for a slider, whose size comes after. ``transmission`` is a sine.
+    Attributes
+    ----------
+    kind : str
+        Of the output.
+    sign : int
+        Of its assembly.
+    dwells : tuple of float
+        Rotation of the crank during each dwell, radians.
+    places : tuple of float
+        Where each dwell lies, as a share of the way: 0 the least output, 1 the greatest.
+    way : float
+        The swing in radians, or NaN for a slider, whose size comes after.
+    transmission : float
+        Least sine of a transmission angle.
+    link_ratio : float
+        Longest link over shortest, at most.
+    carrier : str
+        The link that P is on.
+    turning : str
+        What the fourbar O2 A B O4 is: its rocker swings, or turns through as its crank does.
     """
 
     kind: Kind
     sign: int
-    dwell: float
-    ends: tuple[int, ...]
+    dwells: tuple[float, ...]
+    places: tuple[float, ...]
     way: float
     transmission: float
     link_ratio: float
+    carrier: Carrier = "coupler"
+    turning: Turning = "crank_rocker"
 
 
 def fourbars(shapes: Real) -> Fourbar:
     """The fourbars of shapes (m, ...)."""
     ones = np.ones(len(shapes))
     return Fourbar.from_lengths(ones, shapes[:, 0], shapes[:, 1], shapes[:, 2], shapes[:, 3] + 1j * shapes[:, 4])
+
+
+def points(shapes: Real, theta: Real, carrier: Carrier) -> Complex:
+    """Where P stands at crank angles (N,) or (m, N), shape (m, N)."""
+    linkage = fourbars(shapes)
+    if carrier == "coupler":
+        return coupler_points(linkage, theta, np.full(len(shapes), OPEN)).p
+    at_b = Fourbar.from_lengths(np.ones(len(shapes)), shapes[:, 0], shapes[:, 1], shapes[:, 2], shapes[:, 0] + 0j)
+    pivot = shapes[:, 2, None]
+    arm = (coupler_points(at_b, theta, np.full(len(shapes), OPEN)).p - pivot) / shapes[:, 1, None]
+    return np.asarray(pivot + arm * (shapes[:, 3] + 1j * shapes[:, 4])[:, None])
 
 
 def output(kind: Kind, sign: int, shapes: Real, p: Complex) -> tuple[Real, Real]:
@@ -117,8 +151,8 @@ def extremes(values: Real) -> tuple[Real, Real]:
 
 def crank_angles(shapes: Real, task: Task, nodes: Real) -> Real:
     """Crank angles of the dwells, (m, nodes · dwells), and after them those of the turn; ``nodes`` in [0, 1]."""
-    dwells = len(task.ends)
-    resting = [shapes[:, -dwells + k, None] + task.dwell * nodes for k in range(dwells)]
+    count = len(task.dwells)
+    resting = [shapes[:, -count + k, None] + dwell * nodes for k, dwell in enumerate(task.dwells)]
     turn = np.broadcast_to(np.linspace(0.0, 2.0 * np.pi, CYCLE, endpoint=False), (len(shapes), CYCLE))
     return np.concatenate([*resting, turn], axis=1)
 
@@ -126,20 +160,18 @@ def crank_angles(shapes: Real, task: Task, nodes: Real) -> Real:
 def judged(task: Task, nodes: Real, shapes: Real) -> Values:
     """What is minimised, the output's way during the dwells as a share of the whole, and what is kept."""
     theta = crank_angles(shapes, task, nodes)
-    linkage = fourbars(shapes)
-    p = coupler_points(linkage, theta, np.full(len(shapes), OPEN)).p
-    out, sine = output(task.kind, task.sign, shapes, p)
+    out, sine = output(task.kind, task.sign, shapes, points(shapes, theta, task.carrier))
     turn = out[:, -CYCLE:]
     low, high = extremes(turn)
     way = high - low
     count = len(nodes)
-    banded, at_end = [], []
+    banded, at_place = [], []
     with np.errstate(invalid="ignore", divide="ignore"):
-        for k, end in enumerate(task.ends):
+        for k, place in enumerate(task.places):
             resting = out[:, k * count : (k + 1) * count]
             level = resting.mean(axis=1)
             banded.append((resting - level[:, None]) / way[:, None])
-            at_end.append(AT_END - (high - level if end > 0 else level - low) / way)
+            at_place += _at_place(place, low, high, level, way)
         if math.isnan(task.way):
             # A slide has any stroke in a unit frame, but one that is small beside the linkage makes that large.
             swing = [way / shapes[:, 2] - LEAST_STROKE]
@@ -147,7 +179,7 @@ def judged(task: Task, nodes: Real, shapes: Real) -> Values:
             swing = [way / task.way - 1.0, 1.0 - way / task.way]
         positive = np.concatenate(
             [
-                np.stack([*at_end, *swing], axis=1),
+                np.stack([*at_place, *swing], axis=1),
                 sine[:, ::SPARSE] ** 2 - task.transmission**2,
                 _fourbar_kept(shapes, task),
             ],
@@ -156,11 +188,27 @@ def judged(task: Task, nodes: Real, shapes: Real) -> Values:
     return Values(np.concatenate(banded, axis=1), np.empty((len(shapes), 0)), positive)
 
 
+def _at_place(place: float, low: Real, high: Real, level: Real, way: Real) -> list[Real]:
+    """Room that a dwell's mean has about its place: from one side at an end of the way, from both between."""
+    if place in (0.0, 1.0):
+        return [AT_END - (high - level if place else level - low) / way]
+    off = (level - low) / way - place
+    return [AT_END - off, AT_END + off]
+
+
 def _fourbar_kept(shapes: Real, task: Task) -> Real:
     """Grashof's conditions, sin² of the transmission angle where it is least and greatest, and the link ratio."""
     b, c, d = shapes[:, 0], shapes[:, 1], shapes[:, 2]
     sines = [1.0 - ((b * b + c * c - (d + k) ** 2) / (2.0 * b * c)) ** 2 - task.transmission**2 for k in (-1.0, 1.0)]
     lengths = [b, c, d, *(shapes[:, k] for k in {"rocker": (5, 8), "slider": (5,), "slot": ()}[task.kind])]
+    if task.carrier == "rocker":
+        lengths.append(np.hypot(shapes[:, 3], shapes[:, 4]))
+    if task.turning == "double_crank":
+        shortest, lengths[2] = d, np.ones_like(d)
+        uneven = [task.link_ratio * shortest / length - 1.0 for length in lengths]
+        uneven += [length / shortest - 1.0 for length in lengths]
+        grashof = [(room - SPARE) / d for room in (b + c - d - 1.0, c + 1.0 - b - d, b + 1.0 - c - d)]
+        return np.stack([*sines, *grashof, *uneven], axis=1)
     uneven = [task.link_ratio / length - 1.0 for length in lengths] + [length - 1.0 for length in lengths]
     grashof = [b + c - d - 1.0 - SPARE, c + d - b - 1.0 - SPARE, b + d - c - 1.0 - SPARE]
     return np.stack([*sines, *grashof, *uneven], axis=1)

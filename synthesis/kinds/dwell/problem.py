@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from itertools import combinations
+from typing import Annotated, Any, Literal, NamedTuple, Self
 
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
@@ -24,6 +25,23 @@ DEFAULT_TOLERANCE = 0.01
 
 DEFAULT_CRANK = 10.0
 """Length of the crank, in length units, where nothing gives the linkage a size."""
+
+
+APART = 0.1
+"""Places of two dwells in the way that are nearer than this, as a share of it, are not told apart: see `END`."""
+
+END = 0.05
+"""How far a dwell's mean may be from its place in the way, as a share of it."""
+
+LOW, HIGH = 0.0, 1.0
+"""Places of a dwell at the ends of the way, as shares of it."""
+
+
+class Wanted(NamedTuple):
+    """A dwell that is asked for: rotation of the crank, degrees, and share of the way; None at one of its ends."""
+
+    angle: float
+    place: float | None
 
 
 class RockerOutput(Statement):
@@ -52,12 +70,30 @@ Output = Annotated[
 """The output of a dwell mechanism; the field ``type`` tells which, a rocker where it is left out."""
 
 
+class StatedDwell(Statement):
+    """A dwell of a stated length at a stated place."""
+
+    angle: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=360.0), Sizable] = Field(
+        description="Rotation of the crank during the dwell, degrees."
+    )
+    at: Literal["low", "high"] | Annotated[float, Field(strict=True, ge=0.0, le=1.0), Sizable] = Field(
+        description="Where it lies in the way: at its least output, at its greatest, or at a share of the way."
+    )
+
+    @property
+    def place(self) -> float:
+        """Share of the way."""
+        return {"low": LOW, "high": HIGH}[self.at] if isinstance(self.at, str) else self.at
+
+
 class DwellProblem(LinkageProblem):
-    """Dwell: a sixbar whose output swings or slides by a stated way and rests at one end of it, or at both.
+    """Dwell: a sixbar whose output swings or slides by a stated way and rests in it, at its ends or between them.
 
     A fourbar's coupler point goes along a circular arc, and a link of the arc's radius leaves the output at rest
-    (`pseudo_arc`); or it goes along a straight line in a slot of the output (`straight_slot`). For two dwells there are
-    two arcs of one radius, or two lines. Swing, dwells and accelerations are measured over the whole turn.
+    (`pseudo_arc`); or it goes along a straight line in a slot of the output (`straight_slot`); or the fourbar's rocker
+    drives another one that rests near its dead points (`watt_2`). `dwell_angle` and `count` ask for one dwell or two
+    of one length at the ends of the way, `dwells` for each by its length and place. Swing, dwells and accelerations are
+    measured over the whole turn.
     """
 
     model_config = ConfigDict(
@@ -81,18 +117,30 @@ class DwellProblem(LinkageProblem):
                     "tolerance": 2.0,
                     "max_designs": 2,
                 },
+                {
+                    "kind": "dwell",
+                    "dwells": [{"angle": 70.0, "at": "low"}, {"angle": 40.0, "at": "high"}],
+                    "output": {"type": "rocker", "swing": 50.0},
+                    "mechanism": "straight_slot",
+                    "tolerance": 1.0,
+                    "max_designs": 2,
+                },
             ]
         },
     )
 
     kind: Literal["dwell"]
-    dwell_angle: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=360.0), Sizable] = Field(
-        description="Rotation of the crank during a dwell, degrees; of each of two."
+    dwell_angle: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=360.0), Sizable] | None = Field(
+        default=None, description="Rotation of the crank during a dwell, degrees; of each of two. Or state `dwells`."
+    )
+    dwells: Annotated[list[StatedDwell], Field(min_length=1, max_length=3)] | None = Field(
+        default=None, description="Each dwell by its length and its place in the way, instead of `dwell_angle`."
     )
     output: Output = Field(description="What the output is, and how far it goes.")
-    count: Annotated[Count, Field(ge=1, le=2)] = Field(default=1, description="Dwells in a turn of the crank.")
-    mechanism: Literal["auto", "pseudo_arc", "straight_slot"] = Field(
-        default="auto", description="How the output is kept at rest; `auto` compares both for a rocker."
+    count: Annotated[Count, Field(ge=1, le=2)] = Field(default=1, description="Dwells of `dwell_angle` in a turn.")
+    mechanism: Literal["auto", "pseudo_arc", "straight_slot", "watt_2"] = Field(
+        default="auto",
+        description="How the output is kept at rest. `auto` compares arc and slot for a rocker; with `dwells`, all.",
     )
     tolerance: Annotated[PositiveNumber, OUTPUT] | None = Field(
         default=None,
@@ -124,18 +172,44 @@ class DwellProblem(LinkageProblem):
         return self.output.type == "slider"
 
     @property
-    def types(self) -> tuple[Literal["pseudo_arc", "straight_slot"], ...]:
+    def wanted(self) -> tuple[Wanted, ...]:
+        """The dwells that are asked for; of several without a place one lies at each end."""
+        if self.dwells is not None:
+            return tuple(Wanted(dwell.angle, dwell.place) for dwell in self.dwells)
+        return self.count * (Wanted(self.dwell_angle or 0.0, None),)
+
+    @property
+    def placed(self) -> bool:
+        """Whether outputs are looked for by where the dwells lie, and how long each is."""
+        return self.dwells is not None or self.mechanism == "watt_2"
+
+    @property
+    def types(self) -> tuple[Literal["pseudo_arc", "straight_slot", "watt_2"], ...]:
         """The types that are to be tried."""
         if self.mechanism != "auto":
             return (self.mechanism,)
-        return ("pseudo_arc", "straight_slot") if self.output.type == "rocker" else ("pseudo_arc",)
+        slot = ("straight_slot",) if self.output.type == "rocker" else ()
+        return ("pseudo_arc", *slot, *(("watt_2",) if self.placed else ()))
+
+    @property
+    def turning(self) -> tuple[Literal["crank_rocker", "double_crank"], ...]:
+        """What the fourbar that the crank turns through in may be."""
+        if not self.placed:
+            return ("crank_rocker",)
+        demanded = self.constraints.grashof
+        return tuple(one for one in ("crank_rocker", "double_crank") if demanded in ("any", one))
+
+    def shortened(self, share: float) -> Self:
+        """The same with dwells that are shorter, by a share of each."""
+        if self.dwells is None:
+            return self.model_copy(update={"dwell_angle": share * self.wanted[0].angle})
+        return self.model_copy(
+            update={"dwells": [dwell.model_copy(update={"angle": share * dwell.angle}) for dwell in self.dwells]}
+        )
 
     def contradictions(self) -> list[Contradiction]:
         """Demands that exclude one another."""
-        found = list(self.contradicting_demands())
-        if self.count * self.dwell_angle >= 360.0:
-            detail = f"{self.count} dwells of {self.dwell_angle:g}° leave nothing of a turn to move in"
-            found.append(Contradiction("/dwell_angle", detail))
+        found = [*self.contradicting_demands(), *self._contradicting_dwells()]
         if self.output.type == "slider" and self.mechanism == "straight_slot":
             found.append(Contradiction("/mechanism", "a slotted output swings; take pseudo_arc or a rocker"))
         if self.output.type == "slider" and self.crank is not None:
@@ -148,4 +222,37 @@ class DwellProblem(LinkageProblem):
         if self.tolerance is not None and self.tolerance >= self.way:
             found.append(Contradiction("/tolerance", "as far as the output goes; nothing would have to rest"))
         reason = "the crank turns through: only crank-rockers are searched"
-        return [*found, *self.constraints.of_another_class(("crank_rocker",), reason)]
+        if self.placed:
+            reason = "the crank turns through: only crank-rockers and double cranks are searched"
+        classes = ("crank_rocker", "double_crank") if self.placed else ("crank_rocker",)
+        return [*found, *self.constraints.of_another_class(classes, reason)]
+
+    def _contradicting_dwells(self) -> list[Contradiction]:
+        """Dwells of which nothing can have all."""
+        if self.dwells is None:
+            if self.dwell_angle is None:
+                return [Contradiction("/dwell_angle", "say how long the output rests: dwell_angle, or dwells")]
+            if self.count * self.dwell_angle < 360.0:
+                return []
+            detail = f"{self.count} dwells of {self.dwell_angle:g}° leave nothing of a turn to move in"
+            return [Contradiction("/dwell_angle", detail)]
+        found = [
+            Contradiction(f"/{name}", "dwells says how many there are and how long each is; leave this out")
+            for name in ("dwell_angle", "count")
+            if name in self.model_fields_set and getattr(self, name) is not None
+        ]
+        total = sum(dwell.angle for dwell in self.dwells)
+        if total >= 360.0:
+            found.append(Contradiction("/dwells", f"dwells of {total:g}° in all leave nothing of a turn to move in"))
+        for (n, one), (k, other) in combinations(enumerate(self.dwells), 2):
+            apart = abs(one.place - other.place)
+            if apart < APART:
+                detail = f"less than a tenth of the way from dwell {n + 1}: they are not told apart"
+                found.append(
+                    Contradiction(f"/dwells/{k}/at", "the same place as dwell " + f"{n + 1}" if not apart else detail)
+                )
+            elif apart * self.way <= self.allowed:
+                found.append(
+                    Contradiction(f"/dwells/{k}/at", f"within the tolerance of dwell {n + 1}; they are one dwell")
+                )
+        return found

@@ -8,7 +8,7 @@ where that is least is looked for more and more closely.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from copy import copy
 from functools import partial
 from typing import NamedTuple
@@ -19,6 +19,7 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 from scipy.optimize import brentq
 
+from synthesis.kinds.dwell.problem import END, Wanted
 from synthesis.proof.closer import REFINEMENTS, SAMPLES, least_near
 
 Real = NDArray[np.float64]
@@ -51,7 +52,8 @@ PANELS, NODES = 8, 12
 class Resting(NamedTuple):
     """A rest: where it begins (radians), middle and size of what the output moves, width (radians), and where it lies.
 
-    ``off_end`` is the distance of the output's mean from the nearer end of its way, as a share of the way.
+    ``off_end`` is the distance of the output's mean from the nearer end of its way, ``share`` its place in the way from
+    the least output, both as shares of the way.
     """
 
     begin: float
@@ -59,6 +61,7 @@ class Resting(NamedTuple):
     jitter: float
     width: float
     off_end: float
+    share: float
 
 
 class Turn:
@@ -155,22 +158,62 @@ def rests(turn: Turn, wide: float, count: int, allowed: float, way: tuple[float,
     list of Resting
         Empty where the output has no rest near one of two ends.
     """
-    window = math.ceil(wide / turn.step - WHOLE_STEP) + 1
-    jitter, mean = _ranges(turn.values, window), _means(turn.values, window)
-    low, high = way
-    middle = 0.5 * (low + high)
-    found = []
-    for near in (mean > middle, mean <= middle):
-        if near.any():
-            begin = _least(turn, np.where(near, jitter, np.inf), wide)
-            least, most = (float(end[0]) for end in turn.ends(np.array([begin]), wide))
-            at = turn.mean(begin, wide)
-            off = min(high - at, at - low) / (high - low)
-            width = _width(turn, begin + 0.5 * wide, allowed)
-            found.append(Resting(begin, 0.5 * (least + most), most - least, width, off))
+    jitter, mean = _windows(turn, wide)
+    middle = 0.5 * (way[0] + way[1])
+    found = [
+        _rest(turn, np.where(near, jitter, np.inf), wide, allowed, way)
+        for near in (mean > middle, mean <= middle)
+        if near.any()
+    ]
     if count == 1:
         return [min(found, key=lambda rest: rest.jitter)]
     return sorted(found, key=lambda rest: rest.begin) if len(found) == 2 else []
+
+
+def placed_rests(turn: Turn, wanted: Sequence[Wanted], allowed: float, way: tuple[float, float]) -> list[Resting]:
+    """The rests of a turn that lie nearest to stated places of the way, in the order in which these are stated.
+
+    Parameters
+    ----------
+    turn : Turn
+    wanted : sequence of Wanted
+        The crank's rotation in each rest, degrees, and its place.
+    allowed, way
+        As for :func:`rests`.
+
+    Returns
+    -------
+    list of Resting
+        Of each the one that moves least of those with a mean within ``END`` of its place; where there is none, at the
+        place that comes nearest.
+    """
+    low, high = way
+    found = []
+    for angle, place in wanted:
+        wide = math.radians(angle)
+        jitter, mean = _windows(turn, wide)
+        share = (mean - low) / (high - low)
+        off = np.minimum(share, 1.0 - share) if place is None else np.abs(share - place)
+        near = off <= max(END, float(off.min()))
+        found.append(_rest(turn, np.where(near, jitter, np.inf), wide, allowed, way))
+    return found
+
+
+def _windows(turn: Turn, wide: float) -> tuple[Real, Real]:
+    """What the output moves from each place of the grid on, and its mean there."""
+    window = math.ceil(wide / turn.step - WHOLE_STEP) + 1
+    return _ranges(turn.values, window), _means(turn.values, window)
+
+
+def _rest(turn: Turn, jitter: Real, wide: float, allowed: float, way: tuple[float, float]) -> Resting:
+    """The rest that moves least, from what is moved by the grid."""
+    low, high = way
+    begin = _least(turn, jitter, wide)
+    least, most = (float(end[0]) for end in turn.ends(np.array([begin]), wide))
+    at = turn.mean(begin, wide)
+    off = min(high - at, at - low) / (high - low)
+    width = _width(turn, begin + 0.5 * wide, allowed)
+    return Resting(begin, 0.5 * (least + most), most - least, width, off, (at - low) / (high - low))
 
 
 def _least(turn: Turn, jitter: Real, wide: float) -> float:

@@ -2,31 +2,26 @@
 
 from __future__ import annotations
 
-import cmath
 import math
+from collections.abc import Iterable
 from functools import partial
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.linkage.fourbar import OPEN, coupler_points, positions
 from synthesis.kinds.dwell.candidates import Start, starts
-from synthesis.kinds.dwell.design import DwellDesign, DwellMechanism, DwellResult
-from synthesis.kinds.dwell.outputs import RESTING, Kind, Task, extremes, fourbars, judged, output
-from synthesis.kinds.dwell.problem import DEFAULT_CRANK, DwellProblem
-from synthesis.kinds.dwell.verification import GRID, verify_dwell
+from synthesis.kinds.dwell.design import DwellDesign, DwellResult
+from synthesis.kinds.dwell.outputs import RESTING, Carrier, Kind, Task, Turning, judged
+from synthesis.kinds.dwell.placed_starts import placed_starts
+from synthesis.kinds.dwell.problem import HIGH, LOW, DwellProblem
+from synthesis.kinds.dwell.shaped import Sixbar, mechanism_of, with_way
+from synthesis.kinds.dwell.verification import verify_dwell
 from synthesis.model.kind import Progress
-from synthesis.model.linkage_answer import CouplerPoint, Slide
-from synthesis.model.linkages import skeleton, slide, to_point
 from synthesis.numerics.narrowing import narrowest
 from synthesis.outcome.placement import put
 from synthesis.outcome.ranking import ranked
-from synthesis.outcome.sifting import Sifting, reported
+from synthesis.outcome.sifting import OUTRANKED, Sifting, reported
 from synthesis.proof.measures import link_lengths
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 LINK_RATIO = 8.0
 """Longest link over shortest, at most, where the client says nothing; links of practice stay below about that."""
@@ -43,50 +38,69 @@ MARGIN = 1.0
 STARTS, ENOUGH = 8, 5
 """Starts that are refined for each type at most, and sound designs after which no more are."""
 
+PLACED_STARTS, STILL_ENOUGH = 48, 8
+"""The same of dwells with places of their own, of which fewer starts lead to sound designs: the stillest are driven."""
+
+AGAIN, LARGER_ANGLES = 2, (35.0, 45.0)
+"""Refined shapes that are refined once more, and the transmission angles with which, degrees."""
+
+HOPELESS, HOPELESS_DRIVEN = 1.1, 2
+"""Movement over the tolerance beyond which a refined shape is not driven, but for some that may come nearest."""
+
 FARTHEST = 4.0
 """Coordinates of P, pivots and slides, in units of the greatest link ratio, at most."""
 
 SLACK = 1e-4
 """Violation of a constraint with which a shape still counts as one; verification decides."""
 
-WAY_STEPS = 30
-"""Secant steps to the demanded way at most; five are usual."""
-
-WAY_TOLERANCE, MAX_WAY_ERROR = 1e-11, 1e-8
-"""Relative errors of the way at which the secant method has converged, and with which its last step is still used."""
-
 KINDS: dict[tuple[str, str], Kind] = {
     ("pseudo_arc", "rocker"): "rocker",
     ("pseudo_arc", "slider"): "slider",
     ("straight_slot", "rocker"): "slot",
+    ("watt_2", "rocker"): "rocker",
+    ("watt_2", "slider"): "slider",
 }
 """The output of each type."""
 
 
-class _Sixbar(NamedTuple):
-    """A shape in its own frame, with a crank of 1."""
+class _Search(NamedTuple):
+    """What is looked for together: a type of mechanism, its output, and what its fourbar is."""
 
+    name: str
     kind: Kind
-    sign: int
-    shape: Real
+    carrier: Carrier
+    turning: Turning
+
+
+class _Refined(NamedTuple):
+    """A shape, where it was begun, and what its output moves during a dwell, as a share of the way."""
+
+    sixbar: Sixbar
+    start: Start
+    moved: float
 
 
 def solve_dwell(problem: DwellProblem, progress: Progress) -> DwellResult:
     """Solve a problem of dwells."""
     rng = np.random.default_rng(problem.seed)
     sifting = Sifting[DwellDesign](problem, undriven="crank_does_not_turn")
-    types = problem.types
-    for n, name in enumerate(types):
-        kind = KINDS[name, problem.output.type]
-        progress(n / len(types), f"driving outputs on coupler curves ({name.replace('_', ' ')})")
-        way = math.nan if kind == "slider" else math.radians(problem.way)
-        begun = starts(kind, problem.count, math.radians(problem.dwell_angle), way, _transmission(problem), rng, STARTS)
-        span = (n + 1.0 / (len(begun) + 1)) / len(types), (n + 1.0) / len(types)
-        sifting.sift(
-            reported(begun, progress, span, "refining {next} of at most {all}"),
-            partial(_driven, problem, kind),
-            enough=len(sifting.passed) + ENOUGH,
-        )
+    searches = _searches(problem)
+    for n, search in enumerate(searches):
+        progress(n / len(searches), f"driving outputs on coupler curves ({search.name.replace('_', ' ')})")
+        begun = _starts(problem, search, rng)
+        span = (n + 1.0 / (len(begun) + 1)) / len(searches), (n + 1.0) / len(searches)
+        told = reported(begun, progress, span, "refining {next} of at most {all}")
+        enough = len(sifting.passed) + ENOUGH
+        if problem.placed:
+            refined, tried = _enough_refined(problem, search.kind, told)
+            again = _at_larger_angles(problem, search.kind, refined)
+            refined, tried = [*refined, *again], tried + len(again)
+            stillest = _worth_driving(problem, refined)
+            driven = sifting.sift(stillest, partial(_verified, problem), enough)
+            sifting.reject("not_at_rest", tried - len(stillest))
+            sifting.reject(OUTRANKED, len(stillest) - driven)
+        else:
+            sifting.sift(told, partial(_driven, problem, search.kind), enough)
     progress(1.0, "verified")
     return DwellResult(
         designs=sifting.designs(partial(_ranked, problem)),
@@ -97,9 +111,32 @@ def solve_dwell(problem: DwellProblem, progress: Progress) -> DwellResult:
     )
 
 
+def _searches(problem: DwellProblem) -> list[_Search]:
+    return [
+        _Search(name, KINDS[name, problem.output.type], "rocker" if name == "watt_2" else "coupler", turning)
+        for name in problem.types
+        for turning in problem.turning
+        if turning == "crank_rocker" or name != "straight_slot"  # P comes too near to a slotted link's pivot
+    ]
+
+
+def _starts(problem: DwellProblem, search: _Search, rng: np.random.Generator) -> list[Start]:
+    """The most promising shapes of a search."""
+    way = math.nan if problem.slides else math.radians(problem.way)
+    dwells = tuple(math.radians(wanted.angle) for wanted in problem.wanted)
+    if not problem.placed:
+        return starts(search.kind, len(dwells), dwells[0], way, _transmission(problem), rng, STARTS)
+    places = tuple(math.nan if wanted.place is None else wanted.place for wanted in problem.wanted)
+    if problem.dwells is None and len(dwells) == 2:
+        places = LOW, HIGH
+    kind, carrier, turning = search[1:]
+    return placed_starts(kind, carrier, turning, dwells, places, way, _transmission(problem), rng, PLACED_STARTS)
+
+
 def warm_up() -> None:
     """Load the kernels: those of arcs and pairs by a rocker with two dwells, those of lines by a slot with one."""
     rng = np.random.default_rng(0)
+    placed_starts("slider", "rocker", "crank_rocker", (0.5,), (LOW,), math.nan, 0.3, rng, 1)
     starts("rocker", 2, 0.5, 0.7, 0.3, rng, 1)
     starts("slot", 1, 0.5, 0.7, 0.3, rng, 1)
 
@@ -115,139 +152,80 @@ def _ranked(problem: DwellProblem, designs: list[DwellDesign]) -> list[DwellDesi
 
 def _driven(problem: DwellProblem, kind: Kind, start: Start) -> DwellDesign | str | None:
     """The verified design that a start leads to."""
-    sixbar = _refined(problem, kind, start)
-    if sixbar is None:
-        return "not_at_rest"
-    mechanism = _mechanism(problem, sixbar)
+    refined = _refined(problem, kind, start)
+    return "not_at_rest" if refined is None else _verified(problem, refined)
+
+
+def _enough_refined(problem: DwellProblem, kind: Kind, begun: Iterable[Start]) -> tuple[list[_Refined], int]:
+    """Refined shapes, until enough of them keep within the tolerance; and how many starts that took."""
+    found: list[_Refined] = []
+    tried = still = 0
+    for start in begun:
+        refined = _refined(problem, kind, start)
+        tried += 1
+        if refined is not None:
+            found.append(refined)
+            still += refined.moved <= problem.allowed / problem.way
+        if still == STILL_ENOUGH:
+            break
+    return found, tried
+
+
+def _at_larger_angles(problem: DwellProblem, kind: Kind, refined: list[_Refined]) -> list[_Refined]:
+    """The stillest of refined shapes once more, with larger transmission angles: the front tells what these cost."""
+    best = sorted(refined, key=lambda one: one.moved)[:AGAIN]
+    stated = _transmission(problem)
+    larger = [angle for angle in map(math.radians, LARGER_ANGLES) if angle > stated]
+    again = [
+        _refined(problem, kind, one.start._replace(shape=one.sixbar.shape), angle) for angle in larger for one in best
+    ]
+    return [one for one in again if one is not None and one.moved <= problem.allowed / problem.way]
+
+
+def _worth_driving(problem: DwellProblem, refined: list[_Refined]) -> list[_Refined]:
+    """Refined shapes, the stillest first; of those that do not keep within the tolerance only the best."""
+    ordered = sorted(refined, key=lambda one: one.moved)
+    hopeful = sum(one.moved <= HOPELESS * problem.allowed / problem.way for one in ordered)
+    return ordered[: hopeful + HOPELESS_DRIVEN]
+
+
+def _verified(problem: DwellProblem, refined: _Refined) -> DwellDesign | str | None:
+    """The design of a shape, with exactly the demanded way."""
+    sixbar = refined.sixbar
+    if sixbar.kind != "slider":
+        shaped = with_way(sixbar, math.radians(problem.way))
+        if shaped is None:
+            return "not_at_rest"
+        sixbar = shaped
+    mechanism = mechanism_of(problem, sixbar)
     if problem.pivot is None:
         sized = not problem.slides and problem.crank is None
         mechanism = put(problem.constraints, mechanism, link_lengths(mechanism), sized=sized, turned=True)
     return verify_dwell(problem, mechanism)
 
 
-def _refined(problem: DwellProblem, kind: Kind, start: Start) -> _Sixbar | None:
-    """The shape near a start whose output moves least during the dwells, with exactly the demanded way."""
+def _refined(problem: DwellProblem, kind: Kind, start: Start, transmission: float | None = None) -> _Refined | None:
+    """The shape near a start whose output moves least during the dwells, with nearly the demanded way."""
     constraints = problem.constraints
     ratio = LINK_RATIO if constraints.max_link_ratio is None else constraints.max_link_ratio
     way = math.nan if kind == "slider" else math.radians(problem.way)
-    dwell = math.radians(problem.dwell_angle)
-    task = Task(kind, start.sign, dwell, start.ends, way, math.sin(_transmission(problem)), ratio)
+    dwells = tuple(math.radians(wanted.angle) for wanted in problem.wanted)
+    sine = math.sin(_transmission(problem) if transmission is None else transmission)
+    task = Task(kind, start.sign, dwells, start.places, way, sine, ratio, start.carrier, start.turning)
     nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(RESTING) / (RESTING - 1))
     high = np.full(len(start.shape), FARTHEST * ratio)
     low = -high
     low[:3], high[:3] = 1.0, ratio
+    if start.turning == "double_crank":
+        low[:3], high[2] = 1.0 / ratio, 1.0
     if kind != "slot":
-        low[5], high[5] = 1.0, ratio
+        low[5], high[5] = low[2], ratio
     if kind == "rocker":
-        low[8], high[8] = 1.0, ratio
+        low[8], high[8] = low[2], ratio
     best = narrowest(partial(judged, task, nodes), start.shape, low, high, arrived=ARRIVED)
     if best is None or best.violation > SLACK:
         return None
-    found = _Sixbar(kind, start.sign, best.shape)
-    return found if kind == "slider" else _with_way(found, way)
-
-
-def _way(sixbar: _Sixbar) -> float:
-    """Swing (radians) or stroke over the turn."""
-    turn = np.linspace(0.0, 2.0 * np.pi, GRID, endpoint=False)
-    p = coupler_points(fourbars(sixbar.shape[None]), turn[None], np.array([OPEN])).p
-    low, high = extremes(output(sixbar.kind, sixbar.sign, sixbar.shape[None], p)[0])
-    return float(high[0] - low[0])
-
-
-def _with_way(sixbar: _Sixbar, way: float) -> _Sixbar | None:
-    """The output's pivot moved along the line from the pin at rest (or along the slot) until the way is met."""
-    before, factor = (0.0, 0.0), 1.0
-    made = sixbar
-    for _ in range(WAY_STEPS):
-        off = _way(made) / way - 1.0
-        if not math.isfinite(off):
-            return None
-        if abs(off) < WAY_TOLERANCE:
-            return made
-        slope = (off - before[1]) / (factor - before[0]) if before[0] else -1.0
-        if slope == 0.0:
-            return None
-        before, factor = (factor, off), factor - off / slope
-        made = _moved(sixbar, factor)
-    return made if abs(off) < MAX_WAY_ERROR else None
-
-
-def _moved(sixbar: _Sixbar, factor: float) -> _Sixbar:
-    """The output's pivot ``factor`` times as far from where the pin, or P, stands when the first dwell begins."""
-    shape = sixbar.shape.copy()
-    at = slice(5, 7) if sixbar.kind == "slot" else slice(6, 8)
-    pivot = complex(*shape[at])
-    joints = _joints(sixbar)
-    rest = joints["P"] if sixbar.kind == "slot" else joints["D"]
-    moved = rest + factor * (pivot - rest)
-    shape[at] = moved.real, moved.imag
-    if sixbar.kind == "rocker":
-        shape[8] *= factor
-    return sixbar._replace(shape=shape)
-
-
-def _joints(sixbar: _Sixbar) -> dict[str, complex]:
-    """Joints where the first dwell begins, in the shape's own frame."""
-    shape = sixbar.shape[None]
-    begin = sixbar.shape[{"rocker": 9, "slider": 8, "slot": 7}[sixbar.kind]]
-    at = positions(fourbars(shape), np.array([[begin]]), np.array([OPEN]))
-    joints = {"O2": 0j, "O4": complex(sixbar.shape[2]), "A": at.a[0, 0], "B": at.b[0, 0], "P": at.p[0, 0]}
-    p = joints["P"]
-    if sixbar.kind == "slider":
-        _, _, _, _, _, link, offset, angle = sixbar.shape[:8]
-        along = cmath.exp(1j * angle)
-        local = p * along.conjugate()
-        place = local.real + sixbar.sign * math.sqrt(link**2 - (local.imag - offset) ** 2)
-        joints["D"] = along * complex(place, offset)
-    elif sixbar.kind == "rocker":
-        link, rocker = sixbar.shape[5], sixbar.shape[8]
-        joints["O6"] = complex(*sixbar.shape[6:8])
-        arm = p - joints["O6"]
-        cosine = (rocker**2 + abs(arm) ** 2 - link**2) / (2.0 * rocker * abs(arm))
-        lean = complex(cosine, sixbar.sign * math.sqrt(max(1.0 - cosine**2, 0.0)))
-        joints["D"] = joints["O6"] + rocker * arm / abs(arm) * lean
-    else:
-        joints["O6"] = complex(*sixbar.shape[5:7])
-        turn = np.linspace(0.0, 2.0 * np.pi, GRID, endpoint=False)
-        reach = np.abs(coupler_points(fourbars(shape), turn[None], np.array([OPEN])).p - joints["O6"]).max()
-        joints["C"] = joints["O6"] + (p - joints["O6"]) / abs(p - joints["O6"]) * float(reach)
-    return {name: complex(z) for name, z in joints.items()}
-
-
-def _mechanism(problem: DwellProblem, sixbar: _Sixbar) -> DwellMechanism:
-    """The sixbar in the client's units, with the crank's pivot where it is wanted."""
-    if sixbar.kind == "slider":
-        scale = problem.way / _way(sixbar)
-    else:
-        scale = DEFAULT_CRANK if problem.crank is None else problem.crank
-    own = _joints(sixbar)
-    pivot = complex(*(problem.pivot or (0.0, 0.0)))
-    joints = {name: pivot + scale * z for name, z in own.items()}
-    links = [("ground", ["O2", "O4"]), ("input", ["O2", "A"]), ("coupler", ["A", "B", "P"]), ("rocker", ["O4", "B"])]
-    slides: list[Slide] = []
-    kind: Literal["dwell_rocker", "dwell_slider", "dwell_slot"] = "dwell_rocker"
-    if sixbar.kind == "slider":
-        kind = "dwell_slider"
-        links.append(("link_5", ["P", "D"]))
-        slides.append(slide("D", "ground", joints["D"], float(sixbar.shape[7])))
-    else:
-        links[0][1].append("O6")
-        if sixbar.kind == "rocker":
-            links += [("link_5", ["P", "D"]), ("output", ["O6", "D"])]
-        else:
-            kind = "dwell_slot"
-            links.append(("output", ["O6", "C"]))
-            slides.append(slide("P", "output", joints["O6"], cmath.phase(joints["P"] - joints["O6"])))
-    point = (own["P"] - own["A"]) / ((own["B"] - own["A"]) / abs(own["B"] - own["A"]))
-    return DwellMechanism(
-        type=kind,
-        fixed_pivots={name: to_point(joints[name]) for name in links[0][1]},
-        links={name: abs(joints[listed[1]] - joints[listed[0]]) for name, listed in links},
-        coupler_point=CouplerPoint(distance=scale * abs(point), angle=math.degrees(cmath.phase(point))),
-        reference_input_angle=math.degrees(cmath.phase(own["A"])),
-        skeleton=skeleton(joints, dict(links), slides=slides),
-    )
+    return _Refined(Sixbar(kind, start.sign, best.shape, start.carrier, len(dwells)), start, 2.0 * best.half_width)
 
 
 def _summary(problem: DwellProblem, sifting: Sifting[DwellDesign]) -> str:

@@ -1,22 +1,23 @@
 """Verification of a dwell sixbar: the crank is driven through a whole turn, and the output's rests are looked for.
 
 A dwell is where the output moves least while the crank turns by the demanded angle; of two, one is looked for near each
-end of the output's way. Nothing is known of where they should be.
+end of the output's way, and those with stated places near these. Nothing is known of when they should come.
 """
 
 from __future__ import annotations
 
 import math
 from functools import partial
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import Mechanism
-from synthesis.kinds.dwell.design import DwellDesign, DwellMechanism, DwellMetrics, Rest
-from synthesis.kinds.dwell.problem import DwellProblem
-from synthesis.kinds.dwell.rests import Turn, rests
+from synthesis.kinds.dwell.design import DwellDesign, DwellMechanism, DwellMetrics, PlacedDwell, Rest
+from synthesis.kinds.dwell.problem import END, DwellProblem
+from synthesis.kinds.dwell.rests import Resting, Turn, placed_rests, rests
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import OUTPUT
 from synthesis.proof.checks import at_most, tolerated
@@ -39,8 +40,8 @@ CLOSED = 1e-9
 NO_TOGGLE = 1e-6
 """The least sine of a transmission angle at which the mechanism still moves one way."""
 
-END = 0.05
-"""How far a dwell's mean may be from the end of the way, as a share of it."""
+SLIDERS = "dwell_slider", "dwell_watt_slider"
+"""Types whose output slides."""
 
 
 def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign | None:
@@ -67,7 +68,7 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
         return None
     places = np.concatenate([jet[0] for jet in motion.joints.values()])
     size = diagonal(places)
-    slides = design.type == "dwell_slider"
+    slides = design.type in SLIDERS
 
     def output(motion: MechanismMotion) -> Real:
         return np.asarray(motion.slides["D"][0] if slides else np.degrees(motion.angles["output"][0]))
@@ -84,11 +85,11 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
         return output(drive(mechanism, angles, order=0))
 
     turn = Turn(at, inputs, values, math.inf if slides else 360.0)
-    found = rests(turn, math.radians(problem.dwell_angle), problem.count, problem.allowed, (low, high))
+    found = _rests(problem, turn, (low, high))
     if not found:
         return None
     rates = [_peak(mechanism, inputs, motion, order, slides=slides) for order in (1, 2)]
-    lengths = _lengths(mechanism)
+    lengths = _lengths(mechanism, watt=design.type.startswith("dwell_watt"))
     measures = measured(
         lengths,
         reach_of(mechanism),
@@ -119,31 +120,62 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
         )
         for k, rest in enumerate(found)
     ]
-    checks = _checks(problem, mechanism, measures, metrics.way, targets)
+    checks = _checks(problem, mechanism, measures, metrics.way, targets, found)
     return DwellDesign(
         mechanism=design,
         targets=targets,
+        dwells=_placed(problem, found),
         verification=Verification.of(checks),
         metrics=metrics,
     )
 
 
+def _rests(problem: DwellProblem, turn: Turn, way: tuple[float, float]) -> list[Resting]:
+    if problem.dwells is None:
+        return rests(turn, math.radians(problem.wanted[0].angle), problem.count, problem.allowed, way)
+    return placed_rests(turn, problem.wanted, problem.allowed, way)
+
+
+def _placed(problem: DwellProblem, found: list[Resting]) -> list[PlacedDwell] | None:
+    if problem.dwells is None:
+        return None
+    pairs = zip(problem.wanted, found, strict=True)
+    return [PlacedDwell(angle=wanted.angle, at=rest.share, error=rest.jitter) for wanted, rest in pairs]
+
+
 def _checks(
-    problem: DwellProblem, mechanism: Mechanism, measures: Measures, way: float, targets: list[Rest]
+    problem: DwellProblem,
+    mechanism: Mechanism,
+    measures: Measures,
+    way: float,
+    targets: list[Rest],
+    found: list[Resting],
 ) -> list[Check]:
     off = abs(way - problem.way) / problem.way
     checks = [
         Check(name="crank_turns", passed=measures.full_rotation),
         tolerated("way", off, WAY_MET),
     ]
-    for rest in targets:
+    for rest, wanted, resting in zip(targets, problem.wanted, found, strict=True):
         checks.append(at_most(f"dwell_{rest.index + 1}", rest.jitter, problem.allowed, OUTPUT))
-        checks.append(at_most(f"dwell_{rest.index + 1}_at_end", rest.off_end, END))
-    if len(targets) == 2:
-        apart = math.remainder(targets[1].input_angle - targets[0].input_angle, 360.0)
-        checks.append(Check(name="dwells_apart", passed=abs(apart) >= problem.dwell_angle * (1.0 - WAY_MET)))
+        if wanted.place is None:
+            checks.append(at_most(f"dwell_{rest.index + 1}_at_end", rest.off_end, END))
+        else:
+            checks.append(at_most(f"dwell_{rest.index + 1}_at_place", abs(resting.share - wanted.place), END))
+    if len(found) > 1:
+        checks.append(Check(name="dwells_apart", passed=_apart(problem, found)))
     pivots = fixed_pivots(mechanism), moving_pivots(mechanism)
     return [*checks, *constraint_checks(problem.constraints, measures, *pivots)]
+
+
+def _apart(problem: DwellProblem, found: list[Resting]) -> bool:
+    """Whether no rest begins before another that came before it has ended."""
+    timed = [(rest.begin, math.radians(wanted.angle)) for rest, wanted in zip(found, problem.wanted, strict=True)]
+    for pair in combinations(timed, 2):
+        for (begin, wide), (other, _) in (pair, pair[::-1]):
+            if (other - begin) % math.tau < wide * (1.0 - WAY_MET):
+                return False
+    return True
 
 
 def _peak(mechanism: Mechanism, inputs: Real, motion: MechanismMotion, order: int, *, slides: bool) -> float:
@@ -156,8 +188,10 @@ def _peak(mechanism: Mechanism, inputs: Real, motion: MechanismMotion, order: in
     return -least_near(lambda closer: -magnitude(drive(mechanism, closer, order=order)), inputs, known)[1]
 
 
-def _lengths(mechanism: Mechanism) -> list[float]:
-    """Lengths of ground (O2–O4), input, coupler, rocker, and of link 5 and the output."""
+def _lengths(mechanism: Mechanism, *, watt: bool) -> list[float]:
+    """Lengths of ground (O2–O4), input, coupler, rocker, and of link 5, the output and the rocker's arm to P."""
     place = {name: complex(z) for name, z in mechanism.joints.items()}
     pairs = [("O2", "O4"), ("O2", "A"), ("A", "B"), ("O4", "B"), ("P", "D"), ("O6", "D"), ("O6", "C")]
+    if watt:
+        pairs.append(("O4", "P"))
     return [abs(place[first] - place[second]) for first, second in pairs if first in place and second in place]

@@ -329,6 +329,7 @@ DWELL: dict[str, Any] = {
     "max_designs": 1,
 }
 SLIDER = {"output": {"type": "slider", "stroke": 60.0}}
+PLACED = {"dwell_angle": None, "dwells": [{"angle": 60.0, "at": "low"}], "output": {"type": "slider", "stroke": 60.0}}
 DWELL_ROWS: dict[str, Any] = {
     **UNITS,
     **DEMANDS,
@@ -342,6 +343,9 @@ DWELL_ROWS: dict[str, Any] = {
     "include_failed": Row(True, {**SLIDER, "constraints.link_length": {"max": 20.0}}),
     "rank_by": "size",
     "dwell_angle": 50.0,
+    "dwells": Row([{"angle": 60.0, "at": 0.5}], PLACED),
+    "dwells[].angle": Row(50.0, PLACED),
+    "dwells[].at": Row(0.6, PLACED),
     "output": SLIDER["output"],
     "output<RockerOutput>.type": Row("slider", {"output": {"type": "rocker", "swing": 90.0}}),
     "output<RockerOutput>.swing": 80.0,

@@ -1,0 +1,157 @@
+"""Starts for dwells of stated lengths and places: sixbars of all types, scored by their motion alone.
+
+Outputs of coupler curves rest on arcs or lines: on the best of each curve for the longest dwell, or on two, each as
+long as a dwell of its own. Watt's sixbars, whose P goes to and fro on a circle about O4 or all around it, are drawn at
+random.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.dwell.candidates import (
+    DRAWN,
+    FEWEST,
+    LONG,
+    Outputs,
+    Start,
+    drawn,
+    of_arcs,
+    of_lines,
+    of_two_arcs,
+    of_two_lines,
+    pieces_of,
+)
+from synthesis.kinds.dwell.outputs import CYCLE, SPARE, Carrier, Kind, Turning, points
+from synthesis.kinds.dwell.programs import judge_program
+from synthesis.kinds.dwell.scoring import ROCKER, SLIDER, SLOT
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+EACH = 24
+"""Outputs that are drawn for each of Watt's first loops."""
+
+NUMBERS: dict[Kind, int] = {"rocker": 4, "slider": 3, "slot": 2}
+"""How many numbers an output has."""
+
+
+def placed_starts(
+    kind: Kind,
+    carrier: Carrier,
+    turning: Turning,
+    dwells: tuple[float, ...],
+    places: tuple[float, ...],
+    way: float,
+    transmission: float,
+    rng: np.random.Generator,
+    most: int,
+) -> list[Start]:
+    """The most promising shapes, each of another fourbar.
+
+    Parameters
+    ----------
+    kind, carrier, turning : str
+        Output, the link that P is on, and what the fourbar is.
+    dwells, places : tuple of float
+        Of each dwell its length, radians, and its share of the way; NaN at either end.
+    way, transmission : float
+        Radians; the way is NaN for a slider.
+    rng : Generator
+    most : int
+
+    Returns
+    -------
+    list of Start
+        Best first.
+    """
+    shapes = drawn(rng, transmission) if turning == "crank_rocker" else double_cranks(rng, transmission)
+    if carrier == "rocker":
+        # The second loop may have any size and any direction: P is B to begin with.
+        shapes[:, 3], shapes[:, 4] = shapes[:, 1], 0.0
+    turn = np.linspace(0.0, 2.0 * np.pi, CYCLE, endpoint=False)
+    curves = np.ascontiguousarray(points(shapes, turn, carrier))
+    lengths = np.array([max(FEWEST, round(dwell / math.tau * CYCLE) + 1) for dwell in dwells])
+    on_circles = carrier == "rocker"
+    tried = _drawn_outputs(kind, shapes, rng) if on_circles else _on_curves(kind, curves, dwells, places, way)
+    count, numbers = len(tried.rows), tried.numbers
+    scores, signs = np.empty(count), np.empty(count, np.int64)
+    begins, ends = np.zeros((count, len(dwells)), np.int64), np.zeros((count, len(dwells)))
+    number = {"rocker": ROCKER, "slider": SLIDER, "slot": SLOT}[kind]
+    asked = np.array(places)
+    judge_program(
+        number, curves, tried.rows, numbers, lengths, asked, way, math.sin(transmission), scores, signs, begins, ends
+    )
+    found: list[Start] = []
+    used: set[int] = set()
+    for n in np.argsort(scores):
+        row = int(tried.rows[n])
+        if len(found) == most or not np.isfinite(scores[n]):
+            break
+        if row in used:
+            continue
+        used.add(row)
+        # The stretch of the grid is a little longer or shorter than the dwell: both have one middle.
+        angles = turn[begins[n]] + 0.5 * ((lengths - 1) * math.tau / CYCLE - np.array(dwells))
+        shape = np.concatenate([shapes[row], numbers[n, : NUMBERS[kind]], angles])
+        found.append(Start(shape, int(signs[n]), tuple(ends[n].tolist()), float(scores[n]), carrier, turning))
+    return found
+
+
+def double_cranks(rng: np.random.Generator, transmission: float) -> Real:
+    """Double cranks with a crank of 1: b, c, d, and P in the coupler's frame."""
+    count = 60 * DRAWN
+    b, c = np.exp(rng.uniform(math.log(0.4), math.log(3.0), (2, count)))
+    d = np.exp(rng.uniform(math.log(0.12), math.log(0.9), count))
+    shortest = np.minimum(b + c - d - 1.0, np.minimum(c + 1.0 - b - d, b + 1.0 - c - d))
+    cosines = np.stack([(b * b + c * c - (d + k) ** 2) / (2.0 * b * c) for k in (-1.0, 1.0)])
+    sound = (shortest > 2.0 * SPARE) & (np.abs(cosines).max(axis=0) < math.cos(transmission))
+    b, c, d = (part[np.flatnonzero(sound)[:DRAWN]] for part in (b, c, d))
+    p = 1.5 * np.maximum(b, 1.0) * np.sqrt(rng.random(len(b))) * np.exp(2j * np.pi * rng.random(len(b)))
+    return np.stack([b, c, d, p.real, p.imag], axis=1)
+
+
+def _on_curves(
+    kind: Kind, curves: Complex, dwells: tuple[float, ...], places: tuple[float, ...], way: float
+) -> Outputs:
+    """Outputs that rest on the best arc or line of a curve, and on pairs of them."""
+    longest = sorted(range(len(dwells)), key=lambda k: -dwells[k])
+
+    def pieces(dwell: float) -> int:
+        return max(FEWEST, round(dwell / math.tau * CYCLE) + 1)
+
+    found = [
+        (of_lines if kind == "slot" else of_arcs)(curves, pieces_of(curves, pieces(dwells[longest[0]]), kind), kind)
+    ]
+    for other in longest[1:]:
+        pair = dwells[longest[0]], dwells[other]
+        looked_at = [max(dwell, LONG) if sum(pair) < math.pi else dwell for dwell in pair]
+        two = [pieces_of(curves, pieces(dwell), kind) for dwell in looked_at]
+        apart = abs(places[longest[0]] - places[other])
+        rests = of_two_lines if kind == "slot" else of_two_arcs
+        found.append(rests(curves, (two[0], two[1]), kind, apart * way))
+    tried = Outputs(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
+    if kind != "slider":
+        return tried
+    # The other way along the same line: low is high there.
+    turned = tried.numbers * np.array([1.0, -1.0, 1.0, 1.0]) + np.array([0.0, 0.0, math.pi, 0.0])
+    both = np.concatenate([tried.numbers, turned])
+    return Outputs(np.tile(tried.rows, 2), np.tile(tried.first, 2), np.tile(tried.second, 2), both)
+
+
+def _drawn_outputs(kind: Kind, shapes: Real, rng: np.random.Generator) -> Outputs:
+    """Links and outputs on P, at random: lengths and distances from O4 in units of the rocker."""
+    rows = np.repeat(np.arange(len(shapes)), EACH)
+    arm, pivot = shapes[rows, 1], shapes[rows, 2]
+    link, other, reach = arm * np.exp(rng.uniform(math.log(0.4), math.log(3.5), (3, len(rows))))
+    direction = rng.uniform(0.0, math.tau, len(rows))
+    if kind == "slider":
+        offset = rng.uniform(-1.2, 1.2, len(rows)) * arm - pivot * np.sin(direction)
+        numbers = np.stack([link, offset, direction, np.zeros(len(rows))], axis=1)
+    else:
+        place = pivot + reach * np.exp(1j * direction)
+        numbers = np.stack([link, place.real, place.imag, other], axis=1)
+    return Outputs(rows, rows, rows, numbers)

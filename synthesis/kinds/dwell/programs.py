@@ -1,0 +1,126 @@
+"""How promising outputs are for a program of dwells, each of its own length and at its own place in the way.
+
+Every output is driven through the turn on a grid. Of each dwell the stretch of the turn is looked for in which the
+output moves least near the dwell's place; nothing is known of when in the turn the dwells come.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.compiling import njit
+from synthesis.kinds.dwell.scoring import ROCKER, SLIDER, _half_tangents, _level, _rocker_turn, _slider_turn, _slot_turn
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Integers = NDArray[np.int64]
+
+WAY_APART = 1.0
+"""Logarithm of the way over the demanded one beyond which an output is not looked at: refinement does not mend it."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def judge_program(
+    kind: int,
+    curves: Complex,
+    rows: Integers,
+    numbers: Real,
+    lengths: Integers,
+    places: Real,
+    way: float,
+    least: float,
+    scores: Real,
+    signs: Integers,
+    begins: Integers,
+    ends: Real,
+) -> None:
+    """Drive every output through the turn in both assemblies and score the better: way, rests, and what they lack.
+
+    Parameters
+    ----------
+    kind : int
+        ``ROCKER``, ``SLIDER`` or ``SLOT``.
+    curves : complex, shape (m, N)
+        Where P stands.
+    rows : int, shape (n,)
+        The curve of each output.
+    numbers : float, shape (n, 4)
+        Its dimensions, as :mod:`scoring` has them.
+    lengths, places : int and float, shape (k,)
+        Of each dwell its samples, and its share of the way from the least output; NaN at either end.
+    way, least : float
+        The way, or NaN for a slider, and the least sine of a transmission angle.
+    scores, signs : float and int, shape (n,)
+        Filled in: the score, infinite for what is no start, and the assembly.
+    begins, ends : int and float, shape (n, k)
+        Filled in: first sample of each dwell, and its share of the way.
+    """
+    n, dwells = curves.shape[1], len(lengths)
+    out, ux, uy = np.empty(n), np.empty(n), np.empty(n)
+    at, share = np.empty(dwells, np.int64), np.empty(dwells)
+    for k in range(len(rows)):
+        curve = curves[rows[k]]
+        scores[k], signs[k] = np.inf, 1
+        a, b, c, d = numbers[k]
+        for sign in (1, -1):
+            if kind == ROCKER:
+                sine = _rocker_turn(curve, a, b, c, d, sign, ux, uy)
+            elif kind == SLIDER:
+                sine = _slider_turn(curve, a, b, c, sign, out)
+            elif sign == 1:
+                sine = _slot_turn(curve, a, b, ux, uy)
+            else:
+                break
+            if not sine > 0.0:
+                break
+            if kind != SLIDER:
+                _half_tangents(ux, uy, out)
+            low, high = _level(kind, out.min()), _level(kind, out.max())
+            span = high - low
+            if not span > 0.0 or (kind != SLIDER and not abs(math.log(span / way)) < WAY_APART):
+                continue
+            score = 0.5 * max(0.0, 1.5 * least - sine)
+            if kind == SLIDER:
+                extent = 0.0
+                for m in range(n):
+                    extent = max(extent, abs(curve[m] - curve[0]))
+                score += 0.05 * max(0.0, math.log(2.0 * extent / span))
+            else:
+                score += 0.3 * abs(math.log(span / way))
+                for m in range(n):
+                    out[m] = _level(kind, out[m])
+            score += _rests(out, low, span, lengths, places, at, share)
+            if score < scores[k]:
+                scores[k], signs[k] = score, sign
+                begins[k], ends[k] = at, share
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _rests(out: Real, low: float, span: float, lengths: Integers, places: Real, at: Integers, share: Real) -> float:
+    """The worst of the dwells, each where it moves least and is nearest to its place; fills in where that is."""
+    n, worst = len(out), 0.0
+    for dwell in range(len(lengths)):
+        best = np.inf
+        for begin in range(n):
+            least, most, total = np.inf, -np.inf, 0.0
+            for m in range(lengths[dwell]):
+                value = out[(begin + m) % n]
+                least, most = min(least, value), max(most, value)
+                total += value
+                if most - least > best * span:
+                    break
+            rest = (most - least) / span
+            if rest > best:
+                continue
+            mean = (total / lengths[dwell] - low) / span
+            place = places[dwell]
+            if math.isnan(place):
+                place = 1.0 if mean > 0.5 else 0.0
+            rest += 0.5 * abs(mean - place)
+            if rest < best:
+                best, at[dwell], share[dwell] = rest, begin, place
+        worst = max(worst, best)
+    return worst

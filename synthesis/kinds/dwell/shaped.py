@@ -1,0 +1,146 @@
+"""A shape of :mod:`outputs` as a sixbar: its joints, its way made exact, and its dimensions in the client's units."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage.fourbar import OPEN, positions
+from synthesis.kinds.dwell.design import DwellMechanism, MechanismType
+from synthesis.kinds.dwell.outputs import Carrier, Kind, extremes, fourbars, output, points
+from synthesis.kinds.dwell.problem import DEFAULT_CRANK, DwellProblem
+from synthesis.kinds.dwell.verification import GRID
+from synthesis.model.linkage_answer import CouplerPoint, Slide
+from synthesis.model.linkages import skeleton, slide, to_point
+
+Real = NDArray[np.float64]
+
+WAY_STEPS = 30
+"""Secant steps to the demanded way at most; five are usual."""
+
+WAY_TOLERANCE, MAX_WAY_ERROR = 1e-11, 1e-8
+"""Relative errors of the way at which the secant method has converged, and with which its last step is still used."""
+
+
+class Sixbar(NamedTuple):
+    """A shape in its own frame, with a crank of 1; how many dwells it has, and the link that P is on."""
+
+    kind: Kind
+    sign: int
+    shape: Real
+    carrier: Carrier
+    dwells: int
+
+
+def way_of(sixbar: Sixbar) -> float:
+    """Swing (radians) or stroke over the turn."""
+    turn = np.linspace(0.0, 2.0 * np.pi, GRID, endpoint=False)
+    p = points(sixbar.shape[None], turn[None], sixbar.carrier)
+    low, high = extremes(output(sixbar.kind, sixbar.sign, sixbar.shape[None], p)[0])
+    return float(high[0] - low[0])
+
+
+def with_way(sixbar: Sixbar, way: float) -> Sixbar | None:
+    """The output's pivot moved along the line from the pin at rest (or along the slot) until the way is met."""
+    before, factor = (0.0, 0.0), 1.0
+    made = sixbar
+    for _ in range(WAY_STEPS):
+        off = way_of(made) / way - 1.0
+        if not math.isfinite(off):
+            return None
+        if abs(off) < WAY_TOLERANCE:
+            return made
+        slope = (off - before[1]) / (factor - before[0]) if before[0] else -1.0
+        if slope == 0.0:
+            return None
+        before, factor = (factor, off), factor - off / slope
+        made = _moved(sixbar, factor)
+    return made if abs(off) < MAX_WAY_ERROR else None
+
+
+def _moved(sixbar: Sixbar, factor: float) -> Sixbar:
+    """The output's pivot ``factor`` times as far from where the pin, or P, stands when the first dwell begins."""
+    shape = sixbar.shape.copy()
+    at = slice(5, 7) if sixbar.kind == "slot" else slice(6, 8)
+    pivot = complex(*shape[at])
+    joints = _joints(sixbar)
+    rest = joints["P"] if sixbar.kind == "slot" else joints["D"]
+    moved = rest + factor * (pivot - rest)
+    shape[at] = moved.real, moved.imag
+    if sixbar.kind == "rocker":
+        shape[8] *= factor
+    return sixbar._replace(shape=shape)
+
+
+def _joints(sixbar: Sixbar) -> dict[str, complex]:
+    """Joints where the first dwell begins, in the shape's own frame."""
+    shape = sixbar.shape[None]
+    begin = np.array([[sixbar.shape[-sixbar.dwells]]])
+    at = positions(fourbars(shape), begin, np.array([OPEN]))
+    p = at.p[0, 0] if sixbar.carrier == "coupler" else points(shape, begin, sixbar.carrier)[0, 0]
+    joints = {"O2": 0j, "O4": complex(sixbar.shape[2]), "A": at.a[0, 0], "B": at.b[0, 0], "P": p}
+    if sixbar.kind == "slider":
+        _, _, _, _, _, link, offset, angle = sixbar.shape[:8]
+        along = cmath.exp(1j * angle)
+        local = p * along.conjugate()
+        place = local.real + sixbar.sign * math.sqrt(link**2 - (local.imag - offset) ** 2)
+        joints["D"] = along * complex(place, offset)
+    elif sixbar.kind == "rocker":
+        link, rocker = sixbar.shape[5], sixbar.shape[8]
+        joints["O6"] = complex(*sixbar.shape[6:8])
+        arm = p - joints["O6"]
+        cosine = (rocker**2 + abs(arm) ** 2 - link**2) / (2.0 * rocker * abs(arm))
+        lean = complex(cosine, sixbar.sign * math.sqrt(max(1.0 - cosine**2, 0.0)))
+        joints["D"] = joints["O6"] + rocker * arm / abs(arm) * lean
+    else:
+        joints["O6"] = complex(*sixbar.shape[5:7])
+        turn = np.linspace(0.0, 2.0 * np.pi, GRID, endpoint=False)
+        reach = np.abs(points(shape, turn[None], sixbar.carrier) - joints["O6"]).max()
+        joints["C"] = joints["O6"] + (p - joints["O6"]) / abs(p - joints["O6"]) * float(reach)
+    return {name: complex(z) for name, z in joints.items()}
+
+
+def mechanism_of(problem: DwellProblem, sixbar: Sixbar) -> DwellMechanism:
+    """The sixbar in the client's units, with the crank's pivot where it is wanted."""
+    if sixbar.kind == "slider":
+        scale = problem.way / way_of(sixbar)
+    else:
+        scale = DEFAULT_CRANK if problem.crank is None else problem.crank
+    own = _joints(sixbar)
+    pivot = complex(*(problem.pivot or (0.0, 0.0)))
+    joints = {name: pivot + scale * z for name, z in own.items()}
+    on_rocker = sixbar.carrier == "rocker"
+    links = [("ground", ["O2", "O4"]), ("input", ["O2", "A"]), ("coupler", ["A", "B"]), ("rocker", ["O4", "B"])]
+    links[3 if on_rocker else 2][1].append("P")
+    slides: list[Slide] = []
+    kind: MechanismType = "dwell_watt_rocker" if on_rocker else "dwell_rocker"
+    if sixbar.kind == "slider":
+        kind = "dwell_watt_slider" if on_rocker else "dwell_slider"
+        links.append(("link_5", ["P", "D"]))
+        slides.append(slide("D", "ground", joints["D"], float(sixbar.shape[7])))
+    else:
+        links[0][1].append("O6")
+        if sixbar.kind == "rocker":
+            links += [("link_5", ["P", "D"]), ("output", ["O6", "D"])]
+        else:
+            kind = "dwell_slot"
+            links.append(("output", ["O6", "C"]))
+            slides.append(slide("P", "output", joints["O6"], cmath.phase(joints["P"] - joints["O6"])))
+    lengths = {name: abs(joints[listed[1]] - joints[listed[0]]) for name, listed in links}
+    if on_rocker:
+        lengths["rocker_arm"] = abs(joints["P"] - joints["O4"])
+    point = (own["P"] - own["A"]) / ((own["B"] - own["A"]) / abs(own["B"] - own["A"]))
+    return DwellMechanism(
+        type=kind,
+        fixed_pivots={name: to_point(joints[name]) for name in links[0][1]},
+        links=lengths,
+        coupler_point=None
+        if on_rocker
+        else CouplerPoint(distance=scale * abs(point), angle=math.degrees(cmath.phase(point))),
+        reference_input_angle=math.degrees(cmath.phase(own["A"])),
+        skeleton=skeleton(joints, dict(links), slides=slides),
+    )

@@ -1,0 +1,110 @@
+"""Dwells of stated lengths and places through HTTP: solved under other demands, drawn, driven, or refused."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+
+from synthesis.registry import examples
+from tests.campaign import further
+from tests.service.answers import finished
+
+UNEQUAL = {**examples("dwell")[2], "max_designs": 1}
+HIGH = {
+    "kind": "dwell",
+    "dwells": [{"angle": 60.0, "at": "high"}],
+    "output": {"type": "slider", "stroke": 40.0},
+    "mechanism": "watt_2",
+    "max_designs": 1,
+}
+WITHIN = {**HIGH, "dwells": [{"angle": 50.0, "at": 0.5}], "mechanism": "pseudo_arc"}
+TASKS = {
+    "unequal": UNEQUAL,
+    "watt, of one class, within a zone": {
+        **HIGH,
+        "constraints": {
+            "grashof": "crank_rocker",
+            "min_transmission_angle": 30.0,
+            "max_link_ratio": 9.0,
+            "fixed_pivot_region": {"x": [0.0, 200.0], "y": [-200.0, 200.0]},
+        },
+    },
+    "within, as double crank": {**WITHIN, "constraints": {"grashof": "double_crank"}},
+    "unequal, short links, in a box": {
+        **UNEQUAL,
+        "constraints": {"link_length": {"max": 60.0}},
+        "space": {"box": {"x": [-300.0, 300.0], "y": [-300.0, 300.0]}},
+    },
+}
+
+
+@pytest.mark.parametrize("name", further(list(TASKS), list(TASKS)[:3]))
+def test_dwells_are_solved_drawn_and_driven(client, name):
+    problem = TASKS[name]
+    body = finished(client, problem)
+    assert body["status"] == "succeeded"
+    (design,) = body["result"]["designs"]
+    demands = problem.get("constraints", {})
+    if "grashof" in demands:
+        assert design["metrics"]["grashof"] == demands["grashof"]
+    assert design["metrics"]["min_transmission_angle"] >= demands.get("min_transmission_angle", 20.0)
+    if "link_length" in demands:
+        assert max(design["mechanism"]["links"].values()) <= 60.0 + 1e-9
+    place = f"/v1/jobs/{body['id']}/designs/0"
+    drawing = client.get(f"{place}.svg")
+    assert drawing.status_code == 200, drawing.text
+    assert "% of the way" in drawing.text
+    curves = [e for e in ET.fromstring(drawing.text).iter() if e.get("data-curve") == "dwell"]
+    assert len(curves) == len(problem["dwells"])
+    answer = client.get(f"{place}/motion?steps=720")
+    assert answer.status_code == 200, answer.text
+    motion = answer.json()
+    slides = problem["output"]["type"] == "slider"
+    moved = np.array(motion["slides"]["D"]["position"] if slides else motion["links"]["output"]["angle"])
+    low, way = moved.min(), np.ptp(moved)
+    around = np.concatenate([moved[:-1], moved[:-1]])
+    for dwell, told, rest in zip(problem["dwells"], design["dwells"], design["targets"], strict=True):
+        assert told["angle"] == dwell["angle"]
+        first = round(2.0 * ((rest["input_angle"] - motion["input_angle"][0]) % 360.0))
+        held = around[first : first + round(2.0 * dwell["angle"]) + 1]
+        assert np.isclose((held.mean() - low) / way, told["at"], atol=0.01)
+        assert abs(told["at"] - {"low": 0.0, "high": 1.0}.get(dwell["at"], dwell["at"])) <= 0.05
+        assert np.isclose(np.ptp(held), told["error"], rtol=0.3, atol=1e-4 * way)
+    analysed = client.post("/v1/analyses", json={"mechanism": design["mechanism"]})
+    assert analysed.status_code == 200, analysed.text
+
+
+@pytest.mark.parametrize(
+    ("changed", "path"),
+    [
+        ({"dwells": []}, "/problem/dwells"),
+        ({"dwells": [{"angle": 10.0, "at": 0.2 * k} for k in range(4)]}, "/problem/dwells"),
+        ({"dwells": [{"angle": 0.0, "at": "low"}]}, "/problem/dwells/0/angle"),
+        ({"dwells": [{"angle": 360.0, "at": "low"}]}, "/problem/dwells/0/angle"),
+        ({"dwells": [{"angle": "60", "at": "low"}]}, "/problem/dwells/0/angle"),
+        ({"dwells": [{"angle": 60.0, "at": "middle"}]}, "/problem/dwells/0/at"),
+        ({"dwells": [{"angle": 60.0, "at": 1.5}]}, "/problem/dwells/0/at"),
+        ({"dwells": [{"angle": 60.0, "at": -1e-9}]}, "/problem/dwells/0/at"),
+        ({"dwells": [{"angle": 60.0, "at": True}]}, "/problem/dwells/0/at"),
+        ({"dwells": [{"angle": 60.0}]}, "/problem/dwells/0/at"),
+        ({"dwells": [{"angle": 60.0, "at": 0.5, "to": 3}]}, "/problem/dwells/0/to"),
+        ({"dwells": [{"angle": 180.0, "at": "low"}, {"angle": 180.0, "at": "high"}]}, "/problem/dwells"),
+        ({"dwells": [{"angle": 30.0, "at": 0.0}, {"angle": 30.0, "at": "low"}]}, "/problem/dwells/1/at"),
+        ({"dwells": [{"angle": 30.0, "at": 0.4}, {"angle": 30.0, "at": 0.45}]}, "/problem/dwells/1/at"),
+        (
+            {"tolerance": 10.0, "dwells": [{"angle": 30.0, "at": 0.4}, {"angle": 30.0, "at": 0.6}]},
+            "/problem/dwells/1/at",
+        ),
+        ({"dwell_angle": 60.0}, "/problem/dwell_angle"),
+        ({"count": 2}, "/problem/count"),
+        ({"dwells": None}, "/problem/dwell_angle"),
+        ({"output": {"type": "slider", "stroke": 0.0}}, "/problem/output/stroke"),
+        ({"constraints": {"grashof": "double_rocker"}}, "/problem/constraints/grashof"),
+    ],
+)
+def test_what_cannot_be_is_refused_at_its_field(client, changed, path):
+    answer = client.post("/v1/jobs", json={"problem": {**HIGH, **changed}})
+    assert answer.status_code == 422, answer.text
+    assert [error["path"] for error in answer.json()["errors"]] == [path]
