@@ -40,8 +40,8 @@ class Measured:
     roller : float
         Least distance of the roller's center from the wheel over an index.
     passing : float
-        The same of all rollers while they are in no slot: over a rest, and over the index of another one. Infinite
-        where it is not measured.
+        The same of all rollers while they are in no slot: over a rest, and over the index of another one. On a sphere
+        the diameter of the roller where it comes no nearer.
     overlap : float
         Greatest depth of the wheel in the disc over an index and a rest; 0 where they stay apart.
     locked : float

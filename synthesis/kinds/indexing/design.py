@@ -115,7 +115,18 @@ class IndexingCourse(Answer):
     pin_force: list[Force] = Field(description="Of the roller on the slot's side, positive the way the wheel turns.")
 
 
-SizedBy = Literal["locking_disc", "crescent", "web", "bore", "crank_shaft", "locking_angle", "pin_force"]
+SizedBy = Literal[
+    "locking_disc",
+    "crescent",
+    "web",
+    "bore",
+    "crank_shaft",
+    "locking_angle",
+    "pin_force",
+    "play",
+    "locked_rest",
+    "passing_roller",
+]
 
 
 class IndexingMetrics(Answer):

@@ -6,6 +6,7 @@ The crank's axis is x, the wheel's z; in the middle of an index the roller stand
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,9 @@ Real = NDArray[np.float64]
 
 MOVING, RESTING, AROUND = 173, 61, 97
 """Positions of an index and of a rest, and points of each edge of the wheel."""
+
+FREE = 721
+"""Positions of a rest in which it is asked how near the roller comes to the wheel."""
 
 TRIED = 0.005
 """Angle, radians, by which a resting wheel is turned to see whether the cap holds it, beside its play."""
@@ -56,7 +60,7 @@ def measured_on_sphere(mechanism: SphericalGenevaMechanism) -> dict[str, float]:
     floor = radius * math.cos(end) - half_slot * math.sin(end) * np.cos(rim)
     return {
         "roller": min(half_slot, above),
-        "passing": math.inf,
+        "passing": _passing(mechanism, float(turn[-1])),
         "overlap": apart * radius,
         "locked": locked,
         "play": math.degrees(play),
@@ -68,6 +72,42 @@ def measured_on_sphere(mechanism: SphericalGenevaMechanism) -> dict[str, float]:
         "neck": 0.0,
         "size": 2.0 * radius,
     }
+
+
+def _passing(mechanism: SphericalGenevaMechanism, wheel: float) -> float:
+    """The least distance of the axis of the roller from the resting wheel, up to the roller's diameter.
+
+    The roller is a cylinder about a radius that goes below the plane of the rim. Edges are seen along it.
+    """
+    radius, cone = mechanism.sphere_radius, math.radians(mechanism.cone_angle)
+    alpha = np.linspace(0.5 * math.pi, 1.5 * math.pi, FREE)
+    # The wheel is above the plane of its rim: from a roller that is lower than its own width nothing is near.
+    alpha = alpha[-radius * math.sin(cone) * np.cos(alpha) < mechanism.roller_diameter]
+    axis = np.stack(
+        [np.full(len(alpha), math.cos(cone)), math.sin(cone) * np.sin(alpha), math.sin(cone) * np.cos(alpha)], -1
+    )
+    up = np.stack(
+        [-math.sin(cone) * np.ones(len(alpha)), math.cos(cone) * np.sin(alpha), math.cos(cone) * np.cos(alpha)], -1
+    )
+    beside = np.cross(axis, up)
+    least = mechanism.roller_diameter
+    # The slots that the roller leaves and comes to lie beside one hollow.
+    for line in _lines(mechanism, (0, -1, 1)):
+        x = line[:, 0] * math.cos(wheel) - line[:, 1] * math.sin(wheel)
+        y = line[:, 0] * math.sin(wheel) + line[:, 1] * math.cos(wheel)
+        places = radius * np.stack([x, y, line[:, 2]])
+        # What is on the other half of the sphere is not beside the roller, but behind it.
+        before = axis @ places > 0.0
+        least = min(least, _nearest(up @ places + 1j * (beside @ places), before[:, 1:] & before[:, :-1]))
+    return least
+
+
+def _nearest(lines: NDArray[np.complex128], counted: NDArray[np.bool_]) -> float:
+    """The least distance of the origin from lines of straight pieces, shape (m, n), of which some count."""
+    start, piece = lines[:, :-1], np.diff(lines, axis=1)
+    length = np.abs(piece) ** 2
+    along = np.clip((-start * piece.conj()).real / np.where(length > 0.0, length, 1.0), 0.0, 1.0)
+    return float(np.abs(start + along * piece)[counted].min(initial=math.inf))
 
 
 def _hollow(mechanism: SphericalGenevaMechanism, station: int) -> Real:
@@ -82,11 +122,16 @@ def _hollow(mechanism: SphericalGenevaMechanism, station: int) -> Real:
 
 def _edges(mechanism: SphericalGenevaMechanism) -> Real:
     """Points of the wheel's edges on the sphere: hollows, the sides of slots, the rim between; unit vectors."""
+    return np.concatenate(_lines(mechanism, range(mechanism.stations)))
+
+
+def _lines(mechanism: SphericalGenevaMechanism, stations: Iterable[int]) -> list[Real]:
+    """The edges at some slots, each in its order."""
     half_slot = 0.5 * mechanism.slot_width / mechanism.sphere_radius
     up = np.linspace(0.0, math.radians(mechanism.slot_end_angle), AROUND)
     listed = []
     step, hollow = math.pi / mechanism.stations, math.radians(mechanism.locking_arc_angle)
-    for k in range(mechanism.stations):
+    for k in stations:
         listed.append(_hollow(mechanism, k))
         for side in (-1.0, 1.0):
             x, y = np.sqrt(np.maximum(np.cos(up) ** 2 - half_slot**2, 0.0)), np.full(AROUND, side * half_slot)
@@ -95,7 +140,7 @@ def _edges(mechanism: SphericalGenevaMechanism) -> Real:
             across, along = x * math.sin(at) + y * math.cos(at), x * math.cos(at) - y * math.sin(at)
             listed.append(np.stack([along, across, np.sin(up)], -1))
             listed.append(np.stack([np.cos(rim + at), np.sin(rim + at), np.zeros(AROUND)], -1))
-    return np.concatenate(listed)
+    return listed
 
 
 def _depth(edges: Real, crank: Real, wheel: Real, cap: float, offset: float) -> Real:

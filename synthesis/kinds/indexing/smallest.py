@@ -1,4 +1,8 @@
-"""The smallest drive: every wall and the pin force grow kinder with the size, so that the largest least size is it."""
+"""The smallest drive: every wall and the pin force grow kinder with the size, so that the largest least size is it.
+
+So does what is measured on outlines alone: beside a clearance that stays, a larger wheel has less play and is held for
+longer. Where the smallest drive by its walls breaks one of these, the size is found at which it no longer does.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +13,24 @@ from typing import cast
 from kinematics.indexing.drag_link import Course
 from kinematics.indexing.geneva import Geneva
 from synthesis.kinds.indexing import plane, sphere
-from synthesis.kinds.indexing.design import SizedBy
+from synthesis.kinds.indexing.design import IndexingDesign, SizedBy
 from synthesis.kinds.indexing.forces import Load, peaks
 from synthesis.kinds.indexing.problem import IndexingProblem
 from synthesis.model.statement import ABSURD
 
 HALVINGS = 70
 """Of an interval that is a thousand times as wide as the least size: to rounding."""
+
+
+OUTGROWN: dict[str, SizedBy] = {
+    "play": "play",
+    "locked_at_rest": "locked_rest",
+    "roller_clears_wheel": "passing_roller",
+}
+"""Checks on outlines that a larger drive may keep, and what they are called as demands that set a size."""
+
+LARGEST, GROWN_TO = 256.0, 1e-6
+"""Times the least size by walls up to which a drive is made larger for these; and the share to which that is known."""
 
 
 def smallest(problem: IndexingProblem, course: Course, load: Load) -> tuple[float, SizedBy] | None:
@@ -33,6 +48,53 @@ def smallest(problem: IndexingProblem, course: Course, load: Load) -> tuple[floa
         least["pin_force"] = peaks(course, load, problem.scale).pin_force / limit
     setting = max(least, key=lambda name: least[name])
     return least[setting], cast(SizedBy, setting)
+
+
+def outgrown(
+    least: tuple[float, SizedBy], of_size: Callable[[float, SizedBy], IndexingDesign | str]
+) -> IndexingDesign | str:
+    """The smallest verified drive whose wheel is held and passed as is demanded.
+
+    Parameters
+    ----------
+    least : (float, str)
+        The least size by walls and force, and what sets it.
+    of_size : callable
+        The verified drive of a size, and of what is told to set it.
+
+    Returns
+    -------
+    IndexingDesign or str
+        That of the least size where it has nothing else to complain of, or where no size up to ``LARGEST`` times as
+        large mends it.
+    """
+    design = of_size(*least)
+    lacking = _lacking(design)
+    if not lacking:
+        return design
+    low = high = least[0]
+    sized_by = least[1]
+    while lacking:
+        low, high, sized_by = high, 2.0 * high, OUTGROWN[lacking[0]]
+        if high > LARGEST * least[0]:
+            return design
+        lacking = _lacking(of_size(high, sized_by))
+    while high - low > GROWN_TO * high:
+        middle = 0.5 * (low + high)
+        lacking = _lacking(of_size(middle, sized_by))
+        if lacking:
+            low, sized_by = middle, OUTGROWN[lacking[0]]
+        else:
+            high = middle
+    return of_size(high, sized_by)
+
+
+def _lacking(design: IndexingDesign | str) -> list[str]:
+    """The checks that a design breaks, where all of them are such as a larger one may keep."""
+    if isinstance(design, str):
+        return []
+    broken = [check.name for check in design.verification.checks if not check.passed]
+    return broken if set(broken) <= OUTGROWN.keys() else []
 
 
 def _margins(problem: IndexingProblem, drive: Geneva, size: float) -> dict[str, float]:

@@ -25,7 +25,7 @@ from synthesis.kinds.indexing.driver import best_course
 from synthesis.kinds.indexing.forces import Load, peaks, pin_force, wheel_torque
 from synthesis.kinds.indexing.problem import IndexingProblem
 from synthesis.kinds.indexing.ratchets import solve_ratchet
-from synthesis.kinds.indexing.smallest import smallest
+from synthesis.kinds.indexing.smallest import outgrown, smallest
 from synthesis.kinds.indexing.verification import verify_indexing
 from synthesis.model.answer import Verification
 from synthesis.model.kind import Progress
@@ -105,13 +105,24 @@ def _candidate(problem: IndexingProblem, rollers: int) -> IndexingDesign | str:
     course = Course(drive) if problem.driver == "crank" else best_course(problem, drive)
     if course is None:
         return NO_DRAG_LINK
-    load = Load(problem.load_inertia, problem.load_torque, problem.crank_speed)
-    size, sized_by = problem.sphere_radius if problem.spherical else problem.center_distance, None
-    if size is None:
-        found = smallest(problem, course, load)
-        if found is None:
-            return NOT_DRAWABLE
-        size, sized_by = found
+    stated = problem.sphere_radius if problem.spherical else problem.center_distance
+    if stated is not None:
+        return _of_size(problem, course, rollers, stated, None)
+    found = smallest(problem, course, _load(problem))
+    if found is None:
+        return NOT_DRAWABLE
+    return outgrown(found, partial(_of_size, problem, course, rollers))
+
+
+def _load(problem: IndexingProblem) -> Load:
+    return Load(problem.load_inertia, problem.load_torque, problem.crank_speed)
+
+
+def _of_size(
+    problem: IndexingProblem, course: Course, rollers: int, size: float, sized_by: SizedBy | None
+) -> IndexingDesign | str:
+    """The drive of a size, verified; the reason where it cannot be drawn."""
+    drive, load = course.geneva, _load(problem)
     if problem.spherical:
         hemisphere = sphere.hemisphere_of(problem, size)
         if not sphere.drawable(problem, hemisphere):

@@ -164,12 +164,12 @@ def _walls(problem: IndexingProblem, design: IndexingDesign, found: Measured) ->
         at_least("wall", found.wall, problem.wall, LENGTH),
         at_least("web", found.web, problem.wall, LENGTH),
     ]
+    least = 0.5 * mechanism.roller_diameter
+    checks.append(at_least("roller_clears_wheel", found.passing, least, LENGTH, rounding))
     if isinstance(mechanism, SphericalGenevaMechanism):
         reaches = mechanism.cap_offset / (mechanism.sphere_radius * math.sin(math.radians(mechanism.cap_angle)))
         checks.append(at_most("locking_cap", reaches, LEAST_CAP))
     else:
-        least = 0.5 * mechanism.roller_diameter
-        checks.append(at_least("roller_clears_wheel", found.passing, least, LENGTH, rounding))
         disc, ring = mechanism.disc, mechanism.ring_radius
         checks.append(at_least("locking_disc", max(disc.outer_radius), least, LENGTH, rounding))
     if mechanism.type == "geneva_internal":
