@@ -38,7 +38,7 @@ DRAWN = 4000
 NEAR = 0.01
 """Share of the way that a rest moves."""
 
-LEAST, SUM = 35.0, 90.0
+LEAST, SUM = 26.0, 66.0
 """Degrees of each rest, and of both: any output has some 23° within a hundredth of its way at an end."""
 
 SOUND, RATIO = 20.0, 8.0

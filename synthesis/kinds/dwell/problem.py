@@ -236,11 +236,11 @@ class DwellProblem(LinkageProblem):
                 return []
             detail = f"{self.count} dwells of {self.dwell_angle:g}° leave nothing of a turn to move in"
             return [Contradiction("/dwell_angle", detail)]
-        found = [
-            Contradiction(f"/{name}", "dwells says how many there are and how long each is; leave this out")
-            for name in ("dwell_angle", "count")
-            if name in self.model_fields_set and getattr(self, name) is not None
-        ]
+        found = []
+        if self.dwell_angle is not None:
+            found.append(Contradiction("/dwell_angle", "dwells says how long each is; leave this out"))
+        if self.count not in (1, len(self.dwells)):
+            found.append(Contradiction("/count", "dwells says how many there are; leave this out"))
         total = sum(dwell.angle for dwell in self.dwells)
         if total >= 360.0:
             found.append(Contradiction("/dwells", f"dwells of {total:g}° in all leave nothing of a turn to move in"))
