@@ -19,9 +19,10 @@ from kinematics.errors import DimensionError
 from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, Mesh
 from kinematics.gear.train import OrdinaryTrain, TrainStage
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
+from synthesis.analyses.drift import WANTED, Drift, drifting
 from synthesis.model.answer import Answer, optional
 from synthesis.model.gear_answer import MeshGeometry, Ratio, mesh_geometries, rack_contact, rack_undercuts
-from synthesis.model.gear_statement import PressureAngle, ShiftCoefficient, ToothNumber
+from synthesis.model.gear_statement import ExactRatio, PressureAngle, ShiftCoefficient, ToothNumber
 from synthesis.model.gear_strength import Loaded, PairStrength, StrengthMethod, told
 from synthesis.model.statement import Number, PositiveNumber, Statement
 
@@ -124,6 +125,7 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
     friction: Annotated[float, Field(strict=True, ge=0.0, le=1.0)] = Field(
         default=FRICTION, description="Friction coefficient between the teeth."
     )
+    wanted_ratio: ExactRatio | None = Field(default=None, description=WANTED)
     strength: StrengthMethod | None = Field(
         default=None,
         description="Stresses of every mesh under the torque at the first position, over the stage's face width or "
@@ -225,6 +227,7 @@ class GearTrainAnalysis(DrivenAnalysis):
     gears: list[TurningGear]
     meshes: list[LoadedMesh]
     centre_distances: list[float] = Field(description="Of the shafts of each stage, idlers in line.")
+    drift: Drift | None = optional("Where a ratio is wanted, and the train turns its way.")
 
 
 def _analysis(request: GearTrainAnalysisRequest) -> dict[str, Any]:
@@ -246,6 +249,7 @@ def _analysis(request: GearTrainAnalysisRequest) -> dict[str, Any]:
         "gears": _gears(request, train, at, speed),
         "meshes": _meshes(request, train, shares, torques, float(speed[0])),
         "centre_distances": list(train.centre_distances),
+        **drifting(train.ratio, request.wanted_ratio),
     }
 
 

@@ -15,7 +15,18 @@ from kinematics.gear.arrangements import ARRANGEMENTS
 from kinematics.gear.planetary import EXTERNAL, GROUND, INTERNAL, Mesh, Speeds, Train, speeds
 from kinematics.gear.power import PowerFlow, power_flow
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
-from synthesis.model.answer import Answer
+from synthesis.analyses.drift import WANTED, Drift, drifting
+from synthesis.analyses.shift_table import (
+    MOST_STATES,
+    GivenElement,
+    ShiftState,
+    element_faults,
+    shift_table,
+    states_of,
+    usual_elements,
+)
+from synthesis.model.answer import Answer, optional
+from synthesis.model.gear_statement import ExactRatio
 from synthesis.model.ratio_target import decimal
 from synthesis.model.statement import Flag, Number, Statement
 
@@ -137,6 +148,20 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.5, le=1.0)] = Field(
         default=0.99, description="Of every mesh as an ordinary pair."
     )
+    include: list[Literal["shift_table"]] = Field(
+        default=[],
+        max_length=1,
+        description="`shift_table`: which clutches and brakes give which ratio between input and output.",
+    )
+    elements: list[GivenElement] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=40,
+        description="The clutches and brakes of the shift table. Left out: a brake on every member but input and "
+        "output, and a clutch between any two. Without the mechanism's `input`, clutches to `input` put the input "
+        "shaft on a member.",
+    )
+    wanted_ratio: ExactRatio | None = Field(default=None, description=WANTED)
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
@@ -162,9 +187,48 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
             for path, body in loaded
             if body not in train.members
         ]
-        if self.speeds is None and self.mechanism.input is None:
+        if self.speeds is None and self.mechanism.input is None and not self.include:
             faults.append(("/speeds", "state known speeds, or the mechanism's input and fixed member"))
+        return faults or [*self._wrong_table(), *self._wrong_ratio()]
+
+    def _wrong_ratio(self) -> list[tuple[str, str]]:
+        if self.wanted_ratio is None or (self.mechanism.input is not None and self.mechanism.output is not None):
+            return []
+        return [("/wanted_ratio", "state the mechanism's input and output too, whose ratio is meant")]
+
+    def _wrong_table(self) -> list[tuple[str, str]]:
+        """What is wrong with the shift table that is asked for."""
+        if not self.include:
+            return [] if self.elements is None else [("/elements", 'ask for the table too: "include": ["shift_table"]')]
+        train, driving, driven = self.mechanism.train(), self.mechanism.input, self.mechanism.output
+        ends = [(part, body) for part, body in (("input", driving), ("output", driven)) if body is not None]
+        faults = [
+            (f"/mechanism/{part}", f"expected one of the members {', '.join(train.members)}")
+            for part, body in ends
+            if body not in train.members
+        ]
+        if driven is None:
+            faults.append(("/mechanism/output", "state the output of the shift table"))
+        elif driven == driving:
+            faults.append(("/mechanism/output", f"{driven} is the input"))
+        if driving is None and self.elements is None:
+            faults.append(("/elements", "state the mechanism's input, or clutches from the input shaft to members"))
+        faults += element_faults(train, driving, self.elements or [])
+        if not faults and (states := states_of(train, driving, self._elements())) > MOST_STATES:
+            faults.append(("/elements", f"{states} choices of engaged elements are more than {MOST_STATES}"))
         return faults
+
+    def _elements(self) -> list[GivenElement]:
+        """The elements of the shift table, of a request without faults."""
+        if self.elements is not None:
+            return self.elements
+        return usual_elements(self.mechanism.train(), str(self.mechanism.input), str(self.mechanism.output))
+
+    def table(self) -> list[dict[str, Any]]:
+        """The shift table."""
+        mechanism = self.mechanism
+        train = mechanism.train()
+        return shift_table(train, mechanism.input, str(mechanism.output), self._elements(), self.mesh_efficiency)
 
     def answer(self) -> dict[str, Any]:
         """Everything about the train, in the shape of :class:`PlanetaryAnalysis`."""
@@ -213,13 +277,15 @@ class PlanetaryAnalysis(DrivenAnalysis):
     circulating_power: bool | None = Field(description="A warning: a member carries more power than is put in.")
     bodies: list[TurningBody]
     meshes: list[LoadedPlanetaryMesh]
+    shift_table: list[ShiftState] | None = optional("Where `include` asks for it: the largest ratio first.")
+    drift: Drift | None = optional("Where a ratio is wanted, and the train turns its way.")
 
 
 def _analysis(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
     """Speeds of all bodies; torques and powers too where the speeds are complete."""
     at, speed, time = request.motion.inputs()
     mechanism, train = request.mechanism, request.mechanism.train()
-    turning = request.speeds is None
+    turning = request.speeds is None and mechanism.input is not None
     known = {body: decimal(value) for body, value in (request.speeds or {}).items()}
     if turning:
         held = {} if mechanism.fixed is None else {mechanism.fixed: Fraction(0)}
@@ -250,6 +316,7 @@ def _analysis(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
             }
         )
     unit = float(speed[0]) if turning else 1.0
+    asked: dict[str, Any] = {"shift_table": request.table()} if request.include else {}
     return {
         "input_angle": at.tolist(),
         "time": None if time is None else time.tolist(),
@@ -277,6 +344,8 @@ def _analysis(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
             }
             for k, mesh in enumerate(train.meshes)
         ],
+        **asked,
+        **drifting(ratio, request.wanted_ratio),
     }
 
 

@@ -10,9 +10,12 @@ from pydantic import ConfigDict, Discriminator, Field
 
 from kinematics.gear.planetary import speed_ratio
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
+from synthesis.analyses.drift import WANTED, Drift, drifting
 from synthesis.analyses.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest, GivenGearTrain
 from synthesis.analyses.planetary_train import GivenPlanetaryTrain, PlanetaryAnalysis, PlanetaryAnalysisRequest
+from synthesis.model.answer import optional
 from synthesis.model.gear_answer import Ratio
+from synthesis.model.gear_statement import ExactRatio
 from synthesis.model.statement import Number, Statement
 
 GivenUnit = Annotated[GivenPlanetaryTrain | GivenGearTrain, Discriminator("type")]
@@ -60,6 +63,7 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.5, le=1.0)] = Field(
         default=0.99, description="Of every mesh as an ordinary pair."
     )
+    wanted_ratio: ExactRatio | None = Field(default=None, description=WANTED)
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows; faults of a unit are told at it."""
@@ -106,6 +110,7 @@ class TrainSeriesAnalysis(DrivenAnalysis):
     units: list[PlanetaryAnalysis | GearTrainAnalysis] = Field(
         description="In the order of the power, for one position of the own input."
     )
+    drift: Drift | None = optional("Where a ratio is wanted, and the series turns its way.")
 
 
 def _planetary_ratio(unit: GivenPlanetaryTrain) -> Fraction | None:
@@ -150,6 +155,7 @@ def _analysis(request: TrainSeriesAnalysisRequest) -> dict[str, Any]:
         "self_locking": any(told.get("self_locking") for told in units),
         "shafts": shafts,
         "units": units,
+        **drifting(1 / share, request.wanted_ratio),
     }
 
 
