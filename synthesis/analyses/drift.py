@@ -30,7 +30,7 @@ class Drift(Answer):
 
 
 def drifting(ratio: Fraction | None, wanted: float | str | None) -> dict[str, Any]:
-    """The answer's field ``drift`` for a train of exactly this ratio; nothing where none is wanted, or the other way."""
+    """The field ``drift`` for a train of exactly this ratio; nothing where none is wanted, or one of the other way."""
     if ratio is None or wanted is None:
         return {}
     sign, target = parse_target(wanted)

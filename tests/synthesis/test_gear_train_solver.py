@@ -409,6 +409,28 @@ def test_a_stock_reaches_no_farther_than_its_gears() -> None:
 
 
 @pytest.mark.parametrize(
+    ("fields", "most"),
+    [
+        # 20:60 has a stage ratio of 3, so that of these gears 30:60 is the most: not the 60·30 / (20·20) of the stock.
+        ({"stock": [20, 20, 30, 60], "max_stage_ratio": 2.0}, "2"),
+        ({"teeth": {"min": 20, "max": 40}, "max_total_teeth": 100}, "2.25"),
+        ({"stock": [20, 22, 40, 42, 60, 62], "reverted": True, "max_stage_ratio": 2.0}, "1.9"),
+    ],
+)
+def test_a_ratio_that_the_demands_put_out_of_reach_has_no_train(fields: dict[str, Any], most: str) -> None:
+    """Without a tolerance the nearest is returned between the least and the greatest ratio that trains have, only."""
+    within = solved(ratio=most, max_stages=2, **fields)
+    beyond = solved(ratio="3.5", max_stages=2, **fields)
+    below = solved(ratio="2/7", max_stages=2, **fields)
+    assert within.designs
+    assert beyond.designs == below.designs == []
+    assert beyond.search.complete
+    assert "out of reach" in beyond.summary
+    assert "out of reach" in below.summary
+    assert f"to {most} in 2 stages" in beyond.summary or fields.get("reverted")
+
+
+@pytest.mark.parametrize(
     "fields",
     [
         {"ratio": "7", "max_stages": 2, "stock": [20, 100, 30, 90, 25]},

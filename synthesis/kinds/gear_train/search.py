@@ -15,9 +15,9 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Container, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cmp_to_key
+from functools import cmp_to_key, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -106,11 +106,14 @@ def search(task: Task, tolerance: Fraction | None, wanted: int, progress: Progre
     if few and whole is not None and _reaches(task.target, whole, 0.0):
         every = tuple(k for k, span in reach.items() if span is not None)
         progress(0.5, "few trains are that near; searching the nearest")
-        anyhow = _searched(task, every, UNLIMITED, None, wanted, lambda fraction, message: None)
-        if tolerance is None:
-            outcome = outcome._replace(trains=anyhow.trains) if outcome.trains else anyhow
+        anyhow = _searched(task, every, UNLIMITED, None, wanted, _silent)
+        if tolerance is not None:
+            nearest = anyhow.trains[0] if anyhow.trains else None
+        elif outcome.trains:
+            outcome = outcome._replace(trains=anyhow.trains)
         elif anyhow.trains:
-            nearest = anyhow.trains[0]
+            whole = _attained(task, every, whole, [train.ratio for train in anyhow.trains])
+            outcome = anyhow if _reaches(task.target, whole, 0.0) else outcome
     combinations = sum(_covered(task, k) for k in task.stage_counts)
     return Outcome(outcome.trains, outcome.pareto, outcome.ties, combinations, whole, nearest)
 
@@ -212,6 +215,27 @@ def _reach(task: Task, k: int) -> tuple[Fraction, Fraction] | None:
         most = Fraction(math.prod(gears[-k:]), math.prod(gears[:k]))
         low, high = max(low, 1 / most), min(high, most)
     return low, high
+
+
+def _attained(
+    task: Task, counts: tuple[int, ...], bounds: tuple[Fraction, Fraction], met: list[Fraction]
+) -> tuple[Fraction, Fraction]:
+    """Bounds of the ratios, with that end replaced by a train's own ratio beyond which the target may lie.
+
+    Meshes may each be allowed that no train has together: of a stock, of one distance, or of too many teeth. The train
+    nearest to a bound is the one whose ratio is the end; it is looked for where no train lies beyond the target.
+    """
+    low, high = bounds
+    extreme = partial(_searched, counts=counts, near=UNLIMITED, tolerance=None, wanted=1, progress=_silent)
+    if all(task.target.compared(ratio) > 0 for ratio in met):
+        high = extreme(replace(task, target=Target(high), by_size=False)).trains[0].ratio
+    if all(task.target.compared(ratio) < 0 for ratio in met):
+        low = extreme(replace(task, target=Target(low), by_size=False)).trains[0].ratio
+    return low, high
+
+
+def _silent(fraction: float, message: str) -> None:
+    """Progress of a search beside the one that is told of."""
 
 
 def _reaches(target: Target, span: tuple[Fraction, Fraction], near: float) -> bool:
