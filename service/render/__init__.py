@@ -27,8 +27,8 @@ FILES: dict[str, tuple[Form, ...]] = {
     "gear_train": ("svg", "gif", "dxf", "csv"),
     "planetary_train": ("svg", "gif", "dxf", "csv"),
     "train_series": ("svg", "gif", "dxf", "csv"),
-    "gearbox": ("svg", "dxf", "csv"),
-    "layshaft_gearbox": ("svg", "dxf", "csv"),
+    "gearbox": ("svg", "gif", "dxf", "csv"),
+    "layshaft_gearbox": ("svg", "gif", "dxf", "csv"),
     "rotor": ("svg", "dxf", "csv"),
     "flywheel": ("svg", "dxf", "csv"),
     "engine": ("svg", "dxf", "csv"),
@@ -81,6 +81,7 @@ def _sheets() -> dict[str, Maker]:
 
 def _animations() -> dict[str, Maker]:
     from service.render.cam.animation import barrel_animation, cam_animation
+    from service.render.gears.gearbox_animation import gearbox_animation, layshaft_animation
     from service.render.gears.train_animation import gear_train_animation
     from service.render.gears.turning import planetary_animation, series_animation
     from service.render.linkage.animation import linkage_animation
@@ -93,6 +94,8 @@ def _animations() -> dict[str, Maker]:
         "gear_train": gear_train_animation,
         "planetary_train": planetary_animation,
         "train_series": series_animation,
+        "gearbox": gearbox_animation,
+        "layshaft_gearbox": layshaft_animation,
         **dict.fromkeys(GENEVA, indexing_animation),
     }
 

@@ -13,6 +13,10 @@ from kinematics.cam.profile import even_angles
 from service.render import exported
 from service.render.cam.animation import _spin
 from service.render.cam.scene import CamScene
+from service.render.gears import turning
+from service.render.gears.gearbox_animation import gearbox_speeds
+from service.render.gears.gearbox_layout import gearbox_layout, layshaft_layout
+from service.render.gears.series_layout import series_layout
 from service.render.page.animation import FRAMES, PIXELS, Stroke, animated, ring
 from service.render.page.svg import Box
 from synthesis.dispatch import solve
@@ -29,6 +33,10 @@ STATED = {
     "barrel": examples("cam")[4],
     "motion": examples("motion")[0],
     "gear train": examples("gear_train")[0],
+    "planetary train": examples("planetary_train")[0],
+    "trains in series": examples("train_series")[2],
+    "gearbox": examples("gearbox")[0],
+    "layshaft gearbox": examples("layshaft_gearbox")[0],
 }
 
 
@@ -43,7 +51,7 @@ def designed(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", further(STATED, ("groove", "motion", "gear train")))
+@pytest.mark.parametrize("name", further(STATED, ("groove", "motion", "gear train", "planetary train", "gearbox")))
 def test_a_cycle_in_bounded_frames(name):
     design, problem = designed(name)
     file = exported(design, problem, "title", "gif")
@@ -105,3 +113,49 @@ def test_over_http(client):
     assert answer.headers["content-type"] == "image/gif"
     assert Image.open(io.BytesIO(answer.content)).n_frames > 40
     assert client.get(f"/v1/jobs/{job['id']}/designs/7.gif").status_code == 404
+
+
+@pytest.mark.parametrize("name", ["planetary train", "trains in series"])
+def test_planets_roll_between_their_mates(name, monkeypatch):
+    """At every frame the flanks in mesh move at one speed: a tooth of a planet stays in the space that it stood in."""
+    design, problem = designed(name)
+    layout = series_layout(design, problem) if name == "trains in series" else None
+    if layout is None:
+        shown = []
+        monkeypatch.setattr(turning, "animation", lambda gears: shown.extend(gears) or b"")
+        turning.planetary_animation(design, problem, "")
+    else:
+        shown = [turning.Turning(g.placed, g.speed, g.orbit, g.axis, 0, g.toothed) for g in layout]
+    planets = [gear for gear in shown if gear.orbit and gear.placed.centre != gear.axis]
+    assert planets
+    for planet in planets:
+        for mate in (gear for gear in shown if gear.placed.centre == planet.axis):
+            apart = abs(planet.placed.centre - planet.axis)
+            sizes = planet.placed.pitch_radius, mate.placed.pitch_radius
+            internal = mate.placed.gear.internal
+            if apart != pytest.approx(sizes[1] - sizes[0] if internal else sum(sizes)):
+                continue
+            # Past the carrier both pitch circles roll on each other.
+            rolled = [(one.speed - planet.orbit) * size for one, size in zip((planet, mate), sizes, strict=True)]
+            assert rolled[0] == pytest.approx(rolled[1] if internal else -rolled[1])
+
+
+def test_a_gearbox_goes_through_all_its_speeds():
+    """The output turns as fast as each row of the answer says, in that order."""
+    design, _ = designed("gearbox")
+    layout = gearbox_layout(design.mechanism)
+    for row in design.metrics.speeds:
+        names = [f"STAGE_{stage}_PAIR_{pair + 1}" for stage, pair in enumerate(row.engaged, 1)]
+        spindle = gearbox_speeds(layout, names)[names[-1], len(design.mechanism.stages)]
+        assert abs(spindle) == pytest.approx(row.speed / design.mechanism.input_speed)
+        assert (spindle > 0) == (len(names) % 2 == 0)
+    box, _ = designed("layshaft gearbox")
+    head = box.mechanism.head
+    for number, gear in enumerate(box.mechanism.gears, 1):
+        if gear.layshaft is not None:
+            speeds = gearbox_speeds(layshaft_layout(box.mechanism), ["HEAD", f"GEAR_{number}"])
+            assert 1 / speeds[f"GEAR_{number}", 2] == pytest.approx(gear.ratio.value)
+            assert speeds["HEAD", 1] == pytest.approx(-head.driver / head.driven)
+    if box.mechanism.reverse is not None:
+        speeds = gearbox_speeds(layshaft_layout(box.mechanism), ["HEAD", "REVERSE"])
+        assert 1 / speeds["REVERSE", 2] == pytest.approx(box.mechanism.reverse.ratio.value)

@@ -124,16 +124,27 @@ def _strokes(one: _Drawn, turned: float) -> list[Stroke]:
     gear, placed = one.gear, one.gear.placed
     centre, spin = _centre(gear, turned), complex(np.exp(1j * gear.speed * turned))
     colour, face = COLOURS[gear.tone], FACES[gear.tone]
-    outline = Stroke(
-        centre + one.points * spin, colour, 1.3, closed=True, fill="#ffffff" if one.rim is not None else face
-    )
     if one.rim is not None:
         inner, outer = placed.gear.root_radius, float(np.abs(one.rim).max())
-        mark = np.array([centre + inner * spin, centre + outer * spin])
-        return [Stroke(centre + one.rim, colour, 1.3, closed=True, fill=face), outline, Stroke(mark, colour, 2.0)]
-    spoke = np.array([centre, centre + SPOKE * placed.pitch_radius * spin])
-    hub = Stroke(ring(centre, HUB * placed.pitch_radius), GROUND, 1.3, True, "#ffffff")
-    return [outline, Stroke(spoke, colour, 1.6), hub]
+        return [
+            Stroke(centre + one.rim, colour, 1.3, closed=True, fill=face),
+            Stroke(centre + one.points * spin, colour, 1.3, closed=True, fill="#ffffff"),
+            Stroke(np.array([centre + inner * spin, centre + outer * spin]), colour, 2.0),
+        ]
+    return gear_strokes(one.points, centre, gear.speed * turned, placed.pitch_radius, colour, face)
+
+
+def gear_strokes(
+    outline: Points, centre: complex, turned: float, pitch_radius: float, colour: str, face: str
+) -> list[Stroke]:
+    """A gear with external teeth, turned so far (radians), with a line that shows it and its shaft."""
+    spin = complex(np.exp(1j * turned))
+    spoke = np.array([centre, centre + SPOKE * pitch_radius * spin])
+    return [
+        Stroke(centre + outline * spin, colour, 1.3, closed=True, fill=face),
+        Stroke(spoke, colour, 1.6),
+        Stroke(ring(centre, HUB * pitch_radius), GROUND, 1.3, True, "#ffffff"),
+    ]
 
 
 def _arms(drawn: Sequence[_Drawn], turned: float) -> list[Stroke]:
