@@ -166,14 +166,14 @@ def _windows(
                         where[i, 0], where[i, 1], where[i, 2] = a, s, manner
 
 
-class _Likeness(NamedTuple):
+class Likeness(NamedTuple):
     """Candidates of a chunk: ρ, shape (n,), and where the target lies on them, shape (n, 3): see :func:`_windows`."""
 
     rho: Real
     where: NDArray[np.int64]
 
 
-def _alike_closed(curves: Complex, target: Complex) -> _Likeness:
+def alike_closed(curves: Complex, target: Complex) -> Likeness:
     """Closed curves against a closed target, over all shifts, both directions and the mirror image."""
     shapes = np.empty((len(curves), SHAPE_POINTS), np.complex128)
     _resample(curves, True, shapes)
@@ -194,10 +194,10 @@ def _alike_closed(curves: Complex, target: Complex) -> _Likeness:
         better = greatest > rho
         rho[better] = greatest[better]
         where[better, 1], where[better, 2] = shift[better], manner
-    return _Likeness(np.minimum(rho, 1.0), where)
+    return Likeness(np.minimum(rho, 1.0), where)
 
 
-def _alike_open(curves: Complex, ring: bool, target: Complex) -> _Likeness:
+def alike_open(curves: Complex, ring: bool, target: Complex) -> Likeness:
     """Windows of curves against an open target; ``ring`` where the curves close."""
     shapes = np.empty((len(curves), SWEEP_STEPS), np.complex128)
     _resample(curves, ring, shapes)
@@ -205,7 +205,7 @@ def _alike_open(curves: Complex, ring: bool, target: Complex) -> _Likeness:
     few, _ = equal_steps(target, False, WINDOW_POINTS)
     few -= few.mean()
     _windows(shapes, ring, np.array(WINDOW_LENGTHS), WINDOW_STARTS, few / np.linalg.norm(few), rho, where)
-    return _Likeness(np.minimum(rho, 1.0), where)
+    return Likeness(np.minimum(rho, 1.0), where)
 
 
 class Compared(NamedTuple):
@@ -217,7 +217,7 @@ class Compared(NamedTuple):
     family: int
     drawn: Draw
     ratio: float
-    likeness: _Likeness
+    likeness: Likeness
     swept: int
     target: Complex
     closed: bool
@@ -275,7 +275,7 @@ def compared(
     rho, where = np.full(count, -1.0), np.zeros((count, 3), np.int64)
     swept = 0
 
-    def compare(first: int) -> list[tuple[NDArray[np.int64], _Likeness]]:
+    def compare(first: int) -> list[tuple[NDArray[np.int64], Likeness]]:
         curves, _, good, rings = _swept(drawn, family, slice(first, min(first + CHUNK, count)), ratio)
         compared = []
         for ring in (True, False):
@@ -283,7 +283,7 @@ def compared(
             if (ring or not closed) and len(chosen):
                 some = curves[chosen]
                 compared.append(
-                    (first + chosen, _alike_closed(some, shape) if closed else _alike_open(some, ring, shape))
+                    (first + chosen, alike_closed(some, shape) if closed else alike_open(some, ring, shape))
                 )
         return compared
 
@@ -295,7 +295,7 @@ def compared(
                 swept += len(chosen) * (1 if closed else len(WINDOW_LENGTHS) * WINDOW_STARTS)
             if progress is not None:
                 progress(min(first + CHUNK, count) / count)
-    return Compared(family, drawn, ratio, _Likeness(rho, where), swept, target, closed)
+    return Compared(family, drawn, ratio, Likeness(rho, where), swept, target, closed)
 
 
 def most_alike(
@@ -386,31 +386,49 @@ def _place_each(
     at: Real,
 ) -> None:
     """Every candidate put on the target in place; ``at`` gets the crank angles at its points."""
-    count = len(target)
-    place, middle = np.arange(count), target.mean()
+    middle = target.mean()
     for i in range(len(x)):
-        start, manner = where[i, 1], where[i, 2]
-        if closed:
-            share = (place - start) / count
-        else:
-            size = windows[where[i, 0]]
-            begin = start / WINDOW_STARTS if rings[i] else (1.0 - size) * start / (WINDOW_STARTS - 1)
-            share = begin + size * place / (count - 1)
-        z, angles = _at_shares(curves[i], theta[i], rings[i], cycles[i], share)
-        if manner % 2 == 1:
-            z, angles = z[::-1].copy(), angles[::-1].copy()
-        if manner >= 2:
-            z, angles = z.conj(), -angles
+        z, angles, mirrored = laid(curves[i], theta[i], rings[i], cycles[i], where[i], windows, closed, len(target))
+        if mirrored:
             _mirror(family, x[i], sign, i)
         here = z.mean()
-        likeness, norm = 0j, 0.0
-        for k in range(count):
-            about = z[k] - here
-            likeness += about.conjugate() * target[k]
-            norm += about.real * about.real + about.imag * about.imag
-        alpha = likeness / norm
+        alpha = turned_onto(z, here, target)
         _move(family, x[i], ratio, alpha, middle - alpha * here)
         at[i] = angles + cmath.phase(alpha)
+
+
+@njit(cache=True, nogil=True)
+def laid(
+    curve: Complex, theta: Real, ring: bool, cycle: float, where: NDArray[np.int64], windows: Real, closed: bool, count: int
+) -> tuple[Complex, Real, bool]:
+    """Places of one curve and crank angles there, ``count`` of them, as they are compared with a target's points.
+
+    ``where`` is a row of :class:`Likeness`. The third answer tells whether the curve was mirrored in the real axis.
+    """
+    place, start, manner = np.arange(count), where[1], where[2]
+    if closed:
+        share = (place - start) / count
+    else:
+        size = windows[where[0]]
+        begin = start / WINDOW_STARTS if ring else (1.0 - size) * start / (WINDOW_STARTS - 1)
+        share = begin + size * place / (count - 1)
+    z, angles = _at_shares(curve, theta, ring, cycle, share)
+    if manner % 2 == 1:
+        z, angles = z[::-1].copy(), angles[::-1].copy()
+    if manner >= 2:
+        z, angles = z.conj(), -angles
+    return z, angles, manner >= 2
+
+
+@njit(cache=True, nogil=True)
+def turned_onto(z: Complex, here: complex, target: Complex) -> complex:
+    """The factor by which places about their middle come nearest to a target."""
+    likeness, norm = 0j, 0.0
+    for k in range(len(z)):
+        about = z[k] - here
+        likeness += about.conjugate() * target[k]
+        norm += about.real * about.real + about.imag * about.imag
+    return likeness / norm
 
 
 @njit(cache=True, nogil=True)

@@ -1,0 +1,142 @@
+"""Descents of sixbars to a curve on all of their dimensions: softly under the demands at first, then with these held.
+
+The rows are those of :mod:`synthesis.kinds.path.sixbar_rows`; the methods are those of the house, Levenberg and Marquardt's
+(:mod:`synthesis.numerics.levenberg`) and multipliers (:mod:`synthesis.numerics.augmented_lagrangian`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.fit.demands import CHANGE_POINT, COSINE, DEMANDS, FAMILY, RATIO, SIGN, WHOLE
+from synthesis.kinds.path.curve_limits import curve_setting
+from synthesis.kinds.path.limits import MIN_GRASHOF
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.sixbar_rows import BACK, CARRIER, HOLDER, SETTING, SIDE, STEPS, margins_of, rows_of, sixbar_rows
+from synthesis.kinds.path.sixbar_shapes import Form
+from synthesis.numerics.augmented_lagrangian import hold
+from synthesis.numerics.levenberg import descend_each
+from synthesis.numerics.portions import in_portions
+from synthesis.numerics.status import Status
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+SOFT_WEIGHT, SOFT_TOLERANCE = 10.0, 1e-4
+"""Weight of demands, in the target's unit, where they are no more than steered by, and the tolerance of such descents."""
+
+PORTION = 4
+"""Number of descents that a thread takes at a time."""
+
+ROUNDS, HELD_STEPS = 8, 60
+"""Descents under held demands, with the multipliers renewed after each, and steps of each, at most."""
+
+
+class Fits(NamedTuple):
+    """Sixbars of one form: unknowns (n, 15), signs (n, 2), crank angles (n, points), and half their sums of squares."""
+
+    form: Form
+    x: Real
+    signs: Real
+    theta: Real
+    cost: Real
+
+    def chosen(self, rows: NDArray[np.int64]) -> Fits:
+        """Some of them."""
+        return Fits(self.form, self.x[rows], self.signs[rows], self.theta[rows], self.cost[rows])
+
+
+def sixbar_setting(problem: PathProblem, centre: complex, size: float, degrees: float, ratio: float) -> Real:
+    """A problem's demands on sixbars of any form, in the target's unit about its centre.
+
+    At least ``degrees`` of transmission angle at both dyads are asked for, and a link ratio of at most ``ratio``.
+    """
+    out = np.zeros(SETTING)
+    out[:DEMANDS] = curve_setting(problem, centre, size)[:DEMANDS]
+    out[WHOLE], out[CHANGE_POINT] = 1.0, MIN_GRASHOF
+    out[COSINE] = min(out[COSINE], math.cos(math.radians(degrees)))
+    out[RATIO] = min(out[RATIO], ratio)
+    return out
+
+
+def descended(
+    fits: Fits, points: Complex, weights: Real, setting: Real, *, steps: int, back: int = 0, turns: int = 36,
+    tolerance: float = SOFT_TOLERANCE
+) -> Fits:
+    """The fits after so many steps of descent under demands that steer but may be broken a little.
+
+    Parameters
+    ----------
+    fits : Fits
+    points, weights : complex and float, shape (points,)
+        What is fitted, and the weights of the squared distances.
+    setting : float
+        Of :func:`sixbar_setting`.
+    steps : int
+        At most.
+    back, turns : int
+        Steps of the crank at which the curve's distance from the points counts too, none where 0; and those at which the
+        transmission angle is held.
+    """
+    rows, stated = _posed(fits.form, points, weights, setting, back, turns)
+    limits = margins_of(stated)
+    x, theta, cost = fits.x.copy(), fits.theta.copy(), np.empty(len(fits.x))
+    statuses = np.empty(len(x), np.int64)
+    states = np.concatenate([theta, np.zeros((len(x), limits))], axis=1)
+    multipliers = np.zeros(limits + 1)
+    multipliers[limits] = SOFT_WEIGHT
+
+    def work(some: slice) -> None:
+        for k in range(*some.indices(len(x))):
+            one = stated.copy()
+            one[SIGN], one[SIDE] = fits.signs[k]
+            row = slice(k, k + 1)
+            descend_each(
+                sixbar_rows, x[row], rows, one, multipliers, states[row], rows_of(len(points), one), steps,
+                tolerance, cost[row], statuses[row],
+            )  # fmt: skip
+
+    in_portions(work, len(x), PORTION)
+    return Fits(fits.form, x, fits.signs, states[:, : len(points)], cost)
+
+
+def held(
+    fits: Fits, points: Complex, weights: Real, setting: Real, *, back: int, turns: int, rounds: int = ROUNDS,
+    steps: int = HELD_STEPS,
+) -> Fits:  # fmt: skip
+    """The fits brought to where all demands hold; an infinite cost where they were not brought there."""
+    rows, stated = _posed(fits.form, points, weights, setting, back, turns)
+    limits = margins_of(stated)
+    x, cost = fits.x.copy(), np.full(len(fits.x), math.inf)
+    states = np.concatenate([fits.theta, np.zeros((len(x), limits))], axis=1)
+
+    def work(some: slice) -> None:
+        for k in range(*some.indices(len(x))):
+            one, ended = stated.copy(), np.empty(1)
+            one[SIGN], one[SIDE] = fits.signs[k]
+            status = hold(
+                sixbar_rows, x[k], rows, one, states[k], rows_of(len(points), one), limits, 4, HELD_WEIGHT, rounds,
+                steps, ended,
+            )  # fmt: skip
+            if status != Status.IMPOSSIBLE and states[k, len(points) :].min() > -HELD_WITHIN:
+                cost[k] = ended[0]
+
+    in_portions(work, len(x), 1)
+    return Fits(fits.form, x, fits.signs, states[:, : len(points)], cost)
+
+
+HELD_WEIGHT, HELD_WITHIN = 100.0, 1e-3
+"""Weight of held demands in the first descent; and by how much, in their own units, one may be missed."""
+
+
+def _posed(form: Form, points: Complex, weights: Real, setting: Real, back: int, turns: int) -> tuple[Real, Real]:
+    """Rows of points, and the setting of a form."""
+    stated = setting.copy()
+    stated[FAMILY], stated[CARRIER], stated[HOLDER] = form
+    stated[STEPS] = max(back, turns)
+    stated[BACK] = math.sqrt(float(weights.sum()) / back) if back else 0.0
+    return np.stack([points.real, points.imag, np.zeros(len(points)), np.sqrt(weights)], axis=1), stated

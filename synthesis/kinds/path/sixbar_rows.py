@@ -1,0 +1,285 @@
+"""Residuals of a sixbar that guides a point along a curve, both ways, and its demands as margins.
+
+The points' crank angles are eliminated as in :mod:`synthesis.kinds.path.point_rows`: for each sixbar they are brought to
+where P is nearest to the points, and the Jacobian is that at fixed angles less its part along the curve. The *way back*
+is that of P at equal steps of the crank: its distance from the polyline through the points, along the normal of the side
+that is nearest.
+
+The demands are those of the fourbar O2 A B O4 (:mod:`synthesis.fit.demands`), and besides
+
+* the cosine of the angle at E, from above and from below, at equal steps of the crank;
+* the distances of C and D from the other pins of their links and the lengths C E and E D, from the least and the
+  greatest length, and their ratios to one another and to the fourbar's links;
+* the sides of the box of O6, where D is fixed.
+
+A row of derivatives is computed only where its limit bears a load.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.compiling import njit
+from synthesis.fit.chart import OPTIONS, natural
+from synthesis.fit.demands import BOXES, COSINE, DEMANDS, EQUATIONS, FAMILY, LIMITS, LINKS, RATIO, SIGN, margins
+from synthesis.fit.sixbar_curve import (
+    COUPLER,
+    CRANK,
+    DYAD,
+    GROUND,
+    UNKNOWNS,
+    C,
+    D,
+    cosine,
+    cosine_with_slopes,
+    joints,
+    pins_with_slopes,
+    point_with_slopes,
+    velocity,
+)
+from synthesis.numerics.augmented_lagrangian import limit_rows
+from synthesis.numerics.levenberg import ROWS
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+CARRIER, HOLDER, SIDE, STEPS, BACK = range(DEMANDS, DEMANDS + 5)
+"""Places in a setting behind the demands: links that carry and hold the dyad, its assembly, equal steps of the crank, and
+the weight of the way back, of a step (a square root; 0 where it does not count)."""
+
+SETTING = DEMANDS + 5
+"""Numbers of a setting."""
+
+MORE = 6
+"""Lengths of a sixbar beside the fourbar's four."""
+
+OWN = 2 * MORE + MORE * (MORE - 1) + 8 * MORE + 4
+"""Margins of a sixbar beside the fourbar's and those of the steps: lengths, ratios, O6."""
+
+SETTLING, MAX_TURN_STEP, TURN_TOLERANCE = 2, 0.25, 1e-7
+"""Steps by which crank angles are settled at each sixbar, from those of the last accepted one; the greatest, and that
+after which they are settled, radians."""
+
+SPEED_FLOOR = 1e-9
+"""Speed of P, task sizes a radian, below which its path has no direction."""
+
+
+@njit(**OPTIONS)
+def margins_of(setting: Real) -> int:
+    """How many margins a setting has."""
+    return LIMITS + OWN + 2 * int(setting[STEPS])
+
+
+@njit(**OPTIONS)
+def rows_of(points: int, setting: Real) -> int:
+    """How many rows there are at most."""
+    return 2 * points + int(setting[STEPS]) + margins_of(setting)
+
+
+@njit(**OPTIONS)
+def _pinned(
+    frame: int, at: int, x: Real, lengths: Real, chart: Real, which: int, row: Real
+) -> float:
+    """ln of a pin's distance from the first (0) or second (1) other pin of its link, and its derivatives."""
+    row[:] = 0.0
+    if frame == GROUND:
+        along, across, far = math.cos(x[2]), math.sin(x[2]), lengths[0] * which
+        gap = complex(x[at] - x[0] - far * along, x[at + 1] - x[1] - far * across)
+        square = gap.real * gap.real + gap.imag * gap.imag
+        row[at], row[at + 1] = gap.real / square, gap.imag / square
+        row[0], row[1] = -row[at], -row[at + 1]
+        if which == 1:
+            row[2] = lengths[0] * (across * row[at] - along * row[at + 1])
+            for k in range(4):
+                row[3 + k] = -chart[0, k] * (along * row[at] + across * row[at + 1])
+        return 0.5 * math.log(square)
+    link = 1 if frame == CRANK else 2 if frame == COUPLER else 3
+    gap = complex(x[at] - lengths[link] * which, x[at + 1])
+    square = gap.real * gap.real + gap.imag * gap.imag
+    row[at], row[at + 1] = gap.real / square, gap.imag / square
+    if which == 1:
+        for k in range(4):
+            row[3 + k] = -chart[link, k] * row[at]
+    return 0.5 * math.log(square)
+
+
+@njit(**OPTIONS)
+def _lengths(x: Real, lengths: Real, chart: Real, setting: Real, logs: Real, slopes: Real) -> None:
+    """ln of all ten lengths (10,), the fourbar's first, and their derivatives (10, 15)."""
+    for k in range(4):
+        logs[k] = math.log(lengths[k])
+        slopes[k] = 0.0
+        for j in range(4):
+            slopes[k, 3 + j] = chart[k, j] / lengths[k]
+    for which in range(2):
+        logs[4 + which] = _pinned(int(setting[CARRIER]), C, x, lengths, chart, which, slopes[4 + which])
+        logs[6 + which] = _pinned(int(setting[HOLDER]), D, x, lengths, chart, which, slopes[6 + which])
+        logs[8 + which] = x[DYAD + which]
+        slopes[8 + which] = 0.0
+        slopes[8 + which, DYAD + which] = 1.0
+
+
+@njit(**OPTIONS)
+def own_margins(
+    x: Real, lengths: Real, chart: Real, setting: Real, multipliers: Real, values: Real, gradients: Real
+) -> int:
+    """Margins of the lengths, their ratios, and of O6, from the first on; how many they are."""
+    values[:OWN] = np.inf
+    logs, slopes = np.empty(4 + MORE), np.empty((4 + MORE, UNKNOWNS))
+    _lengths(x, lengths, chart, setting, logs, slopes)
+    weight = multipliers[-1]
+    number = 0
+    for k in range(4, 4 + MORE):
+        for end in range(2):
+            limit, toward = setting[LINKS + end], 1.0 if end == 0 else -1.0
+            if 0.0 < limit < np.inf:
+                values[number] = toward * (logs[k] - math.log(limit))
+                gradients[number] = toward * slopes[k]
+            number += 1
+    if setting[RATIO] < np.inf:
+        most = math.log(setting[RATIO])
+        for k in range(4, 4 + MORE):
+            for j in range(k):
+                for toward in (1.0, -1.0):
+                    values[number] = most - toward * (logs[k] - logs[j])
+                    if values[number] < multipliers[number] / weight:
+                        gradients[number] = toward * (slopes[j] - slopes[k])
+                    number += 1
+    else:
+        number += MORE * (MORE - 1) + 8 * MORE
+    if setting[HOLDER] == GROUND:
+        for k in range(4):
+            limit, toward = setting[BOXES + 4 + k], 1.0 if k % 2 == 0 else -1.0
+            if abs(limit) < np.inf:
+                values[number + k] = toward * (x[D + k // 2] - limit)
+                gradients[number + k] = 0.0
+                gradients[number + k, D + k // 2] = toward
+    return number + 4
+
+
+@njit(**OPTIONS)
+def _settled(
+    x: Real, lengths: Real, setting: Real, z: complex, angle: float
+) -> float:
+    """The crank angle brought nearer to where P is nearest to z; NaN beyond a toggle."""
+    sign, side = setting[SIGN], setting[SIDE]
+    carrier, holder = int(setting[CARRIER]), int(setting[HOLDER])
+    for _ in range(SETTLING):
+        closes, p, moved = velocity(x, lengths, sign, carrier, holder, side, angle)
+        if not closes:
+            return math.nan
+        gap, square = p - z, moved.real * moved.real + moved.imag * moved.imag
+        if square < SPEED_FLOOR * SPEED_FLOOR:
+            break
+        step = -(moved.real * gap.real + moved.imag * gap.imag) / square
+        step = min(max(step, -MAX_TURN_STEP), MAX_TURN_STEP)
+        angle += step
+        if abs(step) < TURN_TOLERANCE:
+            break
+    return angle
+
+
+@njit(**OPTIONS)
+def nearest_side(p: complex, points: Real) -> complex:
+    """The vector from the nearest place of the closed polyline through points (n, 2 or more) to p."""
+    n, least, best = len(points), np.inf, 0j
+    for k in range(n):
+        after = points[k + 1] if k + 1 < n else points[0]
+        start = complex(points[k, 0], points[k, 1])
+        along, gap = complex(after[0], after[1]) - start, p - start
+        square = along.real * along.real + along.imag * along.imag
+        share = (gap.real * along.real + gap.imag * along.imag) / square if square > 0.0 else 0.0
+        share = min(max(share, 0.0), 1.0)
+        off = complex(gap.real - share * along.real, gap.imag - share * along.imag)
+        far = off.real * off.real + off.imag * off.imag
+        if far < least:
+            least, best = far, off
+    return best
+
+
+@njit(ROWS, **OPTIONS)
+def sixbar_rows(
+    x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
+) -> int:
+    """Rows for the descent of :mod:`synthesis.numerics.levenberg`; −1 where the sixbar does not close.
+
+    ``points`` (n, 4): x and y, nothing, and the square root of the weight. ``state``: crank angles at the points, then
+    margins.
+    """
+    n = len(points)
+    lengths, chart = np.empty(4), np.zeros((4, 4))
+    natural(int(setting[FAMILY]), x, lengths, chart)
+    sign, side = setting[SIGN], setting[SIDE]
+    carrier, holder = int(setting[CARRIER]), int(setting[HOLDER])
+    if not (np.abs(x[3:7]).max() < 30.0 and max(abs(x[DYAD]), abs(x[DYAD + 1])) < 30.0):
+        return -1
+    turns = np.zeros((2, UNKNOWNS + 1))
+    by_c, by_d = np.empty(UNKNOWNS + 1, np.complex128), np.empty(UNKNOWNS + 1, np.complex128)
+    slopes = np.empty(UNKNOWNS + 1, np.complex128)
+    m = 0
+    for i in range(n):
+        z, root = complex(points[i, 0], points[i, 1]), points[i, 3]
+        angle = _settled(x, lengths, setting, z, state[i])
+        if math.isnan(angle):
+            return -1
+        state[i] = angle
+        closes, c, d = pins_with_slopes(x, lengths, chart, sign, carrier, holder, angle, turns, by_c, by_d)
+        if not closes:
+            return -1
+        closes, p = point_with_slopes(x, side, c, d, by_c, by_d, slopes)
+        if not closes:
+            return -1
+        gap, along = p - z, slopes[UNKNOWNS]
+        speed = abs(along)
+        if speed < SPEED_FLOOR:
+            along, across = 1.0 + 0j, 1j
+            for j in range(UNKNOWNS):
+                jacobian[m, j] = root * slopes[j].real
+        else:
+            along = along / speed
+            across = complex(-along.imag, along.real)
+            jacobian[m] = 0.0
+        residuals[m] = root * (gap.real * along.real + gap.imag * along.imag)
+        residuals[m + 1] = root * (gap.real * across.real + gap.imag * across.imag)
+        for j in range(UNKNOWNS):
+            jacobian[m + 1, j] = root * (slopes[j].real * across.real + slopes[j].imag * across.imag)
+        m += 2
+    steps, limits = int(setting[STEPS]), margins_of(setting)
+    values, gradients = state[n:], np.empty((limits, UNKNOWNS))
+    first = own_margins(x, lengths, chart, setting, multipliers, values, gradients)
+    margins(
+        x, lengths, chart, np.zeros(2), np.zeros(UNKNOWNS), setting, values[limits - LIMITS :],
+        gradients[limits - LIMITS :],
+    )  # fmt: skip
+    weight, places = multipliers[limits], np.empty(6, np.complex128)
+    for k in range(steps):
+        angle, back = 2.0 * math.pi * k / steps, setting[BACK] > 0.0
+        number = first + 2 * k
+        if not joints(x, lengths, sign, carrier, holder, side, angle, places):
+            return -1
+        at_e = cosine(x, places[2], places[3])
+        values[number], values[number + 1] = setting[COSINE] - at_e, setting[COSINE] + at_e
+        loaded = (
+            values[number] < multipliers[number] / weight or values[number + 1] < multipliers[number + 1] / weight
+        )
+        if not (loaded or back):
+            continue
+        _, c, d = pins_with_slopes(x, lengths, chart, sign, carrier, holder, angle, turns, by_c, by_d)
+        if loaded:
+            cosine_with_slopes(x, c, d, by_c, by_d, gradients[number + 1])
+            gradients[number] = -gradients[number + 1]
+        if back:
+            point_with_slopes(x, side, c, d, by_c, by_d, slopes)
+            off = nearest_side(places[5], points)
+            far = abs(off)
+            residuals[m] = setting[BACK] * far
+            jacobian[m] = 0.0
+            if far > 0.0:
+                for j in range(UNKNOWNS):
+                    jacobian[m, j] = setting[BACK] / far * (off.real * slopes[j].real + off.imag * slopes[j].imag)
+            m += 1
+    return limit_rows(values, gradients, EQUATIONS, multipliers, residuals, jacobian, m)
+

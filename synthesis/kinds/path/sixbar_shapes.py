@@ -1,0 +1,274 @@
+"""Sixbars drawn at random whose curves have the shape of a target: drawn, swept, compared and placed in batches.
+
+A sixbar is drawn from its fourbar outwards: Grashof lengths, C and D within a few links of theirs, then lengths of the
+dyad of several that are tried, the first that transmits with :data:`LEAST_ANGLE` over the whole turn, and P within a few
+links of C E. Logarithms of lengths are spread evenly. Curves are compared as those of fourbars are
+(:mod:`synthesis.kinds.path.curve_shapes`).
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.compiling import njit
+from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, natural
+from synthesis.fit.sixbar_curve import COUPLER, CRANK, DYAD, GROUND, ROCKER, UNKNOWNS, C, D, P, cosine, joints
+from synthesis.kinds.path.curve_candidates import draw
+from synthesis.kinds.path.curve_shapes import (
+    CHUNK,
+    SWEEP_STEPS,
+    WINDOW_LENGTHS,
+    WINDOW_STARTS,
+    Likeness,
+    alike_closed,
+    alike_open,
+    laid,
+    turned_onto,
+)
+from synthesis.kinds.path.curve_target import SHAPE_POINTS
+from synthesis.numerics.portions import THREADS
+from synthesis.outcome.ranking import distinct
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+LEAST_ANGLE = 15.0
+"""Transmission angle, degrees, of both dyads of what is drawn: a sixbar nearer to a toggle seldom leaves it."""
+
+TRIED = 12
+"""Pairs of lengths that are tried for a dyad."""
+
+SAME_START = 0.05
+"""Starts whose joints agree to this share of the target's size lead to the same sixbar."""
+
+OVERSUPPLY = 4
+"""So many times the wanted number are sifted for different ones."""
+
+MAX_OVERSIZE = 2.0
+"""Starts with links this many times too long are still followed: most shrink in the descent."""
+
+
+class Form(NamedTuple):
+    """A sixbar's build: family of its fourbar, and the links that carry and hold the dyad."""
+
+    family: int
+    carrier: int
+    holder: int
+
+
+FORMS: dict[str, tuple[Form, ...]] = {
+    "watt_1": tuple(
+        Form(family, *pair)
+        for family in (CRANK_ROCKER, DOUBLE_CRANK)
+        for pair in ((COUPLER, ROCKER), (ROCKER, COUPLER), (COUPLER, CRANK), (CRANK, COUPLER))
+    ),
+    "stephenson_1": tuple(
+        Form(family, *pair) for family in (CRANK_ROCKER, DOUBLE_CRANK) for pair in ((CRANK, ROCKER), (ROCKER, CRANK))
+    ),
+    "stephenson_3": tuple(Form(family, COUPLER, GROUND) for family in (CRANK_ROCKER, DOUBLE_CRANK)),
+}
+"""The builds of each type; P is always on the dyad's link at the carrier."""
+
+
+class Sixbars(NamedTuple):
+    """Sixbars of one form on a target, the most alike first.
+
+    Attributes
+    ----------
+    form : Form
+    x : float, shape (n, 15)
+        Unknowns of :mod:`synthesis.fit.sixbar_curve`.
+    signs : float, shape (n, 2)
+        Assemblies of the fourbar's dyad and of the other.
+    theta : float, shape (n, SHAPE_POINTS)
+        Crank angles at the target's shape points.
+    unlike : float, shape (n,)
+        √(1 − ρ²).
+    """
+
+    form: Form
+    x: Real
+    signs: Real
+    theta: Real
+    unlike: Real
+
+
+@njit(cache=True, nogil=True)
+def _swept(
+    form_family: int, carrier: int, holder: int, x: Real, signs: Real, tried: Real, curves: Complex,
+    good: NDArray[np.bool_],
+) -> None:  # fmt: skip
+    """Lengths of the dyad are chosen among those ``tried`` (n, pairs, 2), in units of the greatest C D; P is sized with
+    C E; then all is swept."""
+    n, steps = curves.shape
+    lengths, chart = np.empty(4), np.zeros((4, 4))
+    places, pins = np.empty(6, np.complex128), np.empty((steps, 2), np.complex128)
+    most = math.cos(math.radians(LEAST_ANGLE))
+    for i in range(n):
+        good[i] = False
+        natural(form_family, x[i], lengths, chart)
+        x[i, DYAD] = x[i, DYAD + 1] = 20.0
+        least, greatest, sharp = np.inf, 0.0, 0.0
+        for k in range(steps):
+            joints(x[i], lengths, signs[i, 0], carrier, holder, 1.0, 2.0 * math.pi * k / steps, places)
+            pins[k, 0], pins[k, 1] = places[2], places[3]
+            far = abs(places[3] - places[2])
+            least, greatest = min(least, far), max(greatest, far)
+        d, a, b, c = lengths
+        for base in (d - a, d + a):
+            sharp = max(sharp, abs(b * b + c * c - base * base) / (2.0 * b * c))
+        if sharp > most:
+            continue
+        for k in range(tried.shape[1]):
+            first, second = greatest * tried[i, k, 0], greatest * tried[i, k, 1]
+            two, around = 2.0 * first * second, first * first + second * second
+            if around - least * least <= most * two and greatest * greatest - around <= most * two:
+                x[i, DYAD], x[i, DYAD + 1] = math.log(first), math.log(second)
+                x[i, P] *= first
+                x[i, P + 1] *= first
+                good[i] = True
+                break
+        if good[i]:
+            for k in range(steps):
+                joints(x[i], lengths, signs[i, 0], carrier, holder, signs[i, 1], 2.0 * math.pi * k / steps, places)
+                curves[i, k] = places[5]
+
+
+def _drawn(form: Form, count: int, rng: np.random.Generator) -> tuple[Real, Real, Real]:
+    """Unknowns, signs, and lengths of the dyad to be tried, of sixbars about their fourbar."""
+    fourbars = draw(form.family, count, 0.0, int(rng.integers(2**31)))
+    x = np.zeros((count, UNKNOWNS))
+    x[:, :C] = fourbars.x[:, :C]
+    half = 0.5 * np.exp(x[:, 4:7])
+    coupler = 1.0 + half[:, 0] + (half[:, 1] if form.family == CRANK_ROCKER else half[:, 1])
+    sizes = {
+        CRANK: np.ones(count),
+        COUPLER: coupler,
+        ROCKER: 1.0 + half[:, 0] + half[:, 2],
+        GROUND: 1.0 + half[:, 1] + half[:, 2],
+    }
+    for at, frame in ((C, form.carrier), (D, form.holder)):
+        middle = 0.0 if frame == CRANK else 0.5
+        reach = np.exp(rng.uniform(np.log(0.15), np.log(3.0), count))
+        pin = sizes[frame] * (middle + reach * np.exp(2j * np.pi * rng.uniform(size=count)))
+        x[:, at], x[:, at + 1] = pin.real, pin.imag
+    reach = np.exp(rng.uniform(np.log(0.1), np.log(3.0), count))
+    point = 0.5 + reach * np.exp(2j * np.pi * rng.uniform(size=count))
+    x[:, P], x[:, P + 1] = point.real, point.imag
+    signs = np.stack([np.ones(count), rng.choice([-1.0, 1.0], count)], axis=1)
+    tried = np.exp(rng.uniform(np.log(0.25), np.log(3.0), (count, TRIED, 2)))
+    return x, signs, tried
+
+
+def alike_sixbars(
+    form: Form,
+    target: Complex,
+    closed: bool,
+    count: int,
+    keep: int,
+    rng: np.random.Generator,
+    longest: float = math.inf,
+    progress: Callable[[float], None] | None = None,
+) -> Sixbars:
+    """The ``keep`` sixbars of a form, of ``count`` that are drawn, whose curves are most like a target, placed on it.
+
+    Parameters
+    ----------
+    form : Form
+    target : complex, shape (SHAPE_POINTS,)
+        Equal steps along the target.
+    closed : bool
+        Whether it is a closed curve; an open one is compared with windows of the curves.
+    count, keep : int
+    rng : Generator
+    longest : float
+        Longest length, in the target's unit, of what is kept.
+    progress : callable, optional
+        Called with the share done.
+    """
+    shape = target - target.mean()
+    shape /= np.linalg.norm(shape)
+    x, signs, tried = _drawn(form, count, rng)
+    rho, where = np.full(count, -1.0), np.zeros((count, 3), np.int64)
+
+    def compare(first: int) -> tuple[NDArray[np.int64], Likeness] | None:
+        rows = slice(first, min(first + CHUNK, count))
+        curves = np.empty((rows.stop - first, SWEEP_STEPS), np.complex128)
+        good = np.empty(len(curves), np.bool_)
+        _swept(*form, x[rows], signs[rows], tried[rows], curves, good)
+        chosen = np.flatnonzero(good)
+        if not len(chosen):
+            return None
+        some = curves[chosen]
+        return first + chosen, alike_closed(some, shape) if closed else alike_open(some, True, shape)
+
+    with ThreadPoolExecutor(THREADS) as pool:
+        for n, found in enumerate(pool.map(compare, range(0, count, CHUNK))):
+            if found is not None:
+                rho[found[0]], where[found[0]] = found[1]
+            if progress is not None:
+                progress(min((n + 1) * CHUNK, count) / count)
+    order = np.argsort(-rho, kind="stable")[: OVERSUPPLY * keep]
+    order = order[rho[order] > 0.0]
+    chosen_x, chosen_signs = x[order], signs[order]
+    theta, marks = np.empty((len(order), SHAPE_POINTS)), np.empty((len(order), 6), np.complex128)
+    _place_each(*form, np.array(WINDOW_LENGTHS), where[order], target, closed, chosen_x, chosen_signs, theta, marks)
+    span = np.abs(marks[:, :5] - target.mean()).max(axis=1)
+    near = np.flatnonzero(np.isfinite(span) & (span <= MAX_OVERSIZE * longest))
+    kept = near[distinct(marks[near], keep, SAME_START * (np.ptp(target.real) + np.ptp(target.imag)))]
+    unlike = np.sqrt(np.maximum(0.0, 1.0 - rho[order[kept]] ** 2))
+    return Sixbars(form, chosen_x[kept], chosen_signs[kept], theta[kept], unlike)
+
+
+@njit(cache=True, nogil=True)
+def _place_each(
+    family: int, carrier: int, holder: int, windows: Real, where: NDArray[np.int64], target: Complex, closed: bool,
+    x: Real, signs: Real, at: Real, marks: Complex,
+) -> None:  # fmt: skip
+    """Every sixbar put on the target in place; crank angles at its points, and where its joints are at the first."""
+    lengths, chart = np.empty(4), np.zeros((4, 4))
+    curve, theta = np.empty(SWEEP_STEPS, np.complex128), np.empty(SWEEP_STEPS)
+    middle, places = target.mean(), np.empty(6, np.complex128)
+    for i in range(len(x)):
+        natural(family, x[i], lengths, chart)
+        for k in range(SWEEP_STEPS):
+            theta[k] = 2.0 * math.pi * k / SWEEP_STEPS
+            joints(x[i], lengths, signs[i, 0], carrier, holder, signs[i, 1], theta[k], places)
+            curve[k] = places[5]
+        z, angles, mirrored = laid(curve, theta, True, 2.0 * math.pi, where[i], windows, closed, len(target))
+        if mirrored:
+            for k in (1, 2, C + 1, D + 1, P + 1):
+                x[i, k] = -x[i, k]
+            signs[i, 0], signs[i, 1] = -signs[i, 0], -signs[i, 1]
+        here = z.mean()
+        alpha = turned_onto(z, here, target)
+        moved(holder, alpha, middle - alpha * here, x[i])
+        at[i] = angles + cmath.phase(alpha)
+        natural(family, x[i], lengths, chart)
+        joints(x[i], lengths, signs[i, 0], carrier, holder, signs[i, 1], at[i, 0], places)
+        marks[i] = places
+
+
+@njit(cache=True, nogil=True)
+def moved(holder: int, alpha: complex, beta: complex, x: Real) -> None:
+    """A sixbar under z → αz + β, in place; crank angles grow by the phase of α."""
+    size, turn = abs(alpha), cmath.phase(alpha)
+    o2 = alpha * complex(x[0], x[1]) + beta
+    x[0], x[1] = o2.real, o2.imag
+    x[2] += turn
+    x[3:7] += math.log(size)
+    x[DYAD : DYAD + 2] += math.log(size)
+    x[C : C + 2] *= size
+    x[P : P + 2] *= size
+    if holder == GROUND:
+        d = alpha * complex(x[D], x[D + 1]) + beta
+        x[D], x[D + 1] = d.real, d.imag
+    else:
+        x[D : D + 2] *= size
