@@ -1,4 +1,4 @@
-"""Curves that sixbars draw by a link which no fourbar alone moves, point by point, with their slopes in every dimension.
+"""Curves that sixbars draw by a link which no fourbar alone moves, with their slopes in every dimension.
 
 A fourbar O2 A B O4 whose crank turns through carries a dyad C–E–D: pin C lies on one of its links, the *carrier*, pin D
 on another, the *holder*, and the links C E, on which P is, and E D close the loop. By the links that carry and hold,
@@ -69,16 +69,24 @@ def _fourbar(x: Real, lengths: Real, sign: float, crank: complex, ground: comple
 
 @njit(**OPTIONS)
 def _pin(
-    frame: int, local: complex, o2: complex, lengths: Real, ground: complex, crank: complex, along: complex, out: complex
+    frame: int,
+    local: complex,
+    o2: complex,
+    lengths: Real,
+    ground: complex,
+    crank: complex,
+    along: complex,
+    out: complex,
 ) -> complex:
     """A pin's place from its coordinates in the frame of its link."""
-    if frame == GROUND:
-        return local
+    place: complex = local
     if frame == CRANK:
-        return o2 + local * crank
-    if frame == COUPLER:
-        return o2 + scaled(crank, lengths[1]) + local * along
-    return o2 + scaled(ground, lengths[0]) + local * out
+        place = o2 + local * crank
+    elif frame == COUPLER:
+        place = o2 + scaled(crank, lengths[1]) + local * along
+    elif frame == ROCKER:
+        place = o2 + scaled(ground, lengths[0]) + local * out
+    return place
 
 
 @njit(**OPTIONS)
@@ -98,10 +106,10 @@ def joints(
     places[2] = _pin(carrier, complex(x[C], x[C + 1]), o2, lengths, ground, crank, along, out)
     places[3] = _pin(holder, complex(x[D], x[D + 1]), o2, lengths, ground, crank, along, out)
     first = math.exp(x[DYAD])
-    closes, v = two_bars(places[3] - places[2], first, math.exp(x[DYAD + 1]), side)
+    joined, v = two_bars(places[3] - places[2], first, math.exp(x[DYAD + 1]), side)
     places[4] = places[2] + scaled(v, first)
     places[5] = places[2] + complex(x[P], x[P + 1]) * v
-    return closes
+    return bool(joined)
 
 
 @njit(**OPTIONS)
@@ -109,13 +117,14 @@ def _pin_velocity(
     frame: int, local: complex, arm: complex, along: complex, out: complex, turn: float, swing: float, crank: complex
 ) -> complex:
     """A pin's derivative by the crank angle, from those of coupler and rocker."""
-    if frame == GROUND:
-        return 0j
+    moved = 0j
     if frame == CRANK:
-        return turned(local * crank)
-    if frame == COUPLER:
-        return turned(arm) + scaled(turned(local * along), turn)
-    return scaled(turned(local * out), swing)
+        moved = turned(local * crank)
+    elif frame == COUPLER:
+        moved = turned(arm) + scaled(turned(local * along), turn)
+    elif frame == ROCKER:
+        moved = scaled(turned(local * out), swing)
+    return moved
 
 
 @njit(**OPTIONS)
@@ -153,34 +162,33 @@ def _pin_with_slopes(
 ) -> complex:  # fmt: skip
     """A pin and its derivatives, from those of the turns of coupler and rocker; ``at`` is where its numbers stand."""
     by[:] = 0.0
-    local = complex(x[at], x[at + 1])
-    if frame == GROUND:
-        by[at], by[at + 1] = 1.0 + 0j, 1j
-        return local
-    by[0], by[1] = 1.0 + 0j, 1j
-    o2 = complex(x[0], x[1])
+    local, o2 = complex(x[at], x[at + 1]), complex(x[0], x[1])
+    direction = 1.0 + 0j
+    if frame != GROUND:
+        by[0], by[1] = 1.0 + 0j, 1j
     if frame == CRANK:
-        by[at], by[at + 1] = crank, turned(crank)
+        direction = crank
         by[UNKNOWNS] = turned(local * crank)
-        return o2 + local * crank
-    if frame == COUPLER:
+    elif frame == COUPLER:
+        direction = along
         swung = turned(local * along)
         for k in range(2, 7):
             by[k] = scaled(swung, turn[k])
         for k in range(4):
             by[3 + k] += scaled(crank, chart[1, k])
         by[UNKNOWNS] = turned(scaled(crank, lengths[1])) + scaled(swung, turn[UNKNOWNS])
-        by[at], by[at + 1] = along, turned(along)
-        return o2 + scaled(crank, lengths[1]) + local * along
-    swung = turned(local * out)
-    for k in range(2, 7):
-        by[k] = scaled(swung, swing[k])
-    by[2] += turned(scaled(ground, lengths[0]))
-    for k in range(4):
-        by[3 + k] += scaled(ground, chart[0, k])
-    by[UNKNOWNS] = scaled(swung, swing[UNKNOWNS])
-    by[at], by[at + 1] = out, turned(out)
-    return o2 + scaled(ground, lengths[0]) + local * out
+    elif frame == ROCKER:
+        direction = out
+        swung = turned(local * out)
+        for k in range(2, 7):
+            by[k] = scaled(swung, swing[k])
+        by[2] += turned(scaled(ground, lengths[0]))
+        for k in range(4):
+            by[3 + k] += scaled(ground, chart[0, k])
+        by[UNKNOWNS] = scaled(swung, swing[UNKNOWNS])
+    by[at], by[at + 1] = direction, turned(direction)
+    place: complex = _pin(frame, local, o2, lengths, ground, crank, along, out)
+    return place
 
 
 @njit(**OPTIONS)

@@ -122,6 +122,23 @@ def astray(
     return Astray(farthest, max(excursion, float(there[0])))
 
 
+def both_ways(
+    place: Callable[[Real], Complex], used: tuple[float, float], points: Complex, closed: bool, misses: Real
+) -> float:
+    """Root mean square of the points' distances from a curve, and of the curve's from the lines through the points.
+
+    Parameters are those of :func:`astray`, and the points' distances. The curve counts by its length, each way as much
+    as the other.
+    """
+    _, places = followed(place, *used)
+    off, _ = distances(places, course_of(points, closed, 0.0))
+    steps = np.abs(np.diff(places))
+    known = np.isfinite(steps)
+    squares = 0.5 * (off[1:] ** 2 + off[:-1] ** 2)
+    back = float((squares[known] * steps[known]).sum() / max(float(steps[known].sum()), math.ulp(0.0)))
+    return math.sqrt(0.5 * (float(np.mean(misses**2)) + back))
+
+
 def tolerance_used(
     place: Callable[[Real], Complex], used: tuple[float, float], points: Complex, closed: bool, tolerances: Real
 ) -> float:

@@ -399,7 +399,14 @@ def _place_each(
 
 @njit(cache=True, nogil=True)
 def laid(
-    curve: Complex, theta: Real, ring: bool, cycle: float, where: NDArray[np.int64], windows: Real, closed: bool, count: int
+    curve: Complex,
+    theta: Real,
+    ring: bool,
+    cycle: float,
+    where: NDArray[np.int64],
+    windows: Real,
+    closed: bool,
+    count: int,
 ) -> tuple[Complex, Real, bool]:
     """Places of one curve and crank angles there, ``count`` of them, as they are compared with a target's points.
 

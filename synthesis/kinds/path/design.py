@@ -36,6 +36,10 @@ class PathMetrics(LinkageMetrics):
         "For fits: how much farther the traced curve goes from these lines than max_distance and what a curve may "
         "bulge between points, a quarter of their distance; length units."
     )
+    both_way_rms: Length | None = optional(
+        "For fits by sixbars: root mean square of the points' distances from the curve and of the curve's, at equal "
+        "steps along it, from the straight lines through the points; length units."
+    )
 
 
 class CurvePlacement(Answer):
@@ -69,6 +73,7 @@ class PathDesign(LinkageDesign):
     metrics: PathMetrics
     placement: CurvePlacement | None = optional("For a curve whose place was left free; what is measured, is there.")
     cognates: list[PathCognate] = Field(default=[], description="The two other fourbars of the same curve.")
+    point_link: str | None = optional("Of a sixbar: the link that P is on, by its name in the skeleton.")
     cognate_choice: str = Field(default="", description="What speaks for the design or for a cognate of it.")
 
 

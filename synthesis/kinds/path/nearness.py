@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import partial
 
 from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.problem import PathProblem
@@ -85,6 +87,13 @@ def ranked_by_nearness(designs: list[PathDesign], problem: PathProblem) -> list[
     nearest_first = sorted(designs, key=lambda design: error_of(design, problem))
     own = {"quality": nearness, "accuracy": nearness}
     return ranked(nearest_first, problem.rank_by, own, group=unusable if chooses_usable(problem) else None)
+
+
+def order_of(problem: PathProblem) -> Callable[[list[PathDesign]], list[PathDesign]]:
+    """How designs are ordered: fits by nearness, what meets the points exactly as all kinds are."""
+    if problem.fitted:
+        return partial(ranked_by_nearness, problem=problem)
+    return partial(ranked, rank_by=problem.rank_by)
 
 
 _GRADES = 2

@@ -30,7 +30,7 @@ from synthesis.kinds.path.curve_match import solve_curve_match
 from synthesis.kinds.path.curve_shapes import alike
 from synthesis.kinds.path.curve_target import angles_at, smooth_steps
 from synthesis.kinds.path.design import PathDesign, PathResult
-from synthesis.kinds.path.nearness import FAR, ranked_by_nearness, steady
+from synthesis.kinds.path.nearness import FAR, order_of, steady
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verify_traced import verify_traced
 from synthesis.model.kind import Progress, part_of
@@ -43,7 +43,7 @@ from synthesis.model.linkage_answer import (
     SliderCrankMechanism,
 )
 from synthesis.model.linkages import FourbarConfiguration, skeleton, slider_crank_mechanism, to_complex, to_point
-from synthesis.outcome.ranking import distinct, ranked
+from synthesis.outcome.ranking import distinct
 from synthesis.outcome.sifting import Sifting, reported
 
 Real = NDArray[np.float64]
@@ -310,10 +310,7 @@ def _different(mechanisms: list[Mechanism], size: float) -> list[Mechanism]:
 
 def _answer(problem: PathProblem, mechanisms: list[Mechanism], progress: Progress) -> PathResult:
     """Drive the mechanisms, and rank what passes."""
-
-    def in_rank(designs: list[PathDesign]) -> list[PathDesign]:
-        return ranked_by_nearness(designs, problem) if problem.fitted else ranked(designs, problem.rank_by)
-
+    in_rank = order_of(problem)
     sifting = Sifting[PathDesign](problem)
     sifting.sift(
         reported(mechanisms, progress, (0.7, 1.0), "{done} of {all} linkages driven"), partial(verify_traced, problem)

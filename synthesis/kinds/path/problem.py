@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, Field, model_validator
 
+from synthesis.kinds.path.stated_mechanisms import SIXBARS, Mechanisms, Simple, Sixbar, of_types, simple_of
 from synthesis.model.dimension import LENGTH
 from synthesis.model.linkage_statement import Constraints, LinkageProblem, Region
 from synthesis.model.manufacture import Held, Made, kept_pivots
+from synthesis.model.stated_types import named_among
 from synthesis.model.statement import (
     Contradiction,
     Coordinate,
@@ -220,6 +222,11 @@ class PathProblem(LinkageProblem):
         description="For geared fivebars: rotation of the output over that of the input. Left out: 1, -1, 2 and -2 are "
         "tried.",
     )
+    mechanisms: Mechanisms | None = Field(
+        default=None,
+        description="The types of linkages that are looked for, in place of mechanism; auto: fourbars, and sixbars "
+        "where no fourbar is sound and near.",
+    )
     fixed_pivots: PathPivots = PathPivots()
     constraints: PathConstraints = PathConstraints()
     rounds: Annotated[Count, Field(ge=1, le=20)] = Field(
@@ -231,6 +238,16 @@ class PathProblem(LinkageProblem):
     def task_size(self) -> float:
         """The greatest distance between two points, by which tolerances are measured, in length units."""
         return _greatest_distance(tuple(point.point for point in self.points)) or 1.0
+
+    @property
+    def sixbars(self) -> tuple[Sixbar, ...]:
+        """The types of sixbars that are looked for."""
+        return named_among(self.mechanisms, SIXBARS)
+
+    def of_type(self, name: Simple) -> PathProblem:
+        """The problem of one of the types with one closure, as it is stated without ``mechanisms``."""
+        ratio = self.gear_ratio if name == "geared_fivebar" else None
+        return self.model_copy(update={"mechanisms": None, "mechanism": name, "gear_ratio": ratio})
 
     @property
     def prescribed(self) -> bool:
@@ -315,6 +332,13 @@ class PathProblem(LinkageProblem):
 
     def contradictions(self) -> list[Contradiction]:
         """Equal points, timing that is incomplete or cannot be kept, and demands that exclude one another."""
+        if self.mechanisms is None:
+            return self._of_one_type()
+        types = simple_of(self.mechanisms) or ("fourbar",)
+        each = [fault for name in types for fault in self.of_type(name)._of_one_type()]
+        return list(dict.fromkeys([*of_types(self), *each]))
+
+    def _of_one_type(self) -> list[Contradiction]:
         return [
             *self._timing(),
             *self._equal_points(),

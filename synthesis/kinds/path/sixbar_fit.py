@@ -1,6 +1,6 @@
 """Descents of sixbars to a curve on all of their dimensions: softly under the demands at first, then with these held.
 
-The rows are those of :mod:`synthesis.kinds.path.sixbar_rows`; the methods are those of the house, Levenberg and Marquardt's
+The rows are those of :mod:`synthesis.kinds.path.sixbar_rows`; the methods are Levenberg and Marquardt's
 (:mod:`synthesis.numerics.levenberg`) and multipliers (:mod:`synthesis.numerics.augmented_lagrangian`).
 """
 
@@ -16,7 +16,17 @@ from synthesis.fit.demands import CHANGE_POINT, COSINE, DEMANDS, FAMILY, RATIO, 
 from synthesis.kinds.path.curve_limits import curve_setting
 from synthesis.kinds.path.limits import MIN_GRASHOF
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.sixbar_rows import BACK, CARRIER, HOLDER, SETTING, SIDE, STEPS, margins_of, rows_of, sixbar_rows
+from synthesis.kinds.path.sixbar_rows import (
+    BACK,
+    CARRIER,
+    HOLDER,
+    SETTING,
+    SIDE,
+    STEPS,
+    margins_of,
+    rows_of,
+    sixbar_rows,
+)
 from synthesis.kinds.path.sixbar_shapes import Form
 from synthesis.numerics.augmented_lagrangian import hold
 from synthesis.numerics.levenberg import descend_each
@@ -27,7 +37,7 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 SOFT_WEIGHT, SOFT_TOLERANCE = 10.0, 1e-4
-"""Weight of demands, in the target's unit, where they are no more than steered by, and the tolerance of such descents."""
+"""Weight of demands, in the target's unit, where they only steer, and the tolerance of such descents."""
 
 PORTION = 4
 """Number of descents that a thread takes at a time."""
@@ -64,8 +74,15 @@ def sixbar_setting(problem: PathProblem, centre: complex, size: float, degrees: 
 
 
 def descended(
-    fits: Fits, points: Complex, weights: Real, setting: Real, *, steps: int, back: int = 0, turns: int = 36,
-    tolerance: float = SOFT_TOLERANCE
+    fits: Fits,
+    points: Complex,
+    weights: Real,
+    setting: Real,
+    *,
+    steps: int,
+    back: int = 0,
+    turns: int = 36,
+    tolerance: float = SOFT_TOLERANCE,
 ) -> Fits:
     """The fits after so many steps of descent under demands that steer but may be broken a little.
 
@@ -79,8 +96,8 @@ def descended(
     steps : int
         At most.
     back, turns : int
-        Steps of the crank at which the curve's distance from the points counts too, none where 0; and those at which the
-        transmission angle is held.
+        Steps of the crank at which the curve's distance from the points counts too, none where 0; and those at which
+        the transmission angle is held.
     """
     rows, stated = _posed(fits.form, points, weights, setting, back, turns)
     limits = margins_of(stated)

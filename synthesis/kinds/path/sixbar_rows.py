@@ -1,9 +1,8 @@
 """Residuals of a sixbar that guides a point along a curve, both ways, and its demands as margins.
 
-The points' crank angles are eliminated as in :mod:`synthesis.kinds.path.point_rows`: for each sixbar they are brought to
-where P is nearest to the points, and the Jacobian is that at fixed angles less its part along the curve. The *way back*
-is that of P at equal steps of the crank: its distance from the polyline through the points, along the normal of the side
-that is nearest.
+The points' crank angles are eliminated as in :mod:`synthesis.kinds.path.point_rows`: for each sixbar they are brought
+to where P is nearest to the points, and the Jacobian is that at fixed angles less its part along the curve. The *way
+back* is that of P at equal steps of the crank: its distance from the nearest side of the polyline through the points.
 
 The demands are those of the fourbar O2 A B O4 (:mod:`synthesis.fit.demands`), and besides
 
@@ -47,8 +46,8 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 CARRIER, HOLDER, SIDE, STEPS, BACK = range(DEMANDS, DEMANDS + 5)
-"""Places in a setting behind the demands: links that carry and hold the dyad, its assembly, equal steps of the crank, and
-the weight of the way back, of a step (a square root; 0 where it does not count)."""
+"""Places in a setting behind the demands: links that carry and hold the dyad, its assembly, equal steps of the crank,
+and the weight of the way back, of a step (a square root; 0 where it does not count)."""
 
 SETTING = DEMANDS + 5
 """Numbers of a setting."""
@@ -76,13 +75,12 @@ def margins_of(setting: Real) -> int:
 @njit(**OPTIONS)
 def rows_of(points: int, setting: Real) -> int:
     """How many rows there are at most."""
-    return 2 * points + int(setting[STEPS]) + margins_of(setting)
+    most: int = 2 * points + int(setting[STEPS]) + margins_of(setting)
+    return most
 
 
 @njit(**OPTIONS)
-def _pinned(
-    frame: int, at: int, x: Real, lengths: Real, chart: Real, which: int, row: Real
-) -> float:
+def _pinned(frame: int, at: int, x: Real, lengths: Real, chart: Real, which: int, row: Real) -> float:
     """ln of a pin's distance from the first (0) or second (1) other pin of its link, and its derivatives."""
     row[:] = 0.0
     if frame == GROUND:
@@ -161,9 +159,7 @@ def own_margins(
 
 
 @njit(**OPTIONS)
-def _settled(
-    x: Real, lengths: Real, setting: Real, z: complex, angle: float
-) -> float:
+def _settled(x: Real, lengths: Real, setting: Real, z: complex, angle: float) -> float:
     """The crank angle brought nearer to where P is nearest to z; NaN beyond a toggle."""
     sign, side = setting[SIGN], setting[SIDE]
     carrier, holder = int(setting[CARRIER]), int(setting[HOLDER])
@@ -262,9 +258,7 @@ def sixbar_rows(
             return -1
         at_e = cosine(x, places[2], places[3])
         values[number], values[number + 1] = setting[COSINE] - at_e, setting[COSINE] + at_e
-        loaded = (
-            values[number] < multipliers[number] / weight or values[number + 1] < multipliers[number + 1] / weight
-        )
+        loaded = values[number] < multipliers[number] / weight or values[number + 1] < multipliers[number + 1] / weight
         if not (loaded or back):
             continue
         _, c, d = pins_with_slopes(x, lengths, chart, sign, carrier, holder, angle, turns, by_c, by_d)
@@ -282,4 +276,3 @@ def sixbar_rows(
                     jacobian[m, j] = setting[BACK] / far * (off.real * slopes[j].real + off.imag * slopes[j].imag)
             m += 1
     return limit_rows(values, gradients, EQUATIONS, multipliers, residuals, jacobian, m)
-

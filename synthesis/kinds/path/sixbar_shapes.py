@@ -1,8 +1,8 @@
 """Sixbars drawn at random whose curves have the shape of a target: drawn, swept, compared and placed in batches.
 
 A sixbar is drawn from its fourbar outwards: Grashof lengths, C and D within a few links of theirs, then lengths of the
-dyad of several that are tried, the first that transmits with :data:`LEAST_ANGLE` over the whole turn, and P within a few
-links of C E. Logarithms of lengths are spread evenly. Curves are compared as those of fourbars are
+dyad of several that are tried, the first that transmits with :data:`LEAST_ANGLE` over the whole turn, and P within a
+few links of C E. Logarithms of lengths are spread evenly. Curves are compared as those of fourbars are
 (:mod:`synthesis.kinds.path.curve_shapes`).
 """
 
@@ -19,13 +19,12 @@ from numpy.typing import NDArray
 
 from kinematics.compiling import njit
 from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, natural
-from synthesis.fit.sixbar_curve import COUPLER, CRANK, DYAD, GROUND, ROCKER, UNKNOWNS, C, D, P, cosine, joints
+from synthesis.fit.sixbar_curve import COUPLER, CRANK, DYAD, GROUND, ROCKER, UNKNOWNS, C, D, P, joints
 from synthesis.kinds.path.curve_candidates import draw
 from synthesis.kinds.path.curve_shapes import (
     CHUNK,
     SWEEP_STEPS,
     WINDOW_LENGTHS,
-    WINDOW_STARTS,
     Likeness,
     alike_closed,
     alike_open,
@@ -75,6 +74,13 @@ FORMS: dict[str, tuple[Form, ...]] = {
     "stephenson_3": tuple(Form(family, COUPLER, GROUND) for family in (CRANK_ROCKER, DOUBLE_CRANK)),
 }
 """The builds of each type; P is always on the dyad's link at the carrier."""
+
+FAMILIES = {
+    "any": (CRANK_ROCKER, DOUBLE_CRANK),
+    "crank_rocker": (CRANK_ROCKER,),
+    "double_crank": (DOUBLE_CRANK,),
+}
+"""Families of a sixbar's fourbar by the class that is demanded."""
 
 
 class Sixbars(NamedTuple):
@@ -147,7 +153,7 @@ def _drawn(form: Form, count: int, rng: np.random.Generator) -> tuple[Real, Real
     x = np.zeros((count, UNKNOWNS))
     x[:, :C] = fourbars.x[:, :C]
     half = 0.5 * np.exp(x[:, 4:7])
-    coupler = 1.0 + half[:, 0] + (half[:, 1] if form.family == CRANK_ROCKER else half[:, 1])
+    coupler = 1.0 + half[:, 0] + half[:, 1]
     sizes = {
         CRANK: np.ones(count),
         COUPLER: coupler,

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from synthesis.kinds.path import curve_match
+from synthesis.kinds.path.by_type import solve_types
 from synthesis.kinds.path.design import CognateTriples, PathResult
 from synthesis.kinds.path.fallback import exact_or_fitted
 from synthesis.kinds.path.family_search import solve_family
@@ -55,7 +56,7 @@ FIRST_PART = 0.5
 
 def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
     """Solve a problem of path generation; every design brings its cognates."""
-    result = _solved(problem, progress)
+    result = _solved(problem, progress) if problem.mechanisms is None else solve_types(problem, _solved, progress)
     designs = [with_cognates(design) for design in result.designs]
     return result.model_copy(update={"designs": designs})
 

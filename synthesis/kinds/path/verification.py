@@ -24,13 +24,13 @@ from kinematics.linkage.fourbar import (
     transmission_extremes,
     traverse,
 )
-from synthesis.kinds.path.astray import astray, tolerance_used
+from synthesis.kinds.path.astray import astray, both_ways, tolerance_used
 from synthesis.kinds.path.design import PathDesign, PathMetrics
 from synthesis.kinds.path.passages import Passages, at_angles, at_points, in_order, nearest
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
-from synthesis.model.linkage_answer import FourbarMechanism, LinkageMechanism, Target
+from synthesis.model.linkage_answer import FourbarMechanism, LinkageMechanism, SixbarMechanism, Target
 from synthesis.model.linkages import DrivenFourbar, driven_fourbar
 from synthesis.proof.checks import CHOICE_KEPT, at_most, reaches_targets, tolerated
 from synthesis.proof.constraints import constraint_checks
@@ -156,9 +156,12 @@ def path_design(
     """A linkage of any type with its proof; ``own`` are checks of its type."""
     residuals = at.misses / problem.task_size
     gone: dict[str, float] = {}
+    of_sixbar = isinstance(mechanism, SixbarMechanism)
     if problem.fitted:
         points = np.array([point.point for point in problem.points])
         gone = astray(*way, points, problem.closed, float(at.misses.max()))._asdict()
+        if of_sixbar:
+            gone["both_way_rms"] = both_ways(*way, points, problem.closed, at.misses)
         checks = _tolerance_checks(problem, at, way, points)
     else:
         checks = [reaches_targets(float(residuals.max()))]
@@ -172,6 +175,7 @@ def path_design(
             for k, (angle, residual, miss) in enumerate(zip(at.inputs, residuals, at.misses, strict=True))
         ],
         verification=Verification.of([*checks, *own]),
+        point_link=next(link.name for link in mechanism.skeleton.links if "P" in link.joints) if of_sixbar else None,
         metrics=PathMetrics(
             input_rotation=float(at.inputs[-1] - at.inputs[0]),
             rms_residual=math.sqrt(float(np.mean(residuals**2))),

@@ -1,7 +1,8 @@
-"""Verification of slider-cranks and geared fivebars that guide a point: driven through their closures, and measured.
+"""Verification of slider-cranks, geared fivebars and sixbars that guide a point: driven and measured.
 
-The branches are found by root finding in the analysis core. On that of the reference the input is looked for at which P
-comes nearest to each point, in order, within one cycle: a turn of the crank, or as many as its gears need.
+They are driven through their closures. The branches are found by root finding in the analysis core. On that of the
+reference the input is looked for at which P comes nearest to each point, in order, within one cycle: a turn of the
+crank, or as many as its gears need.
 """
 
 from __future__ import annotations
@@ -13,26 +14,31 @@ import numpy as np
 from kinematics.errors import MechanismError
 from kinematics.linkage.planar.branches import cycle
 from kinematics.linkage.planar.limits import branches, holding_reference
+from kinematics.linkage.planar.mechanism import GROUND
 from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.passages import ordered_run
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification import AtPoints, Way, path_design
-from synthesis.model.linkage_answer import GearedFivebarMechanism, SliderCrankMechanism
+from synthesis.model.linkage_answer import GearedFivebarMechanism, SixbarMechanism, SliderCrankMechanism
 from synthesis.proof.closer import GRID, least_angles
-from synthesis.proof.measures import fixed_pivots, link_lengths, measured, reach_of
+from synthesis.proof.measures import barker_of, fixed_pivots, link_lengths, measured, reach_of
 from synthesis.proof.on_branch import OnBranch
 from synthesis.proof.rebuilt import rebuilt
+from synthesis.proof.space import BODY_POINT
+
+TracedMechanism = SliderCrankMechanism | GearedFivebarMechanism | SixbarMechanism
+"""What is driven through its closures."""
 
 
-def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFivebarMechanism) -> PathDesign | None:
-    """Drive a slider-crank or geared fivebar past a problem's points and measure it.
+def verify_traced(problem: PathProblem, design: TracedMechanism) -> PathDesign | None:
+    """Drive a slider-crank, geared fivebar or sixbar past a problem's points and measure it.
 
     Parameters
     ----------
     problem : PathProblem
         What was asked.
-    design : SliderCrankMechanism or GearedFivebarMechanism
-        Dimensions only; the skeleton is not looked at.
+    design : SliderCrankMechanism, GearedFivebarMechanism or SixbarMechanism
+        Dimensions only; the skeleton is not looked at, but for a sixbar's, which has no others.
 
     Returns
     -------
@@ -68,13 +74,13 @@ def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFiv
         problem.task_size,
         least_angles(driven.at, np.linspace(*used, GRID)),
         np.concatenate(list(joints.values())),
-        barker=None,
+        barker=barker_of(mechanism) if isinstance(design, SixbarMechanism) else None,
         same_branch=True,
         visits_in_order=bool(np.all(steps >= 0.0) or np.all(steps <= 0.0)) and bool(np.ptp(inputs) > 0.0),
         full_rotation=here.full,
         used=used,
     )
-    pins = ("A", "B") if isinstance(design, SliderCrankMechanism) else ("A", "B", "C")
-    moving = [complex(joints[pin][0]) for pin in pins]
+    still = {*mechanism.links[GROUND], BODY_POINT}
+    moving = [complex(places[0]) for name, places in joints.items() if name not in still]
     at_points = AtPoints(np.degrees(inputs), misses, True, fixed_pivots(mechanism), moving)
     return path_design(problem, design, measures, at_points, [], Way(place, used))

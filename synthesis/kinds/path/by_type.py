@@ -1,0 +1,110 @@
+"""Which type of linkage guides the point: the simplest that is sound and near, others beside it where they are better.
+
+Simpler types are looked for first: fourbars, slider-cranks, geared fivebars, then all sixbars together. A linkage that
+meets all demands stands alone where it transmits force well enough (:func:`~synthesis.outcome.simplest.transmits`) and
+is near: its error is at most :data:`NEAR` of the task's size, or within the tolerances that are stated. Otherwise the
+next types are looked for. They are offered beside it where their error is at most :data:`HALF` of the least that it
+has, or where they alone are sound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal
+
+from synthesis.kinds.path.design import PathDesign, PathResult
+from synthesis.kinds.path.nearness import error_of, least_error, order_of
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.sixbar_search import solve_sixbars
+from synthesis.kinds.path.stated_mechanisms import Simple, simple_of
+from synthesis.model.kind import Progress, part_of
+from synthesis.outcome.simplest import both_searches, offered_beside, offering, passing, transmits
+
+Solve = Callable[[PathProblem, Progress], PathResult]
+
+NEAR = 1e-3
+"""Error, as a share of the task's size, at which no better linkage is looked for."""
+
+HALF = 0.5
+"""Share of a simpler linkage's error that one of more links may have at most to be offered beside it."""
+
+NAMES = {"fourbar": "fourbar", "slider_crank": "slider-crank", "geared_fivebar": "geared fivebar", "sixbar": "sixbar"}
+"""What the types are called."""
+
+
+def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> PathResult:
+    """The answer of the types that a problem states.
+
+    Parameters
+    ----------
+    problem : PathProblem
+        With :attr:`PathProblem.mechanisms`.
+    of_one : callable
+        Solves for one of the types with one closure, as without that field.
+    progress : callable
+        Told how far the work is.
+    """
+    stages: list[Simple | Literal["sixbar"]] = [*simple_of(problem.mechanisms)]
+    if problem.sixbars:
+        stages.append("sixbar")
+    result: PathResult | None = None
+    before: list[str] = []
+    for n, name in enumerate(stages):
+        part = part_of(progress, n / len(stages), (n + 1) / len(stages))
+        found = solve_sixbars(problem, part) if name == "sixbar" else of_one(problem.of_type(name), part)
+        result = found if result is None else joined(problem, result, found, before, name)
+        before.append(name)
+        if any(_stands_alone(problem, design) for design in passing(result.designs)):
+            break
+    assert result is not None
+    return result
+
+
+def _stands_alone(problem: PathProblem, design: PathDesign) -> bool:
+    """Whether a linkage that meets all demands is sound and near enough."""
+    near = problem.tolerances is not None or error_of(design, problem) <= NEAR * problem.task_size
+    return near and transmits(problem, design)
+
+
+def joined(problem: PathProblem, simple: PathResult, found: PathResult, before: list[str], name: str) -> PathResult:
+    """The answer of simpler linkages and that of others as one; what passed and is not offered counts as outranked.
+
+    Parameters
+    ----------
+    problem : PathProblem
+        As it is stated.
+    simple, found : PathResult
+        The answers.
+    before, name : list of str and str
+        The types of the first, and that of the second.
+    """
+    plain, better = passing(simple.designs), passing(found.designs)
+    sound = [design for design in plain if transmits(problem, design)]
+    first, other = " or ".join(NAMES[one] for one in before), NAMES[name]
+    if not plain:
+        told = f"No {first} was found that meets all demands; " + (f"{other}s do." if better else f"nor was a {other}.")
+    elif not sound and (alone := [design for design in better if transmits(problem, design)]):
+        better = alone
+        told = f"No {first} that was found is sound; {other}s are"
+    else:
+        least = least_error(sound or plain, problem)
+        better = [design for design in better if error_of(design, problem) <= HALF * least]
+        told = f"The error of the best {first} is {least:.3g} {problem.length_unit}"
+        told += f"; {other}s have at most half of it" if better else f", and no {other} that was found has half of it."
+    order = order_of(problem)
+    offered = offered_beside(problem.max_designs, plain, better, order)
+    of_second = [design for design in offered if any(design is one for one in better)]
+    if plain and better:
+        if not of_second:
+            told += "; max_designs leaves no room for them."
+        else:
+            told += f" and are offered {'beside it' if len(of_second) < len(offered) else 'in its place'}."
+    failed = [one for result in (simple, found) for one in result.designs if not one.verification.passed]
+    searches = offering(simple.search, len(offered) - len(of_second)), offering(found.search, len(of_second))
+    return simple.model_copy(
+        update={
+            "designs": [*offered, *order(failed)][: problem.max_designs],
+            "search": both_searches(*searches),
+            "summary": " ".join([told, simple.summary, found.summary]),
+        }
+    )

@@ -1,0 +1,58 @@
+"""A fitted sixbar as an answer: its joints at the first point, in the problem's coordinates."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.fit.chart import natural
+from synthesis.fit.sixbar_curve import COUPLER, CRANK, GROUND, ROCKER, joints
+from synthesis.kinds.path.sixbar_shapes import Form
+from synthesis.model.linkage_answer import SixbarMechanism
+from synthesis.model.sixbars import sixbar_mechanism
+
+Real = NDArray[np.float64]
+
+MIN_LINK = 1e-6
+"""Pins of one link that are nearer to one another than this share of the task's size make no link."""
+
+TERNARY = {CRANK: "input", COUPLER: "coupler", ROCKER: "output"}
+"""The links that carry or hold a dyad, by their names in answers."""
+
+
+def fitted_sixbar(
+    kind: str, form: Form, x: Real, signs: Real, theta: float, centre: complex, size: float
+) -> SixbarMechanism | None:
+    """The sixbar of a fit with its crank at θ; None where it does not close there, or a link has no length.
+
+    ``centre`` and ``size`` are the origin and the unit of the fit, in the problem's coordinates.
+    """
+    lengths, places = np.empty(4), np.empty(6, np.complex128)
+    natural(form.family, x, lengths, np.empty((4, 4)))
+    if not joints(x, lengths, *_assembled(form, signs), theta, places):
+        return None
+    o2 = complex(x[0], x[1])
+    o4 = o2 + lengths[0] * np.exp(1j * x[2])
+    at = dict(zip(("A", "B", "C", "D", "E", "P"), places, strict=True)) | {"O2": o2, "O4": o4}
+    links: dict[str, Any] = {"ground": ["O2", "O4"], "input": ["O2", "A"], "coupler": ["A", "B"], "output": ["O4", "B"]}
+    if form.holder == GROUND:
+        at["O6"], at["D"] = at["D"], at.pop("E")
+        links["rocker"] = links.pop("output")
+        links["ground"].append("O6")
+        links |= {"link_5": ["C", "D", "P"], "output": ["O6", "D"]}
+    else:
+        links[TERNARY[form.holder]].append("D")
+        links |= {"link_5": ["C", "E", "P"], "link_6": ["D", "E"]}
+    links[TERNARY[form.carrier]].append("C")
+    made = sixbar_mechanism(
+        kind,
+        {name: complex(centre + size * place) for name, place in at.items()},
+        {name: tuple(listed) for name, listed in links.items()},
+    )
+    return made if min(made.links.values()) > MIN_LINK * size else None
+
+
+def _assembled(form: Form, signs: Real) -> tuple[float, int, int, float]:
+    return float(signs[0]), form.carrier, form.holder, float(signs[1])

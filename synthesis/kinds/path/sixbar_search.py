@@ -1,0 +1,220 @@
+"""Sixbars that guide a point along a curve or past points: shapes compared, the most alike fitted, the best driven.
+
+For every form of the types that are looked for (:data:`~synthesis.kinds.path.sixbar_shapes.FORMS`):
+
+1. sixbars are drawn and their curves compared with the target; the most alike are placed on it;
+2. they descend on all of their dimensions at equal steps along the target, steered by the demands;
+3. copies of the best with changed dimensions descend again: such descents end in many minima.
+
+The best of all forms are then fitted to the points themselves, and to the way between them where the points show it,
+and brought to where the demands hold. What the kernels know of these is told in
+:mod:`synthesis.kinds.path.sixbar_rows`; all that is demanded is proven of the driven sixbar. Where no transmission
+angle is demanded, at least :data:`~synthesis.outcome.simplest.SOUND` degrees are aimed at.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.path.curve_target import FEW_POINTS, SHAPE_POINTS, Target, angles_at, smooth_steps
+from synthesis.kinds.path.design import PathDesign, PathResult
+from synthesis.kinds.path.fallback import exact_or_fitted
+from synthesis.kinds.path.nearness import FAR, MOST_UNEVEN, near_the_nearest, order_of, steady
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.sixbar_fit import Fits, descended, held, sixbar_setting
+from synthesis.kinds.path.sixbar_mechanism import fitted_sixbar
+from synthesis.kinds.path.sixbar_shapes import FAMILIES, FORMS, alike_sixbars
+from synthesis.kinds.path.verify_traced import verify_traced
+from synthesis.model.kind import Progress, part_of
+from synthesis.model.linkage_answer import SixbarMechanism
+from synthesis.model.linkages import to_complex
+from synthesis.outcome.ranking import distinct
+from synthesis.outcome.sifting import Sifting, reported
+from synthesis.outcome.simplest import SOUND
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+DRAWN, FOLLOWED = 229376, 2100
+"""Sixbars that are drawn, and the most alike that are followed, of all forms together."""
+
+MOST_DRAWN, MOST_FOLLOWED, OPEN_SHARE = 65536, 600, 0.125
+"""The same of one form at most; and the share of the first for a stroke, which is compared with parts of each curve."""
+
+ROUGH_STEPS, FINE_STEPS, KICKED_STEPS = 40, 100, 60
+"""Steps of descents: of all that are followed, of the best of them, and of changed copies."""
+
+REFINED_SHARE = 0.125
+"""Of those that are followed the best that are refined."""
+
+KICKS, KICKED, COPIES, KICK, SPREAD, ELSEWHERE = 2, 12, 10, 0.15, 0.8, 0.4
+"""Changed copies: rounds, sixbars, copies of each; standard deviation of the change of their logarithms of lengths,
+that of its own logarithm, and the share of it for other numbers."""
+
+RUNNING, BROUGHT, MAX_DRIVEN, MAX_JUDGED = 8, 32, 16, 64
+"""Sixbars of a form that stay in the running; of all that are brought to the points; that are driven; and that are
+where a room, planes or forces are demanded, which are judged on the driven sixbar."""
+
+DENSE, BACK, TURNS = 24, 96, 96
+"""Points from which on their polyline tells the way between them; and steps of the crank at which the curve is compared
+with it, and at which the transmission angle is held."""
+
+MARGIN = 0.1
+"""Degrees that are held beyond the least transmission angle: it may lie between the steps of the crank."""
+
+EXACT_STEPS, EXACT_TOLERANCE = 300, 1e-14
+"""Steps of descents to points that are to be met, and their tolerance."""
+
+SAME_DESIGN = 1e-3
+"""Sixbars whose joints agree to this share of the task's size are one."""
+
+
+class _Candidate(NamedTuple):
+    """A sixbar of a type, alone in its fits; ``cost`` is half its sum of squares at equal steps."""
+
+    kind: str
+    fits: Fits
+    cost: float
+
+
+def solve_sixbars(problem: PathProblem, progress: Progress) -> PathResult:
+    """Solve a problem of path generation by sixbars of the types that it names."""
+    if problem.fitted:
+        return _solved(problem, progress)
+    return exact_or_fitted(problem, progress, _solved, _solved)
+
+
+def _solved(problem: PathProblem, progress: Progress) -> PathResult:
+    target = Target(problem)
+    limits = problem.constraints
+    asked = limits.min_transmission_angle
+    least = MARGIN + (SOUND if asked is None else asked)
+    ratio = MOST_UNEVEN if limits.max_link_ratio is None else limits.max_link_ratio
+    setting = sixbar_setting(problem, target.centre, target.size, least, ratio)
+    steps, places = target.steps, target.places
+    if len(target.points) < FEW_POINTS and not problem.matched:
+        steps, places = smooth_steps(target.points, target.closed)
+    begun = _begun(problem, steps, setting, part_of(progress, 0.0, 0.7))
+    ends = _brought(problem, target, places, begun, setting)
+    mechanisms = [
+        made
+        for kind, fits, _ in ends
+        if (
+            made := fitted_sixbar(
+                kind, fits.form, fits.x[0], fits.signs[0], float(fits.theta[0, 0]), target.centre, target.size
+            )
+        )
+    ]
+    return _answer(problem, mechanisms, part_of(progress, 0.8, 1.0))
+
+
+def _begun(problem: PathProblem, steps: Complex, setting: Real, progress: Progress) -> list[_Candidate]:
+    """Sixbars near a target, fitted at equal steps along it, the nearest first."""
+    families = FAMILIES[problem.constraints.grashof]
+    tasks = [(kind, form) for kind in problem.sixbars for form in FORMS[kind] if form.family in families]
+    drawn = min(MOST_DRAWN, DRAWN // len(tasks))
+    drawn = drawn if problem.closed else round(OPEN_SHARE * drawn)
+    followed = min(MOST_FOLLOWED, FOLLOWED // len(tasks))
+    rng = np.random.default_rng(problem.seed)
+    longest, weights = problem.longest_link / _size(problem), np.ones(SHAPE_POINTS)
+    found: list[_Candidate] = []
+    for n, (kind, form) in enumerate(tasks):
+        progress(n / len(tasks), f"{kind}: {drawn} sixbars compared, {followed} fitted")
+        alike = alike_sixbars(form, steps, problem.closed, drawn, followed, rng, longest)
+        if not len(alike.x):
+            continue
+        fits = Fits(form, alike.x, alike.signs, alike.theta, np.zeros(len(alike.x)))
+        fits = descended(fits, steps, weights, setting, steps=ROUGH_STEPS)
+        fits = fits.chosen(_best(fits, math.ceil(REFINED_SHARE * followed)))
+        fits = descended(fits, steps, weights, setting, steps=FINE_STEPS)
+        for _ in range(KICKS):
+            fits = _kicked(fits, steps, weights, setting, rng)
+        order = _best(fits, KICKED * COPIES)
+        kept = order[distinct(fits.x[order], RUNNING, SAME_DESIGN)]
+        found += [_Candidate(kind, fits.chosen(kept[k : k + 1]), float(fits.cost[kept[k]])) for k in range(len(kept))]
+    return sorted(found, key=lambda one: one.cost)
+
+
+def _size(problem: PathProblem) -> float:
+    return Target(problem).size
+
+
+def _best(fits: Fits, count: int) -> NDArray[np.int64]:
+    """The rows of the nearest, those that close."""
+    order = np.argsort(fits.cost, kind="stable")[:count]
+    return np.asarray(order[np.isfinite(fits.cost[order])])
+
+
+def _kicked(fits: Fits, points: Complex, weights: Real, setting: Real, rng: np.random.Generator) -> Fits:
+    """The fits, and those to which changed copies of the best descend."""
+    rows = np.repeat(_best(fits, KICKED), COPIES)
+    if not len(rows):
+        return fits
+    change = KICK * np.exp(SPREAD * rng.normal(size=(len(rows), 1))) * rng.normal(size=(len(rows), fits.x.shape[1]))
+    change[:, NO_LOGARITHMS] *= ELSEWHERE
+    copies = Fits(fits.form, fits.x[rows] + change, fits.signs[rows], fits.theta[rows], fits.cost[rows])
+    ends = descended(copies, points, weights, setting, steps=KICKED_STEPS)
+    return Fits(fits.form, *(np.concatenate(both) for both in zip(fits[1:], ends[1:], strict=True)))
+
+
+NO_LOGARITHMS = [0, 1, 2, 7, 8, 9, 10, 13, 14]
+"""Unknowns that are places and directions."""
+
+
+def _brought(
+    problem: PathProblem, target: Target, places: Real, begun: Sequence[_Candidate], setting: Real
+) -> list[_Candidate]:
+    """The best fitted to the points and brought to the demands; behind them those that were not brought there."""
+    count = len(target.points)
+    dense = problem.fitted and problem.closed and count >= DENSE
+    points, weights = (target.fitted, target.weights) if problem.matched else (target.points, target.weights[:count])
+    within: list[_Candidate] = []
+    beyond: list[_Candidate] = []
+    for kind, fits, _ in begun[:BROUGHT]:
+        theta = angles_at(places, fits.theta[0], problem.closed, math.tau)
+        at = fits._replace(theta=np.concatenate([theta, fits.theta[0]])[None, : len(points)])
+        if not problem.fitted:
+            at = descended(at, points, weights, setting, steps=EXACT_STEPS, turns=TURNS, tolerance=EXACT_TOLERANCE)
+        end = held(at, points, weights, setting, back=BACK if dense else 0, turns=TURNS)
+        if math.isfinite(end.cost[0]):
+            within.append(_Candidate(kind, end, float(end.cost[0])))
+        else:
+            beyond.append(_Candidate(kind, at, float(fits.cost[0])))
+    return [*sorted(within, key=lambda one: one.cost), *beyond]
+
+
+def _answer(problem: PathProblem, mechanisms: list[SixbarMechanism], progress: Progress) -> PathResult:
+    """Drive the sixbars, and rank what passes."""
+    judged = problem.space is not None or problem.layout is not None or bool(problem.constraints.of_forces)
+    joints = [[to_complex(joint) for joint in one.skeleton.joints.values()] for one in mechanisms]
+    chosen = distinct(joints, MAX_JUDGED if judged else MAX_DRIVEN, SAME_DESIGN * problem.task_size)
+    sifting = Sifting[PathDesign](problem)
+    sifting.sift(
+        reported([mechanisms[n] for n in chosen], progress, (0.0, 1.0), "{done} of {all} sixbars driven"),
+        partial(verify_traced, problem),
+    )
+    if problem.fitted:
+        sifting.withdraw(near_the_nearest(steady(sifting.passed, problem), problem), FAR)
+    progress(1.0, "verified")
+    text = f"{sifting.accepted} of {sifting.candidates} sixbars that were fitted satisfy all demands."
+    ordered = order_of(problem)
+    if sifting.passed:
+        best = ordered(sifting.passed)[0]
+        text += f" The best is a {best.mechanism.type.replace('_', ' ').title()} sixbar with P on {best.point_link}"
+        if best.metrics.both_way_rms is not None:
+            text += f"; its rms distance both ways is {best.metrics.both_way_rms:.3g} {problem.length_unit}"
+        text += "."
+    text += sifting.reasons()
+    if not sifting.passed:
+        text += " None was found; others may exist."
+    return PathResult(
+        designs=sifting.designs(ordered),
+        search=sifting.search("sixbar_shapes"),
+        summary=text,
+    )

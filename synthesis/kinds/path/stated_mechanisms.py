@@ -1,0 +1,65 @@
+"""Which types of mechanism may guide the point, and what cannot be demanded of some of them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, get_args
+
+from pydantic import Field
+
+from synthesis.model.stated_types import Auto, named_among
+from synthesis.model.statement import Contradiction
+
+Simple = Literal["fourbar", "slider_crank", "geared_fivebar"]
+"""Linkages with one closure."""
+
+SIMPLE: tuple[Simple, ...] = get_args(Simple)
+
+Sixbar = Literal["watt_1", "stephenson_1", "stephenson_3"]
+"""Sixbars with a point on a link that is not joined to the ground, and not moved by a fourbar alone."""
+
+SIXBARS: tuple[Sixbar, ...] = get_args(Sixbar)
+
+Mechanisms = Auto | Annotated[list[Simple | Sixbar], Field(min_length=1, max_length=6)]
+"""Types by their names, or the simplest that does."""
+
+TURNING = ("any", "crank_rocker", "double_crank")
+"""Classes of fourbars within sixbars: their crank turns through."""
+
+
+def simple_of(stated: Any) -> tuple[Simple, ...]:
+    """The types with one closure that a statement wants, the simplest first; under ``auto`` fourbars alone."""
+    return ("fourbar",) if stated == "auto" else named_among(stated, SIMPLE)
+
+
+def of_types(problem: Any) -> list[Contradiction]:
+    """What cannot be stated beside ``mechanisms``, or of the types that it names."""
+    stated, listed = problem.mechanisms, []
+    if stated is None:
+        return []
+    if problem.mechanism != "fourbar":
+        listed.append(Contradiction("/mechanism", "names one type beside mechanisms, which names all; leave it out"))
+    if problem.gear_ratio is not None and "geared_fivebar" not in simple_of(stated):
+        listed.append(Contradiction("/gear_ratio", "no mechanism that is looked for has gears"))
+    return listed + (_of_sixbars(problem) if problem.sixbars else [])
+
+
+def _of_sixbars(problem: Any) -> list[Contradiction]:
+    """What is a fourbar's alone, or not built for sixbars."""
+    listed, limits = [], problem.constraints
+    for path, of_fourbars in (
+        ("/timing", problem.prescribed),
+        ("/placement_free", bool(problem.placement_free)),
+        ("/constraints/coupler_point", limits.coupler_point is not None),
+        ("/manufacture", problem.manufacture is not None),
+    ):
+        if of_fourbars:
+            listed.append(
+                Contradiction(path, "is not for sixbars; leave it out, or take the sixbars out of mechanisms")
+            )
+    listed += limits.of_another_class(TURNING, "sixbars are looked for whose crank turns through")
+    for name in ("fixed_pivots", "moving_pivots"):
+        if problem.space is not None and getattr(problem.space, name) is not None:
+            kind = name.removesuffix("s")
+            detail = f"names the sides of a fourbar; state constraints.{kind}_region, which all pivots of a sixbar keep"
+            listed.append(Contradiction(f"/space/{name}", detail))
+    return listed
