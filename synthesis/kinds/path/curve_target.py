@@ -20,6 +20,9 @@ FEW_POINTS, FILL = 12, 0.1
 """Fewer points than this say little of a curve. Where it is to be matched the lines between them count too, with this
 share of the weight; where its points are to be met a smooth curve is laid through them."""
 
+DENSE = 24
+"""Points from which on their polyline tells the curve between them."""
+
 SMOOTH_POINTS = 240
 """Points of that smooth curve."""
 

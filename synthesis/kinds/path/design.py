@@ -37,8 +37,8 @@ class PathMetrics(LinkageMetrics):
         "bulge between points, a quarter of their distance; length units."
     )
     both_way_rms: Length | None = optional(
-        "For fits by sixbars: root mean square of the points' distances from the curve and of the curve's, at equal "
-        "steps along it, from the straight lines through the points; length units."
+        "For fits by sixbars to 24 points and more: root mean square of the points' distances from the curve and of "
+        "the curve's, by its length, from the straight lines through the points; length units."
     )
 
 

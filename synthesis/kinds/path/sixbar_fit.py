@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.fit.demands import CHANGE_POINT, COSINE, DEMANDS, FAMILY, RATIO, SIGN, WHOLE
+from synthesis.fit.demands import BOXES, CHANGE_POINT, COSINE, DEMANDS, FAMILY, RATIO, SIGN, WHOLE
 from synthesis.kinds.path.curve_limits import curve_setting
 from synthesis.kinds.path.limits import MIN_GRASHOF
 from synthesis.kinds.path.problem import PathProblem
@@ -20,6 +20,7 @@ from synthesis.kinds.path.sixbar_rows import (
     BACK,
     CARRIER,
     HOLDER,
+    ROOM,
     SETTING,
     SIDE,
     STEPS,
@@ -28,6 +29,7 @@ from synthesis.kinds.path.sixbar_rows import (
     sixbar_rows,
 )
 from synthesis.kinds.path.sixbar_shapes import Form
+from synthesis.model.space import Space
 from synthesis.numerics.augmented_lagrangian import hold
 from synthesis.numerics.levenberg import descend_each
 from synthesis.numerics.portions import in_portions
@@ -35,6 +37,9 @@ from synthesis.numerics.status import Status
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+
+ROOM_MARGIN = 1e-4
+"""Share of the task's size by which a box is drawn in: a joint may go beyond it between the steps of the crank."""
 
 SOFT_WEIGHT, SOFT_TOLERANCE = 10.0, 1e-4
 """Weight of demands, in the target's unit, where they only steer, and the tolerance of such descents."""
@@ -70,7 +75,23 @@ def sixbar_setting(problem: PathProblem, centre: complex, size: float, degrees: 
     out[WHOLE], out[CHANGE_POINT] = 1.0, MIN_GRASHOF
     out[COSINE] = min(out[COSINE], math.cos(math.radians(degrees)))
     out[RATIO] = min(out[RATIO], ratio)
+    out[ROOM : ROOM + 4] = -math.inf, math.inf, -math.inf, math.inf
+    if problem.space is not None and problem.space.box is not None:
+        within = _within(problem.space, centre, size)
+        out[ROOM : ROOM + 4] = within
+        for pivot in range(2):
+            at = slice(BOXES + 4 * pivot, BOXES + 4 * pivot + 4)
+            out[at] = np.where(np.arange(4) % 2, np.minimum(out[at], within), np.maximum(out[at], within))
     return out
+
+
+def _within(space: Space, centre: complex, size: float) -> Real:
+    """The box for joints, half a link's width and the clearance within that for parts: x from, to, y from, to."""
+    assert space.box is not None
+    (left, low), (right, high) = space.box
+    inward = 0.5 * space.link_width + space.clearance + ROOM_MARGIN * size
+    x, y = np.array([left + inward, right - inward]), np.array([low + inward, high - inward])
+    return np.concatenate([x - centre.real, y - centre.imag]) / size
 
 
 def descended(

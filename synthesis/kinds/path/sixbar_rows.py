@@ -9,7 +9,8 @@ The demands are those of the fourbar O2 A B O4 (:mod:`synthesis.fit.demands`), a
 * the cosine of the angle at E, from above and from below, at equal steps of the crank;
 * the distances of C and D from the other pins of their links and the lengths C E and E D, from the least and the
   greatest length, and their ratios to one another and to the fourbar's links;
-* the sides of the box of O6, where D is fixed.
+* the sides of the box of O6, where D is fixed;
+* at equal steps of the crank, from each side of a box, the distance of the joint that is nearest to it or beyond it.
 
 A row of derivatives is computed only where its limit bears a load.
 """
@@ -32,6 +33,7 @@ from synthesis.fit.sixbar_curve import (
     UNKNOWNS,
     C,
     D,
+    P,
     cosine,
     cosine_with_slopes,
     joints,
@@ -45,11 +47,12 @@ from synthesis.numerics.levenberg import ROWS
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-CARRIER, HOLDER, SIDE, STEPS, BACK = range(DEMANDS, DEMANDS + 5)
+CARRIER, HOLDER, SIDE, STEPS, BACK, ROOM = range(DEMANDS, DEMANDS + 6)
 """Places in a setting behind the demands: links that carry and hold the dyad, its assembly, equal steps of the crank,
-and the weight of the way back, of a step (a square root; 0 where it does not count)."""
+the weight of the way back, of a step (a square root; 0 where it does not count), and the box that all joints stay in (x
+from, to, y from, to; infinite where there is none)."""
 
-SETTING = DEMANDS + 5
+SETTING = DEMANDS + 9
 """Numbers of a setting."""
 
 MORE = 6
@@ -57,6 +60,9 @@ MORE = 6
 
 OWN = 2 * MORE + MORE * (MORE - 1) + 8 * MORE + 4
 """Margins of a sixbar beside the fourbar's and those of the steps: lengths, ratios, O6."""
+
+AT_STEP = 6
+"""Margins of a step: the angle at E from above and from below, and the sides of the box."""
 
 SETTLING, MAX_TURN_STEP, TURN_TOLERANCE = 2, 0.25, 1e-7
 """Steps by which crank angles are settled at each sixbar, from those of the last accepted one; the greatest, and that
@@ -69,7 +75,7 @@ SPEED_FLOOR = 1e-9
 @njit(**OPTIONS)
 def margins_of(setting: Real) -> int:
     """How many margins a setting has."""
-    return LIMITS + OWN + 2 * int(setting[STEPS])
+    return LIMITS + OWN + AT_STEP * int(setting[STEPS])
 
 
 @njit(**OPTIONS)
@@ -156,6 +162,38 @@ def own_margins(
                 gradients[number + k] = 0.0
                 gradients[number + k, D + k // 2] = toward
     return number + 4
+
+
+@njit(**OPTIONS)
+def _joint_with_slopes(
+    joint: int, x: Real, lengths: Real, chart: Real, setting: Real, theta: float, turns: Real, by_c: Complex,
+    by_d: Complex, slopes: Complex,
+) -> None:  # fmt: skip
+    """The derivatives of one of the joints A, B, C, D, E and P (0 to 5) by the unknowns, into ``slopes``.
+
+    A and B are points of the coupler, and E is one of the link C E, whose coordinates change with the lengths.
+    """
+    sign, carrier, holder = setting[SIGN], int(setting[CARRIER]), int(setting[HOLDER])
+    pinned = x.copy()
+    if joint < 2:
+        pinned[C], pinned[C + 1] = joint * lengths[2], 0.0
+        pins_with_slopes(pinned, lengths, chart, sign, COUPLER, holder, theta, turns, slopes, by_d)
+        along = slopes[C]
+        slopes[C] = slopes[C + 1] = 0.0
+        for k in range(4):
+            slopes[3 + k] += joint * chart[2, k] * along
+        return
+    _, c, d = pins_with_slopes(x, lengths, chart, sign, carrier, holder, theta, turns, by_c, by_d)
+    if joint < 4:
+        slopes[:] = by_c if joint == 2 else by_d
+        return
+    first = math.exp(x[DYAD])
+    if joint == 4:
+        pinned[P], pinned[P + 1] = first, 0.0
+    point_with_slopes(pinned, setting[SIDE], c, d, by_c, by_d, slopes)
+    if joint == 4:
+        slopes[DYAD] += first * slopes[P]
+        slopes[P] = slopes[P + 1] = 0.0
 
 
 @njit(**OPTIONS)
@@ -253,11 +291,24 @@ def sixbar_rows(
     weight, places = multipliers[limits], np.empty(6, np.complex128)
     for k in range(steps):
         angle, back = 2.0 * math.pi * k / steps, setting[BACK] > 0.0
-        number = first + 2 * k
+        number = first + AT_STEP * k
         if not joints(x, lengths, sign, carrier, holder, side, angle, places):
             return -1
         at_e = cosine(x, places[2], places[3])
         values[number], values[number + 1] = setting[COSINE] - at_e, setting[COSINE] + at_e
+        for edge in range(4):
+            limit, toward = setting[ROOM + edge], 1.0 if edge % 2 == 0 else -1.0
+            least, nearest = np.inf, 0
+            for joint in range(6):
+                at = places[joint].real if edge < 2 else places[joint].imag
+                if toward * (at - limit) < least:
+                    least, nearest = toward * (at - limit), joint
+            values[number + 2 + edge] = least
+            if least < multipliers[number + 2 + edge] / weight:
+                _joint_with_slopes(nearest, x, lengths, chart, setting, angle, turns, by_c, by_d, slopes)
+                for j in range(UNKNOWNS):
+                    by = slopes[j].real if edge < 2 else slopes[j].imag
+                    gradients[number + 2 + edge, j] = toward * by
         loaded = values[number] < multipliers[number] / weight or values[number + 1] < multipliers[number + 1] / weight
         if not (loaded or back):
             continue

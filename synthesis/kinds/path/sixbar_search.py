@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.path.curve_target import FEW_POINTS, SHAPE_POINTS, Target, angles_at, smooth_steps
+from synthesis.kinds.path.curve_target import DENSE, FEW_POINTS, SHAPE_POINTS, Target, angles_at, smooth_steps
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.fallback import exact_or_fitted
 from synthesis.kinds.path.nearness import FAR, MOST_UNEVEN, near_the_nearest, order_of, steady
@@ -57,13 +57,13 @@ KICKS, KICKED, COPIES, KICK, SPREAD, ELSEWHERE = 2, 12, 10, 0.15, 0.8, 0.4
 """Changed copies: rounds, sixbars, copies of each; standard deviation of the change of their logarithms of lengths,
 that of its own logarithm, and the share of it for other numbers."""
 
-RUNNING, BROUGHT, MAX_DRIVEN, MAX_JUDGED = 8, 32, 16, 64
-"""Sixbars of a form that stay in the running; of all that are brought to the points; that are driven; and that are
-where a room, planes or forces are demanded, which are judged on the driven sixbar."""
+RUNNING, BROUGHT, MAX_DRIVEN, MAX_JUDGED = 8, 32, 16, 32
+"""Sixbars of a form that stay in the running, or more where there are few forms; of all that are brought to the points;
+that are driven; and that are where a room, planes or forces are demanded, which are judged on the driven sixbar."""
 
-DENSE, BACK, TURNS = 24, 96, 96
-"""Points from which on their polyline tells the way between them; and steps of the crank at which the curve is compared
-with it, and at which the transmission angle is held."""
+BACK, TURNS = 96, 96
+"""Steps of the crank at which the curve is compared with the polyline through many points, and at which the
+transmission angle is held."""
 
 MARGIN = 0.1
 """Degrees that are held beyond the least transmission angle: it may lie between the steps of the crank."""
@@ -136,7 +136,7 @@ def _begun(problem: PathProblem, steps: Complex, setting: Real, progress: Progre
         for _ in range(KICKS):
             fits = _kicked(fits, steps, weights, setting, rng)
         order = _best(fits, KICKED * COPIES)
-        kept = order[distinct(fits.x[order], RUNNING, SAME_DESIGN)]
+        kept = order[distinct(fits.x[order], max(RUNNING, BROUGHT // len(tasks)), SAME_DESIGN)]
         found += [_Candidate(kind, fits.chosen(kept[k : k + 1]), float(fits.cost[kept[k]])) for k in range(len(kept))]
     return sorted(found, key=lambda one: one.cost)
 
@@ -207,8 +207,10 @@ def _answer(problem: PathProblem, mechanisms: list[SixbarMechanism], progress: P
     if sifting.passed:
         best = ordered(sifting.passed)[0]
         text += f" The best is a {best.mechanism.type.replace('_', ' ').title()} sixbar with P on {best.point_link}"
+        if problem.fitted:
+            text += f"; its rms distance is {best.metrics.rms_distance:.3g} {problem.length_unit}"
         if best.metrics.both_way_rms is not None:
-            text += f"; its rms distance both ways is {best.metrics.both_way_rms:.3g} {problem.length_unit}"
+            text += f", {best.metrics.both_way_rms:.3g} both ways"
         text += "."
     text += sifting.reasons()
     if not sifting.passed:

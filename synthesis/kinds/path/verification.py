@@ -25,6 +25,7 @@ from kinematics.linkage.fourbar import (
     traverse,
 )
 from synthesis.kinds.path.astray import astray, both_ways, tolerance_used
+from synthesis.kinds.path.curve_target import DENSE
 from synthesis.kinds.path.design import PathDesign, PathMetrics
 from synthesis.kinds.path.passages import Passages, at_angles, at_points, in_order, nearest
 from synthesis.kinds.path.problem import PathProblem
@@ -160,7 +161,7 @@ def path_design(
     if problem.fitted:
         points = np.array([point.point for point in problem.points])
         gone = astray(*way, points, problem.closed, float(at.misses.max()))._asdict()
-        if of_sixbar:
+        if of_sixbar and len(points) >= DENSE:
             gone["both_way_rms"] = both_ways(*way, points, problem.closed, at.misses)
         checks = _tolerance_checks(problem, at, way, points)
     else:
