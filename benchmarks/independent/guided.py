@@ -29,6 +29,9 @@ HALVED, SETTLED = 40, 1e-11
 COURSE = 2881
 """Inputs at which a curve is laid beside the course of its points."""
 
+MIDDLES = 100_001
+"""Inputs between which the middles of a curve's steps are compared with the course, for a mean."""
+
 EXACT = 5
 """Positions that are met exactly, where nothing else is stated."""
 
@@ -205,6 +208,11 @@ def _compare_path(beside: Beside, stated: dict[str, Any], drive: Drive, met: Met
     if beside.design.metrics.curve_distance is not None:
         beside.metric("curve_distance", greatest_of(course.distances), met.task)
         beside.metric("excursion", greatest_of(lambda z: course.beyond_bulges(z, worst)), met.task)
+    if beside.design.metrics.both_way_rms is not None:
+        along = drive.joint("P", np.linspace(*met.used, MIDDLES))
+        back = course.distances(0.5 * (along[1:] + along[:-1])) ** 2
+        both = 0.5 * (squares / len(met.points) + float(np.average(back, weights=np.abs(np.diff(along)))))
+        beside.metric("both_way_rms", math.sqrt(both), met.task)
     if all(point.get("tolerance") is not None for point in stated["points"]):
         tolerances = np.array([point["tolerance"] for point in stated["points"]])
         beside.check("within_tolerance", float((met.misses / tolerances).max()))

@@ -18,6 +18,7 @@ they are made (:mod:`benchmarks.manufacture`)."""
 NOT_MEASURED = {
     "targets.index": "a number in a list",
     "cognate_choice": "words",
+    "point_link": "what the answer calls it",
     "metrics.family": "what the solver calls the design",
     "metrics.proportions": "what the solver calls the design",
     "metrics.base": "what the solver calls the design",
@@ -85,7 +86,7 @@ COMPARED: dict[str, frozenset[str]] = {
             _PATH_CHECKS,
             """
             metrics.sum_of_squares metrics.rms_distance metrics.max_distance metrics.curve_distance metrics.excursion
-            targets.point_residual
+            metrics.both_way_rms targets.point_residual
             cognates.grashof cognates.full_rotation cognates.same_timing cognates.same_branch cognates.visits_in_order
             cognates.min_transmission_angle cognates.deviation
             """,

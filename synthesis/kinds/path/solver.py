@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from synthesis.kinds.path import curve_match
+from synthesis.kinds.path import curve_match, sixbar_search
 from synthesis.kinds.path.by_type import solve_types
 from synthesis.kinds.path.design import CognateTriples, PathResult
 from synthesis.kinds.path.fallback import exact_or_fitted
@@ -130,6 +130,7 @@ def _solve_nine(problem: PathProblem, progress: Progress) -> PathResult:
 def warm_up() -> None:
     """Load the kernels by refining a few solutions of the start; the paths of a whole problem would take a second."""
     curve_match.warm_up()
+    sixbar_search.warm_up()
     begun = nine_point_start()
     y, low, _ = refine(nine_point_system_extended, GROUPS, SCRATCH, begun.y[:2], np.zeros_like(begun.y[:2]), begun.p)
     follow(nine_point_system, GROUPS, SCRATCH, y, begun.p, begun.p, np.zeros_like(begun.p))

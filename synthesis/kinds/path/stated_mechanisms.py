@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field
 
-from synthesis.model.stated_types import Auto, named_among
+from synthesis.model.stated_types import Auto, beside_sixbars, named_among
 from synthesis.model.statement import Contradiction
 
 Simple = Literal["fourbar", "slider_crank", "geared_fivebar"]
@@ -50,16 +50,10 @@ def _of_sixbars(problem: Any) -> list[Contradiction]:
         ("/timing", problem.prescribed),
         ("/placement_free", bool(problem.placement_free)),
         ("/constraints/coupler_point", limits.coupler_point is not None),
-        ("/manufacture", problem.manufacture is not None),
     ):
         if of_fourbars:
             listed.append(
                 Contradiction(path, "is not for sixbars; leave it out, or take the sixbars out of mechanisms")
             )
     listed += limits.of_another_class(TURNING, "sixbars are looked for whose crank turns through")
-    for name in ("fixed_pivots", "moving_pivots"):
-        if problem.space is not None and getattr(problem.space, name) is not None:
-            kind = name.removesuffix("s")
-            detail = f"names the sides of a fourbar; state constraints.{kind}_region, which all pivots of a sixbar keep"
-            listed.append(Contradiction(f"/space/{name}", detail))
-    return listed
+    return [*listed, *beside_sixbars(problem)]

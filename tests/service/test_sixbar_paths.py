@@ -1,0 +1,256 @@
+"""Paths by sixbars through HTTP: solved, proved by another formulation, drawn, with every demand; refusals by field."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from synthesis.kinds.path import by_type
+from synthesis.kinds.path.design import PathResult
+from synthesis.model.answer import Search
+from tests.campaign import further
+from tests.oracles.loops import Loops
+from tests.service.answers import drawn, finished
+
+TURN = np.linspace(0.0, 2.0 * np.pi, 36, endpoint=False)
+EIGHT = 40.0 * np.sin(TURN) + 25.0j * np.sin(2.0 * TURN) + 10.0 + 5.0j
+SIXBARS = "watt_1", "stephenson_1", "stephenson_3"
+
+
+def listed(points) -> list[dict[str, float]]:
+    return [{"x": float(z.real), "y": float(z.imag)} for z in points]
+
+
+TASK: dict[str, Any] = {
+    "kind": "path",
+    "method": "curve_match",
+    "closed": True,
+    "points": listed(EIGHT),
+    "mechanisms": ["stephenson_3"],
+    "constraints": {"grashof": "crank_rocker"},
+    "max_designs": 2,
+}
+SIZE = float(np.abs(EIGHT[:, None] - EIGHT).max())
+
+
+def answered(client, **more) -> dict[str, Any]:
+    body = finished(client, TASK | more)
+    assert body["status"] == "succeeded", body
+    return body
+
+
+def passed(body) -> list[dict[str, Any]]:
+    return [design for design in body["result"]["designs"] if design["verification"]["passed"]]
+
+
+def off_the_sides(places, points) -> np.ndarray:
+    """Distances of places from the closed polyline through points."""
+    sides, gaps = np.roll(points, -1) - points, places[:, None] - points
+    share = np.clip((gaps * sides.conj()).real / np.abs(sides) ** 2, 0.0, 1.0)
+    return np.abs(gaps - share * sides).min(axis=1)
+
+
+def once_round(design) -> Any:
+    """The design's whole turn by its loops, which know nothing of the product; on one branch."""
+    met = Loops(design["mechanism"]["skeleton"]).followed(np.linspace(0.0, 2.0 * np.pi, 721))
+    assert met.branch > 0.0
+    assert abs(met.points[-1] - met.points[0]) < 1e-8 * SIZE
+    return met
+
+
+def both_ways(curve, points) -> float:
+    """Root mean square of distances, curve to points by its length and points to curve."""
+    steps = np.abs(np.diff(curve))
+    back = off_the_sides(0.5 * (curve[1:] + curve[:-1]), points)
+    forth = off_the_sides(points, curve[:-1])
+    return math.sqrt(0.5 * (np.mean(forth**2) + (back**2 * steps).sum() / steps.sum()))
+
+
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize("kind", further(SIXBARS, ["stephenson_3"]))
+def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
+    body = answered(client, mechanisms=[kind])
+    designs = passed(body)
+    assert len(designs) == 2
+    for design in designs[:1]:
+        met, metrics = once_round(design), design["metrics"]
+        assert design["mechanism"]["type"] == kind
+        assert metrics["grashof"] == "crank_rocker"
+        assert both_ways(met.points, EIGHT) == pytest.approx(metrics["both_way_rms"], rel=0.05)
+        assert metrics["both_way_rms"] < 0.01 * SIZE
+        on = next(link for link in design["mechanism"]["skeleton"]["links"] if "P" in link["joints"])
+        assert on["name"] == design["point_link"]
+        assert not {"O2", "O4", "O6"} & set(on["joints"])
+        at = {"coupler": "B", "link_5": "D" if kind == "stephenson_3" else "E"}
+        assert metrics["transmission_angles"].keys() == at.keys()
+        for link, angle in metrics["transmission_angles"].items():
+            seen = min(value for (joint, *two), value in met.angles.items() if joint == at[link] and link in two)
+            assert seen == pytest.approx(angle, abs=0.05)
+        assert metrics["min_transmission_angle"] >= 20.0
+        assert metrics["link_ratio"] <= 10.0 + 1e-6
+    assert designs[0]["point_link"] in body["result"]["summary"]
+    place = f"/v1/jobs/{body['id']}/designs/0"
+    drawn(client, place, designs[0])
+    assert "Stephenson" in client.get(f"{place}.svg").text or kind == "watt_1"
+    assert client.post("/v1/analyses", json={"mechanism": designs[0]["mechanism"]}).status_code == 200
+    assert client.get(f"/v1/jobs/{body['id']}/report.html").status_code == 200
+
+
+@pytest.mark.timeout(300)
+def test_all_demands_are_kept_together(client):
+    box, region = [[-90.0, -80.0], [110.0, 120.0]], {"x": [-80.0, 60.0], "y": [-70.0, 100.0]}
+    limits = {
+        "grashof": "crank_rocker",
+        "min_transmission_angle": 28.0,
+        "max_link_ratio": 7.0,
+        "link_length": {"min": 12.0, "max": 150.0},
+        "fixed_pivot_region": region,
+        "input_pivot_region": {"x": [-80.0, 20.0], "y": [-70.0, 100.0]},
+    }
+    room = {"box": box, "link_width": 6.0}
+    designs = passed(answered(client, constraints=limits, space=room, max_designs=1))
+    assert designs
+    for design in designs:
+        met = once_round(design)
+        joints = design["mechanism"]["skeleton"]["joints"]
+        for name, (x, y) in joints.items():
+            if name.startswith("O"):
+                assert -80.0 <= x <= 60.0
+                assert -70.0 <= y <= 100.0
+        assert joints["O2"][0] <= 20.0
+        lengths = design["mechanism"]["links"].values()
+        assert 12.0 <= min(lengths) <= max(lengths) <= 150.0
+        assert max(lengths) <= 7.0 * min(lengths)
+        assert min(met.angles[key] for key in met.angles if key[0] in ("B", "D") and "ground" not in key) >= 27.9
+        assert met.points.real.min() >= -87.0
+        assert met.points.real.max() <= 107.0
+        names = {check["name"] for check in design["verification"]["checks"]}
+        assert {"box", "transmission_angle", "link_ratio", "shortest_link", "fixed_pivot_region"} <= names
+
+
+def test_points_are_met_exactly_in_order(client):
+    few = [40 + 30j, 32 + 42j, 20 + 45j, 8 + 40j, 2 + 30j, 6 + 20j]
+    designs = passed(answered(client, points=listed(few), method="auto", closed=False))
+    assert designs
+    for design in designs:
+        inputs = np.radians([target["input_angle"] for target in design["targets"]])
+        assert np.all(np.diff(inputs) > 0.0) or np.all(np.diff(inputs) < 0.0)
+        met = Loops(design["mechanism"]["skeleton"]).followed(inputs - inputs[0])
+        assert np.abs(met.points - few).max() < 1e-6 * SIZE
+        assert met.branch > 0.0
+
+
+def test_a_stroke_is_drawn_within_tolerances_from_a_given_pivot(client):
+    along = np.linspace(0.0, 1.0, 13)
+    stroke = [point | {"tolerance": 0.5} for point in listed(100.0 * along + 15.0j * np.sin(2.0 * np.pi * along))]
+    designs = passed(answered(client, points=stroke, closed=False, fixed_pivots={"input": [50.0, -60.0]}))
+    assert designs
+    assert all(design["mechanism"]["skeleton"]["joints"]["O2"] == pytest.approx([50.0, -60.0]) for design in designs)
+    assert all(target["point_residual"] <= 0.5 for design in designs for target in design["targets"])
+
+
+def test_auto_takes_the_fourbar_where_one_is_near_and_sound(client):
+    plain = {k: v for k, v in TASK.items() if k not in ("mechanisms", "constraints")}
+    plain |= {"method": "auto", "closed": False, "rounds": 1, "points": listed([40 + 30j, 32 + 42j, 20 + 45j, 8 + 40j])}
+    without = finished(client, plain)["result"]
+    assert finished(client, plain | {"mechanisms": "auto"})["result"] == without
+    assert {design["mechanism"]["type"] for design in without["designs"]} == {"fourbar"}
+
+
+@pytest.mark.campaign
+def test_auto_offers_sixbars_where_no_fourbar_is_near(client):
+    result = answered(client, mechanisms="auto", constraints={}, max_designs=4)["result"]
+    types = {design["mechanism"]["type"] for design in result["designs"]}
+    assert types & set(SIXBARS)
+    assert "sixbars have at most half of it and are offered" in result["summary"]
+
+
+@pytest.mark.campaign
+def test_types_with_one_closure_are_looked_for_too(client):
+    circle = listed(40.0 * np.exp(1j * TURN))
+    stated = {"points": circle, "constraints": {}}
+    result = answered(client, mechanisms=["slider_crank", "geared_fivebar"], gear_ratio=1.0, **stated)["result"]
+    assert {design["mechanism"]["type"] for design in result["designs"]} <= {"slider_crank", "geared_fivebar"}
+    assert "geared fivebar" in result["summary"]
+
+
+def _as_of(error: float, least: float) -> SimpleNamespace:
+    """As much of a design as decides what is offered."""
+    metrics = SimpleNamespace(min_transmission_angle=least, rms_distance=error, excursion=0.0, link_ratio=2.0)
+    return SimpleNamespace(metrics=metrics, verification=SimpleNamespace(passed=True))
+
+
+@pytest.mark.parametrize(
+    ("fourbars", "sixbars", "most", "offered", "told"),
+    [
+        (
+            [(4.0, 30.0)],
+            [(1.0, 30.0), (3.0, 30.0)],
+            5,
+            [1.0, 4.0],
+            "have at most half of it and are offered beside it.",
+        ),
+        ([(4.0, 30.0)], [(3.0, 30.0)], 5, [4.0], "no sixbar that was found has half of it."),
+        (
+            [(4.0, 10.0)],
+            [(3.0, 25.0)],
+            5,
+            [3.0, 4.0],
+            "No fourbar that was found is sound; sixbars are and are offered",
+        ),
+        ([(4.0, 10.0)], [(3.0, 15.0)], 5, [4.0], "no sixbar that was found has half of it."),
+        ([], [(3.0, 15.0)], 5, [3.0], "No fourbar was found that meets all demands; sixbars do."),
+        ([], [], 5, [], "No fourbar was found that meets all demands; nor was a sixbar."),
+        ([(4.0, 30.0)], [(1.0, 30.0)], 1, [1.0], "offered in its place."),
+    ],
+)
+def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbars, sixbars, most, offered, told):
+    monkeypatch.setattr(by_type, "order_of", lambda _: lambda designs: sorted(designs, key=_error))
+    limits = SimpleNamespace(min_transmission_angle=None)
+    problem = SimpleNamespace(max_designs=most, task_size=100.0, length_unit="mm", constraints=limits)
+    results = [
+        PathResult.model_construct(
+            designs=[_as_of(*both) for both in designs],
+            search=Search(method="a", complete=False, candidates=9, accepted=len(designs),
+                          rejected={"residual": 9 - len(designs)}, seed=0),
+            summary="",
+        )
+        for designs in (fourbars, sixbars)
+    ]  # fmt: skip
+    answer = by_type.joined(problem, *results, ["fourbar"], "sixbar")
+    assert [_error(design) for design in answer.designs] == offered
+    assert told in answer.summary
+    assert answer.search.accepted == len(offered)
+    assert answer.search.candidates == 18 == answer.search.accepted + sum(answer.search.rejected.values())
+
+
+def _error(design) -> float:
+    return design.metrics.rms_distance
+
+
+@pytest.mark.parametrize(
+    ("stated", "path"),
+    [
+        ({"mechanisms": []}, "/mechanisms"),
+        ({"mechanisms": ["watt_2"]}, "/mechanisms/0"),
+        ({"mechanisms": "best"}, "/mechanisms"),
+        ({"mechanism": "slider_crank"}, "/mechanism"),
+        ({"gear_ratio": 2.0}, "/gear_ratio"),
+        ({"mechanisms": "auto", "placement_free": ["size"]}, "/placement_free"),
+        ({"constraints": {"coupler_point": {"along": [0.0, 1.0]}}}, "/constraints/coupler_point"),
+        ({"constraints": {"grashof": "double_rocker"}, "closed": False}, "/constraints/grashof"),
+        ({"space": {"fixed_pivots": {"input": {"polygon": [[0, 0], [9, 0], [9, 9]]}}}}, "/space/fixed_pivots"),
+        ({"mechanisms": "auto", "manufacture": {"grid": 0.5}}, "/manufacture"),
+        ({"mechanisms": ["fourbar", "slider_crank"], "fixed_pivots": {"output": [1.0, 2.0]}}, "/fixed_pivots/output"),
+        ({"method": "auto", "timing": "prescribed", "points": [
+            {"x": x, "y": x * x, "crank_angle": 30.0 * x} for x in (0.0, 1.0, 2.0)]}, "/timing"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_held_is_refused_at_its_field(client, stated, path):
+    answer = client.post("/v1/jobs", json={"problem": TASK | stated})
+    assert answer.status_code == 422, answer.text
+    assert any(path in str(fault) for fault in answer.json()["errors"]), answer.text
