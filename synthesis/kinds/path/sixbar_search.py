@@ -113,7 +113,7 @@ def _solved(problem: PathProblem, progress: Progress) -> PathResult:
     steps, places = target.steps, target.places
     if len(target.points) < FEW_POINTS and not problem.matched:
         steps, places = smooth_steps(target.points, target.closed)
-    begun = _begun(problem, steps, setting, part_of(progress, 0.0, 0.7))
+    begun = _begun(problem, steps, target.size, setting, part_of(progress, 0.0, 0.7))
     ends = _brought(problem, target, places, begun, setting)
     mechanisms = [
         made
@@ -127,15 +127,15 @@ def _solved(problem: PathProblem, progress: Progress) -> PathResult:
     return _answer(problem, mechanisms, part_of(progress, 0.8, 1.0))
 
 
-def _begun(problem: PathProblem, steps: Complex, setting: Real, progress: Progress) -> list[_Candidate]:
-    """Sixbars near a target, fitted at equal steps along it, the nearest first."""
+def _begun(problem: PathProblem, steps: Complex, size: float, setting: Real, progress: Progress) -> list[_Candidate]:
+    """Sixbars near a target, fitted at equal steps along it, the nearest first; ``size`` is the target's unit."""
     families = FAMILIES[problem.constraints.grashof]
     tasks = [(kind, form) for kind in problem.sixbars for form in FORMS[kind] if form.family in families]
     drawn = min(MOST_DRAWN, DRAWN // len(tasks))
     drawn = drawn if problem.closed else round(OPEN_SHARE * drawn)
     followed = min(MOST_FOLLOWED, FOLLOWED // len(tasks))
     rng = np.random.default_rng(problem.seed)
-    longest, weights = problem.longest_link / _size(problem), np.ones(SHAPE_POINTS)
+    longest, weights = problem.longest_link / size, np.ones(SHAPE_POINTS)
     found: list[_Candidate] = []
     for n, (kind, form) in enumerate(tasks):
         progress(n / len(tasks), f"{kind}: {drawn} sixbars compared, {followed} fitted")
@@ -152,10 +152,6 @@ def _begun(problem: PathProblem, steps: Complex, setting: Real, progress: Progre
         kept = order[distinct(fits.x[order], max(RUNNING, BROUGHT // len(tasks)), SAME_DESIGN)]
         found += [_Candidate(kind, fits.chosen(kept[k : k + 1]), float(fits.cost[kept[k]])) for k in range(len(kept))]
     return sorted(found, key=lambda one: one.cost)
-
-
-def _size(problem: PathProblem) -> float:
-    return Target(problem).size
 
 
 def _best(fits: Fits, count: int) -> NDArray[np.int64]:
