@@ -90,7 +90,7 @@ def _task(
     name: str, kind: Kind, carrier: Carrier, turning: Turning, shape: np.ndarray, out: np.ndarray, sine: float
 ) -> dict[str, Any] | None:
     b, c, d = shape[:3]
-    lengths = [1.0, b, c, d, *{"rocker": shape[[5, 8]], "slider": shape[[5]], "slot": []}[kind]]
+    lengths = [1.0, b, c, d, *(shape[k] for k in {"rocker": (5, 8), "slider": (5,), "slot": ()}[kind])]
     if carrier == "rocker":
         lengths.append(math.hypot(*shape[3:5]))
     ratio = max(lengths) / min(lengths)

@@ -117,7 +117,7 @@ def test_the_kernel_finds_the_stretches_that_plain_numpy_finds(kind: Any, number
     carrier = "rocker" if kind == "rocker" else "coupler"
     way = math.nan if kind == "slider" else 0.9
     dwells, places = (1.1, 0.7), (0.0, 0.6)
-    found = placed_starts(kind, carrier, turning, dwells, places, way, 0.35, rng, 5)
+    found = placed_starts(kind, carrier, turning, dwells, places, way, 0.35, 8.0, rng, 5)
     assert found
     lengths = np.array([14, 9])
     for start in found:

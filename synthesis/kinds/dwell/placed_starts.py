@@ -32,8 +32,11 @@ from synthesis.kinds.dwell.scoring import ROCKER, SLIDER, SLOT
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-EACH = 24
-"""Outputs that are drawn for each of Watt's first loops."""
+EACH: dict[Carrier, int] = {"rocker": 24, "coupler": 8}
+"""Outputs that are drawn at random for each fourbar, by the link that P is on."""
+
+UNEVEN = 0.3
+"""What a start costs whose links are more uneven than is allowed, times the logarithm of by how much."""
 
 NUMBERS: dict[Kind, int] = {"rocker": 4, "slider": 3, "slot": 2}
 """How many numbers an output has."""
@@ -47,6 +50,7 @@ def placed_starts(
     places: tuple[float, ...],
     way: float,
     transmission: float,
+    link_ratio: float,
     rng: np.random.Generator,
     most: int,
 ) -> list[Start]:
@@ -60,6 +64,8 @@ def placed_starts(
         Of each dwell its length, radians, and its share of the way; NaN at either end.
     way, transmission : float
         Radians; the way is NaN for a slider.
+    link_ratio : float
+        Longest link over shortest, at most.
     rng : Generator
     most : int
 
@@ -69,14 +75,19 @@ def placed_starts(
         Best first.
     """
     shapes = drawn(rng, transmission) if turning == "crank_rocker" else double_cranks(rng, transmission)
+    shapes = shapes[_uneven(shapes[:, :3]) <= link_ratio]
     if carrier == "rocker":
         # The second loop may have any size and any direction: P is B to begin with.
         shapes[:, 3], shapes[:, 4] = shapes[:, 1], 0.0
     turn = np.linspace(0.0, 2.0 * np.pi, CYCLE, endpoint=False)
     curves = np.ascontiguousarray(points(shapes, turn, carrier))
     lengths = np.array([max(FEWEST, round(dwell / math.tau * CYCLE) + 1) for dwell in dwells])
-    on_circles = carrier == "rocker"
-    tried = _drawn_outputs(kind, shapes, rng) if on_circles else _on_curves(kind, curves, dwells, places, way)
+    if not len(shapes):
+        return []
+    tried = _drawn_outputs(kind, carrier, shapes, curves, rng)
+    if carrier == "coupler":
+        on_curves = _on_curves(kind, curves, dwells, places, way)
+        tried = Outputs(*(np.concatenate(parts) for parts in zip(tried, on_curves, strict=True)))
     count, numbers = len(tried.rows), tried.numbers
     scores, signs = np.empty(count), np.empty(count, np.int64)
     begins, ends = np.zeros((count, len(dwells)), np.int64), np.zeros((count, len(dwells)))
@@ -85,6 +96,9 @@ def placed_starts(
     judge_program(
         number, curves, tried.rows, numbers, lengths, asked, way, math.sin(transmission), scores, signs, begins, ends
     )
+    links = numbers[:, {"rocker": [0, 3], "slider": [0], "slot": []}[kind]]
+    uneven = _uneven(np.concatenate([shapes[tried.rows, :3], links], axis=1)) / link_ratio
+    scores += UNEVEN * np.log(np.maximum(uneven, 1.0))
     found: list[Start] = []
     used: set[int] = set()
     for n in np.argsort(scores):
@@ -99,6 +113,11 @@ def placed_starts(
         shape = np.concatenate([shapes[row], numbers[n, : NUMBERS[kind]], angles])
         found.append(Start(shape, int(signs[n]), tuple(ends[n].tolist()), float(scores[n]), carrier, turning))
     return found
+
+
+def _uneven(lengths: Real) -> Real:
+    """Longest link over shortest, the crank of 1 among them; lengths (n, k)."""
+    return np.asarray(np.maximum(lengths.max(axis=1), 1.0) / np.minimum(lengths.min(axis=1), 1.0))
 
 
 def double_cranks(rng: np.random.Generator, transmission: float) -> Real:
@@ -142,16 +161,23 @@ def _on_curves(
     return Outputs(np.tile(tried.rows, 2), np.tile(tried.first, 2), np.tile(tried.second, 2), both)
 
 
-def _drawn_outputs(kind: Kind, shapes: Real, rng: np.random.Generator) -> Outputs:
-    """Links and outputs on P, at random: lengths and distances from O4 in units of the rocker."""
-    rows = np.repeat(np.arange(len(shapes)), EACH)
-    arm, pivot = shapes[rows, 1], shapes[rows, 2]
-    link, other, reach = arm * np.exp(rng.uniform(math.log(0.4), math.log(3.5), (3, len(rows))))
+def _drawn_outputs(kind: Kind, carrier: Carrier, shapes: Real, curves: Complex, rng: np.random.Generator) -> Outputs:
+    """Links and outputs on P, at random: in units of the rocker about O4, or of the curve about its middle."""
+    rows = np.repeat(np.arange(len(shapes)), EACH[carrier])
+    middle, size = shapes[:, 2] + 0j, shapes[:, 1]
+    if carrier == "coupler":
+        middle = curves.mean(axis=1)
+        size = np.abs(curves - middle[:, None]).max(axis=1)
+    middle, size = middle[rows], size[rows]
+    link, other, reach = size * np.exp(rng.uniform(math.log(0.4), math.log(3.5), (3, len(rows))))
     direction = rng.uniform(0.0, math.tau, len(rows))
+    none = np.zeros(len(rows))
+    place = middle + reach * np.exp(1j * direction)
     if kind == "slider":
-        offset = rng.uniform(-1.2, 1.2, len(rows)) * arm - pivot * np.sin(direction)
-        numbers = np.stack([link, offset, direction, np.zeros(len(rows))], axis=1)
+        offset = rng.uniform(-1.2, 1.2, len(rows)) * size + (middle * np.exp(-1j * direction)).imag
+        numbers = np.stack([link, offset, direction, none], axis=1)
+    elif kind == "slot":
+        numbers = np.stack([place.real, place.imag, none, none], axis=1)
     else:
-        place = pivot + reach * np.exp(1j * direction)
         numbers = np.stack([link, place.real, place.imag, other], axis=1)
     return Outputs(rows, rows, rows, numbers)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import partial
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -40,6 +41,12 @@ STARTS, ENOUGH = 8, 5
 
 PLACED_STARTS, STILL_ENOUGH = 48, 8
 """The same of dwells with places of their own, of which fewer starts lead to sound designs: the stillest are driven."""
+
+SHAKES, SHAKEN, SHAKE = 5, 4, 0.06
+"""Times that the stillest shapes are shaken, how many of them, and by which share of each number."""
+
+ALIKE = 0.02
+"""Share of the largest number of a shape by which all numbers of another must not differ for it to be another."""
 
 AGAIN, LARGER_ANGLES = 2, (35.0, 45.0)
 """Refined shapes that are refined once more, and the transmission angles with which, degrees."""
@@ -92,7 +99,7 @@ def solve_dwell(problem: DwellProblem, progress: Progress) -> DwellResult:
         told = reported(begun, progress, span, "refining {next} of at most {all}")
         enough = len(sifting.passed) + ENOUGH
         if problem.placed:
-            refined, tried = _enough_refined(problem, search.kind, told)
+            refined, tried = _enough_refined(problem, search.kind, told, rng)
             again = _at_larger_angles(problem, search.kind, refined)
             refined, tried = [*refined, *again], tried + len(again)
             stillest = _worth_driving(problem, refined)
@@ -130,13 +137,15 @@ def _starts(problem: DwellProblem, search: _Search, rng: np.random.Generator) ->
     if problem.dwells is None and len(dwells) == 2:
         places = LOW, HIGH
     kind, carrier, turning = search[1:]
-    return placed_starts(kind, carrier, turning, dwells, places, way, _transmission(problem), rng, PLACED_STARTS)
+    return placed_starts(
+        kind, carrier, turning, dwells, places, way, _transmission(problem), _link_ratio(problem), rng, PLACED_STARTS
+    )
 
 
 def warm_up() -> None:
     """Load the kernels: those of arcs and pairs by a rocker with two dwells, those of lines by a slot with one."""
     rng = np.random.default_rng(0)
-    placed_starts("slider", "rocker", "crank_rocker", (0.5,), (LOW,), math.nan, 0.3, rng, 1)
+    placed_starts("slider", "rocker", "crank_rocker", (0.5,), (LOW,), math.nan, 0.3, LINK_RATIO, rng, 1)
     starts("rocker", 2, 0.5, 0.7, 0.3, rng, 1)
     starts("slot", 1, 0.5, 0.7, 0.3, rng, 1)
 
@@ -144,6 +153,11 @@ def warm_up() -> None:
 def _transmission(problem: DwellProblem) -> float:
     stated = problem.constraints.min_transmission_angle
     return math.radians(TRANSMISSION if stated is None else min(stated + MARGIN, 89.0))
+
+
+def _link_ratio(problem: DwellProblem) -> float:
+    stated = problem.constraints.max_link_ratio
+    return LINK_RATIO if stated is None else stated
 
 
 def _ranked(problem: DwellProblem, designs: list[DwellDesign]) -> list[DwellDesign]:
@@ -156,19 +170,32 @@ def _driven(problem: DwellProblem, kind: Kind, start: Start) -> DwellDesign | st
     return "not_at_rest" if refined is None else _verified(problem, refined)
 
 
-def _enough_refined(problem: DwellProblem, kind: Kind, begun: Iterable[Start]) -> tuple[list[_Refined], int]:
-    """Refined shapes, until enough of them keep within the tolerance; and how many starts that took."""
+def _enough_refined(
+    problem: DwellProblem, kind: Kind, begun: Iterable[Start], rng: np.random.Generator
+) -> tuple[list[_Refined], int]:
+    """Refined shapes, until enough of them keep within the tolerance; and how many starts that took.
+
+    Where the starts do not give enough, the stillest shapes are shaken and refined once more.
+    """
     found: list[_Refined] = []
-    tried = still = 0
-    for start in begun:
+    tried = 0
+    allowed = problem.allowed / problem.way
+    for start in chain(begun, _shaken(found, rng)):
         refined = _refined(problem, kind, start)
         tried += 1
         if refined is not None:
             found.append(refined)
-            still += refined.moved <= problem.allowed / problem.way
-        if still == STILL_ENOUGH:
+        if sum(one.moved <= allowed for one in found) == STILL_ENOUGH:
             break
     return found, tried
+
+
+def _shaken(found: list[_Refined], rng: np.random.Generator) -> Iterator[Start]:
+    """Starts near the stillest of the shapes that were found by the time it is asked."""
+    for _ in range(SHAKES):
+        for one in sorted(found, key=lambda one: one.moved)[:SHAKEN]:
+            shape = one.sixbar.shape * (1.0 + SHAKE * rng.standard_normal(len(one.sixbar.shape)))
+            yield one.start._replace(shape=shape)
 
 
 def _at_larger_angles(problem: DwellProblem, kind: Kind, refined: list[_Refined]) -> list[_Refined]:
@@ -183,10 +210,19 @@ def _at_larger_angles(problem: DwellProblem, kind: Kind, refined: list[_Refined]
 
 
 def _worth_driving(problem: DwellProblem, refined: list[_Refined]) -> list[_Refined]:
-    """Refined shapes, the stillest first; of those that do not keep within the tolerance only the best."""
-    ordered = sorted(refined, key=lambda one: one.moved)
+    """Refined shapes that differ, the stillest first; of those that do not keep within the tolerance only the best."""
+    ordered: list[_Refined] = []
+    for one in sorted(refined, key=lambda one: one.moved):
+        if not any(_alike(one.sixbar, other.sixbar) for other in ordered):
+            ordered.append(one)
     hopeful = sum(one.moved <= HOPELESS * problem.allowed / problem.way for one in ordered)
     return ordered[: hopeful + HOPELESS_DRIVEN]
+
+
+def _alike(one: Sixbar, other: Sixbar) -> bool:
+    """Whether two sixbars of a search are nearly the same; when in the turn their dwells begin is not looked at."""
+    first, second = one.shape[: -one.dwells], other.shape[: -other.dwells]
+    return one.sign == other.sign and float(np.abs(first - second).max()) <= ALIKE * float(np.abs(first).max())
 
 
 def _verified(problem: DwellProblem, refined: _Refined) -> DwellDesign | str | None:
@@ -206,8 +242,7 @@ def _verified(problem: DwellProblem, refined: _Refined) -> DwellDesign | str | N
 
 def _refined(problem: DwellProblem, kind: Kind, start: Start, transmission: float | None = None) -> _Refined | None:
     """The shape near a start whose output moves least during the dwells, with nearly the demanded way."""
-    constraints = problem.constraints
-    ratio = LINK_RATIO if constraints.max_link_ratio is None else constraints.max_link_ratio
+    ratio = _link_ratio(problem)
     way = math.nan if kind == "slider" else math.radians(problem.way)
     dwells = tuple(math.radians(wanted.angle) for wanted in problem.wanted)
     sine = math.sin(_transmission(problem) if transmission is None else transmission)
