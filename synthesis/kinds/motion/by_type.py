@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from synthesis.kinds.motion.chain_search import solve_sixbars
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.sixbar_search import solve_sixbars
 from synthesis.kinds.motion.stated_positions import MOST_HELD
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import LinkageDesign

@@ -42,10 +42,14 @@ O2, A, B, O4, Q1, Q2, J = range(7)
 GROUND, INPUT, COUPLER, OUTPUT = range(4)
 """Links that Q₁ and Q₂ may be on."""
 
-MAKES = np.array([[COUPLER, INPUT], [COUPLER, OUTPUT], [COUPLER, GROUND], [INPUT, OUTPUT], [OUTPUT, INPUT]])
-"""By the number of a make: the link of Q₁ and that of Q₂."""
+MAKES = np.array(
+    [[COUPLER, INPUT], [COUPLER, OUTPUT], [COUPLER, GROUND], [INPUT, OUTPUT], [OUTPUT, INPUT], [INPUT, COUPLER],
+     [OUTPUT, COUPLER]]
+)  # fmt: skip
+"""By the number of a make: the link of Q₁ and that of Q₂. The last two are no 3R chains: the body is two pins from the
+ground on all ways but one, and only :mod:`synthesis.kinds.motion.branch_walk` has them."""
 
-WATT_1_IN, WATT_1_OUT, STEPHENSON_3, STEPHENSON_1_IN, STEPHENSON_1_OUT = range(5)
+WATT_1_IN, WATT_1_OUT, STEPHENSON_3, STEPHENSON_1_IN, STEPHENSON_1_OUT, WATT_1_BESIDE_IN, WATT_1_BESIDE_OUT = range(7)
 
 OF_LINK = np.array([[O2, O4], [O2, A], [A, B], [O4, B]])
 """The pins of each link of the fourbar."""
@@ -137,7 +141,7 @@ def chain_poses(
 
 
 @njit(**OPTIONS)
-def _on(
+def on_link(
     link: int, point: complex, joints: Complex, a: complex, into: complex, through: complex, out: complex
 ) -> complex:
     """A point of a link of the fourbar, the links turned from the first position by ``into``, ``through``, ``out``."""
@@ -152,23 +156,28 @@ def _on(
 
 
 @njit(**OPTIONS)
-def _closed(pin: complex, other: complex, first: float, second: float, side: float) -> tuple[complex, float]:
+def closed(pin: complex, other: complex, first: float, second: float, side: float) -> tuple[complex, float]:
     """Where two links on two pins meet, ``side`` +1 to the left of the way from the one to the other.
 
-    With it the sine of the angle between them; where they do not meet, less than 0 by how far they are from it.
+    With it the cosine of the angle between them; where they do not meet that is beyond ±1.
     """
     base = other - pin
     square = base.real * base.real + base.imag * base.imag
     cosine = (first * first + second * second - square) / (2.0 * first * second)
     if not abs(cosine) < 1.0:
-        return pin, 1.0 - abs(cosine)
-    sine = math.sqrt((1.0 - cosine) * (1.0 + cosine))
-    along, height = 0.5 * (first * first - second * second + square) / square, first * second * sine / square
-    return pin + base * complex(along, side * height), sine
+        return pin, cosine
+    along, height = 0.5 * (first * first - second * second + square) / square, first * second * _sine(cosine) / square
+    return pin + base * complex(along, side * height), cosine
 
 
 @njit(**OPTIONS)
-def _signed_sine(pin: complex, other: complex, joint: complex) -> float:
+def _sine(cosine: float) -> float:
+    """The sine of the angle between two links; where they do not meet, less than 0 by how far they are from it."""
+    return math.sqrt((1.0 - cosine) * (1.0 + cosine)) if abs(cosine) < 1.0 else 1.0 - abs(cosine)
+
+
+@njit(**OPTIONS)
+def signed_sine(pin: complex, other: complex, joint: complex) -> float:
     """Sine of the angle between two links where they meet, negative where that is to the right of the pins' line."""
     one, two = joint - pin, joint - other
     return (one.conjugate() * two).imag / (abs(one) * abs(two))
@@ -237,14 +246,15 @@ def _turns_through(joints: Complex, c1: int, c2: int, lengths: Real, first_side:
         angle = 2.0 * math.pi * n / STEPS
         into = complex(math.cos(angle), math.sin(angle))
         a = joints[O2] + into * (joints[A] - joints[O2])
-        b, sine = _closed(a, joints[O4], lengths[1], lengths[2], first_side)
+        b, cosine = closed(a, joints[O4], lengths[1], lengths[2], first_side)
+        sine = _sine(cosine)
         if sine <= 0.0:
             missing += sine - 1.0
             continue
         through, out = (b - a) / (joints[B] - joints[A]), (b - joints[O4]) / (joints[B] - joints[O4])
-        one = _on(c1, joints[Q1], joints, a, into, through, out)
-        two = _on(c2, joints[Q2], joints, a, into, through, out)
-        missing += min(_closed(one, two, lengths[4], lengths[5], second_side)[1], 0.0)
+        one = on_link(c1, joints[Q1], joints, a, into, through, out)
+        two = on_link(c2, joints[Q2], joints, a, into, through, out)
+        missing += min(_sine(closed(one, two, lengths[4], lengths[5], second_side)[1]), 0.0)
     return missing / STEPS
 
 
@@ -289,8 +299,8 @@ def weighed(
     if back < 0.0:
         return -2.0 + back
     # The sine between two links where they meet is positive just where that is to the left of the pins' line.
-    first_sine = _signed_sine(joints[A], joints[O4], joints[B])
-    second_sine = _signed_sine(joints[Q1], joints[Q2], joints[J])
+    first_sine = signed_sine(joints[A], joints[O4], joints[B])
+    second_sine = signed_sine(joints[Q1], joints[Q2], joints[J])
     first_side, second_side = math.copysign(1.0, first_sine), math.copysign(1.0, second_sine)
     other, last = 0.0, 0.0
     for k in range(1, POSITIONS):
@@ -301,12 +311,12 @@ def weighed(
         a, b = joints[O2] + into * (joints[A] - joints[O2]), joints[O4] + out * (joints[B] - joints[O4])
         through = (b - a) / (joints[B] - joints[A])
         one, two = (
-            _on(c1, joints[Q1], joints, a, into, through, out),
-            _on(c2, joints[Q2], joints, a, into, through, out),
+            on_link(c1, joints[Q1], joints, a, into, through, out),
+            on_link(c2, joints[Q2], joints, a, into, through, out),
         )
         j = points[k] + turns[k] * (joints[J] - points[0])
-        other += min(first_side * _signed_sine(a, joints[O4], b), 0.0)
-        other += min(second_side * _signed_sine(one, two, j), 0.0)
+        other += min(first_side * signed_sine(a, joints[O4], b), 0.0)
+        other += min(second_side * signed_sine(one, two, j), 0.0)
     if other < 0.0:
         return -1.0 + other / (2.0 * POSITIONS)
     flattest, beyond = min(abs(first_sine), abs(second_sine)), 0.0
@@ -316,15 +326,17 @@ def weighed(
         rotation = last * n / STEPS
         into = complex(math.cos(rotation), math.sin(rotation))
         a = joints[O2] + into * (joints[A] - joints[O2])
-        b, sine = _closed(a, joints[O4], lengths[1], lengths[2], first_side)
+        b, cosine = closed(a, joints[O4], lengths[1], lengths[2], first_side)
+        sine = _sine(cosine)
         flattest = min(flattest, sine)
         if sine <= 0.0:
             beyond += 2.0 * sine - 1.0
             continue
         through, out = (b - a) / (joints[B] - joints[A]), (b - joints[O4]) / (joints[B] - joints[O4])
-        one = _on(c1, joints[Q1], joints, a, into, through, out)
-        two = _on(c2, joints[Q2], joints, a, into, through, out)
-        j, sine = _closed(one, two, lengths[4], lengths[5], second_side)
+        one = on_link(c1, joints[Q1], joints, a, into, through, out)
+        two = on_link(c2, joints[Q2], joints, a, into, through, out)
+        j, cosine = closed(one, two, lengths[4], lengths[5], second_side)
+        sine = _sine(cosine)
         flattest, beyond = min(flattest, sine), beyond + min(sine, 0.0)
         if flattest <= 0.0:
             continue
@@ -389,7 +401,7 @@ class Given(NamedTuple):
         Which positions are demanded; the others only help to find dyads.
     needed : float, shape (2,)
         Way and turn that the body needs.
-    wanted : bool, shape (5,)
+    wanted : bool, shape (7,)
         The makes that are wanted.
     limits : float, shape (19,)
         See :data:`LEAST_SINE`.

@@ -1,0 +1,382 @@
+"""A sixbar that carries a body through poses on one branch, in order: residuals of its dimensions and of its input.
+
+The unknowns x are the seven joints in the first position (:data:`chain_kernels.O2` …) and, from each position to the
+next, the logarithm of the input's turn, so that the input never turns back. The linkage is driven by its closures, each
+on the side on which it stands first. What does not close at one of :data:`SAMPLES` inputs on the way is impossible, so
+that a descent never leaves the branch. There remain as residuals, each 0 where it holds:
+
+* P's distance and the body's angle from each later position, or what either has beyond its tolerance;
+* |cos μ| beyond that of the least transmission angle, of both dyads, at the samples;
+* distances of two joints of a link beyond the reach and the longest link, and short of the shortest; the link ratio;
+* what joints have beyond their boxes: pivots in the first position, all joints on the way.
+
+With five positions there are twelve of the first sort and eighteen unknowns: six freedoms, along which the others find
+room. Derivatives are exact, by the closures |j − p| = const, |j − q| = const differentiated (a column for each unknown
+coordinate, and one for the input).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.compiling import njit
+from synthesis.kinds.motion.chain_kernels import (
+    COUPLER,
+    GROUND,
+    INPUT,
+    MAKES,
+    O2,
+    O4,
+    OF_LINK,
+    OUTPUT,
+    Q1,
+    Q2,
+    A,
+    B,
+    J,
+    closed,
+    on_link,
+    signed_sine,
+)
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+JOINTS = 14
+"""Unknowns that are coordinates of joints."""
+
+SAMPLES = 24
+"""Steps of the drive from the first position to the last, beside the positions themselves."""
+
+MAKE, WAY, FIRST_SIDE, SECOND_SIDE, COSINE, REACH, SHORTEST, LONGEST, RATIO, FIRST_X, FIRST_Y = range(11)
+FIXED_BOX, MOVING_BOX, ROOM, SETTINGS = 11, 15, 19, 23
+"""Places in a setting: the number of the make; ±1, the sense in which the input turns; the sides of both dyads; the
+cosine of the least transmission angle; limits of sizes as those of :data:`chain_kernels.MOST_REACH`; P in the first
+position; boxes (x from, to, y from, to) as there. Task coordinates."""
+
+OF_POSE = 6
+"""Numbers of a later position, a row of ``points``: x, y, the body's turn from the first, how far each may be off."""
+
+ALONE, TO_P = 6, 7
+"""How many of the links are bars for themselves in a list of pairs; P in such a list."""
+
+BY_ANGLE, BY_COSINE, BY_SIZE, BY_BOX = 0.7, 0.5, 0.3, 1.0
+"""Weights of residuals beside distances of P in task sizes: radians, cosines, lengths, distances from boxes."""
+
+BARRIER = math.cos(math.radians(3.0))
+"""Cosine at which a dyad counts as one that does not close."""
+
+MOST_TURN = 6.2
+"""Radians that the input turns at most: less than once round."""
+
+UNITS = np.array([[(1.0, 1j)[m % 2] if m // 2 == j else 0.0 for j in range(7)] for m in range(JOINTS)] + [[0.0j] * 7])
+"""Rates of the joints: a row for each unknown coordinate, and one of zeros, for the input."""
+
+
+def _pairs() -> NDArray[np.int64]:
+    """Pairs of joints of one link for each make, (makes, 16, 2), −1 where there are no more; the last ones with P."""
+    listed = np.full((len(MAKES), 16, 2), -1)
+    for make, (first, second) in enumerate(MAKES):
+        pairs = [(O2, A), (A, B), (O4, B), (O2, O4), (Q1, J), (Q2, J)]
+        pairs += [(Q1, int(pin)) for pin in OF_LINK[first]] + [(Q2, int(pin)) for pin in OF_LINK[second]]
+        pairs += [(Q1, TO_P), (J, TO_P)]
+        listed[make, : len(pairs)] = pairs
+    return listed
+
+
+PAIRS = _pairs()
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def most_rows(positions: int) -> int:
+    """Greatest number of residuals."""
+    return 3 * positions + (2 + 12) * (SAMPLES + positions) + 16 + 1 + 14
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _dot(u: complex, v: complex) -> float:
+    return u.real * v.real + u.imag * v.imag
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _rate_of_meeting(u: complex, v: complex, p_rate: complex, q_rate: complex, first: float, second: float) -> complex:
+    """Rate of the joint of two links u and v from pins p and q, by half the rates of their squares."""
+    along, across = first + _dot(u, p_rate), second + _dot(v, q_rate)
+    scale = 1.0 / (u.real * v.imag - u.imag * v.real)
+    return complex((along * v.imag - across * u.imag) * scale, (u.real * across - v.real * along) * scale)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def dimensions(z: Complex, lengths: Real, inverses: Complex) -> None:
+    """Lengths (4,) and reciprocals (4,) of A–B, O₄–B, Q₁–J and Q₂–J in the first position."""
+    inverses[0], inverses[1], inverses[2], inverses[3] = z[B] - z[A], z[B] - z[O4], z[J] - z[Q1], z[J] - z[Q2]
+    for n in range(4):
+        lengths[n] = abs(inverses[n])
+        inverses[n] = inverses[n].conjugate() / (lengths[n] * lengths[n])
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def driven(
+    z: Complex, lengths: Real, inverses: Complex, setting: Real, angle: float, at: Complex, turns: Complex
+) -> tuple[float, float]:
+    """The linkage with its input turned by ``angle`` from the first position.
+
+    Parameters
+    ----------
+    z, lengths, inverses : complex, shape (7,); float and complex, shape (4,)
+        Joints in the first position, and their :func:`dimensions`.
+    setting : float
+        See :data:`MAKE`.
+    angle : float
+        Radians.
+    at : complex, shape (6,)
+        Filled: A, B, Q₁, Q₂, J and P.
+    turns : complex, shape (4,)
+        Filled: how the input, the coupler, the output and the body are turned.
+
+    Returns
+    -------
+    tuple of float
+        Cosines of both transmission angles; what is filled has no meaning where either is beyond ±1.
+    """
+    first, second = MAKES[int(setting[MAKE]), 0], MAKES[int(setting[MAKE]), 1]
+    turns[0] = complex(math.cos(angle), math.sin(angle))
+    at[0] = z[O2] + turns[0] * (z[A] - z[O2])
+    at[1], cosine = closed(at[0], z[O4], lengths[0], lengths[1], setting[FIRST_SIDE])
+    if not abs(cosine) < 1.0:
+        return cosine, 0.0
+    turns[1], turns[2] = (at[1] - at[0]) * inverses[0], (at[1] - z[O4]) * inverses[1]
+    at[2] = on_link(first, z[Q1], z, at[0], turns[0], turns[1], turns[2])
+    at[3] = on_link(second, z[Q2], z, at[0], turns[0], turns[1], turns[2])
+    at[4], other = closed(at[2], at[3], lengths[2], lengths[3], setting[SECOND_SIDE])
+    turns[3] = (at[4] - at[2]) * inverses[2]
+    at[5] = at[2] + turns[3] * (complex(setting[FIRST_X], setting[FIRST_Y]) - z[Q1])
+    return cosine, other
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _rate_on(
+    link: int, point: complex, own: complex, z: Complex, unit: Complex, at: Complex, turns: Complex, rates: Complex
+) -> complex:
+    """Rate of a point of a link of the fourbar; ``rates``: of A, the input's, the coupler's and the output's turn."""
+    rate = own
+    if link == INPUT:
+        rate = unit[O2] + turns[0] * (own - unit[O2]) + rates[1] * (point - z[O2])
+    elif link == COUPLER:
+        rate = rates[0] + turns[1] * (own - unit[A]) + rates[2] * (point - z[A])
+    elif link == OUTPUT:
+        rate = unit[O4] + turns[2] * (own - unit[O4]) + rates[3] * (point - z[O4])
+    return rate
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _rates(
+    z: Complex,
+    lengths: Real,
+    inverses: Complex,
+    setting: Real,
+    at: Complex,
+    turns: Complex,
+    cosines: Real,
+    moving: Complex,
+    turning: Real,
+    bending: Real,
+) -> None:
+    """Rates by each row of :data:`UNITS`: of ``at`` (6, 15), of the body's angle (15,), of both cosines (2, 15)."""
+    make = int(setting[MAKE])
+    first, second = MAKES[make, 0], MAKES[make, 1]
+    ab, db, u, v = z[B] - z[A], z[B] - z[O4], z[J] - z[Q1], z[J] - z[Q2]
+    squares, products = lengths * lengths, (lengths[0] * lengths[1], lengths[2] * lengths[3])
+    start = complex(setting[FIRST_X], setting[FIRST_Y])
+    rates = np.empty(4, np.complex128)
+    for m in range(JOINTS + 1):
+        unit = UNITS[m]
+        rates[1] = 1j * turns[0] if m == JOINTS else 0j
+        rates[0] = unit[O2] + turns[0] * (unit[A] - unit[O2]) + rates[1] * (z[A] - z[O2])
+        one, two = _dot(ab, unit[B] - unit[A]), _dot(db, unit[B] - unit[O4])
+        b = _rate_of_meeting(at[1] - at[0], at[1] - z[O4], rates[0], unit[O4], one, two)
+        rates[2] = (b - rates[0] - turns[1] * (unit[B] - unit[A])) * inverses[0]
+        rates[3] = (b - unit[O4] - turns[2] * (unit[B] - unit[O4])) * inverses[1]
+        bending[0, m] = (one + two - _dot(z[O4] - at[0], unit[O4] - rates[0])) / products[0]
+        bending[0, m] -= cosines[0] * (one / squares[0] + two / squares[1])
+        moving[0, m], moving[1, m] = rates[0], b
+        moving[2, m] = _rate_on(first, z[Q1], unit[Q1], z, unit, at, turns, rates)
+        moving[3, m] = _rate_on(second, z[Q2], unit[Q2], z, unit, at, turns, rates)
+        one, two = _dot(u, unit[J] - unit[Q1]), _dot(v, unit[J] - unit[Q2])
+        j = _rate_of_meeting(at[4] - at[2], at[4] - at[3], moving[2, m], moving[3, m], one, two)
+        bending[1, m] = (one + two - _dot(at[3] - at[2], moving[3, m] - moving[2, m])) / products[1]
+        bending[1, m] -= cosines[1] * (one / squares[2] + two / squares[3])
+        body = (j - moving[2, m] - turns[3] * (unit[J] - unit[Q1])) * inverses[2]
+        moving[4, m] = j
+        moving[5, m] = moving[2, m] + body * (start - z[Q1]) - turns[3] * unit[Q1]
+        turning[m] = (body * turns[3].conjugate()).imag
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _beyond(off: float, tolerance: float) -> float:
+    """What a deviation has beyond its tolerance."""
+    return math.copysign(max(abs(off) - tolerance, 0.0), off)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _outside(at: float, low: float, high: float) -> float:
+    """How far a coordinate lies beyond an interval, negative below it."""
+    return at - high if at > high else min(at - low, 0.0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _sizes(z: Complex, setting: Real, residuals: Real, jacobian: Real, m: int, derived: bool) -> int:
+    """Adds residuals of links and of pivots in the first position; the number of rows, −1 where a link vanishes."""
+    make = int(setting[MAKE])
+    start = complex(setting[FIRST_X], setting[FIRST_Y])
+    least, most = np.inf, 0.0
+    shortest = longest = 0
+    for n in range(len(PAIRS[make])):
+        i, k = PAIRS[make, n]
+        if i < 0:
+            break
+        way = z[i] - (start if k == TO_P else z[k])
+        length = abs(way)
+        if not length > 0.0:
+            return -1
+        if k != TO_P and length < least:
+            least, shortest = length, n
+        if k != TO_P and length > most:
+            most, longest = length, n
+        high = setting[REACH] if k == TO_P else min(setting[REACH], setting[LONGEST])
+        off = _outside(length, 0.0 if k == TO_P else setting[SHORTEST], high)
+        if off != 0.0:
+            residuals[m] = BY_SIZE * off
+            if derived:
+                jacobian[m] = 0.0
+                _along(i, k, BY_SIZE * way / length, jacobian[m])
+            m += 1
+    if most > setting[RATIO] * least:
+        residuals[m] = BY_SIZE * math.log(most / (setting[RATIO] * least))
+        if derived:
+            jacobian[m] = 0.0
+            for n, sense in ((longest, 1.0), (shortest, -1.0)):
+                i, k = PAIRS[make, n]
+                way = z[i] - z[k]
+                _along(i, k, sense * BY_SIZE * way / abs(way) ** 2, jacobian[m])
+        m += 1
+    for i in range(7):
+        fixed = i in (O2, O4) or (i == Q2 and MAKES[make, 1] == GROUND)
+        box = setting[FIXED_BOX:MOVING_BOX] if fixed else setting[MOVING_BOX:ROOM]
+        for axis in range(2):
+            off = _outside(z[i].imag if axis else z[i].real, box[2 * axis], box[2 * axis + 1])
+            if off != 0.0:
+                residuals[m] = BY_BOX * off
+                if derived:
+                    jacobian[m] = 0.0
+                    jacobian[m, 2 * i + axis] = BY_BOX
+                m += 1
+    return m
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _along(i: int, k: int, way: complex, row: Real) -> None:
+    """Adds to a row the rate of a function of z_i − z_k whose gradient is ``way``."""
+    row[2 * i] += way.real
+    row[2 * i + 1] += way.imag
+    if k != TO_P:
+        row[2 * k] -= way.real
+        row[2 * k + 1] -= way.imag
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _row(rates: Real, weight: float, by_turn: Real, row: Real) -> None:
+    """A row by rates of the joints and of the input, and those of the input by its unknowns."""
+    for m in range(JOINTS):
+        row[m] = weight * rates[m]
+    for m in range(JOINTS, row.size):
+        row[m] = weight * rates[JOINTS] * by_turn[m - JOINTS]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def branch_rows(x: Real, points: Real, setting: Real, residuals: Real, jacobian: Real, derived: bool) -> int:
+    """The residuals of a sixbar.
+
+    Parameters
+    ----------
+    x : float, shape (14 + positions − 1,)
+        The unknowns.
+    points : float, shape (positions − 1, 6)
+        See :data:`OF_POSE`.
+    setting : float
+        See :data:`MAKE`.
+    residuals, jacobian : float, shape (most_rows, ), (most_rows, unknowns)
+        Filled; the second only where ``derived``.
+
+    Returns
+    -------
+    int
+        The number of rows; −1 where the linkage does not close.
+    """
+    intervals = x.size - JOINTS
+    z, at, turns = np.empty(7, np.complex128), np.empty(6, np.complex128), np.empty(4, np.complex128)
+    lengths, inverses = np.empty(4), np.empty(4, np.complex128)
+    parts, by_turn = np.empty(intervals), np.empty(intervals)
+    for j in range(7):
+        z[j] = complex(x[2 * j], x[2 * j + 1])
+    total = 0.0
+    for k in range(intervals):
+        parts[k] = math.exp(x[JOINTS + k])
+        total += parts[k]
+    if not total < MOST_TURN or setting[FIRST_SIDE] * signed_sine(z[A], z[O4], z[B]) <= 0.0:
+        return -1
+    if setting[SECOND_SIDE] * signed_sine(z[Q1], z[Q2], z[J]) <= 0.0:
+        return -1
+    dimensions(z, lengths, inverses)
+    rates, turning = np.empty((6, JOINTS + 1), np.complex128), np.empty(JOINTS + 1)
+    bending, cosines = np.empty((2, JOINTS + 1)), np.empty(2)
+    room = setting[ROOM : ROOM + 4]
+    everywhere = math.isinf(room[1] - room[0]) and math.isinf(room[3] - room[2])
+    m, angle = 0, 0.0
+    for n in range(SAMPLES + intervals):
+        target = n - SAMPLES
+        angle = total * n / SAMPLES if target < 0 else parts[target] + (angle if target > 0 else 0.0)
+        cosines[0], cosines[1] = driven(z, lengths, inverses, setting, setting[WAY] * angle, at, turns)
+        if not (abs(cosines[0]) < BARRIER and abs(cosines[1]) < BARRIER):
+            return -1
+        if target < 0 and everywhere and max(abs(cosines[0]), abs(cosines[1])) <= setting[COSINE]:
+            continue
+        if derived:
+            for k in range(intervals):
+                by_turn[k] = setting[WAY] * parts[k] * (n / SAMPLES if target < 0 else (1.0 if k <= target else 0.0))
+            _rates(z, lengths, inverses, setting, at, turns, cosines, rates, turning, bending)
+        for dyad in range(2):
+            over = abs(cosines[dyad]) - setting[COSINE]
+            if over > 0.0:
+                residuals[m] = BY_COSINE * over
+                if derived:
+                    _row(bending[dyad], math.copysign(BY_COSINE, cosines[dyad]), by_turn, jacobian[m])
+                m += 1
+        for j in range(0 if everywhere else 6):
+            for axis in range(2):
+                off = _outside(at[j].imag if axis else at[j].real, room[2 * axis], room[2 * axis + 1])
+                if off != 0.0:
+                    residuals[m] = BY_BOX * off
+                    if derived:
+                        _row(rates[j].imag if axis else rates[j].real, BY_BOX, by_turn, jacobian[m])
+                    m += 1
+        if target < 0:
+            continue
+        pose = points[target]
+        back = turns[3] * complex(math.cos(pose[2]), -math.sin(pose[2]))
+        for axis in range(3):
+            weight, at_axis = 1.0, rates[5].real
+            off = at[5].real - pose[0]
+            if axis == 1:
+                off, at_axis = at[5].imag - pose[1], rates[5].imag
+            elif axis == 2:
+                off, at_axis, weight = math.atan2(back.imag, back.real), turning, BY_ANGLE
+            if pose[3 + axis] == 0.0 or abs(off) > pose[3 + axis]:
+                residuals[m] = weight * _beyond(off, pose[3 + axis])
+                if derived:
+                    _row(at_axis, weight, by_turn, jacobian[m])
+                m += 1
+    return int(_sizes(z, setting, residuals, jacobian, m, derived))

@@ -1,0 +1,108 @@
+"""Sixbars from descents that hold their branch (:mod:`branch_walk`): rounds of them for one problem."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.motion import branch_rows as rows
+from synthesis.kinds.motion import branch_walk as walk
+from synthesis.kinds.motion import chain_kernels as kernels
+from synthesis.kinds.motion.chain_draws import needed
+from synthesis.kinds.motion.demanded import Demanded, Real
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.sixbar_makes import Found
+from synthesis.kinds.motion.task import MotionTask
+
+DESCENTS = 1500
+"""Descents of a round, about a third of a second."""
+
+KEPT = 400
+"""Linkages that are kept of a round."""
+
+DRAWN = 4, 4, 3, 1, 1, 1, 1
+"""How often each make is drawn: most often those that carry a body through most positions."""
+
+FIRST_POSES = 64
+"""Places of the body in a first position that has a tolerance, every other one as demanded."""
+
+WITHIN = 0.98
+"""Share of a tolerance that is used."""
+
+AIM, SIZE = math.radians(2.0), 0.96
+"""A descent aims at so much more than the least transmission angle, and at this share of limits of size."""
+
+SHORTEST = 1.5 * kernels.SHORTEST
+"""Length of a link that is aimed at, at least, task sizes."""
+
+RELAXED_ANGLE, RELAXED_SIZE = math.radians(7.0), 3.0
+"""Where nobody states them: the transmission angle of relaxed descents, and how much greater their sizes may be."""
+
+
+class BranchSearch:
+    """Rounds of descents for one problem.
+
+    Attributes
+    ----------
+    descents : int
+        How many there were so far.
+    """
+
+    def __init__(
+        self, problem: MotionProblem, task: MotionTask, target: Demanded, wanted: NDArray[np.bool_], limits: Real
+    ) -> None:
+        self.makes = np.repeat(np.arange(len(wanted)), np.where(wanted, DRAWN, 0))
+        self.first, self.later = _poses(task, target, np.random.default_rng(problem.seed))
+        self.needed, self.limits = needed(task), limits
+        self.settings = _aims(problem, limits, relaxed=False), _aims(problem, limits, relaxed=True)
+        self.pools = _empty(len(self.later)), _empty(len(self.later))
+        self.descents = 0
+
+    def round(self, rng: np.random.Generator, *, relaxed: bool) -> Found:
+        """Goes on with what was found before; ``relaxed`` without limits that nobody stated."""
+        joints, makes = np.empty((KEPT, 7), np.complex128), np.empty(KEPT, np.int64)
+        starts, counts = np.empty(KEPT, np.int64), np.zeros(3, np.int64)
+        arrived = walk.Arrived(joints, makes, np.empty(KEPT), starts, counts)
+        poses = walk.Poses(self.first, self.later, self.needed, self.limits)
+        walk.walked(rng, DESCENTS, self.makes, self.settings[relaxed], poses, self.pools[relaxed], arrived)
+        self.descents += int(counts[1])
+        n = int(counts[0])
+        own = starts[:n]
+        places = self.first[own, 0] + 1j * self.first[own, 1]
+        return Found(makes[:n], joints[:n], places, self.first[own, 2], arrived.values[:n])
+
+
+def _poses(task: MotionTask, target: Demanded, rng: np.random.Generator) -> tuple[Real, Real]:
+    """First and later poses as :class:`branch_walk.Poses` has them."""
+    unit = np.array([target.size, target.size, 1.0])
+    first = (
+        rng.uniform(-1.0, 1.0, (FIRST_POSES, 3)) * WITHIN * np.where(np.isfinite(target.limits[0]), target.limits[0], 0)
+    )
+    first[::2] = 0.0
+    places = np.stack([task.points.real, task.points.imag, np.angle(task.turns)], axis=1)
+    return first / unit, np.concatenate([places, WITHIN * target.limits / unit], axis=1)[1:]
+
+
+def _aims(problem: MotionProblem, limits: Real, *, relaxed: bool) -> Real:
+    """What descents aim at: places from :data:`branch_rows.COSINE` on."""
+    aims = np.zeros(rows.SETTINGS)
+    angle, reach, ratio = math.asin(limits[kernels.LEAST_SINE]) + AIM, *limits[[kernels.MOST_REACH, kernels.MOST_RATIO]]
+    if relaxed:
+        angle = RELAXED_ANGLE if problem.constraints.min_transmission_angle is None else angle
+        ratio *= RELAXED_SIZE if problem.constraints.max_link_ratio is None else 1.0
+        reach *= RELAXED_SIZE
+    aims[rows.COSINE], aims[rows.REACH], aims[rows.RATIO] = math.cos(angle), SIZE * reach, SIZE * ratio
+    aims[rows.SHORTEST] = max(SHORTEST, limits[kernels.SHORTEST_LINK] / SIZE)
+    aims[rows.LONGEST] = SIZE * limits[kernels.LONGEST_LINK]
+    aims[rows.FIXED_BOX :] = limits[kernels.FIXED_BOX :]
+    return aims
+
+
+def _empty(later: int) -> walk.Pool:
+    unknowns = rows.JOINTS + later
+    settings = np.zeros((walk.POOL, rows.SETTINGS))
+    return walk.Pool(
+        np.zeros((walk.POOL, unknowns)), np.full(walk.POOL, np.inf), settings, np.zeros(walk.POOL, np.int64)
+    )

@@ -1,0 +1,410 @@
+"""A search for sixbars that carry a body on one branch, compiled: random linkages, descents, and hops of the best.
+
+A random linkage that closes over a random turn of its input is taken to the positions by a descent
+(:mod:`synthesis.kinds.motion.branch_rows`), which holds its branch and its order. Most descents end in a minimum that
+misses the positions. Those that miss least make a pool, and are hopped from: changed at random and descended again, and
+replaced where that ends lower (basin hopping, Wales & Doye, J. Phys. Chem. A 101 (1997) 5111,
+doi:10.1021/jp970984n). What arrives is moved along the freedoms that the positions leave to a better quality.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.compiling import njit
+from synthesis.kinds.motion.branch_rows import (
+    COSINE,
+    FIRST_SIDE,
+    FIRST_X,
+    FIRST_Y,
+    JOINTS,
+    MAKE,
+    OF_POSE,
+    RATIO,
+    REACH,
+    SECOND_SIDE,
+    SETTINGS,
+    WAY,
+    branch_rows,
+    dimensions,
+    driven,
+    most_rows,
+)
+from synthesis.kinds.motion.chain_kernels import O4, POSITIONS, Q1, Q2, A, B, J, signed_sine, weighed
+from synthesis.numerics.cholesky import solve_positive
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+POOL = 30
+"""Linkages that are hopped from."""
+
+FRESH = 0.2
+"""Share of descents from new linkages."""
+
+PICK, TRIES = 3, 2000
+"""Of so many random linkages that close the one that is nearest is descended from; so many are drawn at most."""
+
+LEAST_SPREAD, MOST_SPREAD = 0.35, 1.35
+"""Spread of random joints around the positions, task sizes."""
+
+LEAST_TURN, MOST_DRAWN = math.radians(30.0), math.radians(300.0)
+"""Turn of the input in random linkages."""
+
+LEAST_HOP, MOST_HOP = 0.03, 0.6
+"""Spread of a hop: task sizes, and natural logarithms of turns."""
+
+STEPS, BLOCK, WORTH = 60, 10, 0.5
+"""Steps of a descent at most, and after how many of them it has to have come below this share of its cost."""
+
+DAMPING, LEAST_DAMPING, MOST_DAMPING = 0.03, 1e-10, 1e4
+"""At first, at least, and that above which a descent has stalled."""
+
+EASIER, PARTLY_EASIER, HARDER, LONGEST = 0.15, 0.6, 5.0, 0.6
+"""Factors of the damping after a whole step, after one that was cut to the greatest change of an unknown, and after a
+refused one; that change."""
+
+ARRIVED = 1e-22
+"""Sum of squares at which a linkage meets its positions."""
+
+REFUSED = 8
+"""Hops that do not close before another is taken."""
+
+BETTER, BETTER_HOP, BETTER_SHARE = 14, 0.12, 0.85
+"""Attempts to make a linkage better, their spread, and the share of its size and of its link ratio aimed at."""
+
+COLUMNS = JOINTS + POSITIONS - 1
+
+
+class Pool(NamedTuple):
+    """Linkages that miss the positions, those that miss least first.
+
+    Attributes
+    ----------
+    x : float, shape (POOL, unknowns)
+        Of :mod:`synthesis.kinds.motion.branch_rows`.
+    costs : float, shape (POOL,)
+        Infinite where there is none.
+    settings : float, shape (POOL, SETTINGS)
+    starts : int, shape (POOL,)
+        The number of the first pose of each.
+    """
+
+    x: Real
+    costs: Real
+    settings: Real
+    starts: NDArray[np.int64]
+
+
+class Poses(NamedTuple):
+    """What is demanded of the body, with first poses of it that are within their tolerance.
+
+    Attributes
+    ----------
+    first : float, shape (n, 3)
+        P and the angle of the body in the first position, one of which each linkage takes.
+    later : float, shape (k, 6)
+        x, y, angle of later positions, and how far each may be off; task coordinates, radians.
+    needed : float, shape (2,)
+        Way and turn that the body needs.
+    limits : float, shape (19,)
+        See :data:`synthesis.kinds.motion.chain_kernels.LEAST_SINE`.
+    """
+
+    first: Real
+    later: Real
+    needed: Real
+    limits: Real
+
+
+class Arrived(NamedTuple):
+    """Linkages that meet the positions.
+
+    Attributes
+    ----------
+    joints, makes, values, starts
+        Their joints in the first position, their makes, their values (:func:`chain_kernels.weighed`) and the numbers of
+        their first poses: (most, 7), (most,), (most,), (most,).
+    counts : int, shape (3,)
+        How many there are; descents; steps of descents.
+    """
+
+    joints: Complex
+    makes: NDArray[np.int64]
+    values: Real
+    starts: NDArray[np.int64]
+    counts: NDArray[np.int64]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _sides(x: Real, setting: Real) -> None:
+    """Notes on which sides the dyads of a linkage stand."""
+    z = np.empty(7, np.complex128)
+    for j in range(7):
+        z[j] = complex(x[2 * j], x[2 * j + 1])
+    setting[FIRST_SIDE] = math.copysign(1.0, signed_sine(z[A], z[O4], z[B]))
+    setting[SECOND_SIDE] = math.copysign(1.0, signed_sine(z[Q1], z[Q2], z[J]))
+
+
+class Room(NamedTuple):
+    """Where descents work: residuals, their Jacobian, those of a trial, and the system of a step."""
+
+    residuals: Real
+    trial: Real
+    jacobian: Real
+    matrix: Real
+    right: Real
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _cost(x: Real, points: Real, setting: Real, room: Room) -> float:
+    """The sum of squares; infinite where the linkage does not close."""
+    m = branch_rows(x, points, setting, room.trial, room.jacobian, False)
+    cost = 0.0
+    for k in range(m):
+        cost += room.trial[k] ** 2
+    return cost if m >= 0 else np.inf
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _step(m: int, damping: float, room: Room, step: Real) -> bool:
+    """The shortest damped step −Jᵀ(JJᵀ + μ)⁻¹ r of m rows: there are fewer of them than unknowns, as a rule."""
+    matrix, right, jacobian = room.matrix[:m, :m], room.right[:m], room.jacobian
+    for i in range(m):
+        right[i] = room.residuals[i]
+        for j in range(i + 1):
+            total = damping if i == j else 0.0
+            for k in range(step.size):
+                total += jacobian[i, k] * jacobian[j, k]
+            matrix[i, j] = total
+    if not solve_positive(matrix, right):
+        return False
+    for k in range(step.size):
+        step[k] = 0.0
+    for i in range(m):
+        for k in range(step.size):
+            step[k] -= right[i] * jacobian[i, k]
+    return True
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _descended(x: Real, points: Real, setting: Real, room: Room, counts: NDArray[np.int64]) -> float:
+    """Descends in place as long as it is worth it; the sum of squares at the end."""
+    step, trial = np.empty(x.size), np.empty(x.size)
+    cost = _cost(x, points, setting, room)
+    m = branch_rows(x, points, setting, room.residuals, room.jacobian, True)
+    before, damping = cost, DAMPING
+    for n in range(STEPS):
+        if not ARRIVED < cost < np.inf or damping > MOST_DAMPING:
+            break
+        if n % BLOCK == BLOCK - 1:
+            if cost > WORTH * before:
+                break
+            before = cost
+        counts[2] += 1
+        lower = np.inf
+        if _step(m, damping, room, step):
+            share = min(1.0, LONGEST / np.abs(step).max())
+            trial[:] = x + share * step
+            lower = _cost(trial, points, setting, room)
+        if lower < cost:
+            x[:], cost = trial, lower
+            damping = max(damping * (EASIER if share == 1.0 else PARTLY_EASIER), LEAST_DAMPING)
+            m = branch_rows(x, points, setting, room.residuals, room.jacobian, True)
+        else:
+            damping *= HARDER
+    return cost
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _of_first(poses: Poses, start: int, setting: Real, points: Real) -> None:
+    """The later positions as a linkage sees them whose first one is given."""
+    setting[FIRST_X], setting[FIRST_Y] = poses.first[start, 0], poses.first[start, 1]
+    for k in range(len(poses.later)):
+        for i in range(OF_POSE):
+            points[k, i] = poses.later[k, i]
+        points[k, 2] -= poses.first[start, 2]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _drawn(rng: np.random.Generator, x: Real, points: Real, setting: Real, room: Room) -> float:
+    """A random linkage that closes, the nearest of a few; its cost."""
+    trial, best, found = np.empty(x.size), np.inf, 0
+    centre = complex(setting[FIRST_X], setting[FIRST_Y])
+    intervals = x.size - JOINTS
+    for k in range(intervals):
+        centre += complex(points[k, 0], points[k, 1])
+    centre /= intervals + 1
+    side = np.empty(SETTINGS)
+    for _ in range(TRIES):
+        side[:] = setting
+        spread = LEAST_SPREAD * (MOST_SPREAD / LEAST_SPREAD) ** rng.random()
+        for j in range(JOINTS):
+            trial[j] = (centre.imag if j % 2 else centre.real) + spread * rng.normal()
+        turn = LEAST_TURN + (MOST_DRAWN - LEAST_TURN) * rng.random()
+        total = 0.0
+        for k in range(JOINTS, x.size):
+            trial[k] = 0.2 + 0.8 * rng.random()
+            total += trial[k]
+        for k in range(JOINTS, x.size):
+            trial[k] = math.log(turn * trial[k] / total)
+        _sides(trial, side)
+        cost = _cost(trial, points, side, room)
+        if cost < np.inf:
+            found += 1
+            if cost < best:
+                best = cost
+                x[:] = trial
+                setting[FIRST_SIDE], setting[SECOND_SIDE] = side[FIRST_SIDE], side[SECOND_SIDE]
+            if found == PICK:
+                break
+    return float(best)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def value_of(x: Real, points: Real, setting: Real, poses: Poses, joints: Complex) -> float:
+    """The value of a linkage that meets the positions, and its joints in the first one."""
+    at, turns = np.empty(6, np.complex128), np.ones(4, np.complex128)
+    into, out = np.ones(POSITIONS, np.complex128), np.ones(POSITIONS, np.complex128)
+    place, turn = np.empty(POSITIONS, np.complex128), np.ones(POSITIONS, np.complex128)
+    demanded = np.zeros(POSITIONS, np.bool_)
+    for j in range(7):
+        joints[j] = complex(x[2 * j], x[2 * j + 1])
+    lengths, inverses = np.empty(4), np.empty(4, np.complex128)
+    dimensions(joints, lengths, inverses)
+    place[0] = complex(setting[FIRST_X], setting[FIRST_Y])
+    demanded[0] = True
+    angle = 0.0
+    for k in range(1, x.size - JOINTS + 1):
+        angle += math.exp(x[JOINTS + k - 1])
+        driven(joints, lengths, inverses, setting, setting[WAY] * angle, at, turns)
+        demanded[k] = True
+        place[k], turn[k], into[k], out[k] = at[5], turns[3], turns[0], turns[2]
+    make = int(setting[MAKE])
+    return float(weighed(joints, make, into, out, place, turn, demanded, poses.needed, poses.limits))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _improved(
+    rng: np.random.Generator,
+    x: Real,
+    points: Real,
+    setting: Real,
+    poses: Poses,
+    joints: Complex,
+    value: float,
+    room: Room,
+    counts: NDArray[np.int64],
+) -> float:
+    """Moves a linkage to a better value by hops that stay on the positions; its value then."""
+    trial, other, aims = np.empty(x.size), np.empty(7, np.complex128), np.empty(SETTINGS)
+    spread = BETTER_HOP
+    angle = math.acos(setting[COSINE])
+    reach, ratio = setting[REACH], setting[RATIO]
+    for n in range(BETTER):
+        aims[:] = setting
+        # Now and then without another aim, so that the turn of the input and the body's way may count.
+        if n % 3:
+            aims[COSINE] = math.cos(min(angle + 0.1, 1.4))
+            aims[REACH], aims[RATIO] = BETTER_SHARE * reach, BETTER_SHARE * ratio
+        for k in range(x.size):
+            trial[k] = x[k] + spread * rng.normal()
+        _sides(trial, aims)
+        if _descended(trial, points, aims, room, counts) < ARRIVED:
+            better = value_of(trial, points, aims, poses, other)
+            if better > value:
+                value = better
+                x[:], joints[:] = trial, other
+                setting[FIRST_SIDE], setting[SECOND_SIDE] = aims[FIRST_SIDE], aims[SECOND_SIDE]
+                if n % 3:
+                    angle, reach, ratio = math.acos(aims[COSINE]), aims[REACH], aims[RATIO]
+                continue
+        spread *= 0.8
+    return value
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _placed(pool: Pool, n: int, x: Real, cost: float, setting: Real, start: int) -> None:
+    """Puts a linkage in the place of the n-th, and moves it up to where its cost belongs."""
+    while n > 0 and pool.costs[n - 1] > cost:
+        pool.x[n], pool.settings[n] = pool.x[n - 1], pool.settings[n - 1]
+        pool.costs[n], pool.starts[n] = pool.costs[n - 1], pool.starts[n - 1]
+        n -= 1
+    pool.x[n], pool.settings[n], pool.costs[n], pool.starts[n] = x, setting, cost, start
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def walked(
+    rng: np.random.Generator,
+    descents: int,
+    makes: NDArray[np.int64],
+    plain: Real,
+    poses: Poses,
+    pool: Pool,
+    arrived: Arrived,
+) -> None:
+    """Descents from new linkages and from hops of the pool.
+
+    Parameters
+    ----------
+    rng : Generator
+    descents : int
+        How many.
+    makes : int, shape (n,)
+        Those that are drawn from, some more often than others.
+    plain : float, shape (SETTINGS,)
+        The limits; what belongs to a linkage is filled in.
+    poses, pool, arrived
+        What is demanded; what is gone on with, and changed; what is filled.
+    """
+    unknowns = JOINTS + len(poses.later)
+    x, setting, points = np.empty(unknowns), np.empty(SETTINGS), np.empty((len(poses.later), OF_POSE))
+    most = most_rows(len(poses.later) + 1)
+    room = Room(np.empty(most), np.empty(most), np.empty((most, unknowns)), np.empty((most, most)), np.empty(most))
+    joints = np.empty(7, np.complex128)
+    for _ in range(descents):
+        n = int(arrived.counts[0])
+        if n == len(arrived.makes):
+            return
+        parent, start = POOL, 0
+        cost = np.inf
+        if rng.random() < FRESH or not pool.costs[POOL - 1] < np.inf:
+            start = int(rng.random() * len(poses.first))
+            setting[:] = plain
+            setting[MAKE] = makes[int(rng.random() * len(makes))]
+            setting[WAY] = 1.0 if rng.random() < 0.5 else -1.0
+            _of_first(poses, start, setting, points)
+            cost = _drawn(rng, x, points, setting, room)
+        else:
+            parent = int(POOL * rng.random() ** 2)
+            start = int(pool.starts[parent])
+            setting[:] = pool.settings[parent]
+            _of_first(poses, start, setting, points)
+            spread = LEAST_HOP * (MOST_HOP / LEAST_HOP) ** rng.random()
+            for _hop in range(REFUSED):
+                for k in range(unknowns):
+                    x[k] = pool.x[parent, k] + spread * rng.normal()
+                _sides(x, setting)
+                cost = _cost(x, points, setting, room)
+                if cost < np.inf:
+                    break
+        if not cost < np.inf:
+            continue
+        arrived.counts[1] += 1
+        cost = _descended(x, points, setting, room, arrived.counts)
+        if cost < ARRIVED:
+            value = value_of(x, points, setting, poses, joints)
+            if value >= 0.0:
+                value = _improved(rng, x, points, setting, poses, joints, value, room, arrived.counts)
+            arrived.joints[n], arrived.makes[n], arrived.values[n] = joints, int(setting[MAKE]), value
+            arrived.starts[n] = start
+            arrived.counts[0] = n + 1
+        elif parent == POOL:
+            if cost < pool.costs[POOL - 1]:
+                _placed(pool, POOL - 1, x, cost, setting, start)
+        elif cost < pool.costs[parent]:
+            _placed(pool, parent, x, cost, setting, start)

@@ -1,0 +1,103 @@
+"""Sixbars that carry a body, by makes: their types, their links, and where their joints stand in a kernel's rows."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.motion import chain_kernels as kernels
+from synthesis.kinds.motion.demanded import Complex, Real
+from synthesis.kinds.motion.stated_mechanisms import Sixbar
+from synthesis.model.sixbars import Links
+
+
+class Make(NamedTuple):
+    """A make: its type, where its joints stand among the kernel's, and its links."""
+
+    type: Sixbar
+    joints: dict[str, int]
+    links: Links
+
+
+_FOURBAR = {"O2": kernels.O2, "A": kernels.A, "B": kernels.B, "O4": kernels.O4}
+
+MAKES = (
+    Make(
+        "watt_1",
+        _FOURBAR | {"C": kernels.Q1, "D": kernels.Q2, "E": kernels.J},
+        {"ground": ("O2", "O4"), "input": ("O2", "A", "D"), "coupler": ("A", "B", "C"), "output": ("O4", "B"),
+         "link_5": ("C", "E", "P"), "link_6": ("D", "E")},
+    ),
+    Make(
+        "watt_1",
+        _FOURBAR | {"C": kernels.Q1, "D": kernels.Q2, "E": kernels.J},
+        {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B", "C"), "output": ("O4", "B", "D"),
+         "link_5": ("C", "E", "P"), "link_6": ("D", "E")},
+    ),
+    Make(
+        "stephenson_3",
+        _FOURBAR | {"C": kernels.Q1, "O6": kernels.Q2, "D": kernels.J},
+        {"ground": ("O2", "O4", "O6"), "input": ("O2", "A"), "coupler": ("A", "B", "C"), "rocker": ("O4", "B"),
+         "link_5": ("C", "D", "P"), "output": ("O6", "D")},
+    ),
+    Make(
+        "stephenson_1",
+        _FOURBAR | {"C": kernels.Q1, "D": kernels.Q2, "E": kernels.J},
+        {"ground": ("O2", "O4"), "input": ("O2", "A", "C"), "coupler": ("A", "B"), "output": ("O4", "B", "D"),
+         "link_5": ("C", "E", "P"), "link_6": ("D", "E")},
+    ),
+    Make(
+        "stephenson_1",
+        _FOURBAR | {"D": kernels.Q1, "C": kernels.Q2, "E": kernels.J},
+        {"ground": ("O2", "O4"), "input": ("O2", "A", "C"), "coupler": ("A", "B"), "output": ("O4", "B", "D"),
+         "link_5": ("C", "E"), "link_6": ("D", "E", "P")},
+    ),
+    Make(
+        "watt_1",
+        _FOURBAR | {"D": kernels.Q1, "C": kernels.Q2, "E": kernels.J},
+        {"ground": ("O2", "O4"), "input": ("O2", "A", "D"), "coupler": ("A", "B", "C"), "output": ("O4", "B"),
+         "link_5": ("C", "E"), "link_6": ("D", "E", "P")},
+    ),
+    Make(
+        "watt_1",
+        _FOURBAR | {"D": kernels.Q1, "C": kernels.Q2, "E": kernels.J},
+        {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B", "C"), "output": ("O4", "B", "D"),
+         "link_5": ("C", "E"), "link_6": ("D", "E", "P")},
+    ),
+)  # fmt: skip
+"""By the number of a make (:data:`chain_kernels.MAKES`)."""
+
+
+class Found(NamedTuple):
+    """Sixbars of the search, the best first.
+
+    ``makes`` (n,), ``joints`` (n, 7), ``bodies`` (n,), where P is in the first position, ``stands`` (n,), how far the
+    body is turned there from the demanded angle, radians, and ``values`` (n,).
+    """
+
+    makes: NDArray[np.int64]
+    joints: Complex
+    bodies: Complex
+    stands: Real
+    values: Real
+
+    @classmethod
+    def none(cls) -> Found:
+        """No sixbar yet."""
+        return cls(np.empty(0, np.int64), np.empty((0, 7), complex), np.empty(0, complex), np.empty(0), np.empty(0))
+
+    def best(self, rows: NDArray[np.int64]) -> Found:
+        """Some of them."""
+        return Found(self.makes[rows], self.joints[rows], self.bodies[rows], self.stands[rows], self.values[rows])
+
+    def beside(self, other: Found) -> Found:
+        """These and others."""
+        return Found(
+            np.concatenate([self.makes, other.makes]),
+            np.concatenate([self.joints, other.joints]),
+            np.concatenate([self.bodies, other.bodies]),
+            np.concatenate([self.stands, other.stands]),
+            np.concatenate([self.values, other.values]),
+        )
