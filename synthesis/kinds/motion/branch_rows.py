@@ -228,9 +228,9 @@ def _outside(at: float, low: float, high: float) -> float:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _sizes(z: Complex, setting: Real, residuals: Real, jacobian: Real, m: int, derived: bool) -> int:
+def _sizes(z: Complex, setting: Real, residuals: Real, jacobian: Real, m: int) -> int:
     """Adds residuals of links and of pivots in the first position; the number of rows, −1 where a link vanishes."""
-    make = int(setting[MAKE])
+    make, derived = int(setting[MAKE]), len(jacobian) > 0
     start = complex(setting[FIRST_X], setting[FIRST_Y])
     least, most = np.inf, 0.0
     shortest = longest = 0
@@ -297,7 +297,7 @@ def _row(rates: Real, weight: float, by_turn: Real, row: Real) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def branch_rows(x: Real, points: Real, setting: Real, residuals: Real, jacobian: Real, derived: bool) -> int:
+def branch_rows(x: Real, points: Real, setting: Real, residuals: Real, jacobian: Real) -> int:
     """The residuals of a sixbar.
 
     Parameters
@@ -309,14 +309,14 @@ def branch_rows(x: Real, points: Real, setting: Real, residuals: Real, jacobian:
     setting : float
         See :data:`MAKE`.
     residuals, jacobian : float, shape (most_rows, ), (most_rows, unknowns)
-        Filled; the second only where ``derived``.
+        Filled; the second may have no rows, and is left as it is then.
 
     Returns
     -------
     int
         The number of rows; −1 where the linkage does not close.
     """
-    intervals = x.size - JOINTS
+    intervals, derived = x.size - JOINTS, len(jacobian) > 0
     z, at, turns = np.empty(7, np.complex128), np.empty(6, np.complex128), np.empty(4, np.complex128)
     lengths, inverses = np.empty(4), np.empty(4, np.complex128)
     parts, by_turn = np.empty(intervals), np.empty(intervals)
@@ -379,4 +379,4 @@ def branch_rows(x: Real, points: Real, setting: Real, residuals: Real, jacobian:
                 if derived:
                     _row(at_axis, weight, by_turn, jacobian[m])
                 m += 1
-    return int(_sizes(z, setting, residuals, jacobian, m, derived))
+    return int(_sizes(z, setting, residuals, jacobian, m))

@@ -141,6 +141,13 @@ class Arrived(NamedTuple):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _copied(from_row: Real, row: Real) -> None:
+    """Copies a row; assigned at a time it takes the compiler seconds."""
+    for k in range(row.size):
+        row[k] = from_row[k]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _sides(x: Real, setting: Real) -> None:
     """Notes on which sides the dyads of a linkage stand."""
     z = np.empty(7, np.complex128)
@@ -163,7 +170,7 @@ class Room(NamedTuple):
 @njit(cache=True, nogil=True, error_model="numpy")
 def _cost(x: Real, points: Real, setting: Real, room: Room) -> float:
     """The sum of squares; infinite where the linkage does not close."""
-    m = branch_rows(x, points, setting, room.trial, room.jacobian, False)
+    m = branch_rows(x, points, setting, room.trial, room.jacobian[:0])
     cost = 0.0
     for k in range(m):
         cost += room.trial[k] ** 2
@@ -196,7 +203,7 @@ def _descended(x: Real, points: Real, setting: Real, room: Room, counts: NDArray
     """Descends in place as long as it is worth it; the sum of squares at the end."""
     step, trial = np.empty(x.size), np.empty(x.size)
     cost = _cost(x, points, setting, room)
-    m = branch_rows(x, points, setting, room.residuals, room.jacobian, True)
+    m = branch_rows(x, points, setting, room.residuals, room.jacobian)
     before, damping = cost, DAMPING
     for n in range(STEPS):
         if not ARRIVED < cost < np.inf or damping > MOST_DAMPING:
@@ -208,13 +215,18 @@ def _descended(x: Real, points: Real, setting: Real, room: Room, counts: NDArray
         counts[2] += 1
         lower = np.inf
         if _step(m, damping, room, step):
-            share = min(1.0, LONGEST / np.abs(step).max())
-            trial[:] = x + share * step
+            longest = 0.0
+            for k in range(x.size):
+                longest = max(longest, abs(step[k]))
+            share = min(1.0, LONGEST / longest)
+            for k in range(x.size):
+                trial[k] = x[k] + share * step[k]
             lower = _cost(trial, points, setting, room)
         if lower < cost:
-            x[:], cost = trial, lower
+            _copied(trial, x)
+            cost = lower
             damping = max(damping * (EASIER if share == 1.0 else PARTLY_EASIER), LEAST_DAMPING)
-            m = branch_rows(x, points, setting, room.residuals, room.jacobian, True)
+            m = branch_rows(x, points, setting, room.residuals, room.jacobian)
         else:
             damping *= HARDER
     return cost
@@ -241,7 +253,7 @@ def _drawn(rng: np.random.Generator, x: Real, points: Real, setting: Real, room:
     centre /= intervals + 1
     side = np.empty(SETTINGS)
     for _ in range(TRIES):
-        side[:] = setting
+        _copied(setting, side)
         spread = LEAST_SPREAD * (MOST_SPREAD / LEAST_SPREAD) ** rng.random()
         for j in range(JOINTS):
             trial[j] = (centre.imag if j % 2 else centre.real) + spread * rng.normal()
@@ -258,7 +270,7 @@ def _drawn(rng: np.random.Generator, x: Real, points: Real, setting: Real, room:
             found += 1
             if cost < best:
                 best = cost
-                x[:] = trial
+                _copied(trial, x)
                 setting[FIRST_SIDE], setting[SECOND_SIDE] = side[FIRST_SIDE], side[SECOND_SIDE]
             if found == PICK:
                 break
@@ -306,7 +318,7 @@ def _improved(
     angle = math.acos(setting[COSINE])
     reach, ratio = setting[REACH], setting[RATIO]
     for n in range(BETTER):
-        aims[:] = setting
+        _copied(setting, aims)
         # Now and then without another aim, so that the turn of the input and the body's way may count.
         if n % 3:
             aims[COSINE] = math.cos(min(angle + 0.1, 1.4))
@@ -318,7 +330,9 @@ def _improved(
             better = value_of(trial, points, aims, poses, other)
             if better > value:
                 value = better
-                x[:], joints[:] = trial, other
+                _copied(trial, x)
+                for k in range(len(other)):
+                    joints[k] = other[k]
                 setting[FIRST_SIDE], setting[SECOND_SIDE] = aims[FIRST_SIDE], aims[SECOND_SIDE]
                 if n % 3:
                     angle, reach, ratio = math.acos(aims[COSINE]), aims[REACH], aims[RATIO]
@@ -331,10 +345,13 @@ def _improved(
 def _placed(pool: Pool, n: int, x: Real, cost: float, setting: Real, start: int) -> None:
     """Puts a linkage in the place of the n-th, and moves it up to where its cost belongs."""
     while n > 0 and pool.costs[n - 1] > cost:
-        pool.x[n], pool.settings[n] = pool.x[n - 1], pool.settings[n - 1]
+        _copied(pool.x[n - 1], pool.x[n])
+        _copied(pool.settings[n - 1], pool.settings[n])
         pool.costs[n], pool.starts[n] = pool.costs[n - 1], pool.starts[n - 1]
         n -= 1
-    pool.x[n], pool.settings[n], pool.costs[n], pool.starts[n] = x, setting, cost, start
+    _copied(x, pool.x[n])
+    _copied(setting, pool.settings[n])
+    pool.costs[n], pool.starts[n] = cost, start
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -374,7 +391,7 @@ def walked(
         cost = np.inf
         if rng.random() < FRESH or not pool.costs[POOL - 1] < np.inf:
             start = int(rng.random() * len(poses.first))
-            setting[:] = plain
+            _copied(plain, setting)
             setting[MAKE] = makes[int(rng.random() * len(makes))]
             setting[WAY] = 1.0 if rng.random() < 0.5 else -1.0
             _of_first(poses, start, setting, points)
@@ -382,7 +399,7 @@ def walked(
         else:
             parent = int(POOL * rng.random() ** 2)
             start = int(pool.starts[parent])
-            setting[:] = pool.settings[parent]
+            _copied(pool.settings[parent], setting)
             _of_first(poses, start, setting, points)
             spread = LEAST_HOP * (MOST_HOP / LEAST_HOP) ** rng.random()
             for _hop in range(REFUSED):
@@ -400,8 +417,9 @@ def walked(
             value = value_of(x, points, setting, poses, joints)
             if value >= 0.0:
                 value = _improved(rng, x, points, setting, poses, joints, value, room, arrived.counts)
-            arrived.joints[n], arrived.makes[n], arrived.values[n] = joints, int(setting[MAKE]), value
-            arrived.starts[n] = start
+            for k in range(len(joints)):
+                arrived.joints[n, k] = joints[k]
+            arrived.makes[n], arrived.values[n], arrived.starts[n] = int(setting[MAKE]), value, start
             arrived.counts[0] = n + 1
         elif parent == POOL:
             if cost < pool.costs[POOL - 1]:
