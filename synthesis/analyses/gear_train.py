@@ -21,9 +21,9 @@ from kinematics.gear.train import OrdinaryTrain, TrainStage
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
 from synthesis.analyses.drift import WANTED, Drift, drifting
 from synthesis.model.answer import Answer, optional
-from synthesis.model.gear_answer import MeshGeometry, Ratio, mesh_geometries, rack_contact, rack_undercuts
+from synthesis.model.gear_answer import MeshGeometry, Ratio, mesh_geometries, rack_undercuts
 from synthesis.model.gear_statement import ExactRatio, PressureAngle, ShiftCoefficient, ToothNumber
-from synthesis.model.gear_strength import Loaded, PairStrength, StrengthMethod, told
+from synthesis.model.gear_strength import Loaded, PairStrength, StrengthMethod, stage_contact, told
 from synthesis.model.statement import Number, PositiveNumber, Statement
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
@@ -351,8 +351,7 @@ def _strength(
     """Stresses of one mesh of a stage, its gears as they stand in the order of the power, in millimetres."""
     assert request.strength is not None
     unit = 1000.0 * METRES[request.length_unit]
-    gears = replace(stage, module=stage.module * unit).cut_gears(math.radians(request.mechanism.pressure_angle))
-    contact = rack_contact(Mesh(gears[place], gears[place + 1]))
+    contact = stage_contact(stage, place, math.radians(request.mechanism.pressure_angle), unit)
     width = request.mechanism.stages[number].face_width
     return told(Loaded(contact, power, turning), request.strength, width, unit)
 

@@ -7,6 +7,9 @@ states, or that formulas of the textbook give. It knows no bearings, no lubrican
 from __future__ import annotations
 
 import math
+from copy import copy
+from dataclasses import replace
+from functools import cached_property
 from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import Field
@@ -15,8 +18,11 @@ from kinematics.errors import DimensionError
 from kinematics.gear import strength
 from kinematics.gear.flanks import Contact
 from kinematics.gear.strength import Factors, Load
-from kinematics.gear.teeth import Gear
+from kinematics.gear.teeth import Gear, Mesh
+from kinematics.gear.train import TrainStage
 from synthesis.model.answer import Answer, optional
+from synthesis.model.dimension import ROTATIONAL_SPEED, Length
+from synthesis.model.gear_answer import rack_contact
 from synthesis.model.statement import PositiveNumber, Statement
 
 Positive = Annotated[float, Field(strict=True, gt=0.0, le=1e6)]
@@ -111,6 +117,30 @@ class StatedStrength(StrengthMethod):
     power_kw: PositiveNumber
 
 
+class CarriedPower(StatedStrength):
+    """What a train that is looked for has to carry; pairs are of the driving gear of every mesh and the driven one."""
+
+    speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] = Field(
+        description="Of the input shaft, revolutions a minute."
+    )
+
+    @property
+    def power(self) -> float:
+        """On the input shaft, and without losses on all others, W."""
+        return 1000.0 * self.power_kw
+
+    @property
+    def speed(self) -> float:
+        """Of the input shaft, rad/s."""
+        return self.speed_rpm * math.pi / 30.0
+
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows, by the path below this statement."""
+        if self.kept:
+            return super().faults()
+        return [*super().faults(), ("/allowable_bending", "state it, or allowable_contact: what the teeth may bear")]
+
+
 class StressedGear(Answer):
     """One gear: stresses in MPa, and how far below what it may bear; null where nothing is stated or known."""
 
@@ -133,8 +163,8 @@ class PairStrength(Answer):
     dynamic: float
     load_distribution: float | None
     contact_geometry: float | None
-    face_width: float | None = Field(description="As stated, or the least that carries the load; the module's unit.")
-    least_face_width: float | None = optional(
+    face_width: Length | None = Field(description="As stated, or the least that carries the load; the module's unit.")
+    least_face_width: Length | None = optional(
         "The least that keeps all stated allowable stresses; left out where none are stated, where no width up to "
         "`max_face_width` keeps them, or where one of the stresses is not known."
     )
@@ -206,17 +236,23 @@ class Judge:
         except DimensionError:
             return None
 
+    def under(self, power: float, turning: float) -> Judge:
+        """The same pair under another power, W, its first gear turning so fast, rad/s."""
+        other = copy(self)
+        other._loaded = self._loaded._replace(power=power, speed=turning)
+        return other
+
     def at(self, width: float) -> Stresses:
         """Stresses over a face of this width, millimetres."""
         stated, factors, load = self._stated, self._stated.factors, self._loaded.load(width)
         mesh = self._loaded.contact.mesh
         if stated.method == "lewis":
-            dynamic = factors.dynamic or strength.barth_factor(load.speed)
+            dynamic = self._dynamic(load)
             rows = [
                 self._row(k, form, None, self._lewis(load, form, dynamic), None) for k, form in enumerate(self._forms)
             ]
             return Stresses(load, dynamic, None, None, rows)
-        dynamic = factors.dynamic or strength.dynamic_factor(load.speed, stated.quality)
+        dynamic = self._dynamic(load)
         spread = factors.load_distribution or strength.load_distribution_factor(width, load.pinion_diameter)
         teeth = sorted((mesh.pinion.teeth, mesh.gear.teeth))
         geometry = factors.contact_geometry or strength.contact_geometry(
@@ -250,17 +286,51 @@ class Judge:
             "contact_safety": contact[place] / pressed if contact and pressed is not None else None,
         }
 
+    @cached_property
+    def bearable(self) -> float:
+        """The greatest tangential force times dynamic factor that a face up to the widest bears, N.
+
+        Bending stress rises with it, contact stress with its root. 0 where one of the stresses is not known.
+        """
+        names = self._stated.kept
+        most = 0.0
+        for width in self._widths():
+            found = self.at(width)
+            shares = [(row[name], name) for row in found.gears for name in names]
+            known = [0.0 if s is None else s * s if name == "contact_safety" else s for s, name in shares]
+            most = max(most, min(known, default=0.0) * found.load.force * found.dynamic)
+        return most
+
+    def carried_power(self, turning: float) -> float:
+        """The greatest power, W, that a face up to the widest carries where the first gear turns so fast, rad/s.
+
+        The force falls with the speed by more than its dynamic factor rises, so that this power rises with the speed.
+        """
+        load = self._loaded._replace(power=1.0, speed=turning).load(1.0)
+        return self.bearable / (load.force * self._dynamic(load))
+
+    def _widths(self) -> list[float]:
+        """Widths in equal ratios up to the widest, millimetres."""
+        most = self._stated.max_face_width * self._loaded.contact.mesh.pinion.module
+        return [most * math.pow(1e-3, 1.0 - k / WIDTHS) for k in range(WIDTHS + 1)]
+
+    def _dynamic(self, load: Load) -> float:
+        stated = self._stated
+        if stated.factors.dynamic:
+            return stated.factors.dynamic
+        if stated.method == "lewis":
+            return strength.barth_factor(load.speed)
+        return strength.dynamic_factor(load.speed, stated.quality)
+
     def least_width(self) -> float | None:
         """The least width that keeps the allowable stresses, millimetres.
 
         None where no width up to the widest does, where none are stated, or where one of the stresses is not known.
         """
-        stated, module, names = self._stated, self._loaded.contact.mesh.pinion.module, self._stated.kept
+        names, before = self._stated.kept, 0.0
         if not names:
             return None
-        most, before = stated.max_face_width * module, 0.0
-        for k in range(WIDTHS + 1):
-            width = most * math.pow(1e-3, 1.0 - k / WIDTHS)
+        for width in self._widths():
             if self.at(width).keep(names):
                 for _ in range(60):
                     middle = 0.5 * (before + width)
@@ -269,6 +339,20 @@ class Judge:
                 return width
             before = width
         return None
+
+
+def stage_contact(stage: TrainStage, place: int, pressure_angle: float, unit: float) -> Contact:
+    """A mesh of a stage in millimetres, its gears as they stand in the order of the power.
+
+    Parameters
+    ----------
+    place : int
+        Of the mesh in the stage, counted from 0; more than one with idlers.
+    unit : float
+        Millimetres in the unit of the module.
+    """
+    gears = replace(stage, module=stage.module * unit).cut_gears(pressure_angle)
+    return rack_contact(Mesh(gears[place], gears[place + 1]))
 
 
 def told(loaded: Loaded, stated: StrengthMethod, face_width: float | None, unit: float) -> dict[str, Any]:

@@ -154,6 +154,8 @@ def _tables(design: GearTrainDesign, problem: GearTrainProblem, gears: list[Trai
                 ("tip circles", ", ".join(f"⌀ {length(2.0 * gear.tip_radius)} {unit}" for gear in cut)),
                 ("working pressure angle", ", ".join(f"{mesh.working_pressure_angle:.4f}°" for mesh in meshes)),
             ]
+        if stage.face_width is not None:
+            rows.append(("face width, a first estimate", f"{length(stage.face_width)} {unit}"))
         if any(mesh.interferes for mesh in meshes):
             rows.append(("interference", "yes; see suggested shift"))
         tables.append(blocks.rows(f"Stage {number}", rows))

@@ -9,6 +9,7 @@ from pydantic import Field
 from synthesis.model.answer import Answer, Result, Search, Verification, optional
 from synthesis.model.dimension import Angle, Length
 from synthesis.model.gear_answer import MeshGeometry, OfGears, Ratio
+from synthesis.model.gear_strength import PairStrength
 
 
 class Stage(Answer):
@@ -19,6 +20,7 @@ class Stage(Answer):
     module: Length = Field(description="Module in length units.")
     shift: OfGears | None = optional("Profile shift of both gears in modules, where teeth are fitted.")
     centre_distance: Length | None = optional("Distance of the shafts without play, where teeth are fitted.")
+    face_width: Length | None = optional("The least with which the stage carries a stated power.")
 
 
 class Idler(Answer):
@@ -49,6 +51,7 @@ class GearTrainMetrics(Answer):
     hunting_tooth: bool = Field(description="The teeth of every mesh have no common divisor.")
     centre_distances: list[Length] = Field(description="Of the shafts of each stage, idlers in line.")
     meshes: list[MeshGeometry]
+    strength: list[PairStrength] | None = optional("Stresses of every mesh, in their order, under a stated power.")
 
 
 class GearTrainDesign(Answer):

@@ -38,7 +38,8 @@ class Fit:
 
     ``module[s, a, b]`` is the place of the module that a pair has in stage s (one row for all stages where they are
     alike), −1 where none fits. ``ends[m, a, b]`` are the intervals of distances of a pair with module m,
-    least and greatest, filled with nan, where stages have to agree on one; empty otherwise. ``modules`` are lengths.
+    least and greatest, filled with nan, where stages have to agree on one; empty otherwise. ``fits[s, m, a, b]`` tells
+    of stages with a distance of their own which modules fit a pair. ``modules`` are lengths.
     """
 
     demands: Demands
@@ -46,6 +47,7 @@ class Fit:
     limits: tuple[tuple[float, float], ...]
     module: NDArray[np.int8]
     ends: NDArray[np.float64]
+    fits: NDArray[np.bool_]
 
     @property
     def by_stage(self) -> bool:
@@ -78,12 +80,18 @@ class Fit:
                 _common([self.ends[mark, a, b] for (a, b), mark in zip(meshes, marks, strict=True)]), wanted
             )
             return [self._fitted(a, b, mark, shared) for (a, b), mark in zip(meshes, marks, strict=True)]
-        stages = []
-        for number, (a, b) in enumerate(meshes):
-            row = self.stage(number)
-            place = int(self.module[row, a, b])
-            stages.append(self._fitted(a, b, place, self._own_distance(a, b, place, self.limits[row])))
-        return stages
+        return [
+            self.made(number, a, b, int(self.module[self.stage(number), a, b])) for number, (a, b) in enumerate(meshes)
+        ]
+
+    def made(self, number: int, a: int, b: int, place: int) -> FittedStage:
+        """A mesh in a stage, counted from 0, that has a distance of its own, with one of the modules that fit it."""
+        return self._fitted(a, b, place, self._own_distance(a, b, place, self.limits[self.stage(number)]))
+
+    def places(self, number: int, a: int, b: int) -> list[int]:
+        """Places of the modules that fit a mesh in such a stage, the smallest module first."""
+        fits = np.flatnonzero(self.fits[self.stage(number), :, a, b])
+        return sorted((int(place) for place in fits), key=self.modules.__getitem__)
 
     def _own_distance(self, a: int, b: int, place: int, limits: tuple[float, float]) -> float:
         if limits[0] == limits[1]:
@@ -162,20 +170,22 @@ def fit_meshes(problem: GearTrainProblem, numbers: Integers) -> Fit:
             ends[place, :, :, : span.shape[2]] = module * span
         found = np.isfinite(ends[..., 0, 0])
         chosen = np.where(found.any(axis=0), found.argmax(axis=0), -1).astype(np.int8)
-        return Fit(demands, modules, ((low, high),), chosen[None], ends)
+        return Fit(demands, modules, ((low, high),), chosen[None], ends, np.zeros((1, 0, n, n), np.bool_))
     rows = _stages_apart(problem)
     limits = tuple(problem.distance_limits(stage) for stage in range(rows))
     chosen = np.full((rows, n, n), -1, np.int8)
+    every = np.zeros((rows, len(modules), n, n), np.bool_)
     for row, (low, high) in enumerate(limits):
         nearest = np.full((n, n), math.inf)
         # Of equally near modules the smallest: they are tried in rising order.
         for place in sorted(_choices(problem, row, modules), key=modules.__getitem__):
             module = modules[place]
             fits = np.isfinite(_between(asked, low / module, high / module, False, demands)[..., 0, 0])
+            every[row, place] = fits
             apart = np.maximum(0.0, np.maximum(low - module * standard, module * standard - high))
             better = fits & (apart < nearest)
             chosen[row][better], nearest[better] = place, apart[better]
-    return Fit(demands, modules, limits, chosen, np.zeros((0, 0, 0, 0, 2)))
+    return Fit(demands, modules, limits, chosen, np.zeros((0, 0, 0, 0, 2)), every)
 
 
 def demands_of(problem: GearTrainProblem) -> Demands:

@@ -21,6 +21,7 @@ from synthesis.model.gear_statement import (
     TipThickness,
     ToothNumber,
 )
+from synthesis.model.gear_strength import CarriedPower
 from synthesis.model.ratio_target import Target, decimal, parse_target
 from synthesis.model.statement import Contradiction, Count, Flag, PositiveLength, Range, StatedProblem, Statement
 
@@ -105,6 +106,22 @@ class GearTrainProblem(StatedProblem):
                     "tolerance": 1e-5,
                     "max_designs": 3,
                 },
+                {
+                    "kind": "gear_train",
+                    "ratio": "12",
+                    "max_stages": 2,
+                    "teeth": {"min": 18, "max": 90},
+                    "modules": [1.5, 2.0, 2.5, 3.0],
+                    "tolerance": 0.001,
+                    "strength": {
+                        "power_kw": 3.0,
+                        "speed_rpm": 1450.0,
+                        "allowable_bending": [200.0, 180.0],
+                        "allowable_contact": [800.0, 750.0],
+                        "max_face_width": 12.0,
+                    },
+                    "max_designs": 3,
+                },
             ]
         },
     )
@@ -181,6 +198,12 @@ class GearTrainProblem(StatedProblem):
         default=None, description=f"Of every gear, in modules; {USUAL_TIP_THICKNESS} where teeth are fitted."
     )
     pressure_angle: PressureAngle = Field(default=20.0, description="Degrees.")
+    strength: CarriedPower | None = Field(
+        default=None,
+        description="What every mesh has to carry, under the torque and at the speed of its stage: each stage has the "
+        "least of its modules with which a face of at most `max_face_width` modules does, and the least such face; "
+        "trains that do not are not returned. A first estimate.",
+    )
     interference: Literal["report", "refuse"] = Field(
         default="report",
         description="Whether meshes in which one gear would dig into the other are only told (with the profile shift "
@@ -315,7 +338,14 @@ class GearTrainProblem(StatedProblem):
 
     def contradictions(self) -> list[Contradiction]:
         """Faults that no single field shows."""
-        return [*self._contradicting_fields(), *self._wrong_lists(), *self._wrong_fit(), *self._too_much()]
+        wrong = [] if self.strength is None else self.strength.faults()
+        return [
+            *self._contradicting_fields(),
+            *self._wrong_lists(),
+            *self._wrong_fit(),
+            *self._too_much(),
+            *(Contradiction(f"/strength{path}", detail) for path, detail in wrong),
+        ]
 
     def _contradicting_fields(self) -> list[Contradiction]:
         contradictions = []

@@ -69,8 +69,7 @@ class Train(NamedTuple):
         return max(gears) if largest else sum(gears)
 
 
-@dataclass(frozen=True)
-class Outcome:
+class Outcome(NamedTuple):
     """What a search found: ``trains`` in the order of the ranking, ``pareto`` by rising size."""
 
     trains: list[Train]

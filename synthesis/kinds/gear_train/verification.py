@@ -16,7 +16,9 @@ from synthesis.kinds.gear_train.design import GearTrainDesign, GearTrainMechanis
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
+from synthesis.model.dynamics import METRES
 from synthesis.model.gear_answer import mesh_geometries
+from synthesis.model.gear_strength import Loaded, PairStrength, stage_contact, told
 from synthesis.model.ratio_target import decimal
 from synthesis.proof.checks import tolerated
 
@@ -69,12 +71,14 @@ def verify(problem: GearTrainProblem, mechanism: GearTrainMechanism) -> GearTrai
         hunting_tooth=all(math.gcd(*pair) == 1 for pair in pairs),
         centre_distances=list(train.centre_distances),
         meshes=meshes,
+        strength=_strength(problem, mechanism, train),
     )
     checks = [
         *_ratio_checks(problem, mechanism, train, errors),
         *_gear_checks(problem, mechanism, train, metrics),
         *_mesh_checks(problem, metrics),
         *(_fit_checks(problem, mechanism, metrics) if problem.is_fitted else []),
+        *_strength_checks(problem, mechanism, metrics),
     ]
     return GearTrainDesign(
         mechanism=mechanism,
@@ -171,6 +175,38 @@ def _fit_checks(problem: GearTrainProblem, mechanism: GearTrainMechanism, metric
         Check(name="fillet_interference", passed=not any(mesh.interferes for mesh in metrics.meshes)),
         _fitted("contact_ratio", ratio, problem.least_contact_ratio),
         _fitted("tip_thickness", min(tips), problem.least_tip_thickness),
+    ]
+
+
+def _strength(
+    problem: GearTrainProblem, mechanism: GearTrainMechanism, train: OrdinaryTrain
+) -> list[PairStrength] | None:
+    """Stresses of every mesh over its stage's face, from the speeds of the shafts; None where no power is stated."""
+    stated = problem.strength
+    if stated is None:
+        return None
+    unit, found = 1000.0 * METRES[problem.length_unit], []
+    for made, stage, speeds in zip(mechanism.stages, train.stages, train.speeds, strict=True):
+        for place, speed in enumerate(speeds[:-1]):
+            contact = stage_contact(stage, place, train.pressure_angle, unit)
+            loaded = Loaded(contact, stated.power, abs(float(speed)) * stated.speed)
+            found.append(PairStrength(**told(loaded, stated, made.face_width, unit)))
+    return found
+
+
+def _strength_checks(
+    problem: GearTrainProblem, mechanism: GearTrainMechanism, metrics: GearTrainMetrics
+) -> list[Check]:
+    """Safeties of all gears, and faces as wide as they may be."""
+    stated = problem.strength
+    if stated is None or metrics.strength is None:
+        return []
+    safeties = [getattr(gear, name) for mesh in metrics.strength for gear in mesh.gears for name in stated.kept]
+    least = min(0.0 if safety is None else safety for safety in safeties)
+    widest = max((stage.face_width or math.inf) / stage.module for stage in mechanism.stages)
+    return [
+        Check(name="strength", passed=least >= 1.0 - FITTED, value=least, limit=1.0),
+        tolerated("relative_face_width", widest, stated.max_face_width * (1.0 + FITTED)),
     ]
 
 

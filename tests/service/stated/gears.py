@@ -18,6 +18,26 @@ PLACES = {
     "teeth": [{"min": 15, "max": 20}, {"min": 30, "max": 60}, {"min": 15, "max": 20}, {"min": 30, "max": 60}],
 }
 DISTANCE = {"centre_distance": 45.0, "modules": [1.0, 1.5]}
+CARRY: dict[str, Any] = {
+    "module": 2.0,
+    "strength": {
+        "power_kw": 0.5,
+        "speed_rpm": 1000.0,
+        "allowable_bending": [200.0, 180.0],
+        "allowable_contact": [800.0, 750.0],
+    },
+}
+FACTORS: dict[str, Any] = {
+    "form": [0.3, 0.4],
+    "overload": 1.25,
+    "dynamic": 1.3,
+    "size": [1.2, 1.1],
+    "load_distribution": 1.5,
+    "rim": 1.2,
+    "bending_geometry": [0.3, 0.4],
+    "contact_geometry": 0.1,
+    "elastic": 160.0,
+}
 STOCK = {"teeth": None, "stock": [{"teeth": 20, "count": 1}, 20, 25, 30, 50, 51, 60]}
 
 TRAIN_ROWS: dict[str, Any] = {
@@ -50,6 +70,16 @@ TRAIN_ROWS: dict[str, Any] = {
     "shift.max": Row(0.1, {**DISTANCE, "shift": {"min": -0.5, "max": 1.0}}),
     "min_contact_ratio": Row(1.6, DISTANCE),
     "min_tip_thickness": Row(0.7, DISTANCE),
+    "strength": Row({**CARRY["strength"], "power_kw": 50.0}, CARRY),
+    "strength.method": Row("lewis", {"module": 2.0, "strength": {**CARRY["strength"], "allowable_contact": None}}),
+    "strength.quality": Row(9.0, CARRY),
+    "strength.factors": Row({"overload": 1.5}, CARRY),
+    **{f"strength.factors.{name}": Row(value, CARRY) for name, value in FACTORS.items()},
+    "strength.allowable_bending": Row([60.0, 60.0], CARRY),
+    "strength.allowable_contact": Row([700.0, 700.0], CARRY),
+    "strength.max_face_width": Row(2.0, CARRY),
+    "strength.power_kw": Row(0.6, CARRY),
+    "strength.speed_rpm": Row(900.0, CARRY),
     "pressure_angle": 25.0,
     "interference": Row("refuse", {"teeth": {"min": 10, "max": 40}}),
     "tolerance": 1e-9,

@@ -1,0 +1,246 @@
+"""Which trains carry a stated power: in which order of their stages, with which modules and over which faces.
+
+The search orders trains by error or size whatever they carry. They are judged in that order, so that the first that
+carry the power are the best that do, and where all trains of the search were judged there is no other. What a train has
+to carry is the power at the speed of each of its shafts; a mesh carries more of it the faster it turns.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import cmp_to_key
+from typing import Any, NamedTuple
+
+from kinematics.gear.train import TrainStage
+from synthesis.kinds.gear_train.design import GearTrainMechanism, Idler, Stage
+from synthesis.kinds.gear_train.making import assembled, choices_of, idler_choices
+from synthesis.kinds.gear_train.problem import NEAR, GearTrainProblem
+from synthesis.kinds.gear_train.search import Outcome, Train, order
+from synthesis.kinds.gear_train.task import Task, needs_idler
+from synthesis.model.dynamics import METRES
+from synthesis.model.gear_strength import CarriedPower, Judge, Loaded, stage_contact
+from synthesis.outcome.exhaustive import pareto
+
+FIRST_JUDGED, MOST_JUDGED = 64, 1024
+"""Trains that are judged at first, and at most."""
+
+MOST_TRIED = 10_000
+"""Orders of stages, pairings and idlers of all trains together after which no further train is judged."""
+
+EQUAL = 1e-12
+"""Share by which a mesh may fall short of the power in rounding."""
+
+
+class Borne(NamedTuple):
+    """A train as it carries the power, and how it is made."""
+
+    train: Train
+    mechanism: GearTrainMechanism
+
+
+class Judged(NamedTuple):
+    """What became of the trains of a search.
+
+    ``failed`` of the trains that were judged do not carry the power; the ``strongest`` of them carries so many W (0:
+    not known, of trains with idlers).
+    ``every``: the search has no other trains.
+    """
+
+    borne: list[Borne]
+    failed: int
+    strongest: float
+    every: bool
+
+
+@dataclass
+class Bearing:
+    """What the meshes of a problem carry; each is judged once."""
+
+    problem: GearTrainProblem
+    task: Task
+    stated: CarriedPower
+    tried: int = 0
+    strongest: float = 0.0
+    _judges: dict[TrainStage, Judge] = field(default_factory=dict)
+
+    def carrying(self, train: Train) -> Borne | None:
+        """The first arrangement of a train that carries the power; None where none does."""
+        for arranged in arrangements(self.problem, self.task, train):
+            self.tried += 1
+            idle = needs_idler(self.problem, len(arranged.drivers))
+            found = self._with_idler(arranged) if idle else self._without(arranged)
+            if found is not None:
+                return found
+        return None
+
+    def _without(self, train: Train) -> Borne | None:
+        stages, weakest = [], math.inf
+        for choices, speed in self._loaded(train):
+            weakest = min(weakest, max(self._power(stage, (), speed) for stage in choices))
+            stages.append(self._smallest(choices, (), speed))
+        self.strongest = max(self.strongest, weakest)
+        return self._faced(train, stages, [])
+
+    def _with_idler(self, train: Train) -> Borne | None:
+        """One stage has an idler, and needs not carry the power without."""
+        loaded = list(self._loaded(train))
+        plain = [self._smallest(choices, (), speed) for choices, speed in loaded]
+        weak = {number for number, stage in enumerate(plain, 1) if stage is None}
+        for idlers in idler_choices(self.problem, self.task, train):
+            self.tried += 1
+            place = idlers[0].stage
+            if weak <= {place}:
+                choices, speed = loaded[place - 1]
+                stage = self._smallest(choices, (idlers[0].teeth,), speed)
+                found = self._faced(train, [*plain[: place - 1], stage, *plain[place:]], idlers)
+                if found is not None:
+                    return found
+        return None
+
+    def _loaded(self, train: Train) -> Iterator[tuple[list[Stage], float]]:
+        """The stages that a train may have in each place, and the speed of the shaft that drives them, rad/s."""
+        speed = self.stated.speed
+        for choices, (driver, driven) in zip(choices_of(self.problem, self.task, train), train.meshes, strict=True):
+            yield choices, speed
+            speed *= driver / driven
+
+    def _smallest(self, choices: list[Stage], idlers: tuple[int, ...], speed: float) -> Stage | None:
+        """A stage with its least module that carries the power."""
+        return next((stage for stage in choices if self._enough(self._power(stage, idlers, speed))), None)
+
+    def _faced(self, train: Train, stages: list[Stage | None], idlers: list[Idler]) -> Borne | None:
+        """The train with the least faces of its stages; None where one of them does not carry the power."""
+        chosen = [stage for stage in stages if stage is not None]
+        if len(chosen) < len(stages):
+            return None
+        speed, faced = self.stated.speed, []
+        for number, stage in enumerate(chosen, 1):
+            width = self._width(stage, tuple(idler.teeth for idler in idlers if idler.stage == number), speed)
+            if width is None:
+                return None
+            faced.append(stage.model_copy(update={"face_width": width}))
+            speed *= stage.driver / stage.driven
+        return Borne(train, assembled(self.problem, train, faced, idlers))
+
+    def _enough(self, power: float) -> bool:
+        return power >= self.stated.power * (1.0 - EQUAL)
+
+    def _power(self, stage: Stage, idlers: tuple[int, ...], speed: float) -> float:
+        """The greatest power that all meshes of a stage carry."""
+        return min(self._judge(mesh).carried_power(turning) for mesh, turning in _meshes(stage, idlers, speed))
+
+    def _width(self, stage: Stage, idlers: tuple[int, ...], speed: float) -> float | None:
+        """The least face, in the problem's unit, over which all meshes of a stage carry the power."""
+        meshes = [(self._judge(mesh), turning) for mesh, turning in _meshes(stage, idlers, speed)]
+        least = [judge.under(self.stated.power, turning).least_width() for judge, turning in meshes]
+        known = [width for width in least if width is not None]
+        if len(known) < len(least):
+            return None
+        width = max(known)
+        kept = (judge.under(self.stated.power, turning).at(width).keep(self.stated.kept) for judge, turning in meshes)
+        return width / self._unit if all(kept) else None
+
+    def _judge(self, mesh: TrainStage) -> Judge:
+        if mesh not in self._judges:
+            contact = stage_contact(mesh, 0, math.radians(self.problem.pressure_angle), self._unit)
+            self._judges[mesh] = Judge(Loaded(contact, self.stated.power, self.stated.speed), self.stated)
+        return self._judges[mesh]
+
+    @property
+    def _unit(self) -> float:
+        return 1000.0 * METRES[self.problem.length_unit]
+
+
+def _meshes(stage: Stage, idlers: tuple[int, ...], speed: float) -> Iterator[tuple[TrainStage, float]]:
+    """The meshes of a stage, each as a stage of its own, and how fast its first gear turns, rad/s."""
+    gears = (stage.driver, *idlers, stage.driven)
+    shifts = (0.0, 0.0) if stage.shift is None else (stage.shift.driver, stage.shift.driven)
+    for one, other in itertools.pairwise(gears):
+        yield TrainStage(one, other, stage.module, (), shifts), speed * stage.driver / one
+
+
+def arrangements(problem: GearTrainProblem, task: Task, train: Train) -> list[Train]:
+    """A train with its stages in every order and its gears in every pairing that the demands allow.
+
+    Reverted trains keep their pairing. Those of the smallest largest stage ratio come first, of them the train itself.
+    """
+    k = len(train.drivers)
+    numbers = [(set(task.drivers[i].tolist()), set(task.driven[i].tolist()), task.stages(k, i)) for i in range(k)]
+    found = set()
+    for places in itertools.permutations(range(k)):
+        for mates in [places] if task.reverted else itertools.permutations(range(k)):
+            meshes = [(train.drivers[i], train.driven[j]) for i, j in zip(places, mates, strict=True)]
+            if all(
+                a in own and b in others and ok[a, b] for (a, b), (own, others, ok) in zip(meshes, numbers, strict=True)
+            ):
+                drivers, driven = zip(*meshes, strict=True)
+                found.add(Train(drivers, driven, tuple(train.marks[i] for i in places)))
+
+    def key(one: Train) -> tuple[Any, ...]:
+        shared = problem.hunting_tooth == "prefer" and not hunts(one)
+        return shared, max(max(mesh) / min(mesh) for mesh in one.meshes), one != train, one
+
+    return sorted(found, key=key)
+
+
+def hunts(train: Train) -> bool:
+    """Whether the teeth of every mesh have no common divisor."""
+    return all(math.gcd(*mesh) == 1 for mesh in train.meshes)
+
+
+def judged(
+    problem: GearTrainProblem, task: Task, stated: CarriedPower, ranked: Callable[[int], Outcome]
+) -> tuple[Judged, Outcome]:
+    """The best trains that carry a power, and the search with the ties and the Pareto set of those that do.
+
+    Parameters
+    ----------
+    ranked : callable
+        The best so many trains of the search.
+    """
+    bearing = Bearing(problem, task, stated)
+    verdicts: dict[Train, Borne | None] = {}
+    wanted = max(FIRST_JUDGED, problem.max_designs)
+    while True:
+        outcome = ranked(wanted)
+        every = len(outcome.trains) < wanted
+        borne: list[Borne] = []
+        for train in outcome.trains:
+            if len(borne) >= problem.max_designs:
+                break
+            if train not in verdicts and bearing.tried < MOST_TRIED:
+                verdicts[train] = bearing.carrying(train)
+            found = verdicts.get(train)
+            if found is not None:
+                borne.append(found)
+        spent = bearing.tried >= MOST_TRIED or wanted >= MOST_JUDGED
+        if every or spent or len(borne) >= problem.max_designs:
+            break
+        wanted *= 4
+    made = {found.train: found for found in borne}
+    hunting = {train for train in made if hunts(train)} if problem.hunting_tooth == "prefer" else set()
+    trains = order(task, made, hunting)
+    every = every and all(train in verdicts for train in outcome.trains)
+    failed = sum(found is None for found in verdicts.values())
+    answer = Judged([made[train] for train in trains[: problem.max_designs]], failed, bearing.strongest, every)
+    return answer, outcome._replace(trains=trains, ties=_ties(task, trains), pareto=_pareto(problem, task, trains))
+
+
+def _ties(task: Task, trains: list[Train]) -> int:
+    """How many of the trains are exactly as near as the nearest of them."""
+    if not trains:
+        return 0
+    nearest = min(trains, key=lambda train: cmp_to_key(task.target.nearer)(train.ratio))
+    return sum(task.target.nearer(train.ratio, nearest.ratio) == 0 for train in trains)
+
+
+def _pareto(problem: GearTrainProblem, task: Task, trains: list[Train]) -> list[Train]:
+    """Of the trains those that none is both smaller and nearer than."""
+    near = cmp_to_key(task.target.nearer)
+    within = problem.exact_tolerance or NEAR
+    kept = [train for train in trains if task.target.within(train.ratio, within)]
+    by_size = sorted(kept, key=lambda train: (train.size(task.largest), near(train.ratio)))
+    return pareto(by_size, lambda train: near(train.ratio))

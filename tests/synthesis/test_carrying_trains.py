@@ -1,0 +1,142 @@
+"""Gear trains that carry a stated power: against a brute force over pairs that are judged one by one, and by laws."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from functools import cache
+from typing import Any
+
+import pytest
+
+from synthesis.analyses import parse_request
+from synthesis.dispatch import solve
+from synthesis.kinds.gear_train.design import GearTrainResult
+from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.kinds.gear_train.verification import verify
+from synthesis.registry import parse_problem
+
+POWER: dict[str, Any] = {
+    "power_kw": 2.0,
+    "speed_rpm": 1450.0,
+    "allowable_bending": [200.0, 180.0],
+    "allowable_contact": [700.0, 650.0],
+    "max_face_width": 12.0,
+}
+FEW: dict[str, Any] = {"ratio": "5/4", "max_stages": 2, "teeth": {"min": 18, "max": 20}, "tolerance": 0.3}
+
+
+def solved(**fields: Any) -> GearTrainResult:
+    problem = parse_problem({"kind": "gear_train", **fields})
+    assert problem.contradictions() == []
+    result = solve(problem, lambda fraction, message: None)
+    assert isinstance(result, GearTrainResult)
+    assert all(design.verification.passed for design in result.designs)
+    return result
+
+
+@cache
+def narrowest(driver: int, driven: int, module: float, speed: float) -> float | None:
+    """The least face of a pair that stands alone, by the analysis of pairs."""
+    stated = {name: POWER[name] for name in POWER if name != "speed_rpm"}
+    pair = {"type": "gear_pair", "teeth": [driver, driven], "module": module}
+    request = parse_request({"mechanism": pair, "speed_rpm": speed, "strength": stated})
+    width = request.answer()["strength"].get("least_face_width")
+    return None if width is None else float(width)
+
+
+def carrying() -> dict[tuple[tuple[int, ...], ...], bool]:
+    """Every train of :data:`FEW`, by its drivers and driven gears, and whether an arrangement of it carries."""
+    numbers = range(18, 21)
+    meshes = list(itertools.product(numbers, numbers))
+    found: dict[tuple[tuple[int, ...], ...], bool] = {}
+    for stages in [*((mesh,) for mesh in meshes), *itertools.product(meshes, meshes)]:
+        ratio = math.prod(b / a for a, b in stages)
+        if abs(ratio / 1.25 - 1.0) > 0.3:
+            continue
+        speed, carries = POWER["speed_rpm"], True
+        for a, b in stages:
+            carries = carries and any(narrowest(a, b, module, speed) is not None for module in (1.5, 2.0))
+            speed *= a / b
+        gears = tuple(tuple(sorted(side)) for side in zip(*stages, strict=True))
+        found[gears] = found.get(gears, False) or carries
+    return found
+
+
+def test_a_brute_force_finds_the_same() -> None:
+    every = carrying()
+    result = solved(**FEW, modules=[1.5, 2.0], strength=POWER, max_designs=200)
+    found = {
+        tuple(tuple(sorted(getattr(stage, side) for stage in design.mechanism.stages)) for side in ("driver", "driven"))
+        for design in result.designs
+    }
+    assert found == {gears for gears, carries in every.items() if carries}
+    assert result.search.rejected == {"strength": sum(not carries for carries in every.values())}
+    assert result.search.complete
+    errors = [abs(design.metrics.relative_error) for design in result.designs]
+    assert errors == sorted(errors)
+    for design in result.designs:
+        speed = POWER["speed_rpm"]
+        for stage in design.mechanism.stages:
+            widths = [narrowest(stage.driver, stage.driven, module, speed) for module in (1.5, 2.0)]
+            least = next((module, width) for module, width in zip((1.5, 2.0), widths, strict=True) if width is not None)
+            assert (stage.module, stage.face_width) == pytest.approx(least), "not the least module and face"
+            speed *= stage.driver / stage.driven
+
+
+def test_too_much_power_is_told_with_what_is_carried() -> None:
+    result = solved(**FEW, modules=[1.5, 2.0], strength={**POWER, "power_kw": 200.0})
+    assert result.designs == []
+    assert result.search.complete
+    assert result.search.candidates == result.search.rejected["strength"]
+    assert result.pareto == []
+    most = float(result.summary.split("strongest carries ")[1].split(" kW")[0])
+    assert solved(**FEW, modules=[1.5, 2.0], strength={**POWER, "power_kw": 0.99 * most}).designs
+    assert not solved(**FEW, modules=[1.5, 2.0], strength={**POWER, "power_kw": 1.01 * most}).designs
+
+
+def test_the_stages_stand_in_the_order_that_carries() -> None:
+    """The shaft that turns slowest has the greatest torque: of two unlike stages the stronger one comes last."""
+    stated = {**FEW, "ratio": "9", "teeth": {"min": 18, "max": 60}, "modules": [2.0], "tolerance": 0.0}
+    plain = solved(**stated, max_designs=200)
+    strong = solved(**stated, max_designs=200, strength={**POWER, "power_kw": 2.6})
+    assert 0 < len(strong.designs) < len(plain.designs)
+    for design in strong.designs:
+        widths = [stage.face_width or 0.0 for stage in design.mechanism.stages]
+        assert widths[-1] == max(widths)
+        assert max(widths) <= 12.0 * 2.0 * (1.0 + 1e-9)
+
+
+def test_with_a_distance_the_demands_hold_together() -> None:
+    stated: dict[str, Any] = {
+        "ratio": "pi", "max_stages": 2, "teeth": {"min": 17, "max": 100}, "reverted": True, "tolerance": 1e-4,
+        "modules": [1.0, 1.25, 1.5, 2.0], "centre_distance": 120.0,
+    }  # fmt: skip
+    light, heavy = (solved(**stated, strength={**POWER, "power_kw": power}) for power in (0.5, 4.0))
+    assert light.designs[0].mechanism.ratio.exact == solved(**stated).designs[0].mechanism.ratio.exact
+    assert light.designs[0].mechanism != heavy.designs[0].mechanism
+    assert heavy.search.rejected["strength"] > 0
+    for design in heavy.designs:
+        assert design.metrics.centre_distances == pytest.approx([120.0, 120.0], rel=1e-12)
+
+
+def test_an_idler_carries_too() -> None:
+    stated: dict[str, Any] = {"ratio": "-6", "max_stages": 2, "teeth": {"min": 17, "max": 40}, "module": 4.0}
+    for design in solved(**stated, max_stages=2, strength=POWER, max_designs=2, max_total_teeth=160).designs:
+        assert design.metrics.strength is not None
+        assert len(design.metrics.strength) == len(design.metrics.meshes) == 3
+        for idler in design.mechanism.idlers:
+            widths = [mesh.face_width for mesh in design.metrics.strength]
+            assert widths[idler.stage - 1] == widths[idler.stage]
+
+
+def test_a_face_that_is_too_narrow_is_seen() -> None:
+    problem = parse_problem({"kind": "gear_train", **FEW, "module": 2.0, "strength": POWER})
+    assert isinstance(problem, GearTrainProblem)
+    design = solve(problem, lambda fraction, message: None).designs[0]
+    stage = design.mechanism.stages[0]
+    thin = stage.model_copy(update={"face_width": 0.98 * stage.face_width})
+    mechanism = design.mechanism.model_copy(update={"stages": [thin, *design.mechanism.stages[1:]]})
+    judged = verify(problem, mechanism)
+    assert judged is not None
+    assert [check.name for check in judged.verification.checks if not check.passed] == ["strength"]
