@@ -351,6 +351,9 @@ def _sums_between(teeth: int, mate: int, near: float, far: float, ends: bool, de
         high = min(high, last.total) if last.shortening >= 0.0 else -math.inf
     if not low <= high:
         return np.empty((0, 2))
+    if low == high:
+        sound = _of_sum(teeth, mate, low, demands, -KEPT) >= -KEPT
+        return np.full((1, 2), low) if sound else np.empty((0, 2))
     if ends:
         return sums_that_suit(teeth, mate, low, high, demands)
     total = sum_that_suits(teeth, mate, low, high, demands)

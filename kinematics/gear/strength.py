@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -135,6 +136,7 @@ def _sections(gear: Gear, apex: float) -> tuple[NDArray[np.float64], NDArray[np.
     return (apex - depth[below]) / gear.module, 2.0 * half[below] / gear.module
 
 
+@lru_cache(maxsize=1024)
 def _tooth(gear: Gear) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Points of one side of the tooth: distance from the centre along its middle, and half the thickness there."""
     points = half_space(gear)

@@ -12,8 +12,8 @@ from tests.service.answers import finished
 Statement = dict[str, Any]
 
 LOADED: Statement = {
-    "kind": "gear_train", "ratio": "12", "max_stages": 2, "teeth": {"min": 18, "max": 90}, "modules": [1.5, 2.0, 3.0],
-    "tolerance": 0.001, "max_designs": 2,
+    "kind": "gear_train", "ratio": "12", "max_stages": 2, "teeth": {"min": 18, "max": 90},
+    "modules": [1.5, 2.0, 2.5, 3.0], "tolerance": 0.001, "max_designs": 2,
     "strength": {
         "power_kw": 3.0, "speed_rpm": 1450.0, "allowable_bending": [200.0, 180.0], "allowable_contact": [800.0, 750.0],
         "max_face_width": 12.0,

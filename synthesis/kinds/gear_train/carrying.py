@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from kinematics.gear.train import TrainStage
 from synthesis.kinds.gear_train.design import GearTrainMechanism, Idler, Stage
-from synthesis.kinds.gear_train.making import assembled, choices_of, idler_choices
+from synthesis.kinds.gear_train.making import Known, assembled, choices_of, idler_choices
 from synthesis.kinds.gear_train.problem import NEAR, GearTrainProblem
 from synthesis.kinds.gear_train.search import Outcome, Train, order
 from synthesis.kinds.gear_train.task import Task, needs_idler
@@ -65,6 +65,7 @@ class Bearing:
     tried: int = 0
     strongest: float = 0.0
     _judges: dict[TrainStage, Judge] = field(default_factory=dict)
+    _choices: Known = field(default_factory=dict)
 
     def carrying(self, train: Train) -> Borne | None:
         """The first arrangement of a train that carries the power; None where none does."""
@@ -103,7 +104,8 @@ class Bearing:
     def _loaded(self, train: Train) -> Iterator[tuple[list[Stage], float]]:
         """The stages that a train may have in each place, and the speed of the shaft that drives them, rad/s."""
         speed = self.stated.speed
-        for choices, (driver, driven) in zip(choices_of(self.problem, self.task, train), train.meshes, strict=True):
+        listed = choices_of(self.problem, self.task, train, self._choices)
+        for choices, (driver, driven) in zip(listed, train.meshes, strict=True):
             yield choices, speed
             speed *= driver / driven
 

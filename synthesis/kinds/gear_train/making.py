@@ -13,6 +13,9 @@ from synthesis.kinds.gear_train.search import Train
 from synthesis.kinds.gear_train.task import Task, needs_idler
 from synthesis.model.gear_answer import OfGears, Ratio
 
+Known = dict[tuple[int, tuple[int, int]], list[Stage]]
+"""By the row of a stage and its teeth: the stage with every module that fits it."""
+
 
 def stages_of(problem: GearTrainProblem, task: Task, train: Train) -> list[Stage]:
     """The meshes with their modules, and with their shifts where teeth are fitted."""
@@ -25,15 +28,21 @@ def stages_of(problem: GearTrainProblem, task: Task, train: Train) -> list[Stage
     return stages
 
 
-def choices_of(problem: GearTrainProblem, task: Task, train: Train) -> list[list[Stage]]:
-    """The meshes with every module that each may have beside the others', the smallest module first."""
+def choices_of(problem: GearTrainProblem, task: Task, train: Train, known: Known) -> list[list[Stage]]:
+    """The meshes with every module that each may have beside the others', the smallest module first.
+
+    ``known`` are those of stages with a distance of their own that were asked for before; it is written to.
+    """
     fit = task.fit
     if fit is None or fit.shares_distance:
         return [[stage] for stage in stages_of(problem, task, train)]
-    return [
-        [_fitted(fit, mesh, fit.made(number, *mesh, place)) for place in fit.places(number, *mesh)]
-        for number, mesh in enumerate(train.meshes)
-    ]
+    choices = []
+    for number, mesh in enumerate(train.meshes):
+        key = fit.stage(number), mesh
+        if key not in known:
+            known[key] = [_fitted(fit, mesh, fit.made(number, *mesh, place)) for place in fit.places(number, *mesh)]
+        choices.append(known[key])
+    return choices
 
 
 def _fitted(fit: Fit, mesh: tuple[int, int], made: FittedStage) -> Stage:

@@ -122,7 +122,7 @@ def _carrying(borne: Judged) -> str:
 def _too_weak(problem: GearTrainProblem, borne: Judged) -> str:
     """That no train carries the power, and what the strongest does."""
     assert problem.strength is not None
-    which = f"all {borne.failed} trains" if borne.every else f"the first {borne.failed} trains"
+    which = f"the {borne.failed} trains there are" if borne.every else f"the first {borne.failed} trains"
     most = f"with a face of {problem.strength.max_face_width:g} modules"
     told = f"None of {which} carries {problem.strength.power_kw:.6g} kW {most}."
     if borne.strongest:

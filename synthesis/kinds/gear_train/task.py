@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from kinematics.gear.teeth import largest_gear
 from synthesis.kinds.gear_train.fitting import Fit, fit_meshes
 from synthesis.kinds.gear_train.pairing import MOST_STAGES, Integers, Rule
-from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.kinds.gear_train.problem import FINEST_PITCHES, GearTrainProblem
 from synthesis.model.gear_statement import MOST_TEETH
 from synthesis.model.ratio_target import Target, decimal
 
@@ -149,14 +149,21 @@ def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
         stock=stock,
         reverted=problem.reverted,
         modules=modules,
-        # Fitted meshes are not told apart by their pitch circles: all are in one group.
-        pitches=np.array(problem.pitches() if fit is None else [0] * len(modules), np.int64),
+        # Shifted meshes are not told apart by their pitch circles: all are in one group.
+        pitches=np.array(problem.pitches() if _stands_on_pitch_circles(problem) else [0] * len(modules), np.int64),
         stage_counts=stage_counts,
         most_total=problem.max_total_teeth,
         by_size=problem.rank_by == "size",
         largest=problem.size == "largest_gear",
         fit=fit,
     )
+
+
+def _stands_on_pitch_circles(problem: GearTrainProblem) -> bool:
+    """Whether coaxial meshes agree on a distance if and only if their pitch circles do."""
+    if not problem.is_fitted:
+        return True
+    return problem.shares_distance and problem.shift_limits == (0.0, 0.0) and max(problem.pitches()) <= FINEST_PITCHES
 
 
 def needs_idler(problem: GearTrainProblem, stages: int) -> bool:

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.kinds.gear_train.every import every_train as every_ordinary
+from synthesis.kinds.gear_train.making import mechanism_of as ordinary_mechanism
 from synthesis.kinds.gear_train.pairing import MOST_STAGES
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.search import Train
-from synthesis.kinds.gear_train.solver import mechanism_of as ordinary_mechanism
 from synthesis.kinds.gear_train.task import gear_train_task
 from synthesis.kinds.planetary_train.every import SoundTrains
 from synthesis.kinds.planetary_train.every import every_train as every_planetary
