@@ -23,10 +23,8 @@ from synthesis.mechanisms.base import MechanismError
 from synthesis.model.answer import Answer, optional
 from synthesis.model.gear_statement import PressureAngle, ShiftCoefficient, ToothNumber
 from synthesis.model.gear_strength import Loaded, PairStrength, StatedStrength, told
+from synthesis.model.mesh_limits import USUAL_CUTTER
 from synthesis.model.statement import Flag, Number, PositiveNumber, Statement
-
-USUAL_CUTTER = 20
-"""Teeth of the cutter that shapes a ring where none is stated; half of the ring's where that is less."""
 
 Addendum = Annotated[float, Field(strict=True, ge=0.3, le=1.25)]
 

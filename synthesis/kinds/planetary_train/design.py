@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Result, Verification
+from synthesis.model.answer import Answer, Result, Verification, optional
 from synthesis.model.dimension import Angle, Length
 from synthesis.model.gear_answer import Ratio
 
@@ -43,6 +43,7 @@ class MeshContact(Answer):
     gears: tuple[str, str]
     contact_ratio: float
     centre_distance: Length
+    fillet_interference: bool | None = optional("Whether a tip reaches below the mate's involute, where that is asked.")
 
 
 class PlanetaryMetrics(Answer):

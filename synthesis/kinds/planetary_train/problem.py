@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
+from kinematics.gear.flanks import straight_depth
+from kinematics.gear.teeth import FULL_DEPTH_DEDENDUM
 from synthesis.model.dimension import LENGTH
 from synthesis.model.gear_statement import CommonPressureAngle, ExactRatio, Module, RangedTeeth, ToothRange
 from synthesis.model.ratio_target import parse_target
@@ -114,6 +117,12 @@ class PlanetaryProblem(StatedProblem):
     min_contact_ratio: Annotated[float, Field(strict=True, ge=1.0, lt=2.0)] = Field(
         default=1.2, description="Least contact ratio of a mesh."
     )
+    fillets: Literal["ignore", "report", "refuse"] = Field(
+        default="ignore",
+        description="Contact in the fillets that a rack (ISO 53, profile A) leaves on external gears, and the usual "
+        "cutter of 20 teeth on rings. report: told of every mesh. refuse: the teeth of rings are shortened until they "
+        "do not reach into the fillets of their planets, and trains with contact in another fillet are no answer.",
+    )
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.5, le=1.0)] = Field(
         default=0.99, description="Efficiency of one mesh on fixed axes, for the efficiency of the train."
     )
@@ -141,6 +150,11 @@ class PlanetaryProblem(StatedProblem):
     def least_room(self) -> float:
         """Least room between gears that do not mesh, in modules."""
         return max(self.min_clearance / self.module - TOUCH, TOUCH)
+
+    @property
+    def flank_depth(self) -> float:
+        """How far below its reference line the straight flank of the rack reaches, modules."""
+        return straight_depth(math.radians(self.pressure_angle), FULL_DEPTH_DEDENDUM)
 
     def roles(self, arrangement: Arrangement) -> list[tuple[str, str, str]]:
         """Every choice of input, output and fixed member that the statement leaves."""

@@ -41,7 +41,7 @@ class Demands(NamedTuple):
     """What sound tooth numbers must satisfy.
 
     ``limits`` are the fewest and most teeth by gear, ``least_room`` is in modules, ``largest`` a pitch diameter in
-    modules.
+    modules. ``flank_depth`` is that of the rack's straight flank, in modules, where contact in fillets is refused.
     """
 
     limits: dict[str, tuple[int, int]]
@@ -51,6 +51,7 @@ class Demands(NamedTuple):
     least_contact: float
     least_room: float
     largest: float
+    flank_depth: float | None
 
 
 class _Rule(NamedTuple):
@@ -305,7 +306,7 @@ def _mesh_rules(numbers: ToothNumbers) -> list[_Rule]:
         numbers._demands.pressure_angle,
         numbers._demands.least_contact,
     )
-    own = numbers._own
+    own, depth = numbers._own, numbers._demands.flank_depth
     rules = []
     for one, other in arrangement.meshes:
         if not {one, other} & own:
@@ -327,15 +328,25 @@ def _mesh_rules(numbers: ToothNumbers) -> list[_Rule]:
         def sound(block: Block, pair: Callable[[Block], tuple[bool, Real, Real]] = pair) -> Mask:
             internal, first, second = pair(block)
             if internal:
-                return mesh_limits.tips_clear(first, second, angle)
+                return mesh_limits.tips_clear(first, second, angle, depth)
             return mesh_limits.external_sound(first, second, angle)
 
         def lasting(block: Block, pair: Callable[[Block], tuple[bool, Real, Real]] = pair) -> Mask:
             internal, first, second = pair(block)
-            contact = mesh_limits.internal_contact if internal else mesh_limits.external_contact
-            return np.asarray(contact(first, second, angle) >= least, np.bool_)
+            if internal:
+                return np.asarray(mesh_limits.internal_contact(first, second, angle, depth) >= least, np.bool_)
+            return np.asarray(mesh_limits.external_contact(first, second, angle) >= least, np.bool_)
+
+        def clear(block: Block, pair: Callable[[Block], tuple[bool, Real, Real]] = pair) -> Mask:
+            internal, first, second = pair(block)
+            assert depth is not None
+            if internal:
+                return mesh_limits.ring_fillet_clear(first, second, angle)
+            return mesh_limits.external_fillets_clear(first, second, angle, depth)
 
         rules += [_Rule("interference", gears, sound), _Rule("contact_ratio", gears, lasting)]
+        if depth is not None:
+            rules.append(_Rule("fillet_interference", gears, clear))
     return rules
 
 

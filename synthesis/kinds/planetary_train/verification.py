@@ -14,13 +14,16 @@ from fractions import Fraction
 from kinematics.errors import DimensionError
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from kinematics.gear.assembly import Gap, fits_at, gaps, is_coaxial, pin_distances
+from kinematics.gear.flanks import Contact, ShapedRing, rack_cut_form
 from kinematics.gear.planetary import speed_ratio, speeds
 from kinematics.gear.power import power_flow
 from kinematics.gear.teeth import Gear, Mesh
 from synthesis.kinds.planetary_train.design import MeshContact, PlanetaryMechanism, PlanetaryMetrics
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
+from synthesis.model import mesh_limits
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
+from synthesis.model.gear_answer import ON_LIMIT
 from synthesis.model.ratio_target import decimal
 from synthesis.outcome.exhaustive import within_tolerance
 from synthesis.proof.checks import at_least, at_most
@@ -91,7 +94,12 @@ def measure(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Planeta
         circulating_power=flow.circulates,
         least_room=min(gap.room for gap in rooms) * mechanism.module if rooms else None,
         meshes=[
-            MeshContact(gears=pair, contact_ratio=mesh.contact_ratio, centre_distance=_apart(arrangement, pair, mesh))
+            MeshContact(
+                gears=pair,
+                contact_ratio=mesh.contact_ratio,
+                centre_distance=_apart(arrangement, pair, mesh),
+                fillet_interference=None if problem.fillets == "ignore" else _in_fillet(problem, mesh),
+            )
             for pair, mesh in _toothed(mechanism, arrangement).items()
         ],
         undercut=[
@@ -200,7 +208,24 @@ def _meshes(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangemen
     except DimensionError:
         return [Check(name="interference", passed=False)]
     least = min(mesh.contact_ratio for mesh in meshes.values())
-    return [
+    checks = [
         Check(name="interference", passed=not any(mesh.interferes for mesh in meshes.values())),
         at_least("contact_ratio", least, problem.min_contact_ratio),
     ]
+    if problem.fillets == "refuse":
+        reached = any(_in_fillet(problem, mesh) for mesh in meshes.values())
+        checks.append(Check(name="fillet_interference", passed=not reached))
+    return checks
+
+
+def _in_fillet(problem: PlanetaryProblem, mesh: Mesh) -> bool:
+    """Whether contact goes below an involute: of gears as a rack cuts them, of a ring as the usual cutter shapes it."""
+    one, two = mesh.pinion, mesh.gear
+    if two.internal:
+        ring = ShapedRing(two, min(mesh_limits.USUAL_CUTTER, int(two.teeth) // 2))
+        forms = rack_cut_form(one, problem.flank_depth), ring.form
+    else:
+        forms = rack_cut_form(one, problem.flank_depth), rack_cut_form(two, problem.flank_depth)
+    # Below the base circle there is no involute to begin on: what interference is, is told as that.
+    contact = Contact(mesh, (max(forms[0], 0.0), forms[1] if two.internal else max(forms[1], 0.0)))
+    return min(contact.margins) < -ON_LIMIT * mesh.centre_distance

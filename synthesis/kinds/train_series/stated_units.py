@@ -17,7 +17,7 @@ from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.model.statement import Contradiction, StatedProblem, Statement
 
-OF_THE_SERIES = {*StatedProblem.model_fields, "ratio", "tolerance", "rank_by", "size"}
+OF_THE_SERIES = {*StatedProblem.model_fields, "ratio", "tolerance", "rank_by", "size", "strength"}
 """Fields of a problem that no unit has: what the series is asked, and how its answers are ordered."""
 
 USUAL_STAGES = 1

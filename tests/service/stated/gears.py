@@ -124,6 +124,7 @@ PLANETARY_ROWS: dict[str, Any] = {
     "max_size": 1e6,
     "min_clearance": 8.0,
     "min_contact_ratio": 1.1,
+    "fillets": "refuse",
     "mesh_efficiency": 0.97,
     "rank_by": Row("size", {"tolerance": 0.1}),
 }
