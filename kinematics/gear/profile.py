@@ -10,11 +10,18 @@ pitch point, that is after the rack has moved by s = d tan ψ − y,
 
 (F. L. Litvin & A. Fuentes, Gear Geometry and Applied Theory, 2004, ch. 10). It meets the involute smoothly, or crosses
 it where the gear is undercut.
+
+A helical gear is shown as the plane of rotation cuts it. There the rack is stretched by q = 1/cos β along its pitch
+line, its corner with it: a normal that has turned by θ in the normal plane has turned by ψ here, tan ψ = tan θ / q, and
+the point is met after s = d tan ψ + ρ sin θ (1/q − q) − q y, so that
+
+    Q(θ) = (r − d + i d tan ψ − ρ (cos θ − i sin θ / q)) e^{−is/r},       0 ≤ θ ≤ π/2 − φ_n.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,8 +35,29 @@ FLANK, FILLET, ARC = 24, 20, 4
 """Points on a flank, a fillet, and half of a tip or root arc: chords within about 1e-4 of a module of the curve."""
 
 
-def half_space(gear: Gear) -> Outline:
+class _Corner(NamedTuple):
+    """The rounded corner of the rack that cuts a gear: its centre from the pitch line and beside its tooth's middle.
+
+    ``stretch`` is that of the plane of rotation over the normal plane, in which the corner is a circle and its normal
+    turns by up to ``end``.
+    """
+
+    rounding: float
+    below: float
+    beside: float
+    stretch: float
+    end: float
+
+
+def half_space(gear: Gear, helix_angle: float = 0.0) -> Outline:
     """From the middle of a tooth space, on the real axis, along root, fillet and flank to the middle of the tip.
+
+    Parameters
+    ----------
+    gear : Gear
+        In the plane of rotation.
+    helix_angle : float
+        Radians; of a helical gear, whose rack is that of the normal plane.
 
     Returns
     -------
@@ -41,12 +69,12 @@ def half_space(gear: Gear) -> Outline:
     DimensionError
         Where the rack's tooth comes to a point before it has cut to the root circle.
     """
-    return _internal(gear) if gear.internal else _external(gear)
+    return _internal(gear) if gear.internal else _external(gear, _corner(gear, helix_angle))
 
 
-def outline(gear: Gear, tooth_at: float = 0.0) -> Outline:
+def outline(gear: Gear, tooth_at: float = 0.0, helix_angle: float = 0.0) -> Outline:
     """The closed outline of all teeth, one tooth's middle at the polar angle ``tooth_at``; counter-clockwise."""
-    half = half_space(gear)
+    half = half_space(gear, helix_angle)
     # From tooth to tooth: the half space run backwards and mirrored, then forwards.
     space = np.concatenate([half[::-1].conj(), half[1:]])[:-1]
     pitch = 2.0 * math.pi / gear.teeth
@@ -54,8 +82,22 @@ def outline(gear: Gear, tooth_at: float = 0.0) -> Outline:
     return np.asarray((turns[:, None] * space[None, :]).ravel())
 
 
-def _external(gear: Gear) -> Outline:
-    fillet = _fillet(gear, np.linspace(0.0, _fillet_end(gear), FILLET))
+def _corner(gear: Gear, helix_angle: float) -> _Corner:
+    """The corner of the rack; lengths of a helical gear are those of the normal plane, but for its place beside."""
+    phi, m, dedendum, stretch = gear.pressure_angle, gear.module, gear.dedendum, 1.0
+    if helix_angle:
+        cosine = math.cos(helix_angle)
+        phi, m, dedendum = math.atan(math.tan(phi) * cosine), m * cosine, dedendum / cosine
+        stretch = 1.0 / cosine
+    rounding = m * corner_rounding(phi, dedendum)
+    wide = 0.25 * math.pi - dedendum * math.tan(phi)
+    beside = m * wide + rounding * (math.tan(phi) - 1.0 / math.cos(phi))
+    below = gear.module * (gear.dedendum - gear.shift) - rounding
+    return _Corner(rounding, below, stretch * beside, stretch, 0.5 * math.pi - phi)
+
+
+def _external(gear: Gear, corner: _Corner) -> Outline:
+    fillet = _fillet(gear, corner, np.linspace(0.0, _fillet_end(gear, corner), FILLET))
     start, tip = max(abs(fillet[-1]), gear.base_radius), _tip(gear)
     least, most = (math.sqrt(max((end / gear.base_radius) ** 2 - 1.0, 0.0)) for end in (start, tip))
     rolls = np.linspace(least, most, FLANK)
@@ -71,21 +113,29 @@ def _distinct(points: Outline) -> Outline:
     return np.asarray(points[np.concatenate([[True], kept])])
 
 
-def _fillet_end(gear: Gear) -> float:
+def _fillet_end(gear: Gear, corner: _Corner) -> float:
     """The parameter at which the fillet passes into the flank.
 
     Without undercut it is the end of the corner, where both are tangent. With undercut the fillet goes beyond the
     flank and comes back to it: it is sampled for the last place beyond, and the crossing after that is bisected.
     """
-    end = 0.5 * math.pi - gear.pressure_angle
+    end = corner.end
     psi = np.linspace(0.0, end, 8 * FILLET)
-    beyond = np.flatnonzero(_beyond(gear, _fillet(gear, psi)) > 1e-9 / gear.teeth)
+    past = _beyond(gear, _fillet(gear, corner, psi))
+    beyond = np.flatnonzero(past > 1e-9 / gear.teeth)
+    inside = np.flatnonzero(np.isneginf(past))
+    if not len(beyond) and len(inside) and inside[-1] + 1 < len(psi):
+        # Of a slight undercut all that is beyond may lie between two samples, where the involute begins.
+        psi = np.linspace(psi[inside[-1]], psi[inside[-1] + 1], 8 * FILLET)
+        beyond = np.flatnonzero(_beyond(gear, _fillet(gear, corner, psi)) > 1e-9 / gear.teeth)
     if not len(beyond) or beyond[-1] + 1 == len(psi):
         return end
     low, high = psi[beyond[-1]], psi[beyond[-1] + 1]
     for _ in range(50):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if _beyond(gear, _fillet(gear, np.array([middle])))[0] > 0.0 else (low, middle)
+        low, high = (
+            (middle, high) if _beyond(gear, _fillet(gear, corner, np.array([middle])))[0] > 0.0 else (low, middle)
+        )
     return float(low)
 
 
@@ -96,16 +146,14 @@ def _beyond(gear: Gear, fillet: Outline) -> NDArray[np.float64]:
     return np.asarray(np.angle(fillet) - np.array(involute))
 
 
-def _fillet(gear: Gear, psi: NDArray[np.float64]) -> Outline:
+def _fillet(gear: Gear, corner: _Corner, theta: NDArray[np.float64]) -> Outline:
     """Points of the trochoid of the rack's corner, from the root circle up."""
-    phi, m = gear.pressure_angle, gear.module
-    rounding = m * corner_rounding(phi, gear.dedendum)
-    wide = 0.25 * math.pi - gear.dedendum * math.tan(phi)
-    beside = m * wide + rounding * (math.tan(phi) - 1.0 / math.cos(phi))
-    below = m * (gear.dedendum - gear.shift) - rounding
-    r = gear.pitch_radius
-    moved = below * np.tan(psi) - beside
-    return np.asarray((r - below + 1j * below * np.tan(psi) - rounding * np.exp(-1j * psi)) * np.exp(-1j * moved / r))
+    r, below, q = gear.pitch_radius, corner.below, corner.stretch
+    along = below * (np.tan(theta) / q)
+    moved = along - corner.beside + corner.rounding * np.sin(theta) * (1.0 / q - q)
+    circle = corner.rounding * np.exp(-1j * theta)
+    point = r - below + 1j * along - (circle.real + 1j * (circle.imag / q))
+    return np.asarray(point * np.exp(-1j * moved / r))
 
 
 def _space_angle(gear: Gear, radius: float) -> float:

@@ -7,15 +7,18 @@ the module.
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import ConfigDict, Field
 
 from kinematics.errors import DimensionError
 from kinematics.gear.flanks import Contact, ShapedRing, rack_cut_form, shortened_tips, straight_depth
 from kinematics.gear.helical import HelicalGear
+from kinematics.gear.profile import half_space
 from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, FULL_DEPTH_DEDENDUM, Gear, Mesh
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.gear_pair import MILLIMETRE, RPM
@@ -170,6 +173,17 @@ class RunningGear(Answer):
     )
 
 
+class ToothSpace(Answer):
+    """The outline from the middle of one tooth to that of the next, in the plane of rotation, about the gear's centre.
+
+    A gear has it at every pitch of 360°/z. The teeth are in mesh with the first gear at the origin and the centre of
+    the second at (centre distance, 0); that of a ring at (−centre distance, 0).
+    """
+
+    x: list[float]
+    y: list[float]
+
+
 class RunningPairAnalysis(Answer):
     """How two gears run with one another; degrees, lengths in the module's unit."""
 
@@ -193,6 +207,10 @@ class RunningPairAnalysis(Answer):
     )
     gears: list[RunningGear]
     strength: PairStrength | None = optional("Stresses under a stated power.")
+    profiles: list[ToothSpace | None] | None = optional(
+        "Where `include` asks for it: involutes and the fillets that the rack of the normal plane leaves, a ring "
+        "without those of its cutter; null where the rack's tooth would come to a point."
+    )
 
 
 class RunningPairRequest(AnalysisRequest):
@@ -222,6 +240,9 @@ class RunningPairRequest(AnalysisRequest):
     strength: StatedStrength | None = Field(
         default=None,
         description="A power that spur gears carry: stresses over the face width, or over the least that carries it.",
+    )
+    include: list[Literal["profiles"]] = Field(
+        default=[], max_length=1, description="`profiles`: the true outlines of the teeth of both gears."
     )
 
     @classmethod
@@ -269,7 +290,7 @@ class RunningPairRequest(AnalysisRequest):
         trimmed = None if pair.ring is None else pair.ring.is_trimmed
         backlash = pair.contact.backlash
         bad = interferes or thin or faulty or mesh.tips_foul or bool(trimmed) or pair.clearance < -slack
-        answer = {
+        answer: dict[str, Any] = {
             "ratio": given.teeth[1] / given.teeth[0],
             "centre_distance": mesh.centre_distance,
             "standard_distance": mesh.standard_distance,
@@ -287,7 +308,11 @@ class RunningPairRequest(AnalysisRequest):
             "sound": not bad and backlash >= -slack and mesh.contact_ratio >= 1.0,
             "gears": gears,
         }
-        return answer if self.strength is None else {**answer, "strength": self._carried(self.strength)}
+        if self.strength is not None:
+            answer["strength"] = self._carried(self.strength)
+        if self.include:
+            answer["profiles"] = [_space(pair, place, angle) for place in range(2)]
+        return answer
 
     def _carried(self, stated: StatedStrength) -> dict[str, Any]:
         """Stresses of the pair in millimetres, whatever its unit."""
@@ -297,6 +322,18 @@ class RunningPairRequest(AnalysisRequest):
         large = given.model_copy(update={"module": given.module * unit, "centre_distance": distance})
         loaded = Loaded(large.pair().contact, 1000.0 * stated.power_kw, abs(self.speed_rpm) * RPM)
         return told(loaded, stated, given.face_width, unit)
+
+
+def _space(pair: RunningPair, place: int, helix_angle: float) -> dict[str, list[float]] | None:
+    """A space as :class:`ToothSpace`: the first gear's beside a tooth on the line of centres, the second's upon it."""
+    gear = pair.gears[place]
+    try:
+        half = half_space(gear, helix_angle)
+    except DimensionError:
+        return None
+    toward = math.pi / gear.teeth if place == 0 else 0.0 if gear.internal else math.pi
+    points = np.concatenate([half[::-1].conj(), half[1:]]) * cmath.exp(1j * toward)
+    return {"x": points.real.tolist(), "y": points.imag.tolist()}
 
 
 def _overlap(given: GivenGearPair, angle: float) -> float | None:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError
+from kinematics.gear.flanks import corner_rounding
+from kinematics.gear.helical import HelicalGear
 from kinematics.gear.profile import half_space, outline
 from kinematics.gear.teeth import Gear, Mesh
 
@@ -125,3 +128,40 @@ def test_a_pointed_tooth_ends_where_its_flanks_meet() -> None:
 def test_a_rack_that_comes_to_a_point_is_refused() -> None:
     with pytest.raises(DimensionError):
         half_space(Gear(20, 1.0, math.radians(34.0)))
+
+
+@pytest.mark.parametrize("helix", [0.0, 15.0, 30.0, -42.0])
+@pytest.mark.parametrize(("teeth", "shift"), [(8, 0.0), (20, 0.0), (20, 0.4), (41, -0.3)])
+def test_a_rack_that_rolls_past_touches_the_outline_and_cuts_nothing_of_it(
+    teeth: int, shift: float, helix: float
+) -> None:
+    """The rack of the normal plane, stretched into the plane of rotation: no point of flank or fillet is ever inside
+    its tooth, and every one is once on its edge. Nothing of the formula of the trochoid is used."""
+    beta = math.radians(helix)
+    plain = HelicalGear(teeth, 1.0, beta).transverse_gear
+    gear = replace(plain, shift=shift * math.cos(beta))
+    points = half_space(gear, beta)
+    radii = np.abs(points)
+    inside = (radii > gear.root_radius * (1 + 1e-9)) & (radii < gear.tip_radius * (1 - 1e-9))
+    points = points[inside]
+    phi, depth, stretch = math.radians(20.0), 1.25 - shift, 1.0 / math.cos(beta)
+    rounding = corner_rounding(phi, 1.25)
+    centre = depth - rounding
+    half_tip = 0.25 * math.pi - 1.25 * math.tan(phi) + rounding * (math.tan(phi) - 1.0 / math.cos(phi))
+
+    def overlap(rolled: np.ndarray) -> np.ndarray:
+        """How far points lie within the rack's tooth when it has rolled so far: half its width less their distance."""
+        turned = points[:, None] * np.exp(1j * rolled / gear.pitch_radius)
+        below = gear.pitch_radius - turned.real
+        beside = np.abs(turned.imag - rolled)
+        straight = 0.25 * math.pi - (below + shift) * math.tan(phi)
+        corner = half_tip + np.sqrt(np.maximum(rounding**2 - np.maximum(below - centre, 0.0) ** 2, 0.0))
+        wide = np.where(below <= centre + rounding * math.sin(phi), straight, np.where(below < depth, corner, -np.inf))
+        return np.asarray(stretch * wide - beside)
+
+    at = np.linspace(-6.0, 6.0, 4001)[None, :]
+    deepest = overlap(at)
+    best = deepest.argmax(axis=1)
+    near = at[0][best][:, None] + np.linspace(-0.003, 0.003, 4001)[None, :]
+    most = np.maximum(deepest.max(axis=1), overlap(near).max(axis=1))
+    assert np.abs(most).max() < 2e-6

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from kinematics.gear.teeth import Gear
-from service.render.page.svg import Box, Element, Viewport, circle, element, text, text_width
+from service.render.gears.placed import PlacedGear
+from service.render.page.svg import Box, Element, Points, Viewport, circle, element, path, text, text_width
 from service.render.page.symbols import COUPLER, CURVE, INPUT, OUTPUT
 
 PAPER = "#fbfcfd"
@@ -14,6 +17,9 @@ COLOURS = (INPUT, OUTPUT, COUPLER, CURVE)
 
 LABEL = 11.5
 """Font size of a label, pixels."""
+
+SEEN = 0.8
+"""Distance of points of an outline that are told apart, pixels."""
 
 HALF_HEIGHT = 8.0
 """Of a label's frame, pixels."""
@@ -29,6 +35,23 @@ def circles(
     tip = circle(at, view.scale * gear.tip_radius, **faces["tip"], stroke=colour, stroke_width=0.6)
     dashed: dict[str, str | float] = {"stroke": colour, "stroke_width": 1.6, "stroke_dasharray": "9 3 2 3"}
     return element("g", tip, circle(at, view.scale * gear.pitch_radius, **faces["pitch"], **dashed), **marks)
+
+
+def shifted_teeth(placed: PlacedGear, view: Viewport, colour: str) -> list[Element]:
+    """The true outline of a gear whose circles alone do not show what its profile shift makes of it."""
+    teeth = placed.teeth()
+    if teeth is None:
+        return []
+    drawn = path([_thinned(view.points(placed.centre + np.append(teeth, teeth[:1])))], stroke=colour, stroke_width=0.7)
+    return [] if drawn is None else [drawn]
+
+
+def _thinned(points: Points) -> Points:
+    """Without points that lie closer to the one before than the eye sees."""
+    along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(points)))])
+    kept = np.concatenate([[True], np.diff(np.floor(along / SEEN)) > 0.0])
+    kept[-1] = True
+    return np.asarray(points[kept])
 
 
 def label_box(at: complex, words: str) -> Box:

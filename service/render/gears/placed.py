@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -16,11 +16,12 @@ from service.render.page.svg import Box, Points
 
 @dataclass(frozen=True)
 class PlacedGear:
-    """A gear in a drawing; ``tooth_at`` is the angle of one tooth's middle."""
+    """A gear in a drawing; ``tooth_at`` is the angle of one tooth's middle, the helix angle is in radians."""
 
     gear: Gear
     centre: complex
     tooth_at: float
+    helix_angle: float = field(default=0.0, kw_only=True)
 
     @property
     def pitch_radius(self) -> float:
@@ -30,7 +31,7 @@ class PlacedGear:
     def teeth(self) -> Points | None:
         """Outline of all teeth about the centre; None for teeth whose cutter would come to a point, which have none."""
         try:
-            return np.asarray(outline(self.gear, self.tooth_at))
+            return np.asarray(outline(self.gear, self.tooth_at, self.helix_angle))
         except DimensionError:
             return None
 

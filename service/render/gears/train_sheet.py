@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from service.render.checks import checks, verdict
-from service.render.gears.marks import COLOURS, PAPER, circles, label, label_box
+from service.render.gears.marks import COLOURS, PAPER, circles, label, label_box, shifted_teeth
 from service.render.gears.placed import box_around
 from service.render.gears.train_layout import TrainGear, placed_gears
 from service.render.outline import entries
@@ -71,6 +71,8 @@ def train_panel(gears: list[TrainGear], view: Viewport, unit: str, name: str = "
     for placed in gears:
         marks = {"data_stage": f"{placed.stage}", "data_gear": placed.role, "data_teeth": f"{placed.gear.teeth}"}
         group.add(circles(placed.gear, placed.centre, view, COLOURS[placed.stage - 1], "tip", 0.06, **marks))
+        if placed.gear.shift:
+            group.add(*shifted_teeth(placed, view, COLOURS[placed.stage - 1]))
     shafts: list[complex] = []
     for placed in gears:
         at = view.point(placed.centre)
