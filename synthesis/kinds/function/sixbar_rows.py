@@ -114,11 +114,11 @@ def rows(x: Real, points: Real, setting: Real, _multipliers: Real, state: Real, 
         count += 1
         for d in range(2):
             over = abs(cosines[j, d]) - felt
+            residuals[count] = limited[j] * strict * max(over, 0.0)
+            jacobian[count] = 0.0
             if over > 0.0:
-                side = math.copysign(limited[j] * strict, cosines[j, d])
-                residuals[count] = limited[j] * strict * over
-                jacobian[count] = side * by_cosine[j, d] * free
-                count += 1
+                jacobian[count] = math.copysign(limited[j] * strict, cosines[j, d]) * by_cosine[j, d] * free
+            count += 1
     columns = np.empty(LISTED, np.int64)
     listed = _groups(kind, columns)
     step = 4 if kind == WATT_2 else listed

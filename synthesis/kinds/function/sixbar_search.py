@@ -1,8 +1,9 @@
 """A search for sixbars whose output follows a function or meets pairs.
 
 1. Sixbars are drawn and composed (:mod:`~synthesis.kinds.function.sixbar_starts`), some thousand of each type.
-2. Those with the least errors that differ descend to the least squares of errors under limits, by Levenberg and
-   Marquardt's method: a few milliseconds each.
+2. Those with the least errors that differ descend towards the least squares of errors under limits, by Levenberg and
+   Marquardt's method: a few milliseconds each. The best of them go on along the curved valleys in which the least
+   squares lie (:mod:`synthesis.numerics.geodesic`).
 3. The best of them are improved by the criterion under all limits, as fourbars are
    (:mod:`~synthesis.kinds.function.descent`).
 """
@@ -23,6 +24,7 @@ from synthesis.kinds.function.sixbar_starts import starts
 from synthesis.kinds.function.stated_mechanisms import Sixbar
 from synthesis.kinds.function.task import FunctionTask
 from synthesis.model.kind import Progress
+from synthesis.numerics.geodesic import follow_valley
 from synthesis.numerics.levenberg import descend
 from synthesis.outcome.ranking import distinct
 from synthesis.outcome.simplest import SOUND
@@ -34,8 +36,24 @@ KINDS: dict[Sixbar, int] = {"watt_2": WATT_2, "stephenson_3": STEPHENSON_3, "ste
 DRAWN: dict[Sixbar, int] = {"watt_2": 4000, "stephenson_3": 6000, "stephenson_2": 40_000}
 """Sixbars that are drawn of each type."""
 
-DESCENDED, IMPROVED = 150, 8
-"""Of each type: sixbars that descend by least squares, and those of them that are improved to the end."""
+
+class Effort(NamedTuple):
+    """Of a type: sixbars that descend by least squares, of a function and of pairs, those of them that go on along
+    valleys, and steps of the last ones where pairs may be met by nothing but them."""
+
+    descended: int
+    for_pairs: int
+    valleys: int
+    to_the_end: int
+
+
+MUCH = Effort(150, 400, 40, 1500)
+
+EFFORTS: dict[Sixbar, Effort] = {"watt_2": MUCH, "stephenson_3": MUCH, "stephenson_2": Effort(100, 120, 16, 500)}
+"""A Stephenson II, whose place is a root, takes three times as long as the others."""
+
+IMPROVED, ALONG = 8, 150
+"""Sixbars that are improved to the end, and steps along a valley of those that go along one."""
 
 PLACES = 61
 """Places of a function that least squares look at, closer together at the ends of the range."""
@@ -137,35 +155,42 @@ class SixbarSearch:
         self.weighed += len(costs)
         order = np.argsort(costs, kind="stable")
         order = order[np.isfinite(costs[order])]
-        chosen = order[distinct(_features(kind, drawn.at[order]), DESCENDED, APART)]
-        progress(0.3, f"{len(costs)} sixbars of type {name}")
-        descended = [self._descended(kind, drawn.at[j], int(drawn.assemblies[j])) for j in chosen]
-        reached = [
-            Found(name, int(drawn.assemblies[j]), at, error)
-            for j, (at, error) in zip(chosen, descended, strict=True)
-            if math.isfinite(error)
-        ]
-        reached.sort(key=lambda one: one.error)
-        table = np.array([one.at for one in reached]).reshape(-1, NUMBERS)
-        best = [reached[n] for n in distinct(_features(kind, table), IMPROVED, APART)]
-        progress(0.6, f"improving the best of {len(reached)} sixbars of type {name}")
-        improved = [self._improved(one) for one in best]
+        effort, few = EFFORTS[name], self.task.problem.function is not None and not self.exact
+        chosen = order[distinct(_features(kind, drawn.at[order]), effort.descended if few else effort.for_pairs, APART)]
+        progress(0.2, f"{len(costs)} sixbars of type {name}")
+        begun = [Found(name, int(drawn.assemblies[j]), drawn.at[j], math.inf) for j in chosen]
+        reached = _best([self._descended(one) for one in begun], effort.valleys)
+        progress(0.6, f"improving the best of {len(begun)} sixbars of type {name}")
+        if self.exact:
+            # Those that have arrived are left as they are.
+            reached = _best([self._along(one, 2 * ALONG) for one in reached], effort.valleys)
+        else:
+            reached = _best([self._along(one, ALONG) for one in reached], IMPROVED)
+        if not few and not self.exact:
+            reached = _best([self._along(one, effort.to_the_end) for one in reached], IMPROVED)
+        improved = [self._improved(one) for one in reached]
         improved.sort(key=lambda one: one.error)
         return [one for one in improved if math.isfinite(one.error)]
 
-    def _descended(self, kind: int, start: Real, assembly: int) -> tuple[Real, float]:
-        """The least squares from a start: the numbers, and the error with what is lacking of the limits."""
+    def _setting(self, one: Found, weight: float) -> tuple[Real, Real]:
+        """The unknowns of a sixbar and the setting of its rows, limits having this weight beside errors."""
+        kind = KINDS[one.type]
         logs = LOGARITHMIC[kind]
-        x = start.copy()
+        x = one.at.copy()
         x[logs] = np.log(np.abs(x[logs]))
         setting = np.zeros(fit.SETTING)
-        setting[[fit.KIND, fit.ASSEMBLY, fit.SIGN_K, fit.SIGN_L]] = kind, assembly, *np.sign(start[[K, L]])
-        setting[fit.COSINE] = greatest_cosine(self.least)
+        setting[[fit.KIND, fit.ASSEMBLY, fit.SIGN_K, fit.SIGN_L]] = kind, one.assembly, *np.sign(one.at[[K, L]])
+        setting[[fit.COSINE, fit.STRICT]] = greatest_cosine(self.least), weight
         ratio = self.task.problem.constraints.max_link_ratio
         setting[fit.RATIO] = math.log(fit.WIDEST if ratio is None else ratio) - fit.INSIDE
         setting[fit.FREE :] = OWN[kind]
         setting[[fit.FREE + K, fit.FREE + L]] = 0.0
-        state, none, points = start[-1:].copy(), np.zeros(1), self.places.points
+        return x, setting
+
+    def _descended(self, one: Found) -> Found:
+        """The least squares from a start, with its error and what is lacking of the limits."""
+        x, setting = self._setting(one, 0.0)
+        state, none, points = one.at[-1:].copy(), np.zeros(1), self.places.points
         most = fit.most_rows(points.shape[1])
         cost = math.inf
         for weight in WEIGHTS:
@@ -174,9 +199,20 @@ class SixbarSearch:
         if self.exact:
             setting[fit.STRICT] = 0.0
             cost, _ = descend(fit.rows, x, points, setting, none, state, most, EXACT_STEPS, EXACT_TOLERANCE)
+        return self._reached(one, x, setting, state, cost)
+
+    def _along(self, one: Found, steps: int) -> Found:
+        """A sixbar farther along the valley that it is in."""
+        x, setting = self._setting(one, 0.0 if self.exact else WEIGHTS[-1])
+        state, points = one.at[-1:].copy(), self.places.points
+        most = fit.most_rows(points.shape[1])
+        cost = follow_valley(fit.rows, x, points, setting, np.zeros(1), state, most, steps)
+        return self._reached(one, x, setting, state, cost)
+
+    def _reached(self, one: Found, x: Real, setting: Real, state: Real, cost: float) -> Found:
         at = np.empty(NUMBERS)
-        fit.unlogged(kind, x, setting, state, at)
-        return at, math.sqrt(2.0 * cost)
+        fit.unlogged(KINDS[one.type], x, setting, state, at)
+        return one._replace(at=at, error=math.sqrt(2.0 * cost))
 
     def _improved(self, one: Found) -> Found:
         """A sixbar improved by the criterion, under all limits."""
@@ -192,6 +228,15 @@ class SixbarSearch:
         improve = descent.least_squares if self.square else descent.minimax
         done = improve(one.at, 1.0, ROUNDS_OF_SQUARES if self.square else ROUNDS)
         return one._replace(at=done.generator, error=done.error)
+
+
+def _best(found: list[Found], most: int) -> list[Found]:
+    """The best of some that differ, of one type."""
+    ordered = sorted((one for one in found if math.isfinite(one.error)), key=lambda one: one.error)
+    if not ordered:
+        return []
+    table = np.array([one.at for one in ordered])
+    return [ordered[n] for n in distinct(_features(KINDS[ordered[0].type], table), most, APART)]
 
 
 def _features(kind: int, at: Real) -> NDArray[np.complex128]:
