@@ -144,6 +144,7 @@ def test_points_are_met_exactly_in_order(client):
         assert met.branch > 0.0
 
 
+@pytest.mark.campaign
 def test_a_stroke_is_drawn_within_tolerances_from_a_given_pivot(client):
     along = np.linspace(0.0, 1.0, 13)
     stroke = [point | {"tolerance": 0.5} for point in listed(100.0 * along + 15.0j * np.sin(2.0 * np.pi * along))]

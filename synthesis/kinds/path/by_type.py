@@ -92,7 +92,7 @@ def joined(problem: PathProblem, simple: PathResult, found: PathResult, before: 
         told = f"The error of the best {first} is {least:.3g} {problem.length_unit}"
         told += f"; {other}s have at most half of it" if better else f", and no {other} that was found has half of it."
     order = order_of(problem)
-    offered = offered_beside(problem.max_designs, plain, better, order)
+    offered = offered_beside(problem.max_designs, (sound or plain) if better else plain, better, order)
     of_second = [design for design in offered if any(design is one for one in better)]
     if plain and better:
         if not of_second:

@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from synthesis.kinds.path.curve_fits import thinning
 from synthesis.kinds.path.curve_target import DENSE, FEW_POINTS, SHAPE_POINTS, Target, angles_at, smooth_steps
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.fallback import exact_or_fitted
@@ -44,8 +45,9 @@ Complex = NDArray[np.complex128]
 DRAWN, FOLLOWED = 229376, 2100
 """Sixbars that are drawn, and the most alike that are followed, of all forms together."""
 
-MOST_DRAWN, MOST_FOLLOWED, OPEN_SHARE = 65536, 600, 0.125
-"""The same of one form at most; and the share of the first for a stroke, which is compared with parts of each curve."""
+MOST_DRAWN, MOST_FOLLOWED, OPEN_SHARE, EXACT_SHARE = 65536, 600, 0.125, 0.25
+"""The same of one form at most; the share of the first for a stroke, which is compared with parts of each curve; and of
+both for points that are to be met exactly, which leave much freedom."""
 
 ROUGH_STEPS, FINE_STEPS, KICKED_STEPS = 40, 100, 60
 """Steps of descents: of all that are followed, of the best of them, and of changed copies."""
@@ -73,6 +75,10 @@ EXACT_STEPS, EXACT_TOLERANCE = 300, 1e-14
 
 SAME_DESIGN = 1e-3
 """Sixbars whose joints agree to this share of the task's size are one."""
+
+
+NAMES = {"watt_1": "Watt I", "stephenson_1": "Stephenson I", "stephenson_3": "Stephenson III"}
+"""What the types are called."""
 
 
 class _Candidate(NamedTuple):
@@ -131,9 +137,10 @@ def _begun(problem: PathProblem, steps: Complex, size: float, setting: Real, pro
     """Sixbars near a target, fitted at equal steps along it, the nearest first; ``size`` is the target's unit."""
     families = FAMILIES[problem.constraints.grashof]
     tasks = [(kind, form) for kind in problem.sixbars for form in FORMS[kind] if form.family in families]
-    drawn = min(MOST_DRAWN, DRAWN // len(tasks))
+    share = 1.0 if problem.fitted else EXACT_SHARE
+    drawn = round(share * min(MOST_DRAWN, DRAWN // len(tasks)))
     drawn = drawn if problem.closed else round(OPEN_SHARE * drawn)
-    followed = min(MOST_FOLLOWED, FOLLOWED // len(tasks))
+    followed = round(share * min(MOST_FOLLOWED, FOLLOWED // len(tasks)))
     rng = np.random.default_rng(problem.seed)
     longest, weights = problem.longest_link / size, np.ones(SHAPE_POINTS)
     found: list[_Candidate] = []
@@ -182,12 +189,14 @@ def _brought(
     """The best fitted to the points and brought to the demands; behind them those that were not brought there."""
     count = len(target.points)
     dense = problem.fitted and problem.closed and count >= DENSE
-    points, weights = (target.fitted, target.weights) if problem.matched else (target.points, target.weights[:count])
+    thin = thinning(target)
+    fitted = len(target.fitted) if problem.matched else count
+    points, weights = target.fitted[:fitted][thin], target.weights[:fitted][thin]
     within: list[_Candidate] = []
     beyond: list[_Candidate] = []
     for kind, fits, _ in begun[:BROUGHT]:
         theta = angles_at(places, fits.theta[0], problem.closed, math.tau)
-        at = fits._replace(theta=np.concatenate([theta, fits.theta[0]])[None, : len(points)])
+        at = fits._replace(theta=np.concatenate([theta, fits.theta[0]])[None, :fitted][:, thin])
         if not problem.fitted:
             at = descended(at, points, weights, setting, steps=EXACT_STEPS, turns=TURNS, tolerance=EXACT_TOLERANCE)
         end = held(at, points, weights, setting, back=BACK if dense else 0, turns=TURNS)
@@ -215,7 +224,7 @@ def _answer(problem: PathProblem, mechanisms: list[SixbarMechanism], progress: P
     ordered = order_of(problem)
     if sifting.passed:
         best = ordered(sifting.passed)[0]
-        text += f" The best is a {best.mechanism.type.replace('_', ' ').title()} sixbar with P on {best.point_link}"
+        text += f" The best is a {NAMES[best.mechanism.type]} sixbar with P on {best.point_link}"
         if problem.fitted:
             text += f"; its rms distance is {best.metrics.rms_distance:.3g} {problem.length_unit}"
         if best.metrics.both_way_rms is not None:

@@ -223,6 +223,7 @@ PATH_ROWS: dict[str, Any] = {
     "max_designs": 1,
     "include_failed": Row(True, {**NONE_KEEPS, "method": "exact"}),
     "rank_by": "size",
+    "mechanisms": Row(["stephenson_3"], UNTIMED),
     "points": TIMED[:4],
     "points[].x": -24.0,
     "points[].y": 35.0,
