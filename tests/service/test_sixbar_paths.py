@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from kinematics.linkage.fourbar import Fourbar, positions
 from synthesis.kinds.path import by_type
 from synthesis.kinds.path.design import PathResult
 from synthesis.model.answer import Search
@@ -155,9 +156,13 @@ def test_a_stroke_is_drawn_within_tolerances_from_a_given_pivot(client):
 
 
 def test_auto_takes_the_fourbar_where_one_is_near_and_sound(client):
+    known = Fourbar(0j, 60.0 + 0j, 20.0, 55.0, 45.0, 30.0 + 20.0j)
+    points = positions(known, np.array([0.3, 0.8, 1.3, 1.8, 2.3])).p
+    pivots = {"input": [0.0, 0.0], "output": [60.0, 0.0]}
     plain = {k: v for k, v in TASK.items() if k not in ("mechanisms", "constraints")}
-    plain |= {"method": "auto", "closed": False, "rounds": 1, "points": listed([40 + 30j, 32 + 42j, 20 + 45j, 8 + 40j])}
+    plain |= {"method": "auto", "closed": False, "points": listed(points), "fixed_pivots": pivots}
     without = finished(client, plain)["result"]
+    assert max(design["metrics"]["min_transmission_angle"] for design in without["designs"]) >= 20.0
     assert finished(client, plain | {"mechanisms": "auto"})["result"] == without
     assert {design["mechanism"]["type"] for design in without["designs"]} == {"fourbar"}
 
