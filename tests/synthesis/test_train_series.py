@@ -150,6 +150,17 @@ def test_demands_on_ordinary_units_are_kept(unit: dict[str, Any], check: str) ->
         assert design.verification.passed
 
 
+def test_a_search_over_distances_says_that_it_is_one() -> None:
+    """What a unit's distances may be is looked at in steps: the answer does not call itself a proof."""
+    stated = {**GEARS, "modules": [1.5], "centre_distance": 60.0}
+    proven = solved(-12, stated, SET)
+    searched = solved(-12, {**stated, "centre_distance": {"min": 58.0, "max": 62.0}}, SET)
+    assert proven.search.complete
+    assert not searched.search.complete
+    assert "searched in steps" in searched.summary
+    assert searched.search.least_error <= proven.search.least_error
+
+
 @pytest.mark.parametrize("changes", [{"sun": 1}, {"planet": 1}, {"ring": 1}, {"sun": 2, "ring": 2}])
 @pytest.mark.parametrize("unit", [0, 1])
 def test_a_changed_tooth_is_found(changes: dict[str, int], unit: int) -> None:

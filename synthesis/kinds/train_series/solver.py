@@ -7,6 +7,7 @@ from itertools import islice
 from typing import Any
 
 from synthesis.kinds.gear_train.problem import NEAR, GearTrainProblem
+from synthesis.kinds.gear_train.solver import SEARCHED
 from synthesis.kinds.train_series.catalogue import Catalogue, catalogue_of
 from synthesis.kinds.train_series.design import (
     ParetoSeries,
@@ -57,16 +58,17 @@ def solve_train_series(problem: TrainSeriesProblem, progress: Progress) -> Train
         mechanism = _mechanism(catalogues, rows, one)
         sifting.add("idler" if mechanism is None else verify(problem, mechanism))
     progress(1.0, "verified")
+    searched = _searched(problem)
     least = None if found.nearest is None else abs(problem.target.relative_error(abs(found.nearest.ratio)))
     return TrainSeriesResult(
         designs=sifting.designs(list),
         search=TrainSeriesSearch(
-            **dict(sifting.search("exhaustive", complete=not sifting.rejected and not _searched(problem))),
+            **dict(sifting.search("exhaustive", complete=not sifting.rejected and not searched)),
             combinations=search.combinations,
             ties=found.ties,
             least_error=least,
         ),
-        summary=_summary(problem, search, found, catalogues, sifting.passed),
+        summary=_summary(problem, search, found, catalogues, sifting.passed) + (f" {SEARCHED}" if searched else ""),
         pareto=[entry for one in found.front if (entry := _pareto(problem, search, catalogues, one)) is not None],
     )
 
