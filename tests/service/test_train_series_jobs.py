@@ -73,6 +73,7 @@ WHEELS = {"type": "gear_train", "stages": [{"driver": 20, "driven": 30}]}
         ({"units": [SET, {k: v for k, v in SET.items() if k != "type"}]}, "/problem/units/1"),
         ({"units": [SET, {**SET, "ratio": 3}]}, "/problem/units/1/ratio"),
         ({"units": [SET, {**SET, "tolerance": 0.1}]}, "/problem/units/1/tolerance"),
+        ({"units": [{**GEARS, "strength": {"power_kw": 1.0}}, SET]}, "/problem/units/0/strength"),
         ({"units": [SET, {**SET, "planets": 0}]}, "/problem/units/1/planets"),
         ({"units": [SET, {**SET, "fixed": "sun"}]}, "/problem/units/1/fixed"),
         ({"units": [SET, {**SET, "input": "wheel"}]}, "/problem/units/1/input"),

@@ -18,7 +18,8 @@ from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.model.statement import Contradiction, StatedProblem, Statement
 
 OF_THE_SERIES = {*StatedProblem.model_fields, "ratio", "tolerance", "rank_by", "size", "strength"}
-"""Fields of a problem that no unit has: what the series is asked, and how its answers are ordered."""
+"""Fields of a problem that no unit has: what the series is asked, how its answers are ordered, and a power, as it
+reaches a unit through those before it."""
 
 USUAL_STAGES = 1
 """Stages of a unit of ordinary gears, where they are not stated: more of them are more units."""

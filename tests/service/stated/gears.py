@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from synthesis.kinds.train_series.stated_units import OF_THE_SERIES
 from tests.service.stated.row import Row
 
 TRAIN: dict[str, Any] = {
@@ -130,7 +131,6 @@ PLANETARY_ROWS: dict[str, Any] = {
 }
 
 UNITS: dict[str, tuple[int, dict[str, Any]]] = {"PlanetaryUnit": (0, PLANETARY_ROWS), "GearTrainUnit": (1, TRAIN_ROWS)}
-OF_THE_SERIES = {"length_unit", "seed", "max_designs", "ratio", "tolerance", "rank_by", "size"}
 
 
 def unit_rows(model: str) -> dict[str, Any]:
@@ -138,7 +138,7 @@ def unit_rows(model: str) -> dict[str, Any]:
     place, rows = UNITS[model]
     found: dict[str, Any] = {f"units[]<{model}>.type": Row("wheel", at=f"units[{place}].type")}
     for name, stated in rows.items():
-        if name not in OF_THE_SERIES:
+        if name.split(".")[0] not in OF_THE_SERIES:
             row = stated if isinstance(stated, Row) else Row(stated)
             base = {f"units[{place}].{field}": value for field, value in row.base.items() if field not in OF_THE_SERIES}
             found[f"units[]<{model}>.{name}"] = Row(row.value, base, at=f"units[{place}].{row.at or name}")
