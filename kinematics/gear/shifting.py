@@ -37,11 +37,17 @@ SECTIONS = 52
 STEEP = 6.0
 """A bound of how fast a margin changes with a shift is 2 / sin φ of the ends of involutes, and this of thick tips."""
 
+TOLD = 1e-5
+"""To how many modules a margin is known that is compared with others'."""
+
+NARROW = 1e-6
+"""Sums of shifts nearer to one another than this are not told apart in search of a greatest or least margin."""
+
 SUMS = 32
 """Parts into which a range of sums is divided in search of those that suit."""
 
-HALVINGS = 36
-"""Halvings of an interval of sums at whose one end no split suits."""
+HALVINGS = 28
+"""Halvings of an interval of sums at whose one end no split suits: 1e-9 modules of it remain."""
 
 
 class Demands(NamedTuple):
@@ -139,17 +145,20 @@ def best_split(teeth: int, mate: int, working: Working, demands: Demands, enough
     """The shift of the first gear with the greatest margin, and that margin.
 
     It is looked for until a margin is ``enough``, or no split can be sound: then the margin tells no more than its
-    sign. With an infinite ``enough`` it is looked for to the end.
+    sign. With an infinite ``enough`` it is looked for until it is known to :data:`TOLD`, and its sign surely.
     """
     low, high = _span(working, demands)
     if not low <= high:
         return math.nan, -math.inf
-    steepest = 2.0 / math.sin(demands.pressure_angle) + STEEP if enough < math.inf else math.inf
+    steepest = 2.0 / math.sin(demands.pressure_angle) + STEEP
     one, other = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
     left = margin(teeth, mate, working, one, demands)
     right = margin(teeth, mate, working, other, demands)
     for _ in range(SECTIONS):
-        if max(left, right) >= enough or max(left, right) + steepest * (high - low) < -KEPT:
+        most, rest = max(left, right), steepest * (high - low)
+        if most >= enough or (most + rest < -KEPT and (enough < math.inf or rest < TOLD)):
+            break
+        if rest < TOLD and enough == math.inf and most >= -KEPT:
             break
         if left < right:
             low, one, left = one, other, right
@@ -235,7 +244,7 @@ def _peak(teeth: int, mate: int, left: float, right: float, sign: float, demands
     second = sign * _of_sum(teeth, mate, other, demands, math.inf)
     for _ in range(SECTIONS):
         most = max(first, second)
-        if most >= -KEPT if sign > 0.0 else most > KEPT:
+        if (most >= -KEPT if sign > 0.0 else most > KEPT) or right - left < NARROW:
             break
         if first < second:
             left, one, first = one, other, second

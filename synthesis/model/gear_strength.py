@@ -25,7 +25,7 @@ from synthesis.model.dimension import ROTATIONAL_SPEED, Length
 from synthesis.model.gear_answer import rack_contact
 from synthesis.model.statement import PositiveNumber, Statement
 
-Positive = Annotated[float, Field(strict=True, gt=0.0, le=1e6)]
+Positive = Annotated[float, Field(strict=True, ge=1e-6, le=1e6)]
 
 ESTIMATE = (
     "A first estimate by textbook formulas: life, temperature, lubrication, mounting and material data beyond the "

@@ -155,3 +155,24 @@ def test_the_widest_face_bears_most(module: float) -> None:
         for width in np.geomspace(0.1 * module, 100.0 * module, 60)
     ]
     assert (np.diff(np.array(safeties), axis=0) > 0.0).all()
+
+
+@pytest.mark.parametrize("binding", ["allowable_bending", "allowable_contact"])
+def test_printed_stresses_give_the_printed_face(binding: str) -> None:
+    """Shigley, 8th ed., Example 14-4, turned round: teeth that may bear its stresses are 1.5 in wide.
+
+    17 and 52 teeth, 10 an inch, 4 hp at 1800 rev/min: σ = 6417 and 4854 psi, σ_c = 70 360 and 70 660 psi.
+    """
+    psi = 0.006894757293168
+    printed = {"allowable_bending": [6417.0, 4854.0], "allowable_contact": [70_360.0, 70_660.0]}
+    factors = {
+        "form": [0.303, 0.412], "bending_geometry": [0.30, 0.40], "elastic": 2300.0 * math.sqrt(psi), "dynamic": 1.377,
+        "size": [1.043, 1.052], "load_distribution": 1.22, "contact_geometry": 0.121,
+    }  # fmt: skip
+    stated = {
+        "power_kw": 4.0 * 0.745699871582, "speed_rpm": 1800.0, "factors": factors,
+        binding: [psi * stress for stress in printed[binding]],
+    }  # fmt: skip
+    teeth = [{"min": 17, "max": 17}, {"min": 52, "max": 52}]
+    result = solved(ratio="52/17", max_stages=1, teeth=teeth, module=0.1, length_unit="in", strength=stated)
+    assert result.designs[0].mechanism.stages[0].face_width == pytest.approx(1.5, rel=1e-3)
