@@ -7,6 +7,7 @@ import json
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from importlib.metadata import version
+from typing import Any
 
 from fastapi import FastAPI
 from starlette.concurrency import run_in_threadpool
@@ -17,6 +18,7 @@ from service.access.keys import KeyStore
 from service.analyst import Analyst
 from service.api import (
     analyses,
+    batches,
     designs,
     docs,
     errors,
@@ -30,6 +32,8 @@ from service.api import (
     studio,
 )
 from service.drawings import Drawings
+from service.jobs.batches.desk import BatchDesk
+from service.jobs.batches.store import BatchStore
 from service.jobs.database import connect, sqlite_file, upgrade
 from service.jobs.desk import JobDesk
 from service.jobs.executor import Executor
@@ -44,6 +48,7 @@ from service.settings import Settings
 _DESCRIPTION = """Designs mechanisms and verifies every answer by driving it.
 
 State a problem in a job (`POST /v1/jobs`), wait for it or come back for it, and read the designs from its result.
+Many problems at once are a batch (`POST /v1/batches`).
 `GET /v1/problems` lists what can be asked, each with an example that runs as it is. A mechanism that exists already is
 analysed at once (`POST /v1/analyses`), and the outlines in a drawing are read (`POST /v1/outlines`).
 
@@ -71,14 +76,17 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics) -> Fas
             finished = FinishedJobs(CAPACITY_BYTES if sqlite_file(settings.store_url) else 0)
             app.state.desk = JobDesk(store, executor, notifier, measured, settings.max_queued, finished)
             app.state.gate = Gate(KeyStore(engine), settings.rate_limit_rule)
-            poller = app.state.poller = JobPoller(store, notifier)
-            measured.watch(lambda: poller.listeners, executor.ready, store.unfinished)
-            polling = asyncio.create_task(poller.run())
-            tidying = asyncio.create_task(keep_tidy(store, finished, settings.retention_days))
+            batch_store = BatchStore(engine)
+            app.state.batches = BatchDesk(batch_store, executor, notifier, measured, settings.max_queued, finished)
+            pollers: list[JobPoller[Any]] = [JobPoller(store, notifier), JobPoller(batch_store, notifier)]
+            app.state.poller, app.state.batch_poller = pollers
+            measured.watch(lambda: sum(each.listeners for each in pollers), executor.ready, store.unfinished)
+            polling = [asyncio.create_task(poller.run()) for poller in pollers]
+            tidying = asyncio.create_task(keep_tidy(store, batch_store, finished, settings.retention_days))
             yield
             tidying.cancel()
             notifier.close()
-            await polling
+            await asyncio.gather(*polling)
         finally:
             notifier.close()
             await run_in_threadpool(executor.stop)
@@ -114,7 +122,7 @@ def application(lifespan: Lifespan[FastAPI]) -> FastAPI:
         redirect_slashes=False,
         # Problems and designs have one schema each, whether they come or go.
         separate_input_output_schemas=False,
-        openapi_tags=[jobs.TAG, analyses.TAG, outlines.TAG, problems.TAG, health.TAG],
+        openapi_tags=[jobs.TAG, batches.TAG, analyses.TAG, outlines.TAG, problems.TAG, health.TAG],
     )
     errors.install(app)
     docs.install(app)
@@ -124,6 +132,8 @@ def application(lifespan: Lifespan[FastAPI]) -> FastAPI:
         forces.reading,
         forces.stating,
         events.router,
+        batches.router,
+        batches.following,
         analyses.router,
         outlines.router,
         problems.router,

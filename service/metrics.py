@@ -102,6 +102,7 @@ class Metrics(WorkerMetrics):
             "http_rejections", "Requests that were answered with an error, by the type of the problem.", "reason"
         )
         self._jobs_accepted = self._counter("jobs_accepted", "Jobs that were accepted.", "kind")
+        self._batches_accepted = self._counter("batches_accepted", "Batches that were accepted.", "kind")
         self._listeners = self._gauge("event_listeners", "Clients that listen to the events of a job.")
 
     def request(self, operation: str, method: str, status: int, seconds: float) -> None:
@@ -121,6 +122,10 @@ class Metrics(WorkerMetrics):
     def accepted(self, kind: str) -> None:
         """A job was accepted."""
         self._jobs_accepted.labels(kind).inc()
+
+    def accepted_batch(self, kind: str) -> None:
+        """A batch was accepted."""
+        self._batches_accepted.labels(kind).inc()
 
     def watch(
         self, listeners: Callable[[], int], workers: Callable[[], int], queue: Callable[[], Mapping[str, int]]

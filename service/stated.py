@@ -1,4 +1,4 @@
-"""What a client has stated: written into the store, read from there, and shown.
+"""What a client has stated: checked, written into the store, read from there, and shown.
 
 The store has the fields that were stated and no others, so that what a client sends, what is stored and what a worker
 solves are one statement. A job shows its problem with the defaults of all that was left out; a default that is written
@@ -11,8 +11,12 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from service.explained import explained, place, sentence
 from synthesis.model.statement import StatedProblem
 from synthesis.registry import KINDS
+
+Faults = list[tuple[str, str]]
+"""Pairs of the JSON pointer below the problem, and what is wrong there."""
 
 
 def written(problem: StatedProblem) -> str:
@@ -23,6 +27,20 @@ def written(problem: StatedProblem) -> str:
 def read(kind: str, stored: str) -> Any:
     """The problem that :func:`written` has written; raises pydantic's ValidationError where it is none."""
     return KINDS[kind].problem.model_validate_json(stored)
+
+
+def well_formed(kind: str, statement: Any) -> tuple[Any, Faults]:
+    """The problem of a JSON-like statement, or None; and what is wrong with single fields of it."""
+    try:
+        return KINDS[kind].problem.model_validate(statement), []
+    except ValidationError as error:
+        faults = ({**fault, "loc": ("body", *fault["loc"])} for fault in error.errors())
+        return None, list(dict.fromkeys((place(fault, statement), explained(fault)) for fault in faults))
+
+
+def consistent(problem: StatedProblem) -> Faults:
+    """What is wrong with a problem as a whole; nothing where it can be solved."""
+    return [(fault.path, sentence(fault.detail)) for fault in problem.contradictions()]
 
 
 def filled_in(kind: str, stored: str) -> str:

@@ -13,8 +13,9 @@ from pydantic_core import to_json
 from service.analyst import MAX_ANALYSIS_S, Analyst, Busy, TooLong
 from service.api import errors
 from service.api.body import JsonRoute
-from service.api.errors import busy, invalid_mechanism, invalid_request, sentence
+from service.api.errors import busy, invalid_mechanism, invalid_request
 from service.api.state import Core
+from service.explained import sentence
 from service.telemetry import span
 
 TAG = {"name": "analyses", "description": "Drive a given mechanism."}

@@ -10,8 +10,9 @@ from fastapi import Request, Response
 from pydantic_core import from_json
 from starlette.requests import ClientDisconnect
 
-from service.api.errors import Refusal, invalid_request, malformed_json, pointer
+from service.api.errors import Refusal, invalid_request, malformed_json
 from service.api.guard import GuardedRoute, Handler
+from service.explained import pointer
 
 MAX_VALUES = 20_000
 """Most values (numbers, strings, lists, objects) in a body. The largest honest problem has a few thousand; a body of a

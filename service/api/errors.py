@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import structlog
@@ -16,16 +16,13 @@ from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
 from service import telemetry
+from service.explained import explained, place
 from service.jobs.database import unreachable
-from synthesis.model.stated_path import stated_steps
 
 PROBLEM_JSON = "application/problem+json"
 
 MAX_ERRORS = 20
 """A client corrects what it is shown and asks again; a longer list of faults helps nobody."""
-
-MAX_STEP = 100
-"""Longest name in a path, characters."""
 
 STORE_RETRY_AFTER_S = 2
 """When to ask again while the store is out of reach; PostgreSQL restarts within a second or two."""
@@ -134,15 +131,6 @@ def busy(with_what: str) -> Refusal:
     )
 
 
-def sentence(text: str) -> str:
-    """A detail as a sentence: with a capital and a full stop.
-
-    >>> sentence("equal to position 0")
-    'Equal to position 0.'
-    """
-    return f"{text[:1].upper()}{text[1:].rstrip('.')}."
-
-
 def responses(**described: str) -> dict[int | str, dict[str, Any]]:
     """The error responses of an endpoint for OpenAPI: ``responses(e404="There is no such job.")``."""
     content = {PROBLEM_JSON: {"schema": {"$ref": "#/components/schemas/ProblemDetails"}}}
@@ -152,14 +140,6 @@ def responses(**described: str) -> dict[int | str, dict[str, Any]]:
         | ({"headers": again} if name in ("e429", "e503") else {})
         for name, text in described.items()
     }
-
-
-def pointer(location: Iterable[str | int]) -> str:
-    """The JSON pointer to a place that is given step by step; the empty string is the whole.
-
-    A step is cut at :data:`MAX_STEP` characters: a name so long is no field's, and must not come back in full.
-    """
-    return "".join("/" + str(step)[:MAX_STEP].replace("~", "~0").replace("/", "~1") for step in location)
 
 
 def install(app: FastAPI) -> None:
@@ -181,7 +161,7 @@ async def _refused(request: Request, refusal: Exception) -> Response:
 async def _invalid(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
     # Several models that a part was tried as may say the same of it.
-    faults = list(dict.fromkeys((_place(fault, error.body), _explained(fault)) for fault in error.errors()))
+    faults = list(dict.fromkeys((place(fault, error.body), explained(fault)) for fault in error.errors()))
     if all(path.startswith("/problem/") for path, _ in faults):
         return await _refused(request, invalid_problem(faults))
     if all(path.startswith("/mechanism/") for path, _ in faults):
@@ -237,28 +217,6 @@ def _answer(
     if errors:
         content["errors"] = [{"path": path, "detail": text} for path, text in errors[:MAX_ERRORS]]
     return Response(to_json(content), status_code=status, headers=dict(headers or {}), media_type=PROBLEM_JSON)
-
-
-def _place(fault: Mapping[str, Any], body: Any) -> str:
-    location = tuple(fault["loc"])
-    # The framework puts the part of the request first; in a body the pointer starts at the body itself.
-    if location[:1] != ("body",):
-        return pointer(location)
-    steps = stated_steps(location[1:], body, fault["type"] == "missing")
-    if fault["type"] == "unknown_kind" and isinstance(fault["input"], dict):
-        steps.append("kind")
-    return pointer(steps)
-
-
-def _explained(fault: Mapping[str, Any]) -> str:
-    if fault["type"] == "extra_forbidden":
-        return "There is no such field; check its name."
-    if fault["type"] == "missing":
-        return "This field is required."
-    unread = fault["type"] == "unknown_kind" and not isinstance(fault["input"], dict)
-    if unread or fault["type"] in ("model_type", "model_attributes_type", "dict_type"):
-        return "This must be an object."
-    return sentence(str(fault["msg"]).removeprefix("Value error, ").removeprefix("Assertion failed, "))
 
 
 def _counted(faults: int) -> str:

@@ -7,8 +7,8 @@ state is sent where the client does not have it, and what it has missed in betwe
 from __future__ import annotations
 
 import re
-from collections.abc import AsyncIterator
-from typing import Annotated
+from collections.abc import AsyncIterator, Callable
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Request, Response
 from fastapi.sse import EventSourceResponse, format_sse_event
@@ -18,11 +18,10 @@ from service.api import errors
 from service.api.errors import Refusal, not_found, store_unavailable
 from service.api.guard import GuardedRoute, Tenant
 from service.api.jobs import NO_JOB, TAG, ULID
-from service.api.schemas import list_item, progress
+from service.api.schemas import list_item
 from service.api.state import Poller
 from service.head import asked_for_head
-from service.jobs.poller import Follower, JobPoller
-from service.jobs.schema import JobSummary
+from service.jobs.poller import F, Follower, JobPoller
 from service.jobs.states import Status
 
 KEEP_ALIVE_S = 15.0
@@ -39,26 +38,28 @@ _HEADERS = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
 _EVENT_ID = re.compile(f"([0-9]{{1,9}})-({'|'.join(Status)})")
 
 
-_EVENT = {
-    "type": "object",
-    "required": ["event", "data"],
-    "properties": {
-        "event": {"type": "string", "enum": ["state", "progress", "removed"]},
-        "data": {
-            "type": "string",
-            "contentMediaType": "application/json",
-            "contentSchema": {
-                "anyOf": [
-                    {"$ref": "#/components/schemas/JobListItem"},
-                    {"$ref": "#/components/schemas/Progress"},
-                    {"type": "object", "maxProperties": 0},
-                ]
+def event_schema(item: str) -> dict[str, Any]:
+    """The schema of an event whose state is shown as the component ``item``."""
+    return {
+        "type": "object",
+        "required": ["event", "data"],
+        "properties": {
+            "event": {"type": "string", "enum": ["state", "progress", "removed"]},
+            "data": {
+                "type": "string",
+                "contentMediaType": "application/json",
+                "contentSchema": {
+                    "anyOf": [
+                        {"$ref": f"#/components/schemas/{item}"},
+                        {"$ref": "#/components/schemas/Progress"},
+                        {"type": "object", "maxProperties": 0},
+                    ]
+                },
             },
+            "id": {"type": "string", "pattern": f"^{_EVENT_ID.pattern}$", "examples": ["7-running"]},
+            "retry": {"type": "integer"},
         },
-        "id": {"type": "string", "pattern": f"^{_EVENT_ID.pattern}$", "examples": ["7-running"]},
-        "retry": {"type": "integer"},
-    },
-}
+    }
 
 
 router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRoute)
@@ -74,7 +75,7 @@ router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRou
             "description": "Events until the job has ended: `state` (the job as in a list) whenever its state changes, "
             "first of all the present one, and `progress` in between. The event of the final state is the last one; "
             "a job that is removed before anybody has seen it end ends with `removed`.",
-            "content": {"text/event-stream": {"itemSchema": _EVENT}},
+            "content": {"text/event-stream": {"itemSchema": event_schema("JobListItem")}},
         },
         204: {"description": "The client has the event of the final state already; it need not come again."},
         **errors.responses(e404=NO_JOB, e503="Too many clients of the tenant listen at once."),
@@ -94,23 +95,42 @@ async def follow_job(
 
     A stream that breaks can be resumed with `Last-Event-ID`: nothing that the client has seen is repeated.
     """
+    return await followed(request, poller, tenant, job_id, last_event_id, list_item, NO_JOB)
+
+
+async def followed(
+    request: Request,
+    poller: JobPoller[F],
+    tenant: str,
+    id_: str,
+    last_event_id: str | None,
+    shown: Callable[[F], dict[str, Any]],
+    none_such: str,
+) -> Response:
+    """The stream of what a poller follows, as ``shown``, which has its progress too.
+
+    Raises
+    ------
+    Refusal
+        503 where too many of the tenant listen or the store does not answer; 404 where the tenant has none such.
+    """
     if poller.listeners_of(tenant) >= MAX_LISTENERS:
         raise Refusal(
             503, "too-many-listeners", "Too many listeners", "Too many of your clients listen at once; ask again.",
             headers={"Retry-After": "5"},
         )  # fmt: skip
-    job = await _present(poller, job_id, tenant) if ULID.fullmatch(job_id) else None
+    job = await _present(poller, id_, tenant) if ULID.fullmatch(id_) else None
     if job is None or job.tenant != tenant:
-        raise not_found(NO_JOB)
+        raise not_found(none_such)
     seen = _seen(last_event_id)
     if job.status.finished and seen == (job.revision, job.status):
         return Response(status_code=204)
     if asked_for_head(request.scope):
         return EventSourceResponse(_nothing(), headers=_HEADERS)
-    return EventSourceResponse(_events(poller, job, seen), headers=_HEADERS)
+    return EventSourceResponse(_events(poller, job, seen, shown), headers=_HEADERS)
 
 
-async def _present(poller: JobPoller, job_id: str, tenant: str) -> JobSummary | None:
+async def _present(poller: JobPoller[F], job_id: str, tenant: str) -> F | None:
     with poller.follow(job_id, tenant) as follower:
         await follower.changed(STORE_ANSWERS_S)
         if not follower.read:
@@ -118,7 +138,9 @@ async def _present(poller: JobPoller, job_id: str, tenant: str) -> JobSummary | 
         return follower.job
 
 
-async def _events(poller: JobPoller, job: JobSummary, seen: tuple[int, Status] | None) -> AsyncIterator[bytes]:
+async def _events(
+    poller: JobPoller[F], job: F, seen: tuple[int, Status] | None, shown: Callable[[F], dict[str, Any]]
+) -> AsyncIterator[bytes]:
     """The stream of a job. It ends with the job, or without an event when the service stops."""
     with poller.follow(job.id, job.tenant) as follower:
         follower.update(job)
@@ -126,7 +148,7 @@ async def _events(poller: JobPoller, job: JobSummary, seen: tuple[int, Status] |
             if not await follower.changed(KEEP_ALIVE_S):
                 yield format_sse_event(comment="keep-alive")
                 continue
-            event = _event(follower, seen)
+            event = _event(follower, seen, shown)
             if event is not None:
                 yield event
             if follower.job is None or follower.job.status.finished:
@@ -134,7 +156,9 @@ async def _events(poller: JobPoller, job: JobSummary, seen: tuple[int, Status] |
             seen = (follower.job.revision, follower.job.status)
 
 
-def _event(follower: Follower, seen: tuple[int, Status] | None) -> bytes | None:
+def _event(
+    follower: Follower[F], seen: tuple[int, Status] | None, shown: Callable[[F], dict[str, Any]]
+) -> bytes | None:
     """What a client that has seen ``seen`` is to be told; None where there is nothing new."""
     job = follower.job
     if job is None:
@@ -144,7 +168,7 @@ def _event(follower: Follower, seen: tuple[int, Status] | None) -> bytes | None:
     state = seen is None or seen[1] != job.status
     return format_sse_event(
         event="state" if state else "progress",
-        data_str=to_json(list_item(job) if state else progress(job)).decode(),
+        data_str=to_json(shown(job) if state else shown(job)["progress"]).decode(),
         id=f"{job.revision}-{job.status.value}",
         retry=_RECONNECT_MS if seen is None else None,
     )

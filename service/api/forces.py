@@ -11,10 +11,11 @@ from pydantic_core import to_json
 from service.api.analyses import analysis_responses, answered, invalid_body
 from service.api.body import JsonRoute
 from service.api.designs import MotionSteps, design_index, solved
-from service.api.errors import Refusal, invalid_request, sentence
+from service.api.errors import Refusal, invalid_request
 from service.api.guard import GuardedRoute, Tenant
 from service.api.jobs import TAG
 from service.api.state import Core, Desk
+from service.explained import sentence
 from service.jobs.schema import JobRow
 from service.stated import read
 from synthesis.registry import KINDS

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pydantic import BaseModel
 
 from service.api.errors import Refusal, invalid_request
-from service.jobs.store import Repeatable
+from service.jobs.admission import Repeatable
 
 KEY = "^[!-~]{1,200}$"
 """What a key may be: visible ASCII characters, taken as they are."""

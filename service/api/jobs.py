@@ -12,17 +12,17 @@ from pydantic_core import to_json
 
 from service.api import errors, etag
 from service.api.body import JsonRoute
-from service.api.errors import Refusal, invalid_problem, invalid_request, not_found, sentence
+from service.api.errors import Refusal, invalid_problem, invalid_request, not_found
 from service.api.guard import Tenant
 from service.api.idempotency import KEY, key_reused, repeatable
 from service.api.prefer import wait_seconds
 from service.api.schemas import Job, JobList, JobRequest, list_item, whole_job
 from service.api.state import Desk
-from service.jobs.desk import JobDesk
+from service.jobs.admission import KeyReused, QueueFull
+from service.jobs.desk import JobDesk, PartOfBatch
 from service.jobs.schema import JobRow
 from service.jobs.states import Cost, Status
-from service.jobs.store import KeyReused, QueueFull
-from service.stated import written
+from service.stated import consistent, written
 from synthesis.registry import KINDS, example
 
 TAG = {"name": "jobs", "description": "State a problem, follow the job, read the answer."}
@@ -126,9 +126,9 @@ async def create_job(
     ] = None,
 ) -> Response:
     """Accept a problem as a job. Once this is answered the job is stored, and it ends, whatever process dies."""
-    contradictions = body.problem.contradictions()
-    if contradictions:
-        raise invalid_problem([(f"/problem{fault.path}", sentence(fault.detail)) for fault in contradictions])
+    faults = consistent(body.problem)
+    if faults:
+        raise invalid_problem([(f"/problem{path}", detail) for path, detail in faults])
     # All lines of the header; the parameter is there for the documentation and holds only one of them.
     wait_s = wait_seconds(request.headers.getlist("prefer"), request.app.state.settings.max_wait_s)
     try:
@@ -144,10 +144,7 @@ async def create_job(
     except KeyReused:
         raise key_reused() from None
     except QueueFull:
-        raise Refusal(
-            503, "queue-full", "Queue full", "As many of your jobs wait as may; send this one again later.",
-            headers={"Retry-After": str(QUEUE_RETRY_AFTER_S)},
-        ) from None  # fmt: skip
+        raise queue_full() from None
     headers = {"Location": f"/v1/jobs/{job.id}"}
     if not job.status.finished:
         return _json(whole_job(job), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
@@ -168,11 +165,11 @@ async def list_jobs(desk: Desk, tenant: Tenant, filter_: Annotated[JobFilter, Qu
         limit=filter_.limit + 1,
         status=None if filter_.status is None else Status(filter_.status),
         kind=filter_.kind,
-        before=None if filter_.cursor is None else _job_of_cursor(filter_.cursor),
+        before=None if filter_.cursor is None else id_of_cursor(filter_.cursor),
     )
     shown = page[: filter_.limit]
     more = len(page) > filter_.limit
-    listed = {"jobs": [list_item(job) for job in shown], "next_cursor": _cursor(shown[-1].id) if more else None}
+    listed = {"jobs": [list_item(job) for job in shown], "next_cursor": cursor_of(shown[-1].id) if more else None}
     return _json(to_json(listed))
 
 
@@ -216,15 +213,28 @@ async def get_job(
             "description": "The job was unfinished and is cancelled; its computation is being stopped.",
         },
         204: {"description": "The job was finished and is removed."},
-        **errors.responses(e404=NO_JOB),
+        **errors.responses(e404=NO_JOB, e409="The job is one of a batch, which is removed as a whole."),
     },
 )
 async def delete_job(desk: Desk, tenant: Tenant, job_id: str) -> Response:
     """Cancel a queued or running job; remove a finished one."""
-    job = await desk.cancel_or_delete(tenant, job_id) if ULID.fullmatch(job_id) else None
+    try:
+        job = await desk.cancel_or_delete(tenant, job_id) if ULID.fullmatch(job_id) else None
+    except PartOfBatch as part:
+        raise Refusal(
+            409, "part-of-batch", "Part of a batch", f"The job is one of a batch; remove /v1/batches/{part.batch}."
+        ) from None
     if job is None:
         raise not_found(NO_JOB)
     return Response(status_code=204) if job == "deleted" else _json(whole_job(job), 202)
+
+
+def queue_full() -> Refusal:
+    """There is no place for more in the queue."""
+    return Refusal(
+        503, "queue-full", "Queue full", "As many of your jobs wait as may; send this one again later.",
+        headers={"Retry-After": str(QUEUE_RETRY_AFTER_S)},
+    )  # fmt: skip
 
 
 async def job_of(desk: JobDesk, tenant: str, job_id: str) -> JobRow:
@@ -241,11 +251,13 @@ async def job_of(desk: JobDesk, tenant: str, job_id: str) -> JobRow:
     return job
 
 
-def _cursor(job_id: str) -> str:
+def cursor_of(job_id: str) -> str:
+    """The cursor of the page that follows the job."""
     return base64.urlsafe_b64encode(job_id.encode()).decode().rstrip("=")
 
 
-def _job_of_cursor(cursor: str) -> str:
+def id_of_cursor(cursor: str) -> str:
+    """The id in a cursor; raises a refusal for what is none of ours."""
     try:
         job_id = base64.b64decode(cursor + "=" * (-len(cursor) % 4), altchars=b"-_", validate=True).decode()
     except ValueError:

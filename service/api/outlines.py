@@ -8,10 +8,11 @@ from fastapi import APIRouter, Query, Request, Response
 
 from service.api import errors
 from service.api.body import BoundedRequest, foreign
-from service.api.errors import busy, invalid_drawing, malformed_drawing, pointer
+from service.api.errors import busy, invalid_drawing, malformed_drawing
 from service.api.guard import GuardedRoute
 from service.api.state import Board
 from service.drawings import Busy
+from service.explained import pointer
 from service.loading import IMPORTS
 from service.outlines import DrawingUnit, ForeignFormat, Malformed, NoOutline, Outlines, Unsuitable
 from service.outlines.limits import DEFAULT_TOLERANCE, FARTHEST

@@ -8,10 +8,10 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from pydantic_core import to_json
 
 from service.api.errors import ProblemDetails
-from service.jobs.schema import JobRow, JobSummary
+from service.jobs.schema import JobRow, JobSummary, SampleRow
 from service.jobs.states import Status
 from service.stated import filled_in
-from synthesis.model.answer import Result
+from synthesis.model.answer import Result, optional
 from synthesis.registry import KINDS, Problem, example
 
 if TYPE_CHECKING:
@@ -29,6 +29,9 @@ def _printable(label: str) -> str:
     return label
 
 
+Label = Annotated[str, Field(strict=True, max_length=200), AfterValidator(_printable)]
+
+
 class JobRequest(BaseModel):
     """A problem to solve, with an optional label to recognize the job by."""
 
@@ -40,7 +43,7 @@ class JobRequest(BaseModel):
     )
 
     problem: Problem
-    label: Annotated[str, Field(strict=True, max_length=200), AfterValidator(_printable)] | None = None
+    label: Label | None = None
 
 
 class Progress(BaseModel):
@@ -76,6 +79,8 @@ class Job(JobListItem):
     problem: Problem = Field(description="The problem as stated, defaults filled in; posted again it is the same one.")
     result: AnyResult | None = Field(description="The answer of a job that has succeeded.")
     error: ProblemDetails | None = Field(description="Why a job has failed.")
+    batch: str | None = optional("Of a problem of a batch, the id of that; otherwise left out.")
+    cached: bool | None = optional("Of a problem of a batch: an equal problem had been answered; otherwise left out.")
 
 
 class JobList(BaseModel):
@@ -144,4 +149,6 @@ def whole_job(job: JobRow) -> bytes:
     stored = (
         f'"problem":{filled_in(job.kind, job.problem)},"result":{job.result or "null"},"error":{job.error or "null"}'
     )
+    if isinstance(job, SampleRow):
+        stored += f',"batch":"{job.batch}","cached":{"true" if job.cached else "false"}'
     return to_json(list_item(job))[:-1] + b"," + stored.encode() + b"}"

@@ -9,8 +9,11 @@ from fastapi import Depends, Request
 
 from service.analyst import Analyst
 from service.drawings import Drawings
+from service.jobs.batches.desk import BatchDesk
+from service.jobs.batches.rows import BatchSummary
 from service.jobs.desk import JobDesk
 from service.jobs.poller import JobPoller
+from service.jobs.schema import JobSummary
 
 T = TypeVar("T")
 
@@ -27,6 +30,8 @@ def _part(name: str, of_type: type[T]) -> Callable[[Request], Coroutine[Any, Any
 
 
 Desk = Annotated[JobDesk, Depends(_part("desk", JobDesk))]
-Poller = Annotated[JobPoller, Depends(_part("poller", JobPoller))]
+Batches = Annotated[BatchDesk, Depends(_part("batches", BatchDesk))]
+Poller = Annotated[JobPoller[JobSummary], Depends(_part("poller", JobPoller))]
+BatchPoller = Annotated[JobPoller[BatchSummary], Depends(_part("batch_poller", JobPoller))]
 Board = Annotated[Drawings, Depends(_part("drawings", Drawings))]
 Core = Annotated[Analyst, Depends(_part("analyst", Analyst))]

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, ParamSpec, TypeVar
 from urllib.parse import unquote, urlsplit
 
+import structlog
 from sqlalchemy import URL, Connection, Engine, NullPool, create_engine, event, func, make_url, select
-from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, OperationalError, TimeoutError
+from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, OperationalError, SQLAlchemyError, TimeoutError
 
 BUSY_TIMEOUT_S = 10.0
 """How long a writer waits for another one. A write takes a millisecond, so this is never reached in good health."""
@@ -23,6 +25,14 @@ UPGRADE_LOCK, QUEUE_LOCK = 0x6D656368, 0x6D656369
 
 UNREACHABLE = (OperationalError, InterfaceError, TimeoutError)
 """What SQLAlchemy raises when the database is out of reach, is starting or stopping, or has no connection left."""
+
+RETRY_PERIOD_S = 0.5
+"""Pause before a write to a store that is out of reach is tried again."""
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+log = structlog.get_logger(__name__)
 
 # A host that vanishes without a word is noticed within 10 s; otherwise it would take the kernel a quarter of an hour.
 _POSTGRESQL = {
@@ -111,6 +121,21 @@ def unreachable(error: BaseException) -> bool:
     What was being written may or may not have been stored.
     """
     return isinstance(error, UNREACHABLE) or (isinstance(error, DBAPIError) and error.connection_invalidated)
+
+
+def patiently(write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
+    """Write to the store, and wait for it while it is out of reach: what is to be written would be lost.
+
+    For writes that can be repeated where nobody knows whether they were done, since they name their claim or attempt.
+    """
+    while True:
+        try:
+            return write(*args, **options)
+        except SQLAlchemyError as error:
+            if not unreachable(error):
+                raise
+            log.warning("the store is out of reach", error=type(error).__name__)
+            time.sleep(RETRY_PERIOD_S)  # a store that is started again needs seconds
 
 
 def _with_driver(url: URL) -> URL:

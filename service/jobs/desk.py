@@ -9,16 +9,25 @@ from typing import Literal
 import structlog
 from starlette.concurrency import run_in_threadpool
 
+from service.jobs.admission import Repeatable
 from service.jobs.executor import Executor
 from service.jobs.finished import FinishedJobs
 from service.jobs.notifier import ChangeNotifier
-from service.jobs.schema import JobRow, JobSummary
+from service.jobs.schema import JobRow, JobSummary, SampleRow
 from service.jobs.states import Cost, Status
-from service.jobs.store import JobStore, Repeatable
+from service.jobs.store import JobStore
 from service.metrics import Metrics
 from service.telemetry import span
 
 log = structlog.get_logger(__name__)
+
+
+class PartOfBatch(Exception):
+    """The job cannot be removed by itself; carries the id of the batch that it is a sample of."""
+
+    def __init__(self, batch: str) -> None:
+        self.batch = batch
+        super().__init__(f"the job is a sample of the batch {batch}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,10 +130,17 @@ class JobDesk:
 
         A job that ends by itself while it is being cancelled is returned and not removed: the client asked when
         it was unfinished, and must not lose a result that it has never seen.
+
+        Raises
+        ------
+        PartOfBatch
+            When the job is a sample of a batch, which is removed as a whole.
         """
         job = await self.get(tenant, job_id)
         if job is None:
             return None
+        if isinstance(job, SampleRow):
+            raise PartOfBatch(job.batch)
         if job.status.finished:
             try:
                 return "deleted" if await run_in_threadpool(self.store.delete, job_id) else None

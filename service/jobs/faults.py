@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
 
@@ -14,10 +15,16 @@ class Fault:
     title: str
     status: int
     detail: str
+    errors: Sequence[tuple[str, str]] | None = None
 
     def as_json(self, job_id: str) -> str:
         """The object as stored with the job that it is about."""
-        return json.dumps({**asdict(self), "instance": f"/v1/jobs/{job_id}"})
+        told = {**asdict(self), "instance": f"/v1/jobs/{job_id}"}
+        if self.errors is None:
+            del told["errors"]
+        else:
+            told["errors"] = [{"path": path, "detail": detail} for path, detail in self.errors]
+        return json.dumps(told)
 
 
 INTERNAL_ERROR = Fault(
@@ -51,4 +58,15 @@ def out_of_memory(limit_mb: int) -> Fault:
         "Out of memory",
         507,
         f"The computation needed more than the {limit_mb} MiB of memory that a job may take.",
+    )
+
+
+def invalid_problem(errors: Sequence[tuple[str, str]]) -> Fault:
+    """A sample of a batch states no problem; ``errors`` are pairs of the place in it and what is wrong there."""
+    return Fault(
+        "/problems/invalid-problem",
+        "Invalid problem",
+        422,
+        f"With these values the problem cannot be meant: {errors[0][0]}: {errors[0][1]}",
+        errors,
     )

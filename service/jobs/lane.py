@@ -29,11 +29,14 @@ import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.jobs import faults, worker
+from service.jobs.batches.store import BatchStore
 from service.jobs.executor import Changed
+from service.jobs.faults import Fault
 from service.jobs.orphans import tell_children
+from service.jobs.schema import Claim
 from service.jobs.solving import Solving
 from service.jobs.states import Cost, Status
-from service.jobs.store import Claim, JobStore
+from service.jobs.store import JobStore
 from service.jobs.turns import SHORT_S, Turns
 from service.metrics import WorkerMetrics
 
@@ -83,6 +86,7 @@ class Lane(threading.Thread):
         name: str,
         turns: Turns,
         store: JobStore,
+        batches: BatchStore,
         settings: worker.WorkerSettings,
         timeout_s: float,
         changed: Changed,
@@ -92,6 +96,7 @@ class Lane(threading.Thread):
         super().__init__(name=name, daemon=True)
         self._turns = turns
         self._store = store
+        self._batches = batches
         self._settings = settings
         self._timeout_s = timeout_s
         self._changed = changed
@@ -191,7 +196,7 @@ class Lane(threading.Thread):
             log.exception("the lane failed", lane=self.name, job=job.job_id)
             self._replace_worker("defect")
             try:
-                self._stored(self._store.give_up, job.job_id, job.mark, faults.INTERNAL_ERROR.as_json(job.job_id))
+                self._give_up(job, faults.INTERNAL_ERROR)
             except Exception:  # then the next start of the service requeues the job
                 log.exception("a job could not be failed", lane=self.name, job=job.job_id)
         with self._lock:
@@ -201,7 +206,7 @@ class Lane(threading.Thread):
         self._turns.done(self)
         self._free_since = time.monotonic()
         try:
-            self._changed(job.job_id)
+            self._changed(job.batch or job.job_id)
         except Exception:  # the store has the new state, which subscribers read when their wait ends
             log.exception("a change could not be announced", lane=self.name, job=job.job_id)
 
@@ -253,8 +258,7 @@ class Lane(threading.Thread):
         except TimeoutError:
             self._metrics.attempt("timeout")
             self._replace_worker("timeout")
-            fault = faults.timeout(self._timeout_s)
-            if self._stored(self._store.give_up, job.job_id, job.mark, fault.as_json(job.job_id)):
+            if self._give_up(job, faults.timeout(self._timeout_s)):
                 log.warning("job failed", job=job.job_id, reason="timeout")
         except CancelledError:
             if self._stopping.is_set():
@@ -265,7 +269,7 @@ class Lane(threading.Thread):
         except WorkerLost as loss:
             self._metrics.attempt("worker lost")
             self._replace_worker("lost")
-            status = self._stored(self._store.crashed, job.job_id, job.mark, killed=loss.killed)
+            status = self._crashed(job, killed=loss.killed)
             log.warning("worker lost", lane=self.name, job=job.job_id, reason=str(loss), job_is_now=status)
             if status == Status.QUEUED:
                 self._turns.wake()
@@ -273,10 +277,32 @@ class Lane(threading.Thread):
             if ran.outcome == "stopped":
                 self._was_stopped(job)
                 return
-            self._metrics.attempt(ran.outcome, ran.kind, ran.seconds)
+            if job.batch is None:
+                self._metrics.attempt(ran.outcome, ran.kind, ran.seconds)
+            else:
+                self._metrics.attempt(ran.outcome)
             if ran.outcome == "out of memory":
                 # A library that was refused memory in the middle of a call may be left in any state.
                 self._replace_worker("out_of_memory")
+
+    def _give_up(self, job: Claim, fault: Fault) -> bool:
+        """Fail the job, or of a share of a batch the sample that its worker was at; whether the claim still counts."""
+        if job.batch is None:
+            return bool(self._stored(self._store.give_up, job.job_id, job.mark, fault.as_json(job.job_id)))
+        at = self._solving.sample
+        if self._stored(self._batches.give_up, job.job_id, job.mark, at, fault.as_json) is None:
+            return False
+        self._turns.wake()
+        return True
+
+    def _crashed(self, job: Claim, *, killed: bool) -> Status | None:
+        status: Status | None
+        if job.batch is None:
+            status = self._stored(self._store.crashed, job.job_id, job.mark, killed=killed)
+        else:
+            at = self._solving.sample
+            status = self._stored(self._batches.crashed, job.job_id, job.mark, at, killed=killed)
+        return status
 
     def _was_stopped(self, job: Claim) -> None:
         if self._stopping.is_set():

@@ -13,9 +13,8 @@ from typing import Any
 from sqlalchemy import Engine, delete, func, insert, select, update
 
 from service.jobs.schema import StoreClock, hosts, jobs
-from service.jobs.statements import LEASE_S, died
+from service.jobs.statements import LEASE_S, MAX_KILLS, died
 from service.jobs.states import Status
-from service.jobs.store import MAX_KILLS
 
 _HOST_FORGOTTEN_S = 3600.0
 """Rows of hosts that vanished are removed after this: long after their lease, so that the clocks do not matter."""

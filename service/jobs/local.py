@@ -6,6 +6,7 @@ import os
 
 import structlog
 
+from service.jobs.batches.store import BatchStore
 from service.jobs.database import connect
 from service.jobs.executor import Changed
 from service.jobs.lane import Lane
@@ -62,6 +63,7 @@ class LocalExecutor:
                 f"lane-{n}",
                 self._turns,
                 self._store,
+                BatchStore(self._engine),
                 for_workers,
                 self._settings.job_timeout_s,
                 self._changed,

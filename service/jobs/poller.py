@@ -1,4 +1,6 @@
-"""Polls the store for the jobs whose event streams are open: one reader for all streams together.
+"""Polls the store for the jobs or batches whose event streams are open: one reader for all streams together.
+
+What is said of jobs here holds for batches too.
 
 A worker writes its progress into the store without a notification, so the store has to be polled. All followed jobs are
 read at once, every :data:`PERIOD_S` and whenever :mod:`service.jobs.notifier` says that one of them has changed; the
@@ -9,16 +11,16 @@ from __future__ import annotations
 
 import asyncio
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from typing import Any, Generic, Protocol, TypeVar
 
 import structlog
 from starlette.concurrency import run_in_threadpool
 
 from service.jobs.notifier import ChangeNotifier
-from service.jobs.schema import JobSummary
-from service.jobs.store import JobStore
+from service.jobs.states import Status
 
 PERIOD_S = 0.25
 """Greatest age of what a stream shows. Workers store their progress at most five times a second."""
@@ -26,11 +28,47 @@ PERIOD_S = 0.25
 log = structlog.get_logger(__name__)
 
 
+class Followed(Protocol):
+    """What is asked of a job."""
+
+    @property
+    def id(self) -> str:
+        """Its id."""
+        ...
+
+    @property
+    def tenant(self) -> str:
+        """Whose it is."""
+        ...
+
+    @property
+    def status(self) -> Status:
+        """Where it stands."""
+        ...
+
+    @property
+    def revision(self) -> int:
+        """Greater after each change."""
+        ...
+
+
+F = TypeVar("F", bound=Followed)
+F_co = TypeVar("F_co", bound=Followed, covariant=True)
+
+
+class Summaries(Protocol[F_co]):
+    """What is asked of a store."""
+
+    def summaries(self, ids: Sequence[str], /) -> Mapping[str, F_co]:
+        """The jobs of these ids that there are, by id."""
+        ...
+
+
 @dataclass(slots=True, eq=False)
-class Follower:
+class Follower(Generic[F]):
     """One listener's view of a job: always its newest state, never a queue of older ones."""
 
-    job: JobSummary | None = None
+    job: F | None = None
     """The job as it was read last; None before the first reading, and of a job that is not there (any more)."""
     read: bool = False
     """Whether the job was looked for in the store."""
@@ -46,7 +84,7 @@ class Follower:
         self._changed.clear()
         return True
 
-    def update(self, job: JobSummary | None) -> None:
+    def update(self, job: F | None) -> None:
         """Take what the store says of the job."""
         if not self.read or job != self.job:
             self.job, self.read = job, True
@@ -57,13 +95,13 @@ class Follower:
         self._changed.set()
 
 
-class JobPoller:
+class JobPoller(Generic[F]):
     """Keeps followers up to date with their jobs. To be used on the event loop only."""
 
-    def __init__(self, store: JobStore, notifier: ChangeNotifier) -> None:
+    def __init__(self, store: Summaries[F], notifier: ChangeNotifier) -> None:
         self._store = store
         self._notifier = notifier
-        self._followers: dict[str, set[Follower]] = {}
+        self._followers: dict[str, set[Follower[F]]] = {}
         self._listeners: Counter[str] = Counter()
         self._nudged = asyncio.Event()
 
@@ -82,9 +120,9 @@ class JobPoller:
         return self._notifier.closed
 
     @contextmanager
-    def follow(self, job_id: str, tenant: str) -> Iterator[Follower]:
+    def follow(self, job_id: str, tenant: str) -> Iterator[Follower[F]]:
         """Follow a job for a tenant; the first change is the state that it has now."""
-        follower = Follower()
+        follower: Follower[F] = Follower()
         self._listeners[tenant] += 1
         followers = self._followers.setdefault(job_id, set())
         followers.add(follower)
@@ -141,5 +179,5 @@ class JobPoller:
         return [job_id for job_id, followers in self._followers.items() if not all(map(_done, followers))]
 
 
-def _done(follower: Follower) -> bool:
+def _done(follower: Follower[Any]) -> bool:
     return follower.read and (follower.job is None or follower.job.status.finished)

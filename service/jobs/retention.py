@@ -1,4 +1,4 @@
-"""Removes finished jobs when their time is over."""
+"""Removes finished jobs and batches when their time is over."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from datetime import UTC, datetime, timedelta
 import structlog
 from starlette.concurrency import run_in_threadpool
 
+from service.jobs.batches.store import BatchStore
 from service.jobs.finished import FinishedJobs
 from service.jobs.store import JobStore
 
@@ -22,8 +23,11 @@ _PAUSE_S = 0.05
 log = structlog.get_logger(__name__)
 
 
-async def keep_tidy(store: JobStore, finished: FinishedJobs, days: float | None) -> None:
-    """Remove jobs that finished more than ``days`` ago, now and again and again; nothing where ``days`` is None."""
+async def keep_tidy(store: JobStore, batches: BatchStore, finished: FinishedJobs, days: float | None) -> None:
+    """Remove jobs and batches that finished more than ``days`` ago, now and again and again.
+
+    Nothing where ``days`` is None.
+    """
     if days is None:
         return
     kept = timedelta(days=days)
@@ -33,6 +37,10 @@ async def keep_tidy(store: JobStore, finished: FinishedJobs, days: float | None)
         try:
             while gone := await run_in_threadpool(store.delete_finished, datetime.now(UTC) - kept, MAX_REMOVED_AT_ONCE):
                 removed += gone
+                finished.removed()
+                await asyncio.sleep(_PAUSE_S)
+            while await run_in_threadpool(batches.delete_finished, datetime.now(UTC) - kept):
+                log.info("old batch removed")
                 finished.removed()
                 await asyncio.sleep(_PAUSE_S)
         except Exception:  # whatever a database driver raises: the jobs are still there the next time

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import Column, Float, Index, Integer, MetaData, String, Table, Text, text
+from sqlalchemy import Boolean, Column, Float, Index, Integer, MetaData, String, Table, Text, text
 from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.sql.expression import FunctionElement
 
@@ -20,7 +20,9 @@ TENANT_LENGTH = 100
 # Times are text of one width ("2026-01-31T12:00:00.000000Z"): the same on every database, sorted as they are, and what
 # the API shows. How long a running job is taken for alive (due_at) goes by the clock of the database instead, since
 # those of several machines differ: seconds since 1970, see StoreClock. Problem, result and error are JSON as text,
-# because nothing ever looks inside them here. Nothing reads queued_at; processes of the version before write it.
+# because nothing ever looks inside them here. Nothing reads queued_at; processes of the version before write it. A row
+# with a batch is no job that a client has posted but a share of that batch, its problem the range that is left; digest
+# is that of the problem and of the solvers, where the job has an answer that equal problems can be given.
 jobs = Table(
     "jobs",
     metadata,
@@ -47,6 +49,8 @@ jobs = Table(
     Column("due_at", Float, nullable=False, server_default="0"),
     Column("cost", String(5), nullable=False, server_default=Cost.LONG.value),
     Column("turn", Integer, nullable=False, server_default="0"),
+    Column("batch", String(26)),
+    Column("digest", String(64)),
     Index("jobs_by_status", "status", "id"),
     Index("jobs_by_tenant", "tenant", "id"),
     Index("jobs_by_tenant_and_status", "tenant", "status", "id"),
@@ -61,8 +65,57 @@ Index(
 QUEUED = text("status = 'queued'")
 """As the indexes of queued jobs state it. A database uses them only where a query says the same."""
 
-for _name, _columns in (("turn", ("cost", "turn", "id")), ("tenant", ("tenant", "cost", "turn"))):
+for _name, _columns in (("turn", ("cost", "turn", "id")), ("tenant", ("tenant", "cost", "batch", "turn"))):
     Index(f"jobs_queued_by_{_name}", *(jobs.c[c] for c in _columns), sqlite_where=QUEUED, postgresql_where=QUEUED)
+
+# Single jobs have no batch, and jobs without an answer no digest.
+for _name, _key in (("batch", [jobs.c.batch]), ("digest", [jobs.c.tenant, jobs.c.digest])):
+    _given = text(f"{_name} IS NOT NULL")
+    Index(f"jobs_by_{_name}", *_key, sqlite_where=_given, postgresql_where=_given)
+
+# Many problems at once: what was stated, and how far it is. The plan is JSON: the problem, and what is varied of it.
+batches = Table(
+    "batches",
+    metadata,
+    Column("id", String(26), primary_key=True),
+    Column("tenant", String(TENANT_LENGTH), nullable=False),
+    Column("kind", String(40), nullable=False),
+    Column("label", String(200)),
+    Column("status", String(10), nullable=False),
+    Column("created_at", String(27), nullable=False),
+    Column("started_at", String(27)),
+    Column("finished_at", String(27)),
+    Column("total", Integer, nullable=False),
+    Column("succeeded", Integer, nullable=False),
+    Column("failed", Integer, nullable=False),
+    Column("cached", Integer, nullable=False),
+    Column("revision", Integer, nullable=False),
+    Column("plan", Text, nullable=False),
+    Column("idempotency_key", String(200)),
+    Column("request_hash", String(64)),
+    Index("batches_by_tenant", "tenant", "id"),
+    Index("batches_by_idempotency_key", "tenant", "idempotency_key", unique=True),
+)
+
+# The problems of batches that have ended; their ids follow that of the batch. What is small comes before what is large,
+# which a database need not read then.
+samples = Table(
+    "samples",
+    metadata,
+    Column("id", String(26), primary_key=True),
+    Column("batch", String(26), nullable=False),
+    Column("tenant", String(TENANT_LENGTH), nullable=False),
+    Column("number", Integer, nullable=False),
+    Column("status", String(10), nullable=False),
+    Column("cached", Boolean, nullable=False),
+    Column("started_at", String(27), nullable=False),
+    Column("finished_at", String(27), nullable=False),
+    Column("digest", String(64)),
+    Column("figures", Text),
+    Column("error", Text),
+    Column("result", Text),
+    Index("samples_by_digest", "tenant", "digest"),
+)
 
 # Who runs jobs for several servers: a row for each worker host that is there.
 hosts = Table(
@@ -136,6 +189,31 @@ class JobRow(JobSummary):
     problem: str
     result: str | None
     error: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class SampleRow(JobRow):
+    """A problem of a batch that has ended, as the job that it is; ``cached``: an equal problem had the answer."""
+
+    batch: str
+    cached: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """The right to run a job: its mark, the number of the attempt, the cost as estimated, the problem as JSON text.
+
+    With a ``batch`` it is a share of that one, and the problem what is left of it.
+    """
+
+    job_id: str
+    tenant: str
+    mark: str
+    attempt: int
+    cost: Cost
+    kind: str
+    problem: str
+    batch: str | None = None
 
 
 def now() -> str:

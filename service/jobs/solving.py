@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from multiprocessing.sharedctypes import RawValue
 
+_NONE = -1
+
 
 class Stopped(BaseException):
     """The solver was told to stop. Not an error that a solver could take for one of its own."""
@@ -26,10 +28,12 @@ class Solving:
     def __init__(self) -> None:
         self._since = RawValue("d", 0.0)
         self._stop = RawValue("b", 0)
+        self._sample = RawValue("q", _NONE)
 
     @contextmanager
-    def at_work(self) -> Iterator[None]:
-        """The solver is at work inside. For the worker."""
+    def at_work(self, sample: int | None = None) -> Iterator[None]:
+        """The solver is at work inside, on this sample where the job is a share of a batch. For the worker."""
+        self._sample.value = _NONE if sample is None else sample
         self._since.value = time.monotonic()
         try:
             yield
@@ -40,7 +44,7 @@ class Solving:
         """A progress callback that raises :class:`Stopped` when the solver is to stop. For the worker."""
 
         def report(fraction: float, message: str) -> None:
-            if self._stop.value:
+            if self.told_to_stop:
                 raise Stopped
             progress(fraction, message)
 
@@ -52,6 +56,17 @@ class Solving:
         since: float = self._since.value
         return time.monotonic() - since if since > 0.0 else 0.0
 
+    @property
+    def sample(self) -> int | None:
+        """The sample of a batch that was begun last; None where none was. For the lane."""
+        sample: int = self._sample.value
+        return None if sample == _NONE else sample
+
+    @property
+    def told_to_stop(self) -> bool:
+        """Whether the solver is to stop. For the worker."""
+        return bool(self._stop.value)
+
     def stop(self) -> None:
         """Tell the solver to stop. For the lane."""
         self._stop.value = 1
@@ -60,3 +75,4 @@ class Solving:
         """Forget the job before, whose worker may have died at work. For the lane, before each job."""
         self._since.value = 0.0
         self._stop.value = 0
+        self._sample.value = _NONE

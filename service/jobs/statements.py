@@ -22,6 +22,13 @@ LEASE_S = 10.0
 """An attempt is abandoned this long after its last sign of life. Signs come twice a second, but a machine may be very
 busy, and a database may need some seconds for a restart."""
 
+MAX_CRASHES = 3
+"""A job whose worker died by itself is tried again this many times."""
+
+MAX_KILLS = 20
+"""A job whose worker was killed from outside is tried again this many times: that is hardly the job's fault. It may be,
+where the system kills what takes the last of the memory, so there is an end to it."""
+
 AT_ONCE = 0
 """The turn of a job that has had one, and was put back: before all that are new, whose turns begin with 1."""
 
@@ -31,7 +38,9 @@ MAX_IDS = 500
 COLUMNS = tuple(field.name for field in fields(JobRow))  # begins with the fields of a summary
 SUMMARY = [jobs.c[field.name] for field in fields(JobSummary)]
 WHOLE = [jobs.c[name] for name in COLUMNS]
-TAKEN = [jobs.c[name] for name in ("id", "tenant", "claim", "attempt", "cost", "kind", "problem")]
+TAKEN = [jobs.c[name] for name in ("id", "tenant", "claim", "attempt", "cost", "kind", "problem", "batch")]
+SINGLE = jobs.c.batch.is_(None)
+"""Jobs that clients have posted, and no shares of batches."""
 
 
 def moved(name: str, job_id: Any, **values: Any) -> Any:
@@ -95,17 +104,20 @@ def new_row(tenant: str, kind: str, label: str | None, problem: str, cost: Cost 
         "crashes": 0,
         "revision": 1,
         "cost": cost,
+        "batch": None,
     }
 
 
-def turn_of(tenant: Any, cost: Any) -> Later:
+def turn_of(tenant: Any, cost: Any, *, share: bool = False) -> Later:
     """The turn of a further job of a tenant: after the tenant's others, and not before what is next for anybody.
 
     Jobs are taken in the order of their turns, so that tenants go round: of those who wait, each has one job in each
-    turn. Who comes new joins at the present one, however many jobs of others wait.
+    turn. Who comes new joins at the present one, however many jobs of others wait. The shares of a tenant's batches go
+    round by themselves, so that its jobs do not wait for them.
     """
     others = jobs.alias()
-    own = select(func.max(others.c.turn) + 1).where(QUEUED, others.c.tenant == tenant, others.c.cost == cost)
+    alike = others.c.batch.is_not(None) if share else others.c.batch.is_(None)
+    own = select(func.max(others.c.turn) + 1).where(QUEUED, others.c.tenant == tenant, others.c.cost == cost, alike)
     present = select(func.min(others.c.turn)).where(QUEUED, others.c.cost == cost, others.c.turn > AT_ONCE)
     first = AT_ONCE + 1
     return Later(func.coalesce(own.scalar_subquery(), first), func.coalesce(present.scalar_subquery(), first))
@@ -113,7 +125,7 @@ def turn_of(tenant: Any, cost: Any) -> Later:
 
 # What every job goes through is stated once. SQLAlchemy takes several times as long to put a statement together, and to
 # recognize it in its cache of compiled ones, as the database to execute it.
-BY_ID = select(*WHOLE).where(jobs.c.id == bindparam("job"))
+BY_ID = select(*WHOLE).where(jobs.c.id == bindparam("job"), SINGLE)
 _STORED = [*new_row("", "", None, ""), *NO_KEY]
 _queued = select(jobs.c.id).where(QUEUED, jobs.c.tenant == bindparam("of")).limit(bindparam("most", type_=Integer))
 COUNT_QUEUED = select(func.count()).select_from(_queued.subquery())
@@ -160,6 +172,7 @@ SUCCEED = moved(
     progress_fraction=1.0,
     progress_message="succeeded",
     finished_at=bindparam("moment"),
+    digest=bindparam("known_by"),
 ).where(_OF_THE_ATTEMPT)
 FAIL = moved(
     "fail", bindparam("job"), error=bindparam("answer"), progress_message="failed", finished_at=bindparam("moment")

@@ -9,18 +9,17 @@ Several servers and worker hosts may share a store; what only they need is in :m
 
 from __future__ import annotations
 
-import time
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
 from sqlalchemy import Connection, Engine, delete, func, select, text, update
-from sqlalchemy.exc import IntegrityError, SQLAlchemyError
 from ulid import ULID
 
-from service.jobs.database import QUEUE_LOCK, unreachable
-from service.jobs.schema import QUEUED, JobRow, JobSummary, as_stored, jobs, now
+from service.jobs.admission import KeyReused, Repeatable, once, surely
+from service.jobs.batches.reading import sample_as_job, samples_as_jobs
+from service.jobs.database import QUEUE_LOCK
+from service.jobs.schema import QUEUED, Claim, JobRow, JobSummary, as_stored, jobs, now
 from service.jobs.statements import (
     BACK_IN_QUEUE,
     BY_ID,
@@ -30,10 +29,13 @@ from service.jobs.statements import (
     COUNT_QUEUED,
     FAIL,
     INSERT,
+    MAX_CRASHES,
     MAX_IDS,
+    MAX_KILLS,
     NEXT,
     NEXT_OF_OTHERS,
     NO_KEY,
+    SINGLE,
     SUCCEED,
     SUMMARY,
     WHOLE,
@@ -43,19 +45,6 @@ from service.jobs.statements import (
     turn_of,
 )
 from service.jobs.states import FINISHED, MOVES, UNFINISHED, Cost, Status
-
-MAX_CRASHES = 3
-"""A job whose worker died by itself is tried again this many times."""
-
-MAX_KILLS = 20
-"""A job whose worker was killed from outside is tried again this many times: that is hardly the job's fault. It may be,
-where the system kills what takes the last of the memory, so there is an end to it."""
-
-SETTLE_S = 5.0
-"""How long a new job is tried to be stored when the database breaks off in the middle, so that nobody knows whether."""
-
-_SETTLE_PERIOD_S = 0.2
-"""Pause between two such attempts; a database that restarts needs seconds."""
 
 _FEW = 8
 """Of a tenant who has more jobs than this in the queue, one is stored after the other, so that each gets a turn of its
@@ -68,39 +57,6 @@ _NO_END = 1 << 30
 
 _STATUS = COLUMNS.index("status")
 _MESSAGE_LENGTH = 200  # the width of its column
-
-
-@dataclass(frozen=True, slots=True)
-class Claim:
-    """The right to run a job: its mark, the number of the attempt, the cost as estimated, the problem as JSON text."""
-
-    job_id: str
-    tenant: str
-    mark: str
-    attempt: int
-    cost: Cost
-    kind: str
-    problem: str
-
-
-@dataclass(frozen=True, slots=True)
-class Repeatable:
-    """A request that may come again: the key that its client gave it, and a hash of what it says."""
-
-    key: str
-    request_hash: str
-
-
-class QueueFull(Exception):
-    """There are as many queued jobs of the tenant as there may be."""
-
-
-class KeyReused(Exception):
-    """A key came with another request than the one that it was first used for; carries the id of that one's job."""
-
-    def __init__(self, job_id: str) -> None:
-        self.job_id = job_id
-        super().__init__(f"the key was used for the job {job_id}")
 
 
 class JobStore:
@@ -126,8 +82,8 @@ class JobStore:
     ) -> JobRow:
         """Store a new job in the queue. When this returns, the job is on the disk.
 
-        A database that breaks off before it has answered may have stored the job or not. Then it is asked again, for
-        :data:`SETTLE_S` seconds; the id makes sure that there is one job in the end.
+        Where the database breaks off the id makes sure that there is one job in the end
+        (:func:`service.jobs.admission.surely`).
 
         Raises
         ------
@@ -166,33 +122,15 @@ class JobStore:
             "idempotency_key": repeatable.key,
             "request_hash": repeatable.request_hash,
         }
-        while True:
-            try:
-                return self._insert(row, max_queued), True
-            except (IntegrityError, QueueFull) as refusal:
-                job = self._made_by(tenant, repeatable)
-                if job is not None:
-                    return job, False
-                if isinstance(refusal, QueueFull):
-                    raise
-                # The job that held the key has been removed since.
+        return once(lambda: self._insert(row, max_queued), lambda: self._made_by(tenant, repeatable))
 
     def _insert(self, row: dict[str, Any], max_queued: int | None) -> JobRow:
-        asked_at: float | None = None
-        broken = False
-        while True:
-            try:
-                with self._engine.begin() as connection:
-                    asked_at = asked_at or time.monotonic()
-                    if not (broken and _there(connection, row["id"])) and not _inserted(connection, row, max_queued):
-                        raise QueueFull
-                return JobRow(**{name: row[name] for name in COLUMNS})
-            except SQLAlchemyError as error:
-                # Refused before anything was asked: nothing is stored, and the client may know at once.
-                broken = broken or getattr(error, "connection_invalidated", False)
-                if asked_at is None or not (broken and unreachable(error)) or time.monotonic() > asked_at + SETTLE_S:
-                    raise
-                time.sleep(_SETTLE_PERIOD_S)  # the database is being started again
+        surely(
+            self._engine,
+            lambda connection: _there(connection, row["id"]),
+            lambda connection: _inserted(connection, row, max_queued),
+        )
+        return JobRow(**{name: row[name] for name in COLUMNS})
 
     def _made_by(self, tenant: str, repeatable: Repeatable) -> JobRow | None:
         query = select(*WHOLE, jobs.c.request_hash).where(
@@ -207,10 +145,10 @@ class JobStore:
         return JobRow(*_values(row[:-1]))
 
     def get(self, job_id: str) -> JobRow | None:
-        """The job, or None where there is none."""
+        """The job, or None where there is none; a problem of a batch that has ended is one, too."""
         with self._engine.connect() as connection:
             row = connection.execute(BY_ID, {"job": job_id}).one_or_none()
-        return None if row is None else JobRow(*_values(row))
+            return sample_as_job(connection, job_id) if row is None else JobRow(*_values(row))
 
     def unfinished(self) -> dict[str, int]:
         """How many jobs are in each of the states that are not final."""
@@ -224,9 +162,10 @@ class JobStore:
         by_id: dict[str, JobSummary] = {}
         with self._engine.connect() as connection:
             for start in range(0, len(job_ids), MAX_IDS):
-                query = select(*SUMMARY).where(jobs.c.id.in_(job_ids[start : start + MAX_IDS]))
+                query = select(*SUMMARY).where(jobs.c.id.in_(job_ids[start : start + MAX_IDS]), SINGLE)
                 for row in connection.execute(query):
                     by_id[row.id] = JobSummary(*_values(row))
+            by_id |= samples_as_jobs(connection, [job_id for job_id in job_ids if job_id not in by_id])
         return by_id
 
     def page(
@@ -239,7 +178,7 @@ class JobStore:
         before: str | None = None,
     ) -> list[JobSummary]:
         """At most ``limit`` jobs of a tenant, newest first, from those older than the job ``before``."""
-        query = select(*SUMMARY).where(jobs.c.tenant == tenant).order_by(jobs.c.id.desc()).limit(limit)
+        query = select(*SUMMARY).where(jobs.c.tenant == tenant, SINGLE).order_by(jobs.c.id.desc()).limit(limit)
         if status is not None:
             query = query.where(jobs.c.status == status)
         if kind is not None:
@@ -283,9 +222,13 @@ class JobStore:
         )
         return self._changed(change)
 
-    def succeed(self, job_id: str, attempt: int, result: str) -> bool:
-        """End the attempt with its result (JSON text); False when the attempt is no longer the one that counts."""
-        return self._changed(SUCCEED, {"job": job_id, "of": attempt, "answer": result, "moment": now()})
+    def succeed(self, job_id: str, attempt: int, result: str, digest: str | None = None) -> bool:
+        """End the attempt with its result (JSON text); False when the attempt is no longer the one that counts.
+
+        By the ``digest`` of its problem (:mod:`service.jobs.batches.identity`) the result is found for equal ones.
+        """
+        ended = {"job": job_id, "of": attempt, "answer": result, "moment": now(), "known_by": digest}
+        return self._changed(SUCCEED, ended)
 
     def fail(self, job_id: str, attempt: int, error: str) -> bool:
         """End the attempt with an error (JSON text); False when the attempt is no longer the one that counts."""
@@ -328,7 +271,8 @@ class JobStore:
 
     def requeue_as_long(self, job_id: str, claim: str) -> bool:
         """Put a running job back into the queue because it takes longer than a short one may; it waits its turn."""
-        values: dict[str, Any] = {**BACK_IN_QUEUE, "cost": Cost.LONG, "turn": turn_of(jobs.c.tenant, Cost.LONG)}
+        turn = turn_of(jobs.c.tenant, Cost.LONG)
+        values: dict[str, Any] = {**BACK_IN_QUEUE, "cost": Cost.LONG, "turn": turn}
         return self._changed(moved("requeue", job_id, **values).where(jobs.c.claim == claim))
 
     def requeue_unfinished(self) -> int:
@@ -389,7 +333,7 @@ def _next(connection: Connection, cost: Cost, passed_over: Collection[str]) -> s
 
 
 def _claim(row: Any) -> Claim:
-    return Claim(row.id, row.tenant, row.claim, row.attempt, Cost(row.cost), row.kind, row.problem)
+    return Claim(row.id, row.tenant, row.claim, row.attempt, Cost(row.cost), row.kind, row.problem, row.batch)
 
 
 def _values(row: Sequence[Any]) -> list[Any]:

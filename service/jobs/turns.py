@@ -23,8 +23,9 @@ from sqlalchemy.exc import SQLAlchemyError
 from ulid import ULID
 
 from service.jobs.database import unreachable
+from service.jobs.schema import Claim
 from service.jobs.states import Cost
-from service.jobs.store import Claim, JobStore
+from service.jobs.store import JobStore
 
 ASK_PERIOD_S = 1.0
 """Period at which a free lane asks by itself. Lanes look after their workers in between."""

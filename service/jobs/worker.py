@@ -13,35 +13,32 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, ParamSpec, TypeVar
+from typing import Literal
 
 import structlog
-from sqlalchemy.exc import SQLAlchemyError
 
 from service import logs
 from service.jobs import faults
-from service.jobs.database import connect, unreachable
+from service.jobs.batches.identity import digest
+from service.jobs.batches.slices import Slices
+from service.jobs.batches.store import BatchStore
+from service.jobs.database import connect, patiently
 from service.jobs.orphans import die_with
 from service.jobs.progress import ProgressWriter
+from service.jobs.schema import Claim
 from service.jobs.solving import Solving, Stopped
-from service.jobs.store import Claim, JobStore
+from service.jobs.store import JobStore
 
-Outcome = Literal["succeeded", "failed", "out of memory", "superseded", "stopped"]
+Outcome = Literal["succeeded", "failed", "out of memory", "superseded", "stopped", "slice"]
 """What became of a job as its worker knows it; ``superseded``: it has its answer, and was cancelled or given to another
-attempt meanwhile; ``stopped``: it has none, because the lane has said so."""
-
-RETRY_PERIOD_S = 0.5
-"""Pause before a write to a store that is out of reach is tried again."""
+attempt meanwhile; ``stopped``: it has none, because the lane has said so; ``slice``: of a share of a batch, which is in
+the queue again or at its end."""
 
 LIBRARIES_MB = 400
 """What solvers load after the worker has started, beside what a job is allowed: convex optimization, kernels."""
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-
-P = ParamSpec("P")
-T = TypeVar("T")
 
 log = structlog.get_logger(__name__)
 
@@ -72,6 +69,7 @@ class _Post:
     progress: ProgressWriter
     settings: WorkerSettings
     solving: Solving
+    slices: Slices
 
 
 _post: _Post | None = None
@@ -91,10 +89,12 @@ def start(settings: WorkerSettings, solving: Solving) -> None:
     logs.configure(settings.log_level, settings.log_format)
     dispatch = importlib.import_module("synthesis.dispatch")
     dispatch.warm_up()
-    store = JobStore(connect(settings.store_url, durable=False))
+    engine = connect(settings.store_url, durable=False)
+    store = JobStore(engine)
     progress = ProgressWriter(store)
     _limit_memory(settings.memory_mb + LIBRARIES_MB)
-    _post = _Post(store, progress, settings, solving)
+    slices = Slices(BatchStore(engine), solving, faults.out_of_memory(settings.memory_mb))
+    _post = _Post(store, progress, settings, solving, slices)
     store.ping()
     # Beside the first jobs: they find what is not loaded yet a little slower, but the service is ready seconds sooner.
     threading.Thread(target=dispatch.warm_up_rest, name="warm-up", daemon=True).start()
@@ -112,6 +112,8 @@ def run(job: Claim) -> Ran:
     the worker as dead and the job is tried again.
     """
     assert _post is not None, "start() comes first"
+    if job.batch is not None:
+        return _run_slice(_post, job, job.batch)
     bound = log.bind(job=job.job_id, attempt=job.attempt)
     bound.info("job running")
     began = time.perf_counter()
@@ -121,45 +123,40 @@ def run(job: Claim) -> Ran:
     return Ran(outcome, job.kind, seconds)
 
 
+def _run_slice(post: _Post, share: Claim, batch_id: str) -> Ran:
+    began = time.perf_counter()
+    outcome = post.slices.run(share, batch_id)
+    seconds = time.perf_counter() - began
+    log.debug(f"batch {outcome}", batch=batch_id, share=share.job_id, seconds=round(seconds, 4))
+    return Ran(outcome, share.kind, seconds)
+
+
 def _attempt(post: _Post, job: Claim) -> Outcome:
     try:
         with post.solving.at_work():
-            result = _solve(post, job)
+            result, known_by = _solve(post, job)
     except Stopped:
         return "stopped"
     except MemoryError:
         fault = faults.out_of_memory(post.settings.memory_mb)
-        stored = _stored(post.store.fail, job.job_id, job.attempt, fault.as_json(job.job_id))
+        stored = patiently(post.store.fail, job.job_id, job.attempt, fault.as_json(job.job_id))
         return "out of memory" if stored else "superseded"
     except Exception:  # the boundary of the solvers: whatever defect they have ends this job only
         log.exception("the solver raised", job=job.job_id, attempt=job.attempt)
-        stored = _stored(post.store.fail, job.job_id, job.attempt, faults.INTERNAL_ERROR.as_json(job.job_id))
+        stored = patiently(post.store.fail, job.job_id, job.attempt, faults.INTERNAL_ERROR.as_json(job.job_id))
         return "failed" if stored else "superseded"
-    return "succeeded" if _stored(post.store.succeed, job.job_id, job.attempt, result) else "superseded"
+    return "succeeded" if patiently(post.store.succeed, job.job_id, job.attempt, result, known_by) else "superseded"
 
 
-def _stored(write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
-    """Write to the store, and wait for it while it is out of reach: the answer is there, and would be lost.
-
-    Each write can be repeated where nobody knows whether it was done, since it names its claim or attempt.
-    """
-    while True:
-        try:
-            return write(*args, **options)
-        except SQLAlchemyError as error:
-            if not unreachable(error):
-                raise
-            log.warning("the store is out of reach", error=type(error).__name__)
-            time.sleep(RETRY_PERIOD_S)  # the answer is kept; a store that is started again needs seconds
-
-
-def _solve(post: _Post, job: Claim) -> str:
+def _solve(post: _Post, job: Claim) -> tuple[str, str]:
+    """The answer in JSON, and the digest that equal problems know it by."""
     from service.stated import read
     from synthesis import dispatch
 
     problem = read(job.kind, job.problem)
     with post.progress.attempt(job.job_id, job.attempt) as progress:
-        return dispatch.solve(problem, post.solving.stoppable(progress)).model_dump_json()
+        result = dispatch.solve(problem, post.solving.stoppable(progress)).model_dump_json()
+    return result, digest(problem)
 
 
 def _limit_memory(beyond_mb: int) -> None:

@@ -82,6 +82,14 @@ class Kind(Generic[P, R]):
         return [name for design in designs for name in mechanism_types(design)]
 
     @property
+    def metrics(self) -> list[str]:
+        """The names of what is measured of its designs beside checks, in the order of the models of its answer."""
+        designs = models_within(self.result.model_fields["designs"].annotation)
+        measured = [model for design in designs for model in models_within(design.model_fields["metrics"].annotation)]
+        named = [field.alias or name for model in measured for name, field in model.model_fields.items()]
+        return list(dict.fromkeys(named))
+
+    @property
     def examples(self) -> list[dict[str, Any]]:
         """Runnable statements, as a client would post them; the first is the plainest."""
         schema_extra = self.problem.model_config["json_schema_extra"]

@@ -395,6 +395,16 @@ class LinkageDesign(Answer):
     exact: ExactDesign | None = EXACT
 
 
+ERRORS = {
+    "rms_structural_error": "rms_structural_error",
+    "straightness_error": "straightness_error",
+    "jitter": "jitter",
+    "steering_error": "steering_error",
+    "rms_residual": "rms",
+}
+"""How the error of a design is told: its field in the metrics, the first that there is, and its name in the front."""
+
+
 class Front(Answer):
     """The trade-off between designs as data: those that no other beats.
 

@@ -7,17 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from synthesis.model.linkage_answer import Front
+from synthesis.model.linkage_answer import ERRORS, Front
 from synthesis.outcome.ranking import ROUNDING
-
-ERRORS = {
-    "rms_structural_error": "rms_structural_error",
-    "straightness_error": "straightness_error",
-    "jitter": "jitter",
-    "steering_error": "steering_error",
-    "rms_residual": "rms",
-}
-"""How the error of a design is told: its field in the metrics, the first that there is, and its name in the front."""
 
 
 def _error_field(metrics: Any) -> str | None:

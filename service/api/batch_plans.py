@@ -1,0 +1,188 @@
+"""From what a client has stated of a batch to its plan, or to what is wrong with it and where."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+from service.api.batch_schemas import MOST_SAMPLES, BatchRequest
+from service.api.errors import MAX_ERRORS, Refusal, invalid_problem, invalid_request
+from service.jobs.batches.plan import NoSuchPlace, Plan, steps
+from service.jobs.batches.sampling import Span, evenly, latin_hypercube
+from service.jobs.states import Cost
+from service.stated import Faults, consistent, well_formed
+from synthesis.model.linkage_answer import ERRORS
+from synthesis.registry import KINDS
+
+LOOKED_AT = 100
+"""Samples, evenly spread, one of which at least has to state a problem."""
+
+MORE_IS_BETTER = ("min_transmission_angle",)
+LESS_IS_BETTER = ("size",)
+
+
+def plan_of(body: BatchRequest) -> tuple[str, Plan, Cost]:
+    """The kind of the problems, the plan, and what one of them is taken to cost.
+
+    A value that its field cannot have is a fault of the batch. Values that contradict one another are one of the sample
+    alone, unless all of :data:`LOOKED_AT` samples have such.
+
+    Raises
+    ------
+    Refusal
+        422, with the place of each fault.
+    """
+    kind = body.problem.get("kind")
+    if not isinstance(kind, str) or kind not in KINDS:
+        detail = f"Kind must be given and be one of: {', '.join(KINDS)}."
+        raise invalid_problem([("/problem/kind", detail)])
+    try:
+        json.dumps(body.problem, allow_nan=False)
+    except ValueError:
+        raise invalid_problem([("/problem", "Every number must be finite.")]) from None
+    faults = [*_faults_of_fields(body), *_faults_of_sampling(body), *_faults_of_metrics(body, kind)]
+    if faults:
+        raise invalid_request(faults)
+    plan = Plan(
+        body.problem,
+        [varied.field for varied in body.vary],
+        _values(body),
+        body.sampling == "grid",
+        by_default(KINDS[kind].metrics) if body.metrics is None else body.metrics,
+        body.reuse,
+    )
+    _require_places(plan)
+    faults = list(_faults_of_values(body, kind, plan))
+    if faults:
+        raise invalid_request(faults)
+    return kind, plan, _cost(kind, plan)
+
+
+def by_default(metrics: Sequence[str]) -> list[str]:
+    """Of the metrics of a kind, what its front weighs up: an error, what is to be large, what is to be small."""
+    error = next((name for name in ERRORS if name in metrics), None)
+    known = (*(() if error is None else (error,)), *MORE_IS_BETTER, *LESS_IS_BETTER)
+    return [name for name in known if name in metrics]
+
+
+def _faults_of_fields(body: BatchRequest) -> Iterator[tuple[str, str]]:
+    ways = [steps(varied.field) for varied in body.vary]
+    for k, way in enumerate(ways):
+        if way == ["kind"]:
+            yield f"/vary/{k}/field", "The problems of a batch are of one kind."
+        for other in ways[:k]:
+            if way[: len(other)] == other or other[: len(way)] == way:
+                yield f"/vary/{k}/field", "This field is varied already, as a whole or in part."
+
+
+def _faults_of_sampling(body: BatchRequest) -> Iterator[tuple[str, str]]:
+    drawn = body.sampling == "latin_hypercube"
+    if drawn and body.samples is None:
+        yield "/samples", "A Latin hypercube needs the number of its samples."
+    if not drawn and body.samples is not None:
+        yield "/samples", f"A {body.sampling} has as many as its values make; leave this out."
+    if not drawn and body.seed != 0:
+        yield "/seed", f"Nothing is drawn in a {body.sampling}; leave this out."
+    counts = []
+    for k, varied in enumerate(body.vary):
+        if drawn and varied.count is not None:
+            yield f"/vary/{k}/count", "A Latin hypercube has as many as there are samples; leave this out."
+        if not drawn and varied.values is None and varied.count is None:
+            yield f"/vary/{k}", "Say how many, by a count."
+        counts.append(len(varied.values) if varied.values is not None else varied.count or 1)
+    if body.sampling == "zip":
+        for k, count in enumerate(counts):
+            if count != counts[0]:
+                yield f"/vary/{k}", f"In a zip all fields have as many values; the first one has {counts[0]}."
+    if body.sampling == "grid":
+        total = 1
+        for count in counts:
+            total *= count
+        if total > MOST_SAMPLES:
+            yield "/vary", f"These make {total} problems; a batch has {MOST_SAMPLES} at most."
+
+
+def _faults_of_metrics(body: BatchRequest, kind: str) -> Iterator[tuple[str, str]]:
+    known = KINDS[kind].metrics
+    for k, name in enumerate(body.metrics or ()):
+        if name not in known:
+            yield f"/metrics/{k}", f"Designs of this kind have no such metric; they have {', '.join(known)}."
+        elif name in (body.metrics or ())[:k]:
+            yield f"/metrics/{k}", "This is given twice; give it once."
+
+
+def _values(body: BatchRequest) -> list[Sequence[Any]]:
+    if body.sampling == "latin_hypercube":
+        assert body.samples is not None
+        given = [v.values if v.values is not None else Span(v.from_ or 0, v.to or 0) for v in body.vary]
+        return [*latin_hypercube(given, body.samples, body.seed)]
+    return [
+        v.values if v.values is not None else evenly(v.from_ or 0, v.to or 0, v.count or 1) for v in body.vary
+    ]  # fmt: skip
+
+
+def _require_places(plan: Plan) -> None:
+    try:
+        plan.statement(0)
+    except NoSuchPlace:
+        pass
+    else:
+        return
+    for k, (field, value) in enumerate(zip(plan.fields, plan.sample(0), strict=True)):
+        alone = Plan(plan.problem, [field], [[value]], True, [], True)
+        try:
+            alone.statement(0)
+        except NoSuchPlace as nowhere:
+            raise invalid_request([(f"/vary/{k}/field", str(nowhere))]) from None
+
+
+def _faults_of_values(body: BatchRequest, kind: str, plan: Plan) -> list[tuple[str, str]]:
+    """What is wrong with values by themselves: each is tried once."""
+    found: dict[tuple[str, str], None] = {}
+    for places, values in _tried(plan):
+        _, faults = well_formed(kind, plan.stated(values))
+        for path, detail in faults:
+            for k, field in enumerate(plan.fields):
+                if k in places and (path == field or path.startswith(f"{field}/")):
+                    given = body.vary[k].values is not None and body.sampling != "latin_hypercube"
+                    unknown = detail.startswith("There is no such field")
+                    place = "/field" if unknown and path == field else f"/values/{places[k]}" if given else ""
+                    shown = "" if given or unknown else f" This is of the value {json.dumps(values[k])}."
+                    found[f"/vary/{k}{place}", f"{detail}{shown}"] = None
+        if len(found) > MAX_ERRORS:
+            break
+    return list(found)
+
+
+def _tried(plan: Plan) -> Iterable[tuple[dict[int, int], list[Any]]]:
+    """Samples in which each value occurs: the places of those that are new in it, by field, and all its values."""
+    if not plan.grid:
+        for number in range(plan.total):
+            yield dict.fromkeys(range(len(plan.fields)), number), plan.sample(number)
+        return
+    first = plan.sample(0)
+    for k, values in enumerate(plan.values):
+        for place, value in enumerate(values):
+            yield {k: place}, [*first[:k], value, *first[k + 1 :]]
+
+
+def _cost(kind: str, plan: Plan) -> Cost:
+    """What a problem of the batch costs, the longest of those that are looked at."""
+    refused: Faults | None = None
+    brief = []
+    count = min(plan.total, LOOKED_AT)
+    for n in range(count):
+        problem, faults = well_formed(kind, plan.statement(n * plan.total // count))
+        faults = faults or consistent(problem)
+        if faults:
+            refused = refused or faults
+        else:
+            brief.append(KINDS[kind].brief(problem))
+    if not brief and refused is not None:
+        raise _none_states_a_problem(refused)
+    return Cost.SHORT if all(brief) else Cost.LONG
+
+
+def _none_states_a_problem(faults: Faults) -> Refusal:
+    return invalid_problem([(f"/problem{path}", detail) for path, detail in faults])

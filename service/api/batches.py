@@ -1,0 +1,317 @@
+"""``/v1/batches``: many problems at once, stated as one whose fields are varied."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated
+
+from fastapi import APIRouter, Body, Header, Query, Request, Response
+from pydantic import BaseModel, ConfigDict, Field
+from pydantic_core import to_json
+from starlette.concurrency import run_in_threadpool
+
+from service.api import errors, etag
+from service.api.batch_plans import MORE_IS_BETTER, by_default, plan_of
+from service.api.batch_schemas import (
+    EXAMPLE,
+    Batch,
+    BatchFront,
+    BatchList,
+    BatchRequest,
+    BatchTable,
+    batch_item,
+    whole_batch,
+)
+from service.api.body import JsonRoute
+from service.api.errors import invalid_request, not_found
+from service.api.events import event_schema, followed
+from service.api.guard import GuardedRoute, Tenant
+from service.api.idempotency import KEY, key_reused, repeatable
+from service.api.jobs import ULID, cursor_of, id_of_cursor, queue_full
+from service.api.state import Batches, BatchPoller
+from service.jobs.admission import KeyReused, QueueFull
+from service.jobs.batches.desk import BatchDesk
+from service.jobs.batches.plan import Plan
+from service.jobs.batches.rows import BatchRow
+from service.jobs.batches.table import Table, table_of
+
+TAG = {"name": "batches", "description": "Vary the fields of a problem, and read the answers as a table."}
+
+NO_BATCH = "There is no batch with this id."
+
+RETRY_AFTER_S = 1
+
+router = APIRouter(prefix="/v1/batches", tags=[TAG["name"]], route_class=JsonRoute)
+following = APIRouter(prefix="/v1/batches", tags=[TAG["name"]], route_class=GuardedRoute)
+
+_BODY = Body(openapi_examples={"motion": {"summary": "A grid of motion problems", "value": EXAMPLE}})
+_LOCATION = {"Location": {"description": "The path of the batch.", "schema": {"type": "string"}}}
+_RETRY_AFTER = {"Retry-After": {"description": "Look again after so many seconds.", "schema": {"type": "integer"}}}
+_ETAG = {"ETag": {"description": "Changes whenever the batch does.", "schema": {"type": "string"}}}
+
+
+@router.post(
+    "",
+    operation_id="create_batch",
+    summary="State many problems",
+    response_class=Response,
+    status_code=202,
+    responses={
+        200: {"model": Batch, "description": "The finished batch of an earlier equal request.", "headers": _LOCATION},
+        202: {
+            "model": Batch,
+            "description": "The batch is accepted and will be run.",
+            "headers": {**_LOCATION, **_RETRY_AFTER},
+        },
+        **errors.responses(
+            e400="The body is not JSON.",
+            e409="The `Idempotency-Key` came with another body before.",
+            e413="The body is too large.",
+            e415="The body is not `application/json`.",
+            e422="The body does not state problems; `errors` says where.",
+            e503="The queue is full.",
+        ),
+    },
+)
+async def create_batch(
+    request: Request,
+    desk: Batches,
+    tenant: Tenant,
+    body: Annotated[BatchRequest, _BODY],
+    idempotency_key: Annotated[
+        str | None,
+        Header(
+            pattern=KEY,
+            description="A name for this request, as of a job: sent again with it, the request is answered with the "
+            "first batch.",
+            examples=["7f9c24e8"],
+        ),
+    ] = None,
+) -> Response:
+    """Accept a problem whose fields are varied. Once this is answered the batch is stored, and each problem ends."""
+    kind, plan, cost = await run_in_threadpool(plan_of, body)
+    try:
+        batch = await desk.accept(
+            tenant=tenant,
+            kind=kind,
+            label=body.label,
+            plan=plan,
+            cost=cost,
+            repeatable=repeatable(request.headers.getlist("idempotency-key"), body),
+        )
+    except KeyReused:
+        raise key_reused() from None
+    except QueueFull:
+        raise queue_full() from None
+    headers = {"Location": f"/v1/batches/{batch.id}"}
+    if batch.status.finished:
+        return _json(_shown(batch), 200, headers)
+    return _json(_shown(batch), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
+
+
+class BatchFilter(BaseModel):
+    """Which batches to list."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    limit: int = Field(default=20, ge=1, le=100, description="Batches on a page, at most.")
+    cursor: str | None = Field(default=None, max_length=100, description="`next_cursor` of the page before.")
+
+
+@router.get(
+    "",
+    operation_id="list_batches",
+    summary="List batches",
+    response_class=Response,
+    responses={200: {"model": BatchList}, **errors.responses(e422="A parameter is not valid; `errors` says which.")},
+)
+async def list_batches(desk: Batches, tenant: Tenant, filter_: Annotated[BatchFilter, Query()]) -> Response:
+    """The batches, newest first, a page at a time."""
+    before = None if filter_.cursor is None else id_of_cursor(filter_.cursor)
+    page = await desk.page(tenant=tenant, limit=filter_.limit + 1, before=before)
+    shown = page[: filter_.limit]
+    cursor = cursor_of(shown[-1].id) if len(page) > filter_.limit else None
+    return _json(to_json({"batches": [batch_item(batch) for batch in shown], "next_cursor": cursor}))
+
+
+@router.get(
+    "/{batch_id}",
+    operation_id="get_batch",
+    summary="Read a batch",
+    response_class=Response,
+    responses={
+        200: {"model": Batch, "headers": _ETAG},
+        304: {"description": "The batch is as the client knows it.", "headers": _ETAG},
+        **errors.responses(e404=NO_BATCH),
+    },
+)
+async def get_batch(
+    request: Request,
+    desk: Batches,
+    tenant: Tenant,
+    batch_id: str,
+    if_none_match: Annotated[
+        str | None, Header(description="The `ETag` of the state that the client has.", examples=['"3"'])
+    ] = None,
+) -> Response:
+    """The batch as it stands."""
+    batch = await _batch_of(desk, tenant, batch_id)
+    current = etag.tag(batch.revision)
+    if etag.matches(request.headers.getlist("if-none-match"), current):
+        return Response(status_code=304, headers={"ETag": current})
+    return _json(_shown(batch), headers={"ETag": current})
+
+
+@router.delete(
+    "/{batch_id}",
+    operation_id="delete_batch",
+    summary="Cancel or remove a batch",
+    response_class=Response,
+    status_code=202,
+    responses={
+        202: {"model": Batch, "description": "The batch was unfinished and is cancelled; what has ended of it stays."},
+        204: {"description": "The batch was finished and is removed, with the jobs of its problems."},
+        **errors.responses(e404=NO_BATCH),
+    },
+)
+async def delete_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response:
+    """Cancel an unfinished batch; remove a finished one."""
+    batch = await desk.cancel_or_delete(tenant, batch_id) if ULID.fullmatch(batch_id) else None
+    if batch is None:
+        raise not_found(NO_BATCH)
+    return Response(status_code=204) if batch == "deleted" else _json(_shown(batch), 202)
+
+
+@router.get(
+    "/{batch_id}/table.json",
+    operation_id="tabulate_batch",
+    summary="Read the table of a batch",
+    response_class=Response,
+    responses={200: {"model": BatchTable}, **errors.responses(e404=NO_BATCH)},
+)
+async def tabulate_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response:
+    """A row for each problem, in the order of the samples, ended or not."""
+    _, table = await _tabulated(desk, tenant, batch_id)
+    return _json(await run_in_threadpool(to_json, {"columns": table.columns, "rows": table.rows}))
+
+
+@router.get(
+    "/{batch_id}/table.csv",
+    operation_id="tabulate_batch_as_csv",
+    summary="Read the table of a batch as CSV",
+    response_class=Response,
+    responses={
+        200: {"description": "The table.", "content": {"text/csv": {"schema": {"type": "string"}}}},
+        **errors.responses(e404=NO_BATCH),
+    },
+)
+async def tabulate_batch_as_csv(desk: Batches, tenant: Tenant, batch_id: str) -> Response:
+    """The same as CSV; numbers have all their digits."""
+    _, table = await _tabulated(desk, tenant, batch_id)
+    return Response(await run_in_threadpool(table.as_csv), media_type="text/csv; charset=utf-8")
+
+
+class Weighed(BaseModel):
+    """What the rows are weighed up by."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    least: list[str] = Field(
+        default=[], max_length=10, description="Metrics of the batch of which less is better; may be repeated."
+    )
+    greatest: list[str] = Field(
+        default=[], max_length=10, description="Metrics of which more is better; may be repeated."
+    )
+
+
+@router.get(
+    "/{batch_id}/front",
+    operation_id="weigh_up_batch",
+    summary="Read the front of a batch",
+    response_class=Response,
+    responses={
+        200: {"model": BatchFront},
+        **errors.responses(e404=NO_BATCH, e422="A metric is not one of the batch; `errors` says which."),
+    },
+)
+async def weigh_up_batch(
+    desk: Batches, tenant: Tenant, batch_id: str, weighed: Annotated[Weighed, Query()]
+) -> Response:
+    """The rows of the table that no other beats (Pareto).
+
+    Without parameters: by error and size, of which less is better, and the least transmission angle, as far as the
+    table has them.
+    """
+    plan, table = await _tabulated(desk, tenant, batch_id)
+    for name, metrics in (("least", weighed.least), ("greatest", weighed.greatest)):
+        for metric in metrics:
+            if metric not in plan.metrics:
+                raise invalid_request([(f"/query/{name}", f"The metrics of the batch are {_listed(plan.metrics)}.")])
+    least, greatest = list(dict.fromkeys(weighed.least)), list(dict.fromkeys(weighed.greatest))
+    if not least and not greatest:
+        usual = by_default(plan.metrics)
+        least = [name for name in usual if name not in MORE_IS_BETTER]
+        greatest = [name for name in usual if name in MORE_IS_BETTER]
+        if not usual:
+            raise invalid_request([("/query/least", "Name what is to be least, or greatest.")])
+    front = await run_in_threadpool(table.front, least, greatest)
+    return _json(to_json({"columns": front.columns, "rows": front.rows, "least": least, "greatest": greatest}))
+
+
+@following.get(
+    "/{batch_id}/events",
+    operation_id="follow_batch",
+    summary="Follow a batch",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "Events until the batch has ended, as of a job: `state` (the batch as in a list) and "
+            "`progress`; `removed` where it is removed before its end was seen.",
+            "content": {"text/event-stream": {"itemSchema": event_schema("BatchListItem")}},
+        },
+        204: {"description": "The client has the event of the final state already; it need not come again."},
+        **errors.responses(e404=NO_BATCH, e503="Too many clients of the tenant listen at once."),
+    },
+)
+async def follow_batch(
+    request: Request,
+    poller: BatchPoller,
+    tenant: Tenant,
+    batch_id: str,
+    last_event_id: Annotated[
+        str | None,
+        Header(description="The `id` of the last event that the client has; browsers send it by themselves."),
+    ] = None,
+) -> Response:
+    """The batch as it goes on, as server-sent events."""
+    return await followed(request, poller, tenant, batch_id, last_event_id, batch_item, NO_BATCH)
+
+
+async def _batch_of(desk: BatchDesk, tenant: str, batch_id: str) -> BatchRow:
+    batch = await desk.get(tenant, batch_id) if ULID.fullmatch(batch_id) else None
+    if batch is None:
+        raise not_found(NO_BATCH)
+    return batch
+
+
+async def _tabulated(desk: BatchDesk, tenant: str, batch_id: str) -> tuple[Plan, Table]:
+    batch = await _batch_of(desk, tenant, batch_id)
+    ended = await desk.table(batch)
+
+    def tabulated() -> tuple[Plan, Table]:
+        plan = Plan.read(batch.plan)
+        return plan, table_of(batch, plan, ended)
+
+    return await run_in_threadpool(tabulated)
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(names) or "none"
+
+
+def _shown(batch: BatchRow) -> bytes:
+    return whole_batch(batch, Plan.read(batch.plan))
+
+
+def _json(content: bytes, status: int = 200, headers: dict[str, str] | None = None) -> Response:
+    return Response(content, status_code=status, headers=headers, media_type="application/json")

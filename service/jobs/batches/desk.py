@@ -1,0 +1,99 @@
+"""What a client can do with batches: the store, the executor and the notifier behind one object."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import structlog
+from starlette.concurrency import run_in_threadpool
+
+from service.jobs.admission import Repeatable
+from service.jobs.batches.plan import Plan
+from service.jobs.batches.rows import BatchRow, BatchSummary, TableRow
+from service.jobs.batches.store import BatchStore
+from service.jobs.executor import Executor
+from service.jobs.finished import FinishedJobs
+from service.jobs.notifier import ChangeNotifier
+from service.jobs.states import Cost
+from service.metrics import Metrics
+from service.telemetry import span
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class BatchDesk:
+    """Accepts, shows, cancels and removes batches, on the event loop; the store is asked in a thread."""
+
+    store: BatchStore
+    executor: Executor
+    notifier: ChangeNotifier
+    metrics: Metrics
+    max_queued: int
+    finished: FinishedJobs
+
+    async def accept(
+        self, *, tenant: str, kind: str, label: str | None, plan: Plan, cost: Cost, repeatable: Repeatable | None
+    ) -> BatchRow:
+        """Store a batch and have it run. A request that comes again by its key gets what it has made the first time.
+
+        Raises
+        ------
+        KeyReused
+            When the key came with another request before.
+        QueueFull
+            When no more jobs of the tenant are taken for now.
+        """
+        with span("store"):
+            batch, shares = await run_in_threadpool(
+                self.store.create,
+                tenant=tenant,
+                kind=kind,
+                label=label,
+                plan=plan,
+                cost=cost,
+                max_queued=self.max_queued,
+                repeatable=repeatable,
+            )
+        if shares:
+            log.info("batch accepted", batch=batch.id, kind=kind, samples=batch.total)
+            self.metrics.accepted_batch(kind)
+        for share in shares:
+            self.executor.submit(share)
+        return batch
+
+    async def get(self, tenant: str, batch_id: str) -> BatchRow | None:
+        """The batch, or None where the tenant has none such. Another tenant's batch is none."""
+        batch = await run_in_threadpool(self.store.get, batch_id)
+        return batch if batch is not None and batch.tenant == tenant else None
+
+    async def page(self, *, tenant: str, limit: int, before: str | None) -> list[BatchSummary]:
+        """At most ``limit`` batches of the tenant, newest first."""
+        return await run_in_threadpool(self.store.page, tenant=tenant, limit=limit, before=before)
+
+    async def table(self, batch: BatchSummary) -> list[TableRow]:
+        """The samples of a batch that have ended."""
+        return await run_in_threadpool(self.store.table, batch)
+
+    async def cancel_or_delete(self, tenant: str, batch_id: str) -> BatchRow | Literal["deleted"] | None:
+        """Cancel the batch when it is unfinished (returns it), else remove it; None where the tenant has none such.
+
+        What has ended of a cancelled batch stays. One that ends by itself while it is being cancelled is returned and
+        not removed.
+        """
+        batch = await self.get(tenant, batch_id)
+        if batch is None:
+            return None
+        if batch.status.finished:
+            try:
+                return "deleted" if await run_in_threadpool(self.store.delete, batch_id) else None
+            finally:
+                self.finished.removed()
+        shares = await run_in_threadpool(self.store.cancel, batch_id)
+        if shares is not None:
+            log.info("batch cancelled", batch=batch_id)
+            for share in shares:
+                self.executor.cancel(share)
+            self.notifier.publish(batch_id)
+        return await self.get(tenant, batch_id)

@@ -1,0 +1,64 @@
+"""Samples of batches as the jobs that they are: each has a problem and, once it has ended, an answer like any other."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import fields
+from typing import Any
+
+from sqlalchemy import Connection, select
+from ulid import ULID
+
+from service.jobs.batches.plan import Plan
+from service.jobs.schema import JobSummary, SampleRow, batches, samples
+from service.jobs.statements import MAX_IDS
+from service.jobs.states import Status
+
+_SAMPLE = [samples.c[name] for name in ("id", "batch", "tenant", "number", "status", "started_at", "finished_at")]
+_OF_BATCH = [batches.c[name] for name in ("kind", "label", "created_at")]
+
+
+def sample_id(batch_id: str, number: int) -> str:
+    """The id of a sample: that of its batch, counted on. So no sample can be stored twice."""
+    return str(ULID.from_int(int(ULID.from_str(batch_id)) + 1 + number))
+
+
+def sample_as_job(connection: Connection, job_id: str) -> SampleRow | None:
+    """The sample of this id as a job; None where there is none, or where it has not ended."""
+    query = select(*_SAMPLE, *_OF_BATCH, samples.c.cached, samples.c.result, samples.c.error, batches.c.plan)
+    row = connection.execute(query.where(samples.c.id == job_id, batches.c.id == samples.c.batch)).one_or_none()
+    if row is None:
+        return None
+    return SampleRow(
+        **_summary(row),
+        problem=json.dumps(Plan.read(row.plan).statement(row.number)),
+        result=row.result,
+        error=row.error,
+        batch=row.batch,
+        cached=row.cached,
+    )
+
+
+def samples_as_jobs(connection: Connection, job_ids: Sequence[str]) -> dict[str, JobSummary]:
+    """Those of these ids that are samples, as jobs without their problems and answers."""
+    found = {}
+    query = select(*_SAMPLE, *_OF_BATCH).where(batches.c.id == samples.c.batch)
+    for start in range(0, len(job_ids), MAX_IDS):
+        for row in connection.execute(query.where(samples.c.id.in_(job_ids[start : start + MAX_IDS]))):
+            found[row.id] = JobSummary(**_summary(row))
+    return found
+
+
+def _summary(row: Any) -> dict[str, Any]:
+    status = Status(row.status)
+    stated = {field.name: getattr(row, field.name, None) for field in fields(JobSummary)}
+    return {
+        **stated,
+        "status": status,
+        "progress_fraction": 1.0,
+        "progress_message": status.value,
+        "attempt": 1,
+        "crashes": 0,
+        "revision": 1,
+    }

@@ -1,0 +1,87 @@
+"""A batch, a share of it and an ended sample as values."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+from service.jobs.states import Status
+
+
+@dataclass(frozen=True, slots=True)
+class BatchSummary:
+    """A batch without its plan."""
+
+    id: str
+    tenant: str
+    kind: str
+    label: str | None
+    status: Status
+    created_at: str
+    started_at: str | None
+    finished_at: str | None
+    total: int
+    succeeded: int
+    failed: int
+    cached: int
+    revision: int
+
+    @property
+    def done(self) -> int:
+        """How many of its samples have ended."""
+        return self.succeeded + self.failed
+
+
+@dataclass(frozen=True, slots=True)
+class BatchRow(BatchSummary):
+    """A batch with what was stated: ``plan`` is JSON, :meth:`service.jobs.batches.plan.Plan.read` reads it."""
+
+    plan: str
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """What is left of a share: the samples from ``first`` to before ``end``, but for those that are stored already.
+
+    ``alone`` is one that a worker has died of, or may have: it comes next, by itself.
+    """
+
+    first: int
+    end: int
+    alone: int | None = None
+
+    def written(self) -> str:
+        """The share in JSON, as its row among the jobs has it for a problem."""
+        return json.dumps(asdict(self))
+
+    @classmethod
+    def read(cls, text: str) -> Share:
+        """The share that :meth:`written` has written."""
+        return cls(**json.loads(text))
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """A sample that has ended: its ``result`` with the ``figures`` of it for the table, or its ``error``, in JSON."""
+
+    number: int
+    status: Literal[Status.SUCCEEDED, Status.FAILED]
+    started_at: str
+    finished_at: str
+    cached: bool = False
+    digest: str | None = None
+    figures: str | None = None
+    error: str | None = None
+    result: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TableRow:
+    """What the table of a batch has of an ended sample."""
+
+    number: int
+    status: Status
+    cached: bool
+    figures: list[Any] | None
+    error: str | None

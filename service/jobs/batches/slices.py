@@ -1,0 +1,188 @@
+"""What a worker does with a share of a batch: it solves a slice of it and stores that in one go.
+
+A slice ends after :data:`SLICE_S` or :data:`MOST` samples, whichever comes first: soon enough that a worker is free for
+whatever comes next in turn, and seldom enough that claiming and storing, which takes as long as a quick problem, is a
+small part of the work.
+
+This module is imported before the worker has set its number of threads, so it must not import numpy.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections import OrderedDict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import structlog
+from pydantic_core import from_json
+
+from service.jobs import faults
+from service.jobs.batches.identity import digest
+from service.jobs.batches.plan import Plan
+from service.jobs.batches.reading import sample_id
+from service.jobs.batches.rows import BatchRow, Ended, Share
+from service.jobs.batches.store import BatchStore
+from service.jobs.database import patiently
+from service.jobs.schema import Claim, now
+from service.jobs.solving import Solving, Stopped
+from service.jobs.states import Status
+
+SLICE_S = 0.1
+"""Seconds after which no further sample of a slice is begun."""
+
+MOST = 200
+"""Samples of a slice at most."""
+
+LOOKED_UP = 16
+"""Samples whose answers are looked for together among those that are stored."""
+
+PLANS = 4
+"""Plans that a worker keeps: reading one of ten thousand samples takes a while, and there are many slices."""
+
+Outcome = Literal["slice", "superseded", "stopped", "out of memory"]
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class _Stated:
+    """A sample as it is to be solved: the problem and its digest, or what is wrong with its statement."""
+
+    number: int
+    problem: Any
+    digest: str | None
+    wrong: Sequence[tuple[str, str]]
+
+
+class Slices:
+    """Solves slices in a worker process, one after the other."""
+
+    def __init__(self, store: BatchStore, solving: Solving, out_of_memory: faults.Fault) -> None:
+        self._store = store
+        self._solving = solving
+        self._out_of_memory = out_of_memory
+        self._plans: OrderedDict[str, tuple[BatchRow, Plan]] = OrderedDict()
+
+    def run(self, claim: Claim, batch_id: str) -> Outcome:
+        """Solve a slice of the share that was claimed. The store has it when this returns.
+
+        Nothing of it is stored where the lane says that it is to stop; that is soon done again.
+        """
+        share = Share.read(claim.problem)
+        known = self._known(batch_id)
+        if known is None:
+            patiently(self._store.store, None, claim.job_id, claim.attempt, None, [])
+            return "superseded"
+        batch, plan = known
+        todo, end = self._window(batch, share)
+        new: list[Ended] = []
+        outcome: Outcome = "slice"
+        until = time.perf_counter() + SLICE_S
+        try:
+            for stated, answer in self._with_answers(batch, plan, todo, new):
+                new.append(self._ended(batch, plan, stated, answer))
+                if time.perf_counter() >= until:
+                    break
+        except Stopped:
+            return "stopped"
+        except MemoryError:
+            at = todo[len(new)]
+            new.append(_failed(batch, at, now(), self._out_of_memory))
+            outcome = "out of memory"
+        first = share.first if share.alone is not None else todo[len(new)] if len(new) < len(todo) else end
+        left = Share(first, share.end) if first < share.end else None
+        stored = patiently(self._store.store, batch, claim.job_id, claim.attempt, left, new)
+        return outcome if stored else "superseded"
+
+    def _known(self, batch_id: str) -> tuple[BatchRow, Plan] | None:
+        """The batch and its plan; None where it has ended."""
+        if batch_id not in self._plans:
+            batch = patiently(self._store.begun, batch_id)
+            if batch is None:
+                return None
+            self._plans[batch_id] = batch, Plan.read(batch.plan)
+            if len(self._plans) > PLANS:
+                self._plans.popitem(last=False)
+        self._plans.move_to_end(batch_id)
+        return self._plans[batch_id]
+
+    def _window(self, batch: BatchRow, share: Share) -> tuple[list[int], int]:
+        """The samples to be solved next, and where those begin that come after them."""
+        if share.alone is not None:
+            first, end = share.alone, share.alone + 1
+        else:
+            first, end = share.first, min(share.end, share.first + MOST)
+        there = patiently(self._store.ended, batch, first, end)
+        return [number for number in range(first, end) if number not in there], end
+
+    def _with_answers(
+        self, batch: BatchRow, plan: Plan, todo: Sequence[int], new: Sequence[Ended]
+    ) -> Iterator[tuple[_Stated, str | None]]:
+        """The samples as they are stated, each with the answer that the store or the slice has of its like."""
+        for start in range(0, len(todo), LOOKED_UP):
+            group = [_stated(batch, plan, number) for number in todo[start : start + LOOKED_UP]]
+            answers: dict[str, str] = {}
+            if plan.reuse:
+                wanted = {stated.digest for stated in group if stated.digest is not None}
+                answers = patiently(self._store.answers, batch.tenant, wanted)
+            for stated in group:
+                if plan.reuse and new and new[-1].digest is not None and new[-1].result is not None:
+                    answers.setdefault(new[-1].digest, new[-1].result)
+                yield stated, None if stated.digest is None else answers.get(stated.digest)
+
+    def _ended(self, batch: BatchRow, plan: Plan, stated: _Stated, answer: str | None) -> Ended:
+        from service.stated import consistent
+        from synthesis import dispatch
+        from synthesis.model.statement import ContradictionError
+
+        began = now()
+        if stated.wrong:
+            return _failed(batch, stated.number, began, faults.invalid_problem(stated.wrong))
+        result = answer
+        if result is None:
+            try:
+                with self._solving.at_work(stated.number):
+                    result = dispatch.solve(stated.problem, self._solving.stoppable(_silent)).model_dump_json()
+            except MemoryError:
+                raise
+            except ContradictionError:
+                return _failed(batch, stated.number, began, faults.invalid_problem(consistent(stated.problem)))
+            except Exception:  # the boundary of the solvers: whatever defect they have ends this sample only
+                log.exception("the solver raised", batch=batch.id, sample=stated.number)
+                return _failed(batch, stated.number, began, faults.INTERNAL_ERROR)
+        return Ended(
+            stated.number,
+            Status.SUCCEEDED,
+            began,
+            now(),
+            cached=answer is not None,
+            digest=stated.digest,
+            figures=_figures(result, plan.metrics),
+            result=result,
+        )
+
+
+def _silent(_fraction: float, _message: str) -> None:
+    pass
+
+
+def _stated(batch: BatchRow, plan: Plan, number: int) -> _Stated:
+    from service.stated import well_formed
+
+    problem, wrong = well_formed(batch.kind, plan.statement(number))
+    return _Stated(number, problem, None if problem is None else digest(problem), wrong)
+
+
+def _failed(batch: BatchRow, number: int, began: str, fault: faults.Fault) -> Ended:
+    error = fault.as_json(sample_id(batch.id, number))
+    return Ended(number, Status.FAILED, began, now(), error=error)
+
+
+def _figures(result: str, metrics: Sequence[str]) -> str:
+    """What the table has of an answer: the number of designs that passed, and the metrics of the best of them."""
+    passed = [design for design in from_json(result)["designs"] if design["verification"]["passed"]]
+    best = passed[0]["metrics"] if passed else {}
+    return json.dumps([len(passed), *(best.get(name) for name in metrics)])

@@ -1,0 +1,369 @@
+"""The batches in the store, their shares among the jobs, and the samples that have ended.
+
+A slice comes into the store in one transaction: its samples, what is left of its share, which goes back into the queue,
+and the counts of the batch. The transaction holds only where the share is still that of the attempt, so that whatever
+dies or comes late, each sample is there once.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import asdict, fields
+from datetime import datetime
+from itertools import pairwise
+from typing import Any
+
+from sqlalchemy import Connection, Engine, case, delete, exists, insert, select, update
+from ulid import ULID
+
+from service.jobs.admission import KeyReused, Repeatable, once, surely
+from service.jobs.batches.plan import Plan
+from service.jobs.batches.reading import sample_id
+from service.jobs.batches.rows import BatchRow, BatchSummary, Ended, Share, TableRow
+from service.jobs.faults import WORKER_DIED
+from service.jobs.schema import as_stored, batches, jobs, now, samples
+from service.jobs.statements import (
+    AT_ONCE,
+    BACK_IN_QUEUE,
+    COUNT_QUEUED,
+    MAX_CRASHES,
+    MAX_IDS,
+    MAX_KILLS,
+    NO_KEY,
+    moved,
+    new_row,
+    turn_of,
+)
+from service.jobs.states import FINISHED, UNFINISHED, Cost, Status
+
+SHARES = 16
+"""Shares of a batch at most: more workers than this do not make it faster."""
+
+_SUMMARY = [batches.c[field.name] for field in fields(BatchSummary)]
+_WHOLE = [batches.c[field.name] for field in fields(BatchRow)]
+
+
+class BatchStore:
+    """Reads and changes the rows. Safe to use from many threads and processes."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+
+    def create(
+        self,
+        *,
+        tenant: str,
+        kind: str,
+        label: str | None,
+        plan: Plan,
+        cost: Cost,
+        max_queued: int,
+        repeatable: Repeatable | None,
+    ) -> tuple[BatchRow, list[str]]:
+        """Store a new batch with its shares, or find the one that the same request has made already.
+
+        Returns
+        -------
+        tuple
+            The batch, and the ids of its shares where it is new.
+
+        Raises
+        ------
+        KeyReused
+            When another request of the tenant has made a batch under this key.
+        QueueFull
+            When it would be new, and ``max_queued`` jobs of the tenant are queued already.
+        """
+        row: dict[str, Any] = {
+            "id": str(ULID()),
+            "tenant": tenant,
+            "kind": kind,
+            "label": label,
+            "status": Status.QUEUED,
+            "created_at": now(),
+            "started_at": None,
+            "finished_at": None,
+            "total": plan.total,
+            "succeeded": 0,
+            "failed": 0,
+            "cached": 0,
+            "revision": 1,
+            "plan": plan.written(),
+        }
+        key = {} if repeatable is None else {"idempotency_key": repeatable.key, "request_hash": repeatable.request_hash}
+        shares = [
+            {**new_row(tenant, kind, None, share.written(), cost), **NO_KEY, "batch": row["id"]}
+            for share in _dealt(plan.total)
+        ]
+
+        def inserted(connection: Connection) -> bool:
+            queued = connection.execute(COUNT_QUEUED, {"of": tenant, "most": max_queued}).scalar_one()
+            if queued >= max_queued:
+                return False
+            connection.execute(insert(batches), {**row, **NO_KEY, **key})
+            turn = select(turn_of(tenant, cost, share=True))
+            first = connection.execute(turn).scalar_one()
+            connection.execute(insert(jobs), [{**share, "turn": first + n} for n, share in enumerate(shares)])
+            return True
+
+        def make() -> BatchRow:
+            surely(self._engine, lambda connection: _row(connection, row["id"]) is not None, inserted)
+            return BatchRow(**row)
+
+        if repeatable is None:
+            return make(), [share["id"] for share in shares]
+        batch, new = once(make, lambda: self._made_by(tenant, repeatable))
+        return batch, [share["id"] for share in shares] if new else []
+
+    def _made_by(self, tenant: str, repeatable: Repeatable) -> BatchRow | None:
+        query = select(*_WHOLE, batches.c.request_hash).where(
+            batches.c.tenant == tenant, batches.c.idempotency_key == repeatable.key
+        )
+        with self._engine.connect() as connection:
+            row = connection.execute(query).one_or_none()
+        if row is None:
+            return None
+        if row.request_hash != repeatable.request_hash:
+            raise KeyReused(row.id)
+        return BatchRow(*_values(row[:-1]))
+
+    def get(self, batch_id: str) -> BatchRow | None:
+        """The batch, or None where there is none."""
+        self._settle([batch_id])
+        with self._engine.connect() as connection:
+            row = _row(connection, batch_id)
+        return None if row is None else BatchRow(*_values(row))
+
+    def summaries(self, batch_ids: Sequence[str]) -> dict[str, BatchSummary]:
+        """The batches of these ids that there are, by id."""
+        self._settle(batch_ids)
+        found: dict[str, BatchSummary] = {}
+        with self._engine.connect() as connection:
+            for start in range(0, len(batch_ids), MAX_IDS):
+                query = select(*_SUMMARY).where(batches.c.id.in_(batch_ids[start : start + MAX_IDS]))
+                for row in connection.execute(query):
+                    found[row.id] = BatchSummary(*_values(row))
+        return found
+
+    def page(self, *, tenant: str, limit: int, before: str | None) -> list[BatchSummary]:
+        """At most ``limit`` batches of a tenant, newest first, from those older than the batch ``before``."""
+        query = select(batches.c.id).where(batches.c.tenant == tenant).order_by(batches.c.id.desc()).limit(limit)
+        if before is not None:
+            query = query.where(batches.c.id < before)
+        with self._engine.connect() as connection:
+            ids = list(connection.execute(query).scalars())
+        found = self.summaries(ids)
+        return [found[batch_id] for batch_id in ids if batch_id in found]
+
+    def table(self, batch: BatchSummary) -> list[TableRow]:
+        """The samples that have ended, in their order."""
+        query = select(
+            samples.c.number, samples.c.status, samples.c.cached, samples.c.figures, samples.c.error
+        ).where(_of(batch.id, batch.total)).order_by(samples.c.id)  # fmt: skip
+        with self._engine.connect() as connection:
+            return [
+                TableRow(row.number, Status(row.status), row.cached, json.loads(row.figures or "null"), row.error)
+                for row in connection.execute(query)
+            ]
+
+    def begun(self, batch_id: str) -> BatchRow | None:
+        """Note that a worker is at the batch; the batch, or None where it is not to be worked at any more."""
+        change = update(batches).where(batches.c.id == batch_id, batches.c.status == Status.QUEUED)
+        with self._engine.begin() as connection:
+            connection.execute(change.values(status=Status.RUNNING, started_at=now(), revision=batches.c.revision + 1))
+            row = _row(connection, batch_id)
+        return None if row is None or row.status not in UNFINISHED else BatchRow(*_values(row))
+
+    def ended(self, batch: BatchSummary, first: int, end: int) -> set[int]:
+        """Which of the samples from ``first`` to before ``end`` are stored."""
+        query = select(samples.c.number).where(
+            samples.c.id >= sample_id(batch.id, first), samples.c.id < sample_id(batch.id, end)
+        )
+        with self._engine.connect() as connection:
+            return set(connection.execute(query).scalars())
+
+    def answers(self, tenant: str, digests: Collection[str]) -> dict[str, str]:
+        """The results of the tenant's problems of these digests that have one, by digest; JSON."""
+        found: dict[str, str] = {}
+        with self._engine.connect() as connection:
+            for table in (jobs, samples):
+                query = select(table.c.digest, table.c.result).where(
+                    table.c.tenant == tenant, table.c.digest.in_(digests), table.c.result.is_not(None)
+                )
+                found |= {row.digest: row.result for row in connection.execute(query)}
+        return found
+
+    def store(
+        self, batch: BatchSummary | None, share_id: str, attempt: int, left: Share | None, new: Sequence[Ended]
+    ) -> bool:
+        """Store a slice; what is left of its share goes back into the queue. False where the attempt counts no more."""
+        change = (
+            moved("succeed", share_id, finished_at=now(), progress_fraction=1.0, progress_message="succeeded")
+            if left is None
+            else _back(share_id, left, turn=turn_of(jobs.c.tenant, jobs.c.cost, share=True), crashes=0)
+        )
+        with self._engine.begin() as connection:
+            if connection.execute(change.where(jobs.c.attempt == attempt)).rowcount == 0:
+                return False
+            if batch is not None and new and not _stored(connection, batch, new):
+                connection.rollback()
+                return False
+        return True
+
+    def crashed(self, share_id: str, claim: str, number: int | None, *, killed: bool) -> Status | None:
+        """Note that the worker of a share died, by itself or ``killed`` from outside, at a sample, where that is known.
+
+        The share goes on with that sample by itself; after as many deaths as a job may cause, the sample has failed.
+
+        Returns
+        -------
+        Status or None
+            ``queued``, or None where the share is that of another attempt, or cancelled; nothing changed.
+        """
+        return self._given_back(share_id, claim, number, MAX_KILLS if killed else MAX_CRASHES, WORKER_DIED.as_json)
+
+    def give_up(self, share_id: str, claim: str, number: int | None, error: Callable[[str], str]) -> Status | None:
+        """Fail a sample from outside; its share goes on with the others. ``error`` gives the JSON for the job's id."""
+        return self._given_back(share_id, claim, number, 0, error)
+
+    def _given_back(
+        self, share_id: str, claim: str, number: int | None, retries: int, error: Callable[[str], str]
+    ) -> Status | None:
+        held = select(jobs.c.batch, jobs.c.problem, jobs.c.crashes).where(
+            jobs.c.id == share_id, jobs.c.claim == claim, jobs.c.status == Status.RUNNING
+        )
+        with self._engine.begin() as connection:
+            row = connection.execute(held.with_for_update()).one_or_none()
+            if row is None:
+                return None
+            left = Share.read(row.problem)
+            at = left.first if number is None else number
+            over = row.crashes >= retries
+            share = Share(left.first, left.end, None if over else at)
+            change = _back(share_id, share, turn=AT_ONCE, crashes=0 if over else row.crashes + 1)
+            if connection.execute(change.where(jobs.c.claim == claim)).rowcount == 0:
+                return None
+            if over:
+                found = _row(connection, row.batch)
+                failed = Ended(at, Status.FAILED, now(), now(), error=error(sample_id(row.batch, at)))
+                if found is None or not _stored(connection, BatchRow(*_values(found)), [failed]):
+                    connection.rollback()
+                    return None
+        return Status.QUEUED
+
+    def cancel(self, batch_id: str) -> list[str] | None:
+        """Cancel an unfinished batch: the ids of its shares that were not at their end; None where there is no such."""
+        shares = select(jobs.c.id).where(jobs.c.batch == batch_id, jobs.c.status.in_(UNFINISHED))
+        with self._engine.begin() as connection:
+            # The shares before the batch, in the order in which slices are stored.
+            running = list(connection.execute(shares.order_by(jobs.c.id).with_for_update()).scalars())
+            for share_id in running:
+                connection.execute(moved("cancel", share_id, progress_message="cancelled", finished_at=now()))
+            change = update(batches).where(batches.c.id == batch_id, batches.c.status.in_(UNFINISHED))
+            cancelled = connection.execute(
+                change.values(status=Status.CANCELLED, finished_at=now(), revision=batches.c.revision + 1)
+            )
+            return running if cancelled.rowcount else None
+
+    def delete(self, batch_id: str) -> bool:
+        """Remove a finished batch and its samples, these in portions, so that nobody waits for long; whether it was."""
+        with self._engine.connect() as connection:
+            row = _row(connection, batch_id)
+        if row is None or row.status not in FINISHED:
+            return False
+        for first in range(0, row.total, MAX_IDS):
+            with self._engine.begin() as connection:
+                portion = _of(batch_id, min(MAX_IDS, row.total - first), first)
+                connection.execute(delete(samples).where(portion))
+        with self._engine.begin() as connection:
+            connection.execute(delete(jobs).where(jobs.c.batch == batch_id))
+            return connection.execute(delete(batches).where(batches.c.id == batch_id)).rowcount > 0
+
+    def delete_finished(self, before: datetime) -> int:
+        """Remove the oldest batch that finished before a time; tells how many."""
+        oldest = (
+            select(batches.c.id)
+            .where(
+                batches.c.id < str(ULID.from_datetime(before)),
+                batches.c.status.in_(FINISHED),
+                batches.c.finished_at < as_stored(before),
+            )
+            .order_by(batches.c.id)
+            .limit(1)
+        )
+        with self._engine.connect() as connection:
+            batch_id = connection.execute(oldest).scalar_one_or_none()
+        return 0 if batch_id is None else int(self.delete(batch_id))
+
+    def _settle(self, batch_ids: Iterable[str]) -> None:
+        """End batches of whose shares none is left: what these had still to do was given up, and has failed."""
+        unfinished = exists().where(jobs.c.batch == batches.c.id, jobs.c.status.in_(UNFINISHED))
+        lost = (batches.c.status.in_(UNFINISHED), ~unfinished)
+        ids = list(batch_ids)
+        for start in range(0, len(ids), MAX_IDS):
+            these = batches.c.id.in_(ids[start : start + MAX_IDS])
+            with self._engine.connect() as connection:
+                if connection.execute(select(batches.c.id).where(these, *lost)).first() is None:
+                    continue
+            change = update(batches).where(these, *lost).values(
+                status=case((batches.c.succeeded > 0, Status.SUCCEEDED), else_=Status.FAILED),
+                failed=batches.c.total - batches.c.succeeded,
+                finished_at=now(),
+                revision=batches.c.revision + 1,
+            )  # fmt: skip
+            with self._engine.begin() as connection:
+                connection.execute(change)
+
+
+def _dealt(total: int) -> list[Share]:
+    """The shares of a batch: as even as can be."""
+    count = min(total, SHARES)
+    bounds = [total * n // count for n in range(count + 1)]
+    return [Share(first, end) for first, end in pairwise(bounds)]
+
+
+def _back(share_id: str, left: Share, **values: Any) -> Any:
+    return moved("requeue", share_id, **{**BACK_IN_QUEUE, "problem": left.written(), **values})
+
+
+def _stored(connection: Connection, batch: BatchSummary, new: Sequence[Ended]) -> bool:
+    """Store ended samples and count them; False, and to be rolled back, where the batch is finished."""
+    succeeded = sum(sample.status == Status.SUCCEEDED for sample in new)
+    failed, cached = len(new) - succeeded, sum(sample.cached for sample in new)
+    done = batches.c.succeeded + batches.c.failed + len(new)
+    any_succeeded = batches.c.succeeded + succeeded > 0
+    change = update(batches).where(batches.c.id == batch.id, batches.c.status.in_(UNFINISHED)).values(
+        succeeded=batches.c.succeeded + succeeded,
+        failed=batches.c.failed + failed,
+        cached=batches.c.cached + cached,
+        revision=batches.c.revision + 1,
+        status=case(
+            (done < batches.c.total, Status.RUNNING), (any_succeeded, Status.SUCCEEDED), else_=Status.FAILED
+        ),
+        finished_at=case((done < batches.c.total, batches.c.finished_at), else_=now()),
+    )  # fmt: skip
+    if connection.execute(change).rowcount == 0:
+        return False
+    of = {"batch": batch.id, "tenant": batch.tenant}
+    connection.execute(
+        insert(samples), [{**of, **asdict(sample), "id": sample_id(batch.id, sample.number)} for sample in new]
+    )
+    return True
+
+
+def _of(batch_id: str, count: int, first: int = 0) -> Any:
+    return samples.c.id.between(sample_id(batch_id, first), sample_id(batch_id, first + count - 1))
+
+
+def _row(connection: Connection, batch_id: str) -> Any:
+    return connection.execute(select(*_WHOLE).where(batches.c.id == batch_id)).one_or_none()
+
+
+def _values(row: Sequence[Any]) -> list[Any]:
+    values = [*row]
+    values[_STATUS] = Status(values[_STATUS])
+    return values
+
+
+_STATUS = [field.name for field in fields(BatchSummary)].index("status")
