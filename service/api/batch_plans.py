@@ -180,9 +180,17 @@ def _cost(kind: str, plan: Plan) -> Cost:
         else:
             brief.append(KINDS[kind].brief(problem))
     if not brief and refused is not None:
-        raise _none_states_a_problem(refused)
+        raise _none_states_a_problem(plan, refused)
     return Cost.SHORT if all(brief) else Cost.LONG
 
 
-def _none_states_a_problem(faults: Faults) -> Refusal:
-    return invalid_problem([(f"/problem{path}", detail) for path, detail in faults])
+def _none_states_a_problem(plan: Plan, faults: Faults) -> Refusal:
+    placed = [(_place_of(plan, path), detail) for path, detail in faults]
+    return (invalid_problem if all(path.startswith("/problem") for path, _ in placed) else invalid_request)(placed)
+
+
+def _place_of(plan: Plan, path: str) -> str:
+    """Where a fault of all samples lies: at the varied field that it is on the way to, else in the problem."""
+    on_the_way = (k for k, field in enumerate(plan.fields) if path and field.startswith(f"{path}/"))
+    k = next(on_the_way, None)
+    return f"/problem{path}" if k is None else f"/vary/{k}/field"

@@ -104,7 +104,6 @@ def new_row(tenant: str, kind: str, label: str | None, problem: str, cost: Cost 
         "crashes": 0,
         "revision": 1,
         "cost": cost,
-        "batch": None,
     }
 
 

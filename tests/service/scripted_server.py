@@ -120,27 +120,30 @@ def warm_up():
 
 def crash_points():
     """Let the process die before or after a write to the store is committed, when a file says so."""
+    from service.jobs.batches.store import BatchStore
     from service.jobs.store import JobStore
 
-    def deadly(name):
-        write = getattr(JobStore, name)
+    def deadly(name, store=JobStore, called=""):
+        write = getattr(store, name)
 
         def wrapped(self, *args, **kwargs):
-            die_if_told(f"crash-before-{name}")
+            die_if_told(f"crash-before-{called}{name}")
             written = write(self, *args, **kwargs)
             if written is not None:  # a lane that asks and gets nothing has written nothing
-                die_if_told(f"crash-after-{name}")
+                die_if_told(f"crash-after-{called}{name}")
             if name == "progress":
                 progress_is_stored.set()
             return written
 
-        setattr(JobStore, name, wrapped)
+        setattr(store, name, wrapped)
 
     for name in (
         "create", "create_once", "take", "progress", "succeed", "fail", "give_up", "cancel", "delete", "requeue",
         "requeue_unfinished", "crashed",
     ):  # fmt: skip
         deadly(name)
+    for name in ("create", "begun", "store", "crashed", "give_up", "cancel"):
+        deadly(name, BatchStore, "batch-")
 
 
 def die_if_told(name):

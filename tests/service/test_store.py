@@ -10,12 +10,13 @@ from alembic.config import Config
 from sqlalchemy import delete, insert, select, text, update
 
 from service.access.keys import api_keys
+from service.jobs.admission import KeyReused, QueueFull, Repeatable
 from service.jobs.database import LaterTables, connect, upgrade
 from service.jobs.leases import LeaseStore
 from service.jobs.schema import StoreClock, hosts, jobs, metadata, now
-from service.jobs.statements import CLAIM, LEASE_S, new_row
+from service.jobs.statements import CLAIM, LEASE_S, MAX_CRASHES, MAX_KILLS, new_row
 from service.jobs.states import FINISHED, MOVES, Cost, Status
-from service.jobs.store import MAX_CRASHES, MAX_KILLS, JobStore, KeyReused, QueueFull, Repeatable
+from service.jobs.store import JobStore
 from tests.cluster.backend import CHOSEN
 
 ANY = tuple(Cost)

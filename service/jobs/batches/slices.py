@@ -122,8 +122,9 @@ class Slices:
         self, batch: BatchRow, plan: Plan, todo: Sequence[int], new: Sequence[Ended]
     ) -> Iterator[tuple[_Stated, str | None]]:
         """The samples as they are stated, each with the answer that the store or the slice has of its like."""
-        for start in range(0, len(todo), LOOKED_UP):
-            group = [_stated(batch, plan, number) for number in todo[start : start + LOOKED_UP]]
+        together = LOOKED_UP if plan.reuse else 1
+        for start in range(0, len(todo), together):
+            group = [_stated(batch, plan, number) for number in todo[start : start + together]]
             answers: dict[str, str] = {}
             if plan.reuse:
                 wanted = {stated.digest for stated in group if stated.digest is not None}

@@ -1,0 +1,143 @@
+"""Which problems a batch is made of, which of them are the same, and what its table tells."""
+
+import csv
+import io
+import json
+
+import numpy as np
+import pytest
+
+from service.jobs.batches import identity
+from service.jobs.batches.plan import NoSuchPlace, Plan
+from service.jobs.batches.reading import sample_id
+from service.jobs.batches.rows import BatchSummary, TableRow
+from service.jobs.batches.sampling import Span, evenly, latin_hypercube
+from service.jobs.batches.table import table_of, unbeaten
+from service.jobs.states import Status
+from synthesis.registry import KINDS, example, parse_problem
+
+PROBLEM = {"kind": "motion", "positions": [{"x": 0.0, "a/b~": 1}, {"x": 1.0}]}
+
+
+def plan(fields, values, grid=True, metrics=(), problem=PROBLEM):
+    return Plan(problem, fields, values, grid, list(metrics), True)
+
+
+def test_evenly_spaced_numbers_are_whole_where_the_ends_and_all_between_are():
+    assert evenly(10, 30, 3) == [10, 20, 30]
+    assert all(isinstance(value, int) for value in evenly(30, 10, 3))
+    assert evenly(0, 1, 3) == [0, 0.5, 1]
+    assert evenly(2.0, 3.0, 1) == [2.0]
+    spaced = evenly(0.1, 0.7, 7)
+    assert (spaced[0], spaced[-1]) == (0.1, 0.7)
+    assert np.allclose(spaced, np.linspace(0.1, 0.7, 7), rtol=1e-15)
+
+
+def test_the_last_field_of_a_grid_varies_fastest():
+    grid = plan(["/seed", "/max_designs"], [[1, 2], [3, 4, 5]])
+    assert [grid.sample(n) for n in range(grid.total)] == [[a, b] for a in (1, 2) for b in (3, 4, 5)]
+
+
+def test_a_field_is_set_and_nothing_else_changes():
+    before = json.dumps(PROBLEM)
+    varied = plan(["/positions/1/x", "/constraints/link_length/min", "/positions/0/a~1b~0"], [[7.0], [1], [None]])
+    assert varied.statement(0) == {
+        "kind": "motion",
+        "positions": [{"x": 0.0, "a/b~": None}, {"x": 7.0}],
+        "constraints": {"link_length": {"min": 1}},
+    }
+    assert json.dumps(PROBLEM) == before
+    assert Plan.read(varied.written()) == varied
+
+
+@pytest.mark.parametrize("field", ["/positions/2/x", "/positions/-1/x", "/positions/01", "/positions/x", "/kind/x"])
+def test_a_pointer_to_nowhere_is_told(field):
+    with pytest.raises(NoSuchPlace):
+        plan([field], [[1.0]]).statement(0)
+
+
+def test_each_part_of_a_range_has_its_sample():
+    ranges, listed = latin_hypercube([Span(-2.0, 6.0), ["a", "b", "c", "d"]], 16, 5)
+    assert sorted(int((value + 2.0) * 2.0) for value in ranges) == list(range(16))
+    assert sorted(listed) == sorted("abcd" * 4)
+    assert latin_hypercube([Span(-2.0, 6.0), ["a", "b", "c", "d"]], 16, 5) == [ranges, listed]
+    assert latin_hypercube([Span(-2.0, 6.0)], 16, 6)[0] != ranges
+
+
+def test_ids_of_samples_follow_that_of_the_batch():
+    batch = "01K6WM2B7Q3W9Z0V5N8XJ4R1TZ"
+    ids = [sample_id(batch, n) for n in range(10_000)]
+    assert ids == sorted(set(ids))
+    assert batch < ids[0]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_equal_problems_have_one_digest(kind, monkeypatch):
+    problem = parse_problem(example(kind))
+    spelt_out = json.loads(problem.model_dump_json())
+    assert identity.digest(parse_problem(dict(reversed(spelt_out.items())))) == identity.digest(problem)
+    assert identity.digest(parse_problem({**example(kind), "seed": 7})) != identity.digest(problem)
+    before = identity.digest(problem)
+    monkeypatch.setattr(identity, "solvers", lambda: "another version")
+    assert identity.digest(problem) != before
+
+
+def test_other_sources_are_another_version(tmp_path, monkeypatch):
+    (tmp_path / "deep").mkdir()
+    (tmp_path / "deep" / "kernel.py").write_text("x = 1\n")
+    monkeypatch.setattr(identity, "files", lambda _package: tmp_path)
+    told = identity.solvers.__wrapped__()
+    assert identity.solvers.__wrapped__() == told
+    (tmp_path / "deep" / "kernel.py").write_text("x = 2\n")
+    assert identity.solvers.__wrapped__() != told
+
+
+def batch(status, total=4, succeeded=0, failed=0):
+    return BatchSummary(
+        "01K6WM2B7Q3W9Z0V5N8XJ4R1TD", "", "motion", None, status, "", "", "", total, succeeded, failed, 0, 1
+    )
+
+
+@pytest.mark.parametrize(
+    ("status", "without"),
+    [("queued", "queued"), ("running", "queued"), ("cancelled", "cancelled"), ("succeeded", "failed")],
+)
+def test_a_row_for_each_sample_whatever_came_of_it(status, without):
+    varied = plan(["/seed"], [[1, 2, 3, 4]], metrics=["size"])
+    ended = [
+        TableRow(1, Status.SUCCEEDED, True, [2, 0.1 + 0.2], None),
+        TableRow(3, Status.FAILED, False, None, '{"detail": "no"}'),
+    ]
+    table = table_of(batch(Status(status)), varied, ended)
+    assert table.columns == ["/seed", "status", "cached", "designs", "size", "job", "error"]
+    assert table.rows[0][:6] == [1, without, False, None, None, None]
+    assert table.rows[1] == [2, "succeeded", True, 2, 0.1 + 0.2, "01K6WM2B7Q3W9Z0V5N8XJ4R1TF", None]
+    assert table.rows[3] == [4, "failed", False, None, None, "01K6WM2B7Q3W9Z0V5N8XJ4R1TH", "no"]
+    read = list(csv.DictReader(io.StringIO(table.as_csv())))
+    assert float(read[1]["size"]) == 0.1 + 0.2
+    assert [row["/seed"] for row in read] == ["1", "2", "3", "4"]
+
+
+def test_values_of_any_type_are_in_the_csv():
+    varied = plan(["/mechanisms", "/label"], [[["fourbar"], None], ['a,"b"\n', "c"]], grid=False)
+    read = list(csv.reader(io.StringIO(table_of(batch(Status.QUEUED, 2), varied, []).as_csv())))
+    assert [row[:2] for row in read[1:]] == [['["fourbar"]', 'a,"b"\n'], ["", "c"]]
+
+
+def test_a_front_is_what_no_other_beats():
+    rng = np.random.default_rng(3)
+    for columns in (1, 2, 3):
+        table = rng.integers(0, 12, (200, columns)).astype(float)
+        beaten = [((table <= row).all(axis=1) & (table < row).any(axis=1)).any() for row in table]
+        assert unbeaten(table) == [n for n, is_beaten in enumerate(beaten) if not is_beaten]
+    assert unbeaten(np.empty((0, 2))) == []
+
+
+def test_rows_without_a_number_are_not_weighed_up():
+    varied = plan(["/seed"], [[1, 2, 3, 4]], metrics=["size", "min_transmission_angle"])
+    figures = [[1, 5.0, 30.0], [0, None, None], [1, 4.0, 40.0], [1, 6.0, 50.0]]
+    ended = [TableRow(n, Status.SUCCEEDED, False, told, None) for n, told in enumerate(figures)]
+    table = table_of(batch(Status.SUCCEEDED, succeeded=4), varied, ended)
+    assert [row[0] for row in table.front(["size"], ["min_transmission_angle"]).rows] == [3, 4]
+    assert [row[0] for row in table.front(["size"], []).rows] == [3]
+    assert [row[0] for row in table.front(["min_transmission_angle"], []).rows] == [1]

@@ -1,0 +1,262 @@
+"""Batches in the store: each sample is there once, whatever dies, comes late or is cancelled in between."""
+
+from datetime import UTC, datetime, timedelta
+
+import pytest
+from sqlalchemy import select, update
+
+from service.jobs.admission import KeyReused, QueueFull, Repeatable
+from service.jobs.batches.plan import Plan
+from service.jobs.batches.reading import sample_id
+from service.jobs.batches.rows import Ended, Share
+from service.jobs.batches.store import SHARES, BatchStore
+from service.jobs.database import connect, upgrade
+from service.jobs.leases import LeaseStore
+from service.jobs.schema import jobs, metadata, samples
+from service.jobs.statements import MAX_CRASHES, MAX_KILLS
+from service.jobs.states import Cost, Status
+from service.jobs.store import JobStore
+from tests.cluster.backend import CHOSEN
+
+
+@pytest.fixture(scope="module")
+def engine(tmp_path_factory):
+    engine = connect(CHOSEN.store_url(tmp_path_factory.mktemp("batches")), durable=True)
+    upgrade(engine)
+    yield engine
+    engine.dispose()
+
+
+@pytest.fixture
+def store(engine):
+    with engine.begin() as connection:
+        for table in metadata.sorted_tables:
+            connection.execute(table.delete())
+    return BatchStore(engine)
+
+
+@pytest.fixture
+def single(engine, store):
+    return JobStore(engine)
+
+
+def made(store, total=3, tenant="", cost=Cost.SHORT, max_queued=1000, repeatable=None):
+    plan = Plan({"kind": "motion"}, ["/seed"], [list(range(total))], True, ["size"], True)
+    return store.create(
+        tenant=tenant, kind="motion", label="many", plan=plan, cost=cost, max_queued=max_queued, repeatable=repeatable
+    )[0]
+
+
+def ended(number, status=Status.SUCCEEDED, digest=None, cached=False):
+    return Ended(
+        number, status, "2026-01-01T00:00:00.000000Z", "2026-01-01T00:00:01.000000Z", cached=cached, digest=digest,
+        figures="[1, 2.5]", result=f'{{"of": {number}}}',
+    )  # fmt: skip
+
+
+def take(single, mark):
+    return single.take(mark, [Cost.SHORT, Cost.LONG])
+
+
+def numbers(engine):
+    with engine.connect() as connection:
+        return list(connection.execute(select(samples.c.number).order_by(samples.c.number)).scalars())
+
+
+def test_a_batch_is_dealt_into_shares_that_are_no_jobs_of_clients(store, single):
+    batch = made(store, 100)
+    claims = [take(single, f"m{n}") for n in range(SHARES + 1)]
+    assert claims.pop() is None
+    shares = [Share.read(claim.problem) for claim in claims]
+    assert {claim.batch for claim in claims} == {batch.id}
+    assert [n for share in shares for n in range(share.first, share.end)] == list(range(100))
+    assert single.page(tenant="", limit=10) == []
+    assert single.get(claims[0].job_id) is None
+    assert single.summaries([claims[0].job_id]) == {}
+
+
+def test_a_slice_is_stored_whole_and_its_share_goes_on(store, single, engine):
+    batch = made(store, 5 * SHARES)
+    claim = take(single, "a")
+    share = Share.read(claim.problem)
+    assert store.begun(batch.id).status is Status.RUNNING
+    left = Share(2, share.end)
+    assert store.store(batch, claim.job_id, claim.attempt, left, [ended(0), ended(1, Status.FAILED)])
+    assert not store.store(batch, claim.job_id, claim.attempt, left, [ended(2)]), "the share is another's now"
+    assert numbers(engine) == [0, 1]
+    now = store.get(batch.id)
+    assert (now.status, now.succeeded, now.failed, now.done) == (Status.RUNNING, 1, 1, 2)
+    assert store.ended(batch, 0, 5) == {0, 1}
+    job = single.get(sample_id(batch.id, 0))
+    assert (job.status, job.label, job.batch, job.cached) == (Status.SUCCEEDED, "many", batch.id, False)
+    assert (job.problem, job.result) == ('{"kind": "motion", "seed": 0}', '{"of": 0}')
+    assert single.summaries([job.id])[job.id].status is Status.SUCCEEDED
+
+
+def test_no_sample_is_stored_twice(store, single, engine):
+    batch = made(store, 1)
+    claim = take(single, "a")
+    assert store.store(batch, claim.job_id, claim.attempt, Share(0, 1), [])
+    again = take(single, "b")
+    assert store.store(batch, again.job_id, again.attempt, None, [ended(0)])
+    assert not store.store(batch, claim.job_id, claim.attempt, None, [ended(0)])
+    assert numbers(engine) == [0]
+
+
+@pytest.mark.parametrize(
+    ("statuses", "whole"),
+    [("ss", "succeeded"), ("sf", "succeeded"), ("ff", "failed")],
+)
+def test_a_batch_ends_with_its_last_sample(store, single, statuses, whole):
+    batch = made(store, 2)
+    for n, status in enumerate(statuses):
+        claim = take(single, f"m{n}")
+        new = ended(Share.read(claim.problem).first, Status.SUCCEEDED if status == "s" else Status.FAILED)
+        assert store.store(batch, claim.job_id, claim.attempt, None, [new])
+    now = store.get(batch.id)
+    assert (now.status, now.done) == (Status(whole), 2)
+    assert now.finished_at is not None
+    assert store.begun(batch.id) is None
+
+
+def test_a_sample_that_kills_its_workers_fails_by_itself(store, single, engine):
+    batch = made(store, 3 * SHARES)
+    for crash in range(MAX_CRASHES):
+        claim = take(single, f"m{crash}")
+        assert store.crashed(claim.job_id, claim.mark, 1, killed=False) is Status.QUEUED
+        again = take(single, f"n{crash}")
+        assert Share.read(again.problem) == Share(0, 3, alone=1), "it comes next, by itself"
+        assert single.requeue(again.job_id, again.mark)
+    claim = take(single, "last")
+    assert store.crashed(claim.job_id, claim.mark, 1, killed=False) is Status.QUEUED
+    assert numbers(engine) == [1]
+    assert single.get(sample_id(batch.id, 1)).status is Status.FAILED
+    again = take(single, "on")
+    assert Share.read(again.problem) == Share(0, 3)
+    assert store.crashed(again.job_id, "another mark", 0, killed=False) is None
+
+
+def test_kills_from_outside_are_forgiven_more_often(store, single, engine):
+    made(store, 1)
+    for kill in range(MAX_KILLS):
+        claim = take(single, f"m{kill}")
+        store.crashed(claim.job_id, claim.mark, None, killed=True)
+        assert numbers(engine) == []
+    claim = take(single, "last")
+    store.crashed(claim.job_id, claim.mark, None, killed=True)
+    assert numbers(engine) == [0]
+
+
+def test_a_sample_that_is_given_up_ends_the_batch_where_it_is_the_last(store, single):
+    batch = made(store, 1)
+    claim = take(single, "a")
+    assert store.give_up(claim.job_id, claim.mark, 0, lambda job_id: f'{{"detail": "{job_id}"}}') is Status.QUEUED
+    now = store.get(batch.id)
+    assert (now.status, now.failed) == (Status.FAILED, 1)
+    assert store.table(now)[0].error == f'{{"detail": "{sample_id(batch.id, 0)}"}}'
+
+
+def test_a_cancelled_batch_takes_no_more(store, single, engine):
+    batch = made(store, 2)
+    claim = take(single, "a")
+    assert len(store.cancel(batch.id)) == 2
+    assert store.cancel(batch.id) is None
+    assert not store.store(batch, claim.job_id, claim.attempt, None, [ended(0)])
+    assert store.crashed(claim.job_id, claim.mark, 0, killed=True) is None
+    assert take(single, "b") is None
+    assert (store.get(batch.id).status, numbers(engine)) == (Status.CANCELLED, [])
+
+
+def test_what_a_lost_share_had_to_do_has_failed(store, single, engine):
+    """As when hosts vanish with it again and again: the recovery gives it up as it would any job."""
+    batch = made(store, 2)
+    claim = take(single, "a")
+    assert store.store(batch, claim.job_id, claim.attempt, None, [ended(0)])
+    lost = take(single, "b")
+    with engine.begin() as connection:
+        connection.execute(update(jobs).where(jobs.c.id == lost.job_id).values(due_at=0.0, crashes=MAX_KILLS))
+    assert LeaseStore(engine).take_back([lost.job_id]) == [(lost.job_id, Status.FAILED)]
+    [now] = store.summaries([batch.id]).values()
+    assert (now.status, now.succeeded, now.failed) == (Status.SUCCEEDED, 1, 1)
+    assert now.revision > store.get(batch.id).revision - 1
+
+
+def test_only_a_finished_batch_is_removed_and_then_with_all_that_it_has(store, single, engine):
+    batch = made(store, 1200)
+    first = take(single, "a")
+    share = Share.read(first.problem)
+    store.store(batch, first.job_id, first.attempt, None, [ended(n) for n in range(share.first, share.end)])
+    other = made(store, 1)
+    assert not store.delete(batch.id)
+    store.cancel(batch.id)
+    assert store.delete(batch.id)
+    assert store.get(batch.id) is None
+    assert numbers(engine) == []
+    assert store.get(other.id) is not None
+    assert take(single, "b").batch == other.id
+
+
+def test_old_batches_are_removed(store, single):
+    old, young = made(store, 1), made(store, 1)
+    store.cancel(old.id)
+    assert store.delete_finished(datetime.now(UTC) - timedelta(days=1)) == 0
+    later = datetime.now(UTC) + timedelta(seconds=1)
+    assert store.delete_finished(later) == 1
+    assert store.delete_finished(later) == 0
+    assert (store.get(old.id), store.get(young.id).id) == (None, young.id)
+
+
+def test_a_request_with_a_key_makes_one_batch(store):
+    key = Repeatable("key", "hash")
+    first = made(store, 2, repeatable=key)
+    assert made(store, 2, repeatable=key).id == first.id
+    assert made(store, 2, tenant="other", repeatable=key).id != first.id
+    with pytest.raises(KeyReused):
+        made(store, 2, repeatable=Repeatable("key", "another"))
+
+
+def test_a_full_queue_takes_no_batch(store, single):
+    single.create(tenant="", kind="motion", label=None, problem="{}")
+    with pytest.raises(QueueFull):
+        made(store, 2, max_queued=1)
+    assert made(store, 2, max_queued=2) is not None
+
+
+def test_single_jobs_do_not_wait_for_the_shares_of_their_tenant(store, single):
+    made(store, 100, tenant="a")
+    mine = single.create(tenant="a", kind="motion", label=None, problem="{}", cost=Cost.SHORT)
+    theirs = single.create(tenant="b", kind="motion", label=None, problem="{}", cost=Cost.SHORT)
+    first = [take(single, f"m{n}").job_id for n in range(3)]
+    assert {mine.id, theirs.id} <= set(first)
+
+
+def test_batches_of_tenants_go_round(store, single):
+    batches = {made(store, 100, tenant=tenant).id: tenant for tenant in ("a", "b")}
+    taken = [batches[take(single, f"m{n}").batch] for n in range(8)]
+    assert [{*taken[n : n + 2]} for n in range(0, 8, 2)] == [{"a", "b"}] * 4
+
+
+def test_a_slice_waits_its_turn_again(store, single):
+    batch = made(store, 2, tenant="a")
+    claim = take(single, "m")
+    store.store(batch, claim.job_id, claim.attempt, Share(0, 1), [])
+    other = made(store, 1, tenant="b")
+    assert {take(single, f"n{n}").batch for n in range(2)} == {batch.id, other.id}
+
+
+def test_answers_are_found_by_digest_and_are_ones_own(store, single):
+    job = single.create(tenant="a", kind="motion", label=None, problem="{}", cost=Cost.SHORT)
+    claim = take(single, "m")
+    single.succeed(job.id, claim.attempt, "{1}", "one")
+    batch = made(store, 2, tenant="a")
+    claim = take(single, "n")
+    store.store(batch, claim.job_id, claim.attempt, None, [ended(0, digest="two"), ended(1, Status.FAILED)])
+    assert store.answers("a", ["one", "two", "three"]) == {"one": "{1}", "two": '{"of": 0}'}
+    assert store.answers("b", ["one", "two"]) == {}
+
+
+def test_pages_of_batches(store):
+    ids = [made(store, 1).id for _ in range(3)]
+    made(store, 1, tenant="other")
+    assert [batch.id for batch in store.page(tenant="", limit=2, before=None)] == ids[:0:-1]
+    assert [batch.id for batch in store.page(tenant="", limit=2, before=ids[1])] == ids[:1]
