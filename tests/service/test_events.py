@@ -12,6 +12,7 @@ from starlette.requests import Request
 
 from service.api import events
 from service.api.errors import Refusal
+from service.api.schemas import list_item
 from service.jobs.database import connect, upgrade
 from service.jobs.notifier import ChangeNotifier
 from service.jobs.poller import PERIOD_S, JobPoller
@@ -246,7 +247,7 @@ def with_poller(store, listen):
 
 
 async def stream(poller, job, seen=None):
-    return events_of(b"".join([text async for text in events._events(poller, job, seen)]).decode())
+    return events_of(b"".join([text async for text in events._events(poller, job, seen, list_item)]).decode())
 
 
 def new_job(store):
@@ -337,7 +338,7 @@ def test_silence_is_broken_by_comments(store, monkeypatch):
 
     async def listen(poller):
         chunks = []
-        async for chunk in events._events(poller, job, None):
+        async for chunk in events._events(poller, job, None, list_item):
             chunks.append(chunk)
             if len(chunks) == 3:
                 store.cancel(job.id)
