@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
 from typing import Any
 
-from service.api.batch_schemas import MOST_SAMPLES, BatchRequest
+from service.api.batch_schemas import MOST_SAMPLES, BatchRequest, Vary
 from service.api.errors import MAX_ERRORS, Refusal, invalid_problem, invalid_request
 from service.jobs.batches.plan import NoSuchPlace, Plan, steps
 from service.jobs.batches.sampling import Span, evenly, latin_hypercube
@@ -17,6 +19,13 @@ from synthesis.registry import KINDS
 
 LOOKED_AT = 100
 """Samples, evenly spread, one of which at least has to state a problem."""
+
+TRIED_BYTES = 4_000_000
+"""Statements that are tried, in bytes of JSON: a second of work. All values of a plan, where its problem is of a usual
+size; of a larger one as many, evenly spread, and :data:`LOOKED_AT` at least."""
+
+TABLE_BYTES = 16 << 20
+"""What the values of all samples may take together, since the table shows them in each row."""
 
 MORE_IS_BETTER = ("min_transmission_angle",)
 LESS_IS_BETTER = ("size",)
@@ -95,12 +104,15 @@ def _faults_of_sampling(body: BatchRequest) -> Iterator[tuple[str, str]]:
         for k, count in enumerate(counts):
             if count != counts[0]:
                 yield f"/vary/{k}", f"In a zip all fields have as many values; the first one has {counts[0]}."
-    if body.sampling == "grid":
-        total = 1
-        for count in counts:
-            total *= count
-        if total > MOST_SAMPLES:
-            yield "/vary", f"These make {total} problems; a batch has {MOST_SAMPLES} at most."
+    total = math.prod(counts) if body.sampling == "grid" else body.samples or counts[0]
+    if total > MOST_SAMPLES:
+        yield "/vary", f"These make {total} problems; a batch has {MOST_SAMPLES} at most."
+    elif total * sum(map(_bytes_of_a_value, body.vary)) > TABLE_BYTES:
+        yield "/vary", f"The values of {total} problems take more than {TABLE_BYTES >> 20} MiB together."
+
+
+def _bytes_of_a_value(varied: Vary) -> float:
+    return 8.0 if varied.values is None else len(json.dumps(varied.values)) / len(varied.values)
 
 
 def _faults_of_metrics(body: BatchRequest, kind: str) -> Iterator[tuple[str, str]]:
@@ -140,7 +152,10 @@ def _require_places(plan: Plan) -> None:
 def _faults_of_values(body: BatchRequest, kind: str, plan: Plan) -> list[tuple[str, str]]:
     """What is wrong with values by themselves: each is tried once."""
     found: dict[tuple[str, str], None] = {}
-    for places, values in _tried(plan):
+    most = max(LOOKED_AT, TRIED_BYTES // len(json.dumps(plan.statement(0))))
+    every = sum(map(len, plan.values)) if plan.grid else plan.total
+    step = -(-every // most)
+    for places, values in islice(_tried(plan), 0, None, step):
         _, faults = well_formed(kind, plan.stated(values))
         for path, detail in faults:
             for k, field in enumerate(plan.fields):

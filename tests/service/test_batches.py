@@ -377,6 +377,22 @@ def test_a_front_is_of_metrics_of_the_batch(scripted, query):
     assert scripted.client.get(f"/v1/batches/{batch['id']}/front?least=size").json()["rows"] == []
 
 
+def test_a_batch_of_large_problems_is_taken_at_once_or_refused(scripted):
+    points = {"kind": "path", "points": [{"x": 1.0 * n, "y": 0.1 * n * n} for n in range(3000)]}
+    vary = [{"field": "/seed", "from": 0, "to": MOST_SAMPLES - 1, "count": MOST_SAMPLES}]
+    began = time.monotonic()
+    answer = scripted.client.post("/v1/batches", json={"problem": points, "vary": vary})
+    assert time.monotonic() - began < SOON_S
+    assert answer.status_code in (202, 422), answer.text
+    if answer.status_code == 202:
+        assert scripted.client.delete(answer.headers["location"]).status_code == 202
+    repeated = [{"field": "/points", "values": [points["points"]]}, *vary]
+    for sampling in ({}, {"sampling": "latin_hypercube", "samples": MOST_SAMPLES}):
+        fields = [{k: v for k, v in varied.items() if not (sampling and k == "count")} for varied in repeated]
+        refused = scripted.client.post("/v1/batches", json={"problem": points, "vary": fields, **sampling})
+        assert (refused.status_code, refused.json()["errors"][0]["path"]) == (422, "/vary")
+
+
 def test_the_largest_batch_is_taken_at_once(scripted):
     ranges = [{"field": f"/positions/{n}/x", "from": 1.0 + n, "to": 1.5 + n, "count": 100} for n in (0, 1)]
     began = time.monotonic()
