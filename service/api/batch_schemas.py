@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, JsonValue, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import to_json
 
 from service.api.schemas import Label, Progress, Timestamp
@@ -54,7 +54,7 @@ class Vary(BaseModel):
         description="JSON pointer into the problem. Objects that are not stated are made, elements of lists are not.",
         examples=["/positions/1/x"],
     )
-    values: Annotated[list[JsonValue], Field(min_length=1, max_length=MOST_SAMPLES)] | None = optional(
+    values: Annotated[list[Any], Field(min_length=1, max_length=MOST_SAMPLES)] | None = optional(
         "The values, of whatever type the field has."
     )
     from_: Bound | None = optional("The first of evenly spaced numbers, or the lower end of a range.", alias="from")
@@ -81,7 +81,7 @@ class BatchRequest(BaseModel):
         title="Batch request", extra="forbid", frozen=True, json_schema_extra={"examples": [EXAMPLE]}
     )
 
-    problem: dict[str, JsonValue] = Field(
+    problem: dict[str, Any] = Field(
         description="A problem as in a job; fields that are varied may be left out.",
         json_schema_extra={"examples": [EXAMPLE["problem"]]},
     )
