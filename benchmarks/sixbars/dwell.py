@@ -44,8 +44,8 @@ LEAST, SUM = 26.0, 66.0
 SOUND, RATIO = 20.0, 8.0
 """Least transmission angle, degrees, and greatest link ratio of a planted sixbar."""
 
-REACH = (60, 120, 180, 240, 300)
-"""Lengths of a single dwell, degrees."""
+REACH, LEASTS = (60, 120, 180, 240, 300), (15.0, 25.0)
+"""Lengths of a single dwell, and least transmission angles, degrees."""
 
 
 def drawn(kind: Kind, carrier: Carrier, turning: Turning, rng: np.random.Generator) -> np.ndarray:
@@ -173,12 +173,11 @@ def table(tasks: int, seed: int) -> None:
         )
     print("\nA single dwell at an end of a stroke or of a swing of 50°: least movement in percent of the way")
     print(
-        f"{'dwell':>6} "
-        + " ".join(f"{f'{kind} {least}°':>14}" for kind in ("rocker", "slider") for least in (15, 25, 35))
+        f"{'dwell':>6} " + " ".join(f"{f'{kind} {least:g}°':>14}" for kind in ("rocker", "slider") for least in LEASTS)
     )
     for wide in REACH:
         row = []
         for shape in ({"type": "rocker", "swing": 50.0}, {"type": "slider", "stroke": 50.0}):
-            for least in (15.0, 25.0, 35.0):
+            for least in LEASTS:
                 row.append(_stillest(wide, shape, least))
         print(f"{wide:5d}° " + " ".join(row))

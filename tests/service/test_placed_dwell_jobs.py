@@ -35,7 +35,7 @@ TASKS = {
     "unequal, short links, in a box": {
         **UNEQUAL,
         "constraints": {"link_length": {"max": 60.0}},
-        "space": {"box": {"x": [-300.0, 300.0], "y": [-300.0, 300.0]}},
+        "space": {"box": [[-300.0, -300.0], [300.0, 300.0]]},
     },
 }
 

@@ -12,26 +12,22 @@ from synthesis.dispatch import solve
 from synthesis.kinds.indexing.design import SphericalGenevaMechanism
 from synthesis.kinds.indexing.on_sphere import _edges, measured_on_sphere
 from synthesis.registry import examples, parse_problem
+from tests.campaign import further
 
 STATED = {"kind": "indexing", "drive": "geneva_external", "rollers": 1, "speed_rpm": 60.0, "load_inertia": 0.02}
 
 
-@pytest.mark.parametrize(
-    ("fields", "by", "check"),
-    [
-        (
-            {"stations": 8, "roller_diameter": 6.0, "wall_thickness": 1.0, "clearances": {"locking": 1.0}},
-            "play",
-            "play",
-        ),
-        (
-            {"drive": "geneva_spherical", "stations": 6, "roller_diameter": 6.0, "clearances": {"locking": 1.5}},
-            "locked_rest",
-            "locked_at_rest",
-        ),
-    ],
-    ids=["play", "locked"],
-)
+HELD: list[tuple[dict[str, Any], str, str]] = [
+    ({"stations": 8, "roller_diameter": 6.0, "wall_thickness": 1.0, "clearances": {"locking": 1.0}}, "play", "play"),
+    (
+        {"drive": "geneva_spherical", "stations": 6, "roller_diameter": 6.0, "clearances": {"locking": 1.5}},
+        "locked_rest",
+        "locked_at_rest",
+    ),
+]
+
+
+@pytest.mark.parametrize(("fields", "by", "check"), further(HELD, HELD[1:]))
 def test_a_size_is_found_at_which_the_wheel_is_held(fields: dict[str, Any], by: str, check: str) -> None:
     """The walls alone would do with less, but the wheel would rattle, or be held for too short."""
     (design,) = solve(parse_problem({**STATED, **fields})).designs
