@@ -1,0 +1,104 @@
+"""Kernels of sixbar function generators: against the core and differences; and descents along curved valleys."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from kinematics.linkage.planar import catalogue
+from kinematics.linkage.planar.drive import drive
+from synthesis.kinds.function import sixbar_kernels as kernels
+from synthesis.kinds.function import sixbar_rows as fit
+from synthesis.kinds.function.sixbar_build import built
+from synthesis.kinds.function.sixbar_followers import followed
+from synthesis.kinds.function.sixbar_search import KINDS, Found
+from synthesis.kinds.function.task import function_task
+from synthesis.numerics.geodesic import follow_valley
+from synthesis.numerics.levenberg import descend
+from tests.synthesis.function_tasks import FunctionProblem
+
+TASK = function_task(
+    FunctionProblem(kind="function", function={"name": "sine", "x": [0.0, 90.0]}, input_range=60.0, output_range=60.0)
+)
+U = np.linspace(0.0, 1.0, 25)
+V = TASK.problem.function.share_along(U)
+
+
+def drawn(kind: int, seed: int) -> Found:
+    """A random sixbar that goes through the whole range with transmission angles of 25°."""
+    rng = np.random.default_rng(seed)
+    own, logs = kernels.OWN[kind], kernels.LOGARITHMIC[kind]
+    name = next(name for name, number in KINDS.items() if number == kind)
+    while True:
+        at = np.zeros(kernels.NUMBERS)
+        at[own] = rng.uniform(-1.5, 1.5, int(own.sum()))
+        at[logs] = np.exp(at[logs] / 2.0)
+        at[[kernels.K, kernels.L]] = math.radians(60.0)
+        at[-1] = rng.uniform(-math.pi, math.pi) if kind == kernels.STEPHENSON_2 else 0.0
+        assembly = int(rng.integers(4))
+        there = followed(kind, assembly, at, U, V)
+        if math.isfinite(there.tau) and np.abs(there.cosines).max() < math.cos(math.radians(25.0)):
+            at[-1] = there.tau if kind == kernels.STEPHENSON_2 else 0.0
+            return Found(name, assembly, at, 0.0)
+
+
+def stepped(found: Found, n: int, step: float) -> np.ndarray:
+    at = found.at.copy()
+    at[n] = at[n] * math.exp(step) if kernels.LOGARITHMIC[KINDS[found.type], n] else at[n] + step
+    return at
+
+
+@pytest.mark.parametrize("kind", range(3))
+@pytest.mark.parametrize("seed", range(3))
+def test_errors_and_transmission_are_those_of_the_driven_linkage(kind, seed):
+    found = drawn(kind, seed)
+    mechanism, dials = built(TASK, found)
+    there = followed(kind, found.assembly, found.at, U, V)
+    joints = {name: complex(*place) for name, place in mechanism.skeleton.joints.items()}
+    linkage = catalogue.sixbar(found.type, joints)
+    inputs = np.radians(dials.input.place + dials.input.scale * (90.0 * U - dials.input.at))
+    motion = drive(linkage, inputs - math.tau * round((inputs[0] - float(linkage.reference_input)) / math.tau), order=0)
+    assert motion.valid.all()
+    wanted = np.radians(dials.output.place + dials.output.scale * (np.sin(np.radians(90.0 * U)) - dials.output.at))
+    off = np.angle(np.exp(1j * (motion.angles["output"][0] - wanted - there.errors)))
+    assert np.abs(off).max() < 1e-9
+    least = min(float(np.abs(sine).min()) for sine in motion.sines.values())
+    assert math.sqrt(1.0 - np.abs(there.cosines).max() ** 2) == pytest.approx(least, abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", range(3))
+def test_derivatives_are_those_of_differences(kind):
+    found, step = drawn(kind, 7), 1e-6
+    there = followed(kind, found.assembly, found.at, U, V, 0.0)
+    for n in np.flatnonzero(kernels.OWN[kind]):
+        ends = [followed(kind, found.assembly, stepped(found, n, side), U, V) for side in (step, -step)]
+        assert there.slopes[:, n] == pytest.approx((ends[0].errors - ends[1].errors) / (2.0 * step), abs=1e-6)
+        by = (ends[0].cosines - ends[1].cosines) / (2.0 * step)
+        assert there.by_cosine[:, :, n] == pytest.approx(by, abs=2e-4)
+
+
+def test_a_curved_valley_is_followed_to_its_end():
+    # The sixbar's own function, from a fifth of its lengths away: the least squares are nothing at the end of a valley.
+    found = drawn(kernels.WATT_2, 2)
+    kind = KINDS[found.type]
+    there = followed(kind, found.assembly, found.at, U, V)
+    points = np.stack([U, V + there.errors / found.at[kernels.L], np.full(len(U), 0.2), np.zeros(len(U))])
+    start = found.at.copy()
+    logs = kernels.LOGARITHMIC[kind]
+    start[logs] = np.log(start[logs])
+    open_ = kernels.OWN[kind].copy()
+    open_[[kernels.K, kernels.L]] = False
+    start[open_] += np.random.default_rng(0).normal(0.0, 0.2, int(open_.sum()))
+    setting = np.zeros(fit.SETTING)
+    setting[[fit.KIND, fit.ASSEMBLY, fit.SIGN_K, fit.SIGN_L]] = kind, found.assembly, 1.0, 1.0
+    setting[[fit.COSINE, fit.RATIO]], setting[fit.FREE :] = (2.0, 99.0), open_
+    ends = []
+    for method, more in ((descend, (300, 1e-15)), (follow_valley, (300,))):
+        x = start.copy()
+        ended = method(fit.rows, x, points, setting, np.zeros(1), np.zeros(1), fit.most_rows(len(U)), *more)
+        ends.append(ended[0] if isinstance(ended, tuple) else ended)
+    # Half a sum of squares: 1e-20 is a rms error of a ten-billionth of a radian.
+    assert ends[1] < 1e-20
+    assert ends[1] < 1e-3 * ends[0]
