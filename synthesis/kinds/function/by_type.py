@@ -159,7 +159,8 @@ def _summary(problem: FunctionProblem, sifting: Sifting[FunctionDesign]) -> str:
     best = min(sifting.passed, key=lambda design: error_of(problem, design))
     error = best.structural_error
     if problem.aim == "precision":
-        return f"{weighed}; {len(sifting.passed)} that differ meet all pairs."
+        count = len(sifting.passed)
+        return f"{weighed}; {f'{count} that differ meet' if count > 1 else 'one meets'} all pairs."
     if problem.aim == "least_squares":
         text = f"the least root mean square structural error found is {error.rms:.4g}° (at most {error.max:.4g}°)"
     else:
