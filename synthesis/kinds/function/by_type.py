@@ -90,7 +90,10 @@ def solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResul
     progress(0.9, f"verifying the best of {search.weighed} sixbars")
 
     def verified(n: int) -> FunctionDesign | None:
-        return verify_function(problem, *built(task, found[n]))
+        try:
+            return verify_function(problem, *built(task, found[n]))
+        except (ValueError, ZeroDivisionError, OverflowError):
+            return None  # it stands on a toggle, where no place is a number
 
     rows = range(min(len(found), ATTEMPTS * problem.max_designs))
     tried = sifting.sift(rows, verified, enough=problem.max_designs)

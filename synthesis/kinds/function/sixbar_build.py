@@ -139,9 +139,11 @@ def _closed(q: Complex, o: Complex, d: float, e: float, *, left: bool) -> Comple
     """The joint of a dyad from pins q and pivots o, to the left of the way from q to o or to the right."""
     across = o - q
     r = np.abs(across)
-    along = (d * d + r * r - e * e) / (2.0 * r)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = (d * d + r * r - e * e) / (2.0 * r)
     height = np.sqrt(np.maximum(d * d - along * along, 0.0))
-    return np.asarray(q + across / r * (along + (1j if left else -1j) * height))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(q + across / r * (along + (1j if left else -1j) * height))
 
 
 def _second_stephenson(found: Found, first: float, ends: tuple[float, float]) -> dict[str, Complex]:
