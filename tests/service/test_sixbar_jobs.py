@@ -145,6 +145,24 @@ def test_auto_looks_for_sliders_too(client):
     assert answered(client, positions=poses, mechanisms="auto")["result"] == without
 
 
+def test_a_list_has_no_inverted_slider_crank_that_it_does_not_name(client):
+    pivot, offset = 60.0 + 15.0j, 12.0
+    # A line of the body, 12 from the crank's pin, slides through the pivot.
+    pins = [25.0 * cmath.rect(1.0, angle) for angle in (0.3, 0.8, 1.2, 1.6, 2.1)]
+    turns = [cmath.phase(pivot - z) - math.asin(offset / abs(pivot - z)) for z in pins]
+    poses = [{"x": z.real, "y": z.imag, "angle": math.degrees(turn)} for z, turn in zip(pins, turns, strict=True)]
+    poses = [
+        pose | {"x": pose["x"] + 20.0 * math.cos(turn), "y": pose["y"] + 20.0 * math.sin(turn)}
+        for pose, turn in zip(poses, turns, strict=True)
+    ]
+    plain = {k: v for k, v in TASK.items() if k != "mechanisms"} | {"positions": poses}
+    without = finished(client, plain)["result"]
+    assert {design["mechanism"]["type"] for design in passed({"result": without})} == {"inverted_slider_crank"}
+    listed = answered(client, positions=poses, mechanisms=["fourbar", "slider_crank"])["result"]
+    assert {design["mechanism"]["type"] for design in listed["designs"]} <= {"fourbar", "slider_crank"}
+    assert answered(client, positions=poses, mechanisms="auto")["result"] == without
+
+
 def _as_of(sort: str, least: float) -> SimpleNamespace:
     """As much of a design as decides what is offered."""
     angle = SimpleNamespace(min_transmission_angle=least)
@@ -359,6 +377,7 @@ def test_room_planes_and_forces_hold_together(client):
             "/problem/output_side/fixed_pivot",
         ),
         ({"mechanisms": ["fourbar"], "output_side": {"dyad": "PR"}}, "/problem/mechanisms"),
+        ({"mechanisms": ["slider_crank"], "output_side": {"dyad": "RP"}}, "/problem/mechanisms"),
         ({"mechanisms": ["slider_crank"], "output_side": {"dyad": "RR"}}, "/problem/mechanisms"),
     ],
 )

@@ -89,7 +89,7 @@ def joined(problem: MotionProblem, simple: MotionResult, found: MotionResult) ->
 
 def _without_simple(problem: MotionProblem, simple: MotionResult, sixbars: list[LinkageDesign]) -> str:
     """What is said where no linkage of two dyads passed: that none exists, only where that is proven of all of them."""
-    every = problem.mechanisms == "auto" or {"fourbar", "slider_crank"} <= set(problem.mechanisms or ())
+    every = problem.mechanisms == "auto"  # no list has inverted slider-cranks
     # Five positions that are met exactly leave a few dyads, sliders among them. With fewer, sliders are drawn.
     exact = len(problem.positions) == MOST_HELD and all(limits == (0.0, 0.0, 0.0) for limits in problem.limits)
     if every and exact and simple.search.complete:

@@ -7,7 +7,7 @@ import math
 from typing import Any, Literal
 
 import numpy as np
-from pydantic import ConfigDict, Field
+from pydantic import ConfigDict, Field, PrivateAttr
 
 from synthesis.kinds.motion.contradictions import contradictions_of
 from synthesis.kinds.motion.stated_dyads import DriverDyad, DyadChoices, GroundLine
@@ -192,6 +192,8 @@ class MotionProblem(LinkageProblem):
         description="What is fixed of the chain of three links that sixbars are made of; with a list of sixbars alone.",
     )
 
+    _kinds_of_slider: tuple[Literal["PR", "RP"], ...] = PrivateAttr(default=("PR", "RP"))
+
     @property
     def sixbars(self) -> tuple[Sixbar, ...]:
         """The types of sixbars that are looked for."""
@@ -213,7 +215,15 @@ class MotionProblem(LinkageProblem):
                 sides = {side: getattr(self, side).model_copy(update={"dyad": "RR"}) for side in SIDES}
             elif "fourbar" not in named:
                 sides = {"output_side": self.output_side.model_copy(update={"dyad": "PR"})}
-        return self.model_copy(update={"mechanisms": None, "chain": None, **sides})
+        part = self.model_copy(update={"mechanisms": None, "chain": None, **sides})
+        if isinstance(named, list):
+            part._kinds_of_slider = ("PR",)
+        return part
+
+    @property
+    def kinds_of_slider(self) -> tuple[Literal["PR", "RP"], ...]:
+        """Sliders that may take the place of pins: a line of the body through a pivot only where no types are named."""
+        return self._kinds_of_slider
 
     @property
     def few_enough(self) -> bool:

@@ -174,8 +174,7 @@ def beside_sliders(
 
 def _asking_for_sliders(problem: MotionProblem) -> Iterator[tuple[Literal["PR", "RP"], MotionProblem]]:
     """The problem with a slider asked for on each side that is open to it."""
-    kinds: tuple[Literal["PR", "RP"], ...] = ("PR", "RP")
-    for kind in kinds:
+    for kind in problem.kinds_of_slider:
         for name in ("output_side", "input_side") if kind == "PR" else ("output_side",):
             choices: DyadChoices = getattr(problem, name)
             if choices.dyad != "any" or problem.ground_line is not None:

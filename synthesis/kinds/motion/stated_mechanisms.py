@@ -78,6 +78,9 @@ def _of_types(problem: Any) -> list[Contradiction]:
     slider = problem.slider is not None
     if slider and "slider_crank" not in stated:
         return [Contradiction("/mechanisms", "a side has a slider; take slider_crank into mechanisms")]
+    if problem.slider == "RP":
+        detail = "a line of the body slides, which makes an inverted slider-crank: no list names that; leave it out"
+        return [Contradiction("/mechanisms", detail)]
     if "fourbar" not in stated and not slider and problem.output_side.dyad == "RR":
         return [Contradiction("/mechanisms", "both sides have pins; take fourbar into mechanisms")]
     return []

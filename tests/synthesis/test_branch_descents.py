@@ -1,0 +1,70 @@
+"""Descents of sixbars that hold their branch: their rates, and that what arrives does so on one branch, in order."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from benchmarks.sixbars.motion import SIXBARS, anyhow, false_claim, sound, within_a_box
+from synthesis.dispatch import solve
+from synthesis.kinds.motion import branch_rows as rows
+from synthesis.kinds.motion.chain_kernels import MAKES, O4, Q1, Q2, A, B, J, signed_sine
+from synthesis.registry import parse_problem
+
+INF = np.inf
+LIMITS = {
+    "positions": {},
+    "angles": {rows.COSINE: 0.6},
+    "sizes": {rows.REACH: 1.5, rows.SHORTEST: 0.7, rows.LONGEST: 1.4, rows.RATIO: 1.5},
+    "pivots": {n: (-0.5, 0.5)[n % 2 == 0] for n in range(rows.FIXED_BOX, rows.ROOM)},
+    "room": {n: (-0.5, 0.5)[n % 2 == 0] for n in range(rows.ROOM, rows.SETTINGS)},
+}
+
+
+def drawn(rng: np.random.Generator, make: int, limits: dict[int, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Unknowns, later positions (some with tolerances) and a setting."""
+    x = rng.normal(size=rows.JOINTS + 4)
+    x[rows.JOINTS :] = np.log(rng.uniform(0.1, 0.5, 4))
+    z = x[: rows.JOINTS].view(complex)
+    setting = np.array([INF if n % 2 == 0 else -INF for n in range(rows.SETTINGS)])
+    setting[: rows.FIXED_BOX] = make, 1.0, 0.0, 0.0, 1.0, INF, 0.0, INF, INF, 0.1, 0.2
+    setting[[rows.FIRST_SIDE, rows.SECOND_SIDE]] = np.sign(
+        [signed_sine(z[A], z[O4], z[B]), signed_sine(z[Q1], z[Q2], z[J])]
+    )
+    for place, limit in limits.items():
+        setting[place] = limit
+    later = np.column_stack([rng.normal(size=(4, 3)), rng.choice([0.0, 0.1], (4, 3))])
+    return x, later, setting
+
+
+@pytest.mark.parametrize("limited", LIMITS)
+def test_rates_are_those_of_differences(limited):
+    rng = np.random.default_rng(3)
+    most, met = rows.most_rows(5), 0
+    for n in range(400):
+        x, later, setting = drawn(rng, n % len(MAKES), LIMITS[limited])
+        values, jacobian = np.zeros(most), np.zeros((most, x.size))
+        count = rows.branch_rows(x, later, setting, values, jacobian)
+        if count < 0:
+            continue
+        step, ends = 1e-6, []
+        for sense in (1.0, -1.0):
+            for k in range(x.size):
+                moved, there = x.copy(), np.zeros(most)
+                moved[k] += sense * step
+                same = rows.branch_rows(moved, later, setting, there, jacobian[:0]) == count
+                ends.append(there if same else np.full(most, np.nan))
+        differences = (np.array(ends[: x.size]) - np.array(ends[x.size :])).T[:count] / (2.0 * step)
+        if np.isfinite(differences).all():
+            met += 1
+            assert np.abs(differences - jacobian[:count]).max() < 1e-6 * (1.0 + np.abs(jacobian[:count]).max())
+    assert met > 30
+
+
+@pytest.mark.parametrize(("draw", "seed"), [(within_a_box, 1), (anyhow, 1)])
+def test_what_arrives_does_so_on_one_branch_in_order(draw, seed):
+    task = draw(np.random.default_rng(seed))
+    problem = parse_problem({"kind": "motion", "positions": task, "max_designs": 2, "mechanisms": SIXBARS})
+    designs = sound(solve(problem))
+    assert designs
+    assert not [fault for design in designs if (fault := false_claim(design, task))]
