@@ -1,0 +1,69 @@
+"""Planted motion: five positions of random sixbars of each type, and for how many a sound one of that type is found.
+
+Planted sixbars close over a random turn of their input, transmit with 20° at least and are no larger than five sizes of
+their task. Each answer is driven once more by its loops.
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+
+import numpy as np
+
+from benchmarks.sixbars.motion import REACH, SIXBARS, SOUND, Task, false_claim, solved, sound, stated
+from synthesis.kinds.motion import branch_rows as rows
+from synthesis.kinds.motion.chain_kernels import O4, Q1, Q2, A, B, J, signed_sine
+from synthesis.kinds.motion.sixbar_makes import MAKES
+
+TASKS = 100
+
+
+def planted(rng: np.random.Generator, make: int) -> Task:
+    """Five positions of a random sixbar."""
+    at, turns = np.empty(6, complex), np.ones(4, complex)
+    while True:
+        z = rng.normal(size=7) + 1j * rng.normal(size=7)
+        setting = np.zeros(rows.SETTINGS)
+        sides = math.copysign(1.0, signed_sine(z[A], z[O4], z[B])), math.copysign(1.0, signed_sine(z[Q1], z[Q2], z[J]))
+        setting[[rows.MAKE, rows.FIRST_SIDE, rows.SECOND_SIDE]] = make, *sides
+        lengths, inverses = np.empty(4), np.empty(4, complex)
+        rows.dimensions(z, lengths, inverses)
+        inputs = np.concatenate([[0.0], np.cumsum(rng.uniform(0.2, 1.0, 4))])
+        inputs *= rng.uniform(math.radians(40.0), math.radians(300.0)) / inputs[-1]
+        points, angles, most = [], [], 0.0
+        for angle in [*np.linspace(0.0, inputs[-1], 80), *inputs]:
+            most = max(most, *map(abs, rows.driven(z, lengths, inverses, setting, angle, at, turns)))
+            if most > math.cos(math.radians(SOUND)):
+                break
+            points.append(at[5])
+            angles.append(np.degrees(np.angle(turns[3])))
+        else:
+            met = np.array(points[-5:])
+            size = np.abs(met[:, None] - met).max()
+            spread = np.abs(np.append(z, 0.0)[:, None] - np.append(z, 0.0)).max()
+            if spread <= REACH * size:
+                return stated(100.0 * met, np.array(angles[-5:]))
+
+
+def table(tasks: int, seed: int) -> None:
+    print(f"{'planted':<16}{'tasks':>6}{'found %':>9}{'CPU s':>8}{'most':>7}{'false':>7}")
+    for kind in SIXBARS:
+        rng = np.random.default_rng(seed)
+        of_kind = [n for n, make in enumerate(MAKES) if make.type == kind]
+        found = wrong = driven = 0
+        times = []
+        for n in range(tasks):
+            task = planted(rng, of_kind[n % len(of_kind)])
+            result, processor, _ = solved(task, mechanisms=[kind])
+            designs = sound(result)
+            found += bool(designs)
+            times.append(processor)
+            for design in designs:
+                driven, wrong = driven + 1, wrong + bool(false_claim(design, task))
+        median = statistics.median(times)
+        share = 100.0 * found / tasks
+        print(
+            f"{kind:<16}{tasks:>6}{share:>9.1f}{median:>8.2f}{max(times):>7.1f}{wrong:>4}/{driven}",
+            flush=True,
+        )
