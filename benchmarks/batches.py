@@ -1,13 +1,13 @@
 """How fast a batch is solved, what others wait for meanwhile, and what becomes of it when it is killed.
 
-    python -m benchmarks.batches [--samples 2000] [--jobs 60]
+    python -m benchmarks.batches [--samples 2000] [--jobs 60] [--at-once]
 
-A real server with two workers and one in reserve is started on a free loopback port, with the keys of two tenants. One
-posts a batch of Norton's Problem 5-26 with a position varied, none of them like another and none reused. First alone:
-jobs a second by the clock and, which other work of the machine does not change, processor time of the server and of its
-workers. Then again, while the other tenant posts single jobs, one after the other, and waits for each; so does the
-first one, beside its own batch. Then again, with a worker killed twice and the server once in the middle; every sample
-has to be there once in the end.
+First what a problem costs in one process. Then a real server with two workers and one in reserve is started on a free
+loopback port, with the keys of two tenants. One posts a batch of Norton's Problem 5-26 with a position varied, none of
+them like another and none reused. First alone: jobs a second by the clock and, which other work of the machine changes
+less, processor time of the server and of its workers. Then again, while the other tenant posts single jobs, one after
+the other, and waits for each; so does the first one, beside its own batch. Then again, with a worker killed twice and
+the server once in the middle; every sample has to be there once in the end.
 """
 
 from __future__ import annotations
@@ -24,6 +24,16 @@ import httpx
 
 from benchmarks.fairness import RESERVE, WORKERS, Tenant, key_of, row, short_jobs
 from benchmarks.service import PROBLEM_5_26, spent, until_settled
+from service.jobs import faults
+from service.jobs.batches.plan import Plan
+from service.jobs.batches.sampling import evenly
+from service.jobs.batches.slices import Slices
+from service.jobs.batches.store import BatchStore
+from service.jobs.database import connect, upgrade
+from service.jobs.solving import Solving
+from service.jobs.states import Cost
+from service.jobs.store import JobStore
+from synthesis import dispatch
 from tests.service.running import RunningServer, until
 
 TARGET_PER_S = 300.0
@@ -104,18 +114,52 @@ def killed(folder: Path, server: RunningServer, key: str, samples: int, settings
         again.stop()
 
 
+def in_one_process(samples: int) -> None:
+    """What claiming, solving and storing cost without servers and other processes: once anew, once from the store."""
+    dispatch.warm_up()
+    with tempfile.TemporaryDirectory() as folder:
+        engine = connect(f"sqlite:///{folder}/store.sqlite3", durable=False)
+        upgrade(engine)
+        store, jobs = BatchStore(engine), JobStore(engine)
+        slices = Slices(store, Solving(), faults.out_of_memory(1))
+        spent_s = []
+        for reuse in (False, False, True):  # what is loaded at first use counts for the first one only
+            plan = Plan(PROBLEM_5_26, ["/positions/1/x"], [evenly(170.0, 180.0, samples)], True, ["size"], reuse)
+            began = time.process_time()
+            batch, _ = store.create(
+                tenant="", kind="motion", label=None, plan=plan, cost=Cost.SHORT, max_queued=1000, repeatable=None
+            )
+            while (claim := jobs.take(str(len(spent_s)), [Cost.SHORT])) is not None:
+                slices.run(claim, batch.id)
+            spent_s.append(time.process_time() - began)
+            done = store.get(batch.id)
+            assert done is not None
+            assert (done.succeeded, done.cached) == (samples, samples if reuse else 0), done
+        engine.dispose()
+    print(
+        f"{samples} problems in one process: {1e3 * spent_s[1] / samples:.2f} ms of processor each, claimed, solved "
+        f"and stored; {1e3 * spent_s[2] / samples:.2f} ms where the store has the answer",
+        flush=True,
+    )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0] if __doc__ else None)
     parser.add_argument("--samples", type=int, default=2000)
     parser.add_argument("--jobs", type=int, default=60, help="single jobs of each tenant beside a batch")
+    parser.add_argument(
+        "--at-once", action="store_true", help="do not wait until the workers have loaded all kinds, which counts then"
+    )
     given = parser.parse_args()
     settings = {"log_level": "warning", "rate_limit": "off", "workers": WORKERS, "reserve": RESERVE}
+    in_one_process(given.samples)
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         keys = {tenant: key_of(folder, tenant) for tenant in ("guest", "other")}
         server = RunningServer(folder, **settings)
         try:
-            until_settled(server, WORKERS + RESERVE)
+            if not given.at_once:
+                until_settled(server, WORKERS + RESERVE)
             batches = Batches(server, keys["other"])
             tenants = {
                 "of another tenant": Tenant(server.url, keys["guest"]),
