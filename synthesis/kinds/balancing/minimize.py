@@ -35,9 +35,12 @@ ROUNDS = 10
 CLOSE = 1e-4
 """Share of the value by which the grid may exceed the program when nothing more is added."""
 
-KEPT = 1e-8
-"""Share of a cap by which the grid may exceed it. The bound is of weights that keep the cap, and the least value falls
-by many times the share by which a cap is exceeded."""
+KEPT = 1e-6
+"""Share of a cap by which the grid may exceed it, some of the solver's tolerances."""
+
+SENSITIVE = 10.0
+"""How many times the share by which a cap is exceeded the value may lie below the bound, which is of weights that keep
+the cap; the bound is lowered by it."""
 
 TOLERANCE = 1e-7
 """Share of the dual value, and of the sum of the weights of the objective, that the solver's tolerance may be off: the
@@ -198,6 +201,8 @@ def minimum(setting: Setting, task: Task) -> Minimum:
             break
     if best is None:
         return Minimum([], bound, np.zeros(len(setting.units)), used, {}, solved=False)
+    if bound <= least * (1.0 + SENSITIVE * KEPT):
+        bound = min(bound, least)
     return Minimum(_weights(setting, task, best), bound, best, used, {}, solved=True)
 
 
@@ -209,7 +214,7 @@ def _add(levels: list[Level], reached: list[Real], found: Answer, used: dict[str
             continue
         most = promised * (1.0 + 0.1 * CLOSE)
         if level.cap is not None:
-            most = min(most, level.cap * (1.0 + KEPT))
+            most = min(most, level.cap * (1.0 + 0.01 * KEPT))
         peaks = np.flatnonzero((of >= np.roll(of, 1)) & (of >= np.roll(of, -1)) & (of > most))
         for at in peaks[np.argsort(-of[peaks])][:MOST_ADDED].tolist():
             if at not in used[level.name]:

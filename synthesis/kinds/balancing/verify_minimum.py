@@ -32,7 +32,7 @@ GAP = 5e-3
 KEPT = 1e-3
 """Share of a greatest radius of gyration by which one may be above it."""
 
-CAPPED = 1e-6
+CAPPED = 2e-6
 """Share of a cap by which a peak may be above it."""
 
 NEARLY_NOTHING = 1e-6
