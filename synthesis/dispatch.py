@@ -136,7 +136,7 @@ def compile_kind(name: str) -> None:
 
 
 def compile_demands() -> None:
-    """Compile what no example calls: what linkages weigh, how they are made, and how they are steered into a room."""
+    """Compile what no example calls: linkages that weigh, are made, are steered into a room, sixbars of each type."""
     statement = KINDS["motion"].examples[0] | {
         "max_designs": 1,
         "dynamics": {"links": {"density": 1.0, "thickness": 1.0, "width": 1.0}, "speed_rpm": 1.0},
@@ -158,6 +158,14 @@ def compile_demands() -> None:
     solve(KINDS["motion"].problem.model_validate(slides | weighed))
     turns = {"kind": "function", "pairs": [{"input": 20.0 * x, "output": 9.0 * x + x * x} for x in range(4)]}
     solve(KINDS["function"].problem.model_validate(turns | weighed))
+    sixbars = {"mechanisms": ["stephenson_2", "stephenson_3"], "max_designs": 1}
+    sine = {
+        "kind": "function",
+        "function": {"name": "sine", "x": [0.0, 90.0]},
+        "input_range": 60.0,
+        "output_range": 60.0,
+    }
+    solve(KINDS["function"].problem.model_validate(sine | sixbars))
 
 
 def _load(name: str) -> None:

@@ -251,6 +251,7 @@ def test_jobs_and_batches_are_listed_by_themselves(scripted):
     assert not any(job["id"] in ids for job in listed)
 
 
+@pytest.mark.campaign
 @pytest.mark.embedded
 def test_a_batch_outlives_its_server(tmp_path):
     key = made_key(tmp_path, "acme")

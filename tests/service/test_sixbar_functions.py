@@ -206,7 +206,10 @@ def test_what_cannot_be_is_refused_at_its_field(client, more, path):
 
 @pytest.mark.parametrize(
     "more",
-    [{"mechanism": "slider_crank", "output_range": 50.0}, {"zeros": {"input": 30.0}, "criterion": "least_squares"}],
+    [
+        pytest.param({"mechanism": "slider_crank", "output_range": 50.0}, marks=pytest.mark.campaign),
+        {"zeros": {"input": 30.0}, "criterion": "least_squares"},
+    ],
 )
 def test_auto_says_where_it_has_no_sixbars(client, more):
     auto, plain = (answered(client, max_designs=1, **more, **types)["result"] for types in ({"mechanisms": "auto"}, {}))

@@ -154,7 +154,7 @@ class FunctionProblem(LinkageProblem):
                     "function": {"name": "logarithm", "x": [1.0, 10.0]},
                     "input_range": 60.0,
                     "output_range": 60.0,
-                    "mechanisms": ["watt_2", "stephenson_2", "stephenson_3"],
+                    "mechanisms": ["watt_2"],
                     "constraints": {"max_link_ratio": 10.0, "min_transmission_angle": 30.0},
                     "max_designs": 2,
                 },
