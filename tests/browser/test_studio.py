@@ -187,6 +187,15 @@ def test_a_fault_stands_at_its_field(studio):
     assert page.locator("[aria-invalid]").count() == 0
 
 
+def without_empty(value, example):
+    """A statement without objects that say nothing, but for those of the example."""
+    if not isinstance(value, dict) or not isinstance(example, dict):
+        return value
+    return {
+        name: without_empty(part, example.get(name)) for name, part in value.items() if part != {} or name in example
+    }
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_form_changes_nothing_that_nobody_edits(kept_studio, kind):
     page = kept_studio.page
@@ -197,8 +206,7 @@ def test_the_form_changes_nothing_that_nobody_edits(kept_studio, kind):
             "form => form.querySelectorAll('details').forEach(one => { one.open = true; })"
         )
         page.fill('[data-path="/problem/max_designs"]', "7")
-        problem = {name: value for name, value in stated(page).items() if value != {} or name in example}
-        assert problem == {**example, "max_designs": 7}
+        assert without_empty(stated(page), example) == {**example, "max_designs": 7}
 
 
 def test_a_link_restores_a_job(studio):
