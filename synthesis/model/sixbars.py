@@ -10,6 +10,15 @@ from synthesis.model.linkages import skeleton, to_point
 Links = Mapping[str, tuple[str, ...]]
 """The joints on each link by its name; P is on the link that carries the body."""
 
+IN_WORDS: Mapping[str, str] = {
+    "watt_1": "Watt's sixbar of the first kind",
+    "watt_2": "Watt's sixbar of the second kind",
+    "stephenson_1": "Stephenson's sixbar of the first kind",
+    "stephenson_2": "Stephenson's sixbar of the second kind",
+    "stephenson_3": "Stephenson's sixbar of the third kind",
+}
+"""What a sentence calls each type."""
+
 
 def lengths_of(joints: Mapping[str, complex], links: Links) -> dict[str, float]:
     """Lengths between the first two joints of each link under its name.

@@ -21,6 +21,7 @@ from synthesis.kinds.function.sixbar_search import SixbarSearch
 from synthesis.kinds.function.task import function_task
 from synthesis.kinds.function.verification import verify_function
 from synthesis.model.kind import Progress, part_of
+from synthesis.model.sixbars import IN_WORDS
 from synthesis.outcome.sifting import DEFECTS, LENGTHS, OUTRANKED, Sifting
 from synthesis.outcome.simplest import both_searches, offered_beside, offering, passing, transmits
 
@@ -168,5 +169,4 @@ def _summary(problem: FunctionProblem, sifting: Sifting[FunctionDesign]) -> str:
         text = f"the least root mean square structural error found is {error.rms:.4g}° (at most {error.max:.4g}°)"
     else:
         text = f"the least greatest structural error found is {error.max:.4g}°"
-    name = best.mechanism.type.replace("_", " ")
-    return f"{weighed}; {text}, of a {name}; no proof that none is better."
+    return f"{weighed}; {text}, by {IN_WORDS[best.mechanism.type]}; no proof that none is better."
