@@ -63,7 +63,7 @@ class Batches:
         until_s = time.monotonic() + LONGEST_S
         while (batch := self.get(batch_id))["status"] in ("queued", "running"):
             assert time.monotonic() < until_s, batch
-            time.sleep(0.25)
+            time.sleep(0.25)  # between two questions, whose answers cost the server what is measured
         return batch
 
     def jobs(self, batch_id: str) -> list[str]:

@@ -102,9 +102,8 @@ def test_dwells_at_other_places_are_refused_by_the_verification() -> None:
 def test_no_rest_counts_for_two_places() -> None:
     """One long rest at the low end is not also one a little above it, and two demanded there are not apart."""
     problem, result = answered("unequal")
-    both = problem.model_copy(
-        update={"dwells": [problem.dwells[0], problem.dwells[0].model_copy(update={"at": 0.02})]}  # type: ignore[index]
-    )
+    low = problem.dwells[0]
+    both = problem.model_copy(update={"dwells": [low, low.model_copy(update={"at": 0.02})]})
     design = verify_dwell(both, result.designs[0].mechanism)
     assert design is not None
     assert "dwells_apart" in {check.name for check in design.verification.checks if not check.passed}

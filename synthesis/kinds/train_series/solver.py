@@ -115,9 +115,14 @@ def _summary(
     if accepted:
         first = accepted[0]
         parts = " × ".join(f"{unit.ratio.value:.6g}" for unit in first.mechanism.units).replace("-", "−")
-        exact = "exactly" if first.metrics.error == 0.0 else f"with an error of {100.0 * first.metrics.error:.4g} %"
+        ratio = first.mechanism.ratio.value
+        exact = (
+            f"is exactly {problem.ratio}"
+            if first.metrics.error == 0.0
+            else f"is {ratio:.8g} instead of {problem.ratio}, an error of {100.0 * first.metrics.error:.4g} %"
+        ).replace("-", "−")
         alike = f"; {found.ties:,} series have the least error" if found.ties > 1 else ""
-        return f"{parts} reaches {problem.ratio} {exact}; {covered}{alike}."
+        return f"{parts} {exact}; {covered}{alike}."
     for k, catalogue in enumerate(catalogues, 1):
         if not len(catalogue.value):
             return f"There is no such series: no train keeps the demands on unit {k}."
