@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import to_json
 from starlette.concurrency import run_in_threadpool
 
-from service.api import errors, etag
+from service.api import errors
 from service.api.batch_plans import MORE_IS_BETTER, by_default, plan_of
 from service.api.batch_schemas import (
     EXAMPLE,
@@ -28,6 +28,7 @@ from service.api.events import event_schema, followed
 from service.api.guard import GuardedRoute, Tenant
 from service.api.idempotency import KEY, key_reused, repeatable
 from service.api.jobs import ULID, cursor_of, id_of_cursor, queue_full
+from service.api.replies import as_json, unless_known
 from service.api.state import Batches, BatchPoller
 from service.jobs.admission import KeyReused, QueueFull
 from service.jobs.batches.desk import BatchDesk
@@ -105,8 +106,8 @@ async def create_batch(
         raise queue_full() from None
     headers = {"Location": f"/v1/batches/{batch.id}"}
     if batch.status.finished:
-        return _json(_shown(batch), 200, headers)
-    return _json(_shown(batch), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
+        return as_json(_shown(batch), 200, headers)
+    return as_json(_shown(batch), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
 
 
 class BatchFilter(BaseModel):
@@ -131,7 +132,7 @@ async def list_batches(desk: Batches, tenant: Tenant, filter_: Annotated[BatchFi
     page = await desk.page(tenant=tenant, limit=filter_.limit + 1, before=before)
     shown = page[: filter_.limit]
     cursor = cursor_of(shown[-1].id) if len(page) > filter_.limit else None
-    return _json(to_json({"batches": [batch_item(batch) for batch in shown], "next_cursor": cursor}))
+    return as_json(to_json({"batches": [batch_item(batch) for batch in shown], "next_cursor": cursor}))
 
 
 @router.get(
@@ -156,10 +157,7 @@ async def get_batch(
 ) -> Response:
     """The batch as it stands."""
     batch = await _batch_of(desk, tenant, batch_id)
-    current = etag.tag(batch.revision)
-    if etag.matches(request.headers.getlist("if-none-match"), current):
-        return Response(status_code=304, headers={"ETag": current})
-    return _json(_shown(batch), headers={"ETag": current})
+    return unless_known(request, batch.revision, lambda: _shown(batch))
 
 
 @router.delete(
@@ -179,7 +177,7 @@ async def delete_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response
     batch = await desk.cancel_or_delete(tenant, batch_id) if ULID.fullmatch(batch_id) else None
     if batch is None:
         raise not_found(NO_BATCH)
-    return Response(status_code=204) if batch == "deleted" else _json(_shown(batch), 202)
+    return Response(status_code=204) if batch == "deleted" else as_json(_shown(batch), 202)
 
 
 @router.get(
@@ -192,7 +190,7 @@ async def delete_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response
 async def tabulate_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response:
     """A row for each problem, in the order of the samples, ended or not."""
     _, table = await _tabulated(desk, tenant, batch_id)
-    return _json(await run_in_threadpool(to_json, {"columns": table.columns, "rows": table.rows}))
+    return as_json(await run_in_threadpool(to_json, {"columns": table.columns, "rows": table.rows}))
 
 
 @router.get(
@@ -255,7 +253,7 @@ async def weigh_up_batch(
         if not usual:
             raise invalid_request([("/query/least", "Name what is to be least, or greatest.")])
     front = await run_in_threadpool(table.front, least, greatest)
-    return _json(to_json({"columns": front.columns, "rows": front.rows, "least": least, "greatest": greatest}))
+    return as_json(to_json({"columns": front.columns, "rows": front.rows, "least": least, "greatest": greatest}))
 
 
 @following.get(
@@ -311,7 +309,3 @@ def _listed(names: Sequence[str]) -> str:
 
 def _shown(batch: BatchRow) -> bytes:
     return whole_batch(batch, Plan.read(batch.plan))
-
-
-def _json(content: bytes, status: int = 200, headers: dict[str, str] | None = None) -> Response:
-    return Response(content, status_code=status, headers=headers, media_type="application/json")

@@ -10,12 +10,13 @@ from fastapi import APIRouter, Body, Header, Query, Request, Response
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from pydantic_core import to_json
 
-from service.api import errors, etag
+from service.api import errors
 from service.api.body import JsonRoute
 from service.api.errors import Refusal, invalid_problem, invalid_request, not_found
 from service.api.guard import Tenant
 from service.api.idempotency import KEY, key_reused, repeatable
 from service.api.prefer import wait_seconds
+from service.api.replies import as_json, unless_known
 from service.api.schemas import Job, JobList, JobRequest, list_item, whole_job
 from service.api.state import Desk
 from service.jobs.admission import KeyReused, QueueFull
@@ -147,8 +148,8 @@ async def create_job(
         raise queue_full() from None
     headers = {"Location": f"/v1/jobs/{job.id}"}
     if not job.status.finished:
-        return _json(whole_job(job), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
-    return _json(whole_job(job), 200, {**headers, "Preference-Applied": "wait"} if wait_s > 0 else headers)
+        return as_json(whole_job(job), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
+    return as_json(whole_job(job), 200, {**headers, "Preference-Applied": "wait"} if wait_s > 0 else headers)
 
 
 @router.get(
@@ -170,7 +171,7 @@ async def list_jobs(desk: Desk, tenant: Tenant, filter_: Annotated[JobFilter, Qu
     shown = page[: filter_.limit]
     more = len(page) > filter_.limit
     listed = {"jobs": [list_item(job) for job in shown], "next_cursor": cursor_of(shown[-1].id) if more else None}
-    return _json(to_json(listed))
+    return as_json(to_json(listed))
 
 
 @router.get(
@@ -195,10 +196,7 @@ async def get_job(
 ) -> Response:
     """The job as it stands."""
     job = await job_of(desk, tenant, job_id)
-    current = etag.tag(job.revision)
-    if etag.matches(request.headers.getlist("if-none-match"), current):
-        return Response(status_code=304, headers={"ETag": current})
-    return _json(whole_job(job), headers={"ETag": current})
+    return unless_known(request, job.revision, lambda: whole_job(job))
 
 
 @router.delete(
@@ -226,7 +224,7 @@ async def delete_job(desk: Desk, tenant: Tenant, job_id: str) -> Response:
         ) from None
     if job is None:
         raise not_found(NO_JOB)
-    return Response(status_code=204) if job == "deleted" else _json(whole_job(job), 202)
+    return Response(status_code=204) if job == "deleted" else as_json(whole_job(job), 202)
 
 
 def queue_full() -> Refusal:
@@ -265,7 +263,3 @@ def id_of_cursor(cursor: str) -> str:
     if not ULID.fullmatch(job_id):
         raise invalid_request([("/query/cursor", "This is not a cursor that the service has given out.")])
     return job_id
-
-
-def _json(content: bytes, status: int = 200, headers: dict[str, str] | None = None) -> Response:
-    return Response(content, status_code=status, headers=headers, media_type="application/json")

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, TypeVar
 
-from sqlalchemy import Connection, Engine
+from sqlalchemy import ColumnElement, Connection, Engine, Table, select
 from sqlalchemy.exc import IntegrityError, SQLAlchemyError
 
 from service.jobs.database import unreachable
@@ -90,3 +90,26 @@ def once(make: Callable[[], T], made: Callable[[], T | None]) -> tuple[T, bool]:
             if isinstance(refusal, QueueFull):
                 raise
             # What held the key has been removed since.
+
+
+def made_by(
+    engine: Engine, table: Table, columns: Iterable[ColumnElement[Any]], tenant: str, repeatable: Repeatable
+) -> Sequence[Any] | None:
+    """The columns of what the same request has made in the table already; None where it has made nothing.
+
+    Raises
+    ------
+    KeyReused
+        When another request of the tenant has used the key.
+    """
+    query = select(*columns, table.c.id, table.c.request_hash).where(
+        table.c.tenant == tenant, table.c.idempotency_key == repeatable.key
+    )
+    with engine.connect() as connection:
+        row = connection.execute(query).one_or_none()
+    if row is None:
+        return None
+    *found, made, request_hash = row
+    if request_hash != repeatable.request_hash:
+        raise KeyReused(made)
+    return found

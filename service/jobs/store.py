@@ -16,7 +16,7 @@ from typing import Any
 from sqlalchemy import Connection, Engine, delete, func, select, text, update
 from ulid import ULID
 
-from service.jobs.admission import KeyReused, Repeatable, once, surely
+from service.jobs.admission import Repeatable, made_by, once, surely
 from service.jobs.batches.reading import sample_as_job, samples_as_jobs
 from service.jobs.database import QUEUE_LOCK
 from service.jobs.schema import QUEUED, Claim, JobRow, JobSummary, as_stored, jobs, now
@@ -133,16 +133,8 @@ class JobStore:
         return JobRow(**{name: row[name] for name in COLUMNS})
 
     def _made_by(self, tenant: str, repeatable: Repeatable) -> JobRow | None:
-        query = select(*WHOLE, jobs.c.request_hash).where(
-            jobs.c.tenant == tenant, jobs.c.idempotency_key == repeatable.key
-        )
-        with self._engine.connect() as connection:
-            row = connection.execute(query).one_or_none()
-        if row is None:
-            return None
-        if row.request_hash != repeatable.request_hash:
-            raise KeyReused(row.id)
-        return JobRow(*_values(row[:-1]))
+        row = made_by(self._engine, jobs, WHOLE, tenant, repeatable)
+        return None if row is None else JobRow(*_values(row))
 
     def get(self, job_id: str) -> JobRow | None:
         """The job, or None where there is none; a problem of a batch that has ended is one, too."""

@@ -1,5 +1,8 @@
 import pytest
 
+from service.jobs.database import connect, upgrade
+from service.jobs.schema import metadata
+from tests.cluster.backend import CHOSEN
 from tests.service.running import SCRIPTED, RunningServer
 
 
@@ -22,3 +25,21 @@ def scripted(tmp_path_factory):
 @pytest.fixture
 def client(server):
     return server.client
+
+
+@pytest.fixture(scope="module")
+def engine(tmp_path_factory):
+    """A store of its own for a file of tests."""
+    engine = connect(CHOSEN.store_url(tmp_path_factory.mktemp("store")), durable=True)
+    upgrade(engine)
+    yield engine
+    engine.dispose()
+
+
+@pytest.fixture
+def emptied(engine):
+    """The same without a row."""
+    with engine.begin() as connection:
+        for table in metadata.sorted_tables:
+            connection.execute(table.delete())
+    return engine

@@ -10,29 +10,16 @@ from service.jobs.batches.plan import Plan
 from service.jobs.batches.reading import sample_id
 from service.jobs.batches.rows import Ended, Share
 from service.jobs.batches.store import SHARES, BatchStore
-from service.jobs.database import connect, upgrade
 from service.jobs.leases import LeaseStore
-from service.jobs.schema import jobs, metadata, samples
+from service.jobs.schema import jobs, samples
 from service.jobs.statements import MAX_CRASHES, MAX_KILLS
 from service.jobs.states import Cost, Status
 from service.jobs.store import JobStore
-from tests.cluster.backend import CHOSEN
-
-
-@pytest.fixture(scope="module")
-def engine(tmp_path_factory):
-    engine = connect(CHOSEN.store_url(tmp_path_factory.mktemp("batches")), durable=True)
-    upgrade(engine)
-    yield engine
-    engine.dispose()
 
 
 @pytest.fixture
-def store(engine):
-    with engine.begin() as connection:
-        for table in metadata.sorted_tables:
-            connection.execute(table.delete())
-    return BatchStore(engine)
+def store(emptied):
+    return BatchStore(emptied)
 
 
 @pytest.fixture

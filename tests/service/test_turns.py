@@ -7,13 +7,10 @@ from dataclasses import dataclass
 import pytest
 from sqlalchemy.exc import OperationalError
 
-from service.jobs.database import connect, upgrade
-from service.jobs.schema import metadata
 from service.jobs.states import Cost
 from service.jobs.store import JobStore
 from service.jobs.turns import ASK_PERIOD_S, PATIENCE_S, Turns
 from synthesis.registry import KINDS, parse_problem
-from tests.cluster.backend import CHOSEN
 from tests.service.running import PROBLEM, SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT, NATIVE, STEPS
 from tests.service.test_access import client_with, post
@@ -31,20 +28,9 @@ class Seat:
     begun: bool = True
 
 
-@pytest.fixture(scope="module")
-def engine(tmp_path_factory):
-    engine = connect(CHOSEN.store_url(tmp_path_factory.mktemp("turns")), durable=True)
-    upgrade(engine)
-    yield engine
-    engine.dispose()
-
-
 @pytest.fixture
-def store(engine):
-    with engine.begin() as connection:
-        for table in metadata.sorted_tables:
-            connection.execute(table.delete())
-    return JobStore(engine)
+def store(emptied):
+    return JobStore(emptied)
 
 
 def made(store, cost, count=1, tenant=""):

@@ -17,7 +17,7 @@ from typing import Any
 from sqlalchemy import Connection, Engine, case, delete, exists, insert, select, update
 from ulid import ULID
 
-from service.jobs.admission import KeyReused, Repeatable, once, surely
+from service.jobs.admission import Repeatable, made_by, once, surely
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.reading import sample_id
 from service.jobs.batches.rows import BatchRow, BatchSummary, Ended, Share, TableRow
@@ -117,16 +117,8 @@ class BatchStore:
         return batch, [share["id"] for share in shares] if new else []
 
     def _made_by(self, tenant: str, repeatable: Repeatable) -> BatchRow | None:
-        query = select(*_WHOLE, batches.c.request_hash).where(
-            batches.c.tenant == tenant, batches.c.idempotency_key == repeatable.key
-        )
-        with self._engine.connect() as connection:
-            row = connection.execute(query).one_or_none()
-        if row is None:
-            return None
-        if row.request_hash != repeatable.request_hash:
-            raise KeyReused(row.id)
-        return BatchRow(*_values(row[:-1]))
+        row = made_by(self._engine, batches, _WHOLE, tenant, repeatable)
+        return None if row is None else BatchRow(*_values(row))
 
     def get(self, batch_id: str) -> BatchRow | None:
         """The batch, or None where there is none."""
