@@ -9,14 +9,54 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
-from synthesis.model.answer import Search
+from synthesis.model.answer import Result, Search
+from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.outcome.sifting import OUTRANKED, Verified
 
 Design = TypeVar("Design", bound=Verified)
+Answer = TypeVar("Answer", bound=Result[Any])
 
 SOUND = 20.0
 """Degrees of transmission angle that a linkage is to have where the client demands none."""
+
+HALF = 0.5
+"""Share of a simpler linkage's error that one of more links may have at most to be offered beside it."""
+
+
+def simplest_first(
+    simple: Callable[[Progress], Answer] | None,
+    sixbars: Callable[[Progress], Answer] | None,
+    alone: Callable[[Any], bool],
+    joined: Callable[[Answer, Answer], Answer],
+    progress: Progress,
+    unlooked: str = "",
+) -> Answer:
+    """The answer of the simpler types where one of its designs stands alone, else that of both sorts as one.
+
+    Parameters
+    ----------
+    simple, sixbars : callable or None
+        Solve for each sort; None where it is not looked for, not both.
+    alone : callable
+        Whether a design that keeps all demands is so good that nothing else is looked for.
+    joined : callable
+        Both answers as one.
+    progress : callable
+        Told how far the work is.
+    unlooked : str
+        What the summary says where sixbars are not looked for.
+    """
+    if simple is None:
+        assert sixbars is not None
+        return sixbars(progress)
+    if sixbars is None:
+        result = simple(progress)
+        return result.model_copy(update={"summary": f"{result.summary} {unlooked}".rstrip()})
+    plain = simple(part_of(progress, 0.0, 0.4))
+    if any(alone(design) for design in passing(plain.designs)):
+        return plain
+    return joined(plain, sixbars(part_of(progress, 0.4, 1.0)))
 
 
 def passing(designs: Sequence[Design]) -> list[Design]:
@@ -40,6 +80,43 @@ def offered_beside(
         if sort and len(kept) > 1 and not any(design is one for design in kept for one in sort):
             kept[-1] = next(design for design in order if any(design is one for one in sort))
     return kept
+
+
+def as_one(
+    most: int,
+    answers: tuple[Answer, Answer],
+    offered: Sequence[Design],
+    of_second: int,
+    told: str,
+    ordered: Callable[[list[Design]], list[Design]],
+) -> Answer:
+    """Two answers as one; what passed and is not offered counts as outranked.
+
+    Parameters
+    ----------
+    most : int
+        Designs in the answer, at most; where there is room, those that failed follow the offered ones.
+    answers : pair of results
+        Of the simpler types, whose other fields are kept, and of the others.
+    offered : sequence of designs
+        Those of both that are offered, in their order.
+    of_second : int
+        How many of them are of the second answer.
+    told : str
+        The sentence before both summaries.
+    ordered : callable
+        The order of designs.
+    """
+    simple, found = answers
+    failed = [one for answer in answers for one in answer.designs if not one.verification.passed]
+    searches = offering(simple.search, len(offered) - of_second), offering(found.search, of_second)
+    return simple.model_copy(
+        update={
+            "designs": [*offered, *ordered(failed)][:most],
+            "search": both_searches(*searches),
+            "summary": " ".join([told, simple.summary, found.summary]),
+        }
+    )
 
 
 def offering(search: Search, count: int) -> Search:

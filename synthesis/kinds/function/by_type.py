@@ -23,16 +23,13 @@ from synthesis.kinds.function.verification import verify_function
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.sixbars import IN_WORDS
 from synthesis.outcome.sifting import DEFECTS, LENGTHS, OUTRANKED, Sifting
-from synthesis.outcome.simplest import both_searches, offered_beside, offering, passing, transmits
+from synthesis.outcome.simplest import HALF, as_one, offered_beside, passing, simplest_first, transmits
 
 Solve = Callable[[FunctionProblem, Progress], FunctionResult]
 
 WELL = 2e-4
 """Share of the output's range that the error of a fourbar may be for no sixbars to be looked for: a hundredth of a
 degree of 50."""
-
-HALF = 0.5
-"""Share of a fourbar's error that a sixbar offered beside it has at most."""
 
 ATTEMPTS = 6
 """Sixbars that are verified at most, for each design wanted."""
@@ -57,16 +54,15 @@ def solve_types(problem: FunctionProblem, simple: Solve, progress: Progress) -> 
         Told how far the work is.
     """
     part = problem.of_simple
-    if part is None:
-        return solve_sixbars(problem.of_sixbars, progress)
-    if not problem.sixbars:
-        result = simple(part, progress)
-        told = f" {NOT_LOOKED_FOR}" if problem.mechanisms == "auto" else ""
-        return result.model_copy(update={"summary": result.summary + told})
-    plain = simple(part, part_of(progress, 0.0, 0.4))
-    if any(transmits(problem, design) and _well(part, design) for design in passing(plain.designs)):
-        return plain
-    return joined(part, plain, solve_sixbars(problem.of_sixbars, part_of(progress, 0.4, 1.0)))
+    answer: FunctionResult = simplest_first(
+        None if part is None else partial(simple, part),
+        partial(solve_sixbars, problem.of_sixbars) if problem.sixbars else None,
+        lambda design: part is not None and transmits(problem, design) and _well(part, design),
+        partial(joined, problem if part is None else part),
+        progress,
+        NOT_LOOKED_FOR if problem.mechanisms == "auto" else "",
+    )
+    return answer
 
 
 def _well(problem: FunctionProblem, design: FunctionDesign) -> bool:
@@ -109,6 +105,7 @@ def solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResul
 
 def joined(problem: FunctionProblem, simple: FunctionResult, found: FunctionResult) -> FunctionResult:
     """The answer of fourbars and that of sixbars as one."""
+    order = partial(ordered, problem)
     plain, better = passing(simple.designs), passing(found.designs)
     sound = [design for design in plain if transmits(problem, design)]
     least = min((error_of(problem, design) for design in sound or plain), default=np.inf)
@@ -117,18 +114,10 @@ def joined(problem: FunctionProblem, simple: FunctionResult, found: FunctionResu
     elif plain:
         angle = max(design.metrics.min_transmission_angle for design in plain)
         better = [design for design in better if design.metrics.min_transmission_angle > angle]
-    offered = offered_beside(problem.max_designs, plain, better, partial(ordered, problem))
+    offered = offered_beside(problem.max_designs, plain, better, order)
     sixbars = [design for design in offered if any(design is one for one in better)]
     told = _told(problem, sound, plain, better, sixbars)
-    failed = [one for result in (simple, found) for one in result.designs if not one.verification.passed]
-    searches = offering(simple.search, len(offered) - len(sixbars)), offering(found.search, len(sixbars))
-    return simple.model_copy(
-        update={
-            "designs": [*offered, *ordered(problem, failed)][: problem.max_designs],
-            "search": both_searches(*searches),
-            "summary": " ".join([told, simple.summary, found.summary]),
-        }
-    )
+    return as_one(problem.max_designs, (simple, found), offered, len(sixbars), told, order)
 
 
 def _told(

@@ -8,15 +8,16 @@ looked for, and those that transmit better are offered beside it.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sixbar_search import solve_sixbars
 from synthesis.kinds.motion.stated_positions import MOST_HELD
-from synthesis.model.kind import Progress, part_of
+from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.outcome.ranking import ranked
-from synthesis.outcome.simplest import both_searches, offered_beside, offering, passing, transmits
+from synthesis.outcome.simplest import as_one, offered_beside, passing, simplest_first, transmits
 
 Solve = Callable[[MotionProblem, Progress], MotionResult]
 
@@ -37,16 +38,15 @@ def solve_types(problem: MotionProblem, two_dyads: Solve, progress: Progress) ->
         Told how far the work is.
     """
     part = problem.of_two_dyads
-    if part is None:
-        return solve_sixbars(problem, problem.sixbars, progress)
-    if not problem.sixbars:
-        result = two_dyads(part, progress)
-        told = f" {MANY}" if problem.mechanisms == "auto" else ""
-        return result.model_copy(update={"summary": result.summary + told})
-    simple = two_dyads(part, part_of(progress, 0.0, 0.4))
-    if any(transmits(problem, design) for design in passing(simple.designs)):
-        return simple
-    return joined(problem, simple, solve_sixbars(problem, problem.sixbars, part_of(progress, 0.4, 1.0)))
+    answer: MotionResult = simplest_first(
+        None if part is None else partial(two_dyads, part),
+        partial(solve_sixbars, problem, problem.sixbars) if problem.sixbars else None,
+        partial(transmits, problem),
+        partial(joined, problem),
+        progress,
+        MANY if problem.mechanisms == "auto" else "",
+    )
+    return answer
 
 
 def joined(problem: MotionProblem, simple: MotionResult, found: MotionResult) -> MotionResult:
@@ -76,15 +76,7 @@ def joined(problem: MotionProblem, simple: MotionResult, found: MotionResult) ->
         else:
             beside = "beside it" if len(sixbars) < len(offered) else "in its place"
             told += f"; sixbars that have more are offered {beside}."
-    failed = [one for result in (simple, found) for one in result.designs if not one.verification.passed]
-    searches = offering(simple.search, len(offered) - len(sixbars)), offering(found.search, len(sixbars))
-    return simple.model_copy(
-        update={
-            "designs": [*offered, *order(failed)][: problem.max_designs],
-            "search": both_searches(*searches),
-            "summary": " ".join([told, simple.summary, found.summary]),
-        }
-    )
+    return as_one(problem.max_designs, (simple, found), offered, len(sixbars), told, order)
 
 
 def _without_simple(problem: MotionProblem, simple: MotionResult, sixbars: list[LinkageDesign]) -> str:

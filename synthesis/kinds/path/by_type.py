@@ -18,15 +18,12 @@ from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.sixbar_search import solve_sixbars
 from synthesis.kinds.path.stated_mechanisms import Simple, simple_of
 from synthesis.model.kind import Progress, part_of
-from synthesis.outcome.simplest import both_searches, offered_beside, offering, passing, transmits
+from synthesis.outcome.simplest import HALF, as_one, offered_beside, passing, transmits
 
 Solve = Callable[[PathProblem, Progress], PathResult]
 
 NEAR = 1e-3
 """Error, as a share of the task's size, at which no better linkage is looked for."""
-
-HALF = 0.5
-"""Share of a simpler linkage's error that one of more links may have at most to be offered beside it."""
 
 NAMES = {"fourbar": "fourbar", "slider_crank": "slider-crank", "geared_fivebar": "geared fivebar", "sixbar": "sixbar"}
 """What the types are called."""
@@ -99,12 +96,4 @@ def joined(problem: PathProblem, simple: PathResult, found: PathResult, before: 
             told += "; max_designs leaves no room for them."
         else:
             told += f" and are offered {'beside it' if len(of_second) < len(offered) else 'in its place'}."
-    failed = [one for result in (simple, found) for one in result.designs if not one.verification.passed]
-    searches = offering(simple.search, len(offered) - len(of_second)), offering(found.search, len(of_second))
-    return simple.model_copy(
-        update={
-            "designs": [*offered, *order(failed)][: problem.max_designs],
-            "search": both_searches(*searches),
-            "summary": " ".join([told, simple.summary, found.summary]),
-        }
-    )
+    return as_one(problem.max_designs, (simple, found), offered, len(of_second), told, order)
