@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
 from synthesis.model.dimension import ANGLE, FORCE, LENGTH, POWER, TORQUE
 from synthesis.model.dynamics import DesignDynamics
@@ -169,6 +169,13 @@ class LinkageProblem(StatedProblem):
         default=None, description="How exactly a shop makes each design, and what it must then still do."
     )
     rank_by: RankBy = "quality"
+
+    _listed_later: bool = PrivateAttr(default=False)
+
+    @property
+    def listed_later(self) -> bool:
+        """Whether more designs are looked for than are listed: what is found is ordered anew, and then cut."""
+        return self._listed_later
 
     @property
     def force_units(self) -> Literal["si", "consistent"]:

@@ -82,6 +82,25 @@ def offered_beside(
     return kept
 
 
+def told_of_offered(problem: LinkageProblem, offered: int, of_second: int) -> str:
+    """How a sentence ends that says what is better of other linkages than of the best simpler one.
+
+    Nothing is added where it is not yet known which designs are listed.
+
+    Parameters
+    ----------
+    problem : LinkageProblem
+        As it is searched for.
+    offered, of_second : int
+        Designs that are offered, and how many of them are those others.
+    """
+    if problem.listed_later:
+        return "."
+    if not of_second:
+        return "; max_designs leaves no room for them."
+    return f" and are offered {'beside it' if of_second < offered else 'in its place'}."
+
+
 def as_one(
     most: int,
     answers: tuple[Answer, Answer],

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import math
 import xml.etree.ElementTree as ET
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from synthesis.kinds.function import by_type
+from synthesis.kinds.function.design import FunctionResult
+from synthesis.model.answer import Search
 from tests.campaign import further
 from tests.oracles.loops import Loops
 from tests.service.answers import finished
@@ -123,6 +127,78 @@ def test_sixbars_are_offered_beside_a_fourbar_and_the_summary_says_so(client, ty
     assert all(error <= 0.5 * errors["fourbar"] for kind, error in errors.items() if kind != "fourbar")
     assert set(errors) - {"fourbar"} <= set(TYPES)
     assert "of the best fourbar's error and are offered beside it." in result["summary"]
+
+
+def test_a_sixbar_in_the_place_of_the_fourbar_is_not_said_to_be_beside_it(client):
+    result = answered(client, mechanisms=["fourbar", "watt_2"], max_designs=1)["result"]
+    assert [design["mechanism"]["type"] for design in result["designs"]] == ["watt_2"]
+    assert "of the best fourbar's error and are offered in its place." in result["summary"]
+    assert "beside" not in result["summary"]
+
+
+@pytest.mark.timeout(300)
+def test_what_is_ordered_by_forces_and_then_cut_is_not_said_to_be_offered(client):
+    result = answered(
+        client,
+        mechanisms=["fourbar", "watt_2"],
+        layout={"link_width": 4.0, "pin_diameter": 2.0, "thickness": 2.0},
+        dynamics={"links": {"density": 1.0, "thickness": 1.0, "width": 1.0}, "speed_rpm": 1.0},
+        constraints={"max_joint_force": 1e-9},
+        rank_by="joint_force",
+    )["result"]
+    assert {design["mechanism"]["type"] for design in result["designs"]} == {"fourbar"}
+    assert "of the best fourbar's error." in result["summary"]
+    assert "offered" not in result["summary"]
+
+
+@pytest.mark.parametrize(
+    ("fourbars", "sixbars", "most", "later", "offered", "told"),
+    [
+        ([(4.0, 30.0)], [(1.0, 30.0), (3.0, 30.0)], 5, False, [1.0, 4.0],
+         "Sixbars have down to 25 % of the best fourbar's error and are offered beside it."),
+        ([(4.0, 30.0)], [(1.0, 30.0)], 1, False, [1.0],
+         "Sixbars have down to 25 % of the best fourbar's error and are offered in its place."),
+        ([(4.0, 30.0)], [(1.0, 30.0)], 40, True, [1.0, 4.0], "Sixbars have down to 25 % of the best fourbar's error."),
+        ([(4.0, 30.0)], [(3.0, 30.0)], 5, False, [4.0],
+         "No sixbar that was found is clearly better than the best fourbar in its error."),
+        ([(4.0, 10.0)], [(5.0, 25.0)], 5, False, [4.0, 5.0],
+         "The best fourbar transmits with 10.0° only; sixbars transmit better and are offered beside it."),
+        ([(4.0, 10.0)], [(5.0, 25.0)], 1, False, [4.0],
+         "The best fourbar transmits with 10.0° only; sixbars transmit better; max_designs leaves no room for them."),
+        ([], [(3.0, 15.0)], 5, False, [3.0], "No fourbar was found; sixbars were."),
+        ([], [], 5, False, [], "Neither a fourbar nor a sixbar was found."),
+    ],
+)  # fmt: skip
+def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbars, sixbars, most, later, offered, told):
+    monkeypatch.setattr(by_type, "ordered", lambda _, designs: sorted(designs, key=_error))
+    monkeypatch.setattr(by_type, "error_of", lambda _, design: _error(design))
+    limits = SimpleNamespace(min_transmission_angle=None)
+    problem = SimpleNamespace(max_designs=most, constraints=limits, listed_later=later)
+    results = [
+        FunctionResult.model_construct(
+            designs=[
+                SimpleNamespace(
+                    metrics=SimpleNamespace(min_transmission_angle=least),
+                    verification=SimpleNamespace(passed=True),
+                    error=error,
+                )
+                for error, least in designs
+            ],
+            search=Search(method="a", complete=False, candidates=9, accepted=len(designs),
+                          rejected={"residual": 9 - len(designs)}, seed=0),
+            summary="",
+        )
+        for designs in (fourbars, sixbars)
+    ]  # fmt: skip
+    answer = by_type.joined(problem, *results)
+    assert [_error(design) for design in answer.designs] == offered
+    assert answer.summary.strip() == told
+    assert answer.search.accepted == len(offered)
+    assert answer.search.candidates == 18 == answer.search.accepted + sum(answer.search.rejected.values())
+
+
+def _error(design) -> float:
+    return design.error
 
 
 @pytest.mark.timeout(300)

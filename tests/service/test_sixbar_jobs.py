@@ -172,15 +172,15 @@ def _as_of(sort: str, least: float) -> SimpleNamespace:
 @pytest.mark.parametrize(
     ("fourbar", "sixbars", "most", "offered", "told"),
     [
-        (10.0, [15.0, 8.0], 5, [15.0, 10.0], "sixbars that have more are offered beside it."),
+        (10.0, [15.0, 8.0], 5, [15.0, 10.0], "sixbars have more and are offered beside it."),
         (10.0, [9.0, 8.0], 5, [10.0], "no sixbar that was found has more."),
-        (10.0, [15.0, 14.0, 13.0], 2, [15.0, 10.0], "sixbars that have more are offered beside it."),
-        (10.0, [15.0], 1, [15.0], "sixbars that have more are offered in its place."),
+        (10.0, [15.0, 14.0, 13.0], 2, [15.0, 10.0], "sixbars have more and are offered beside it."),
+        (10.0, [15.0], 1, [15.0], "sixbars have more and are offered in its place."),
     ],
 )
 def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbar, sixbars, most, offered, told):
     monkeypatch.setattr(by_type, "ranked", lambda designs, _: sorted(designs, key=_least, reverse=True))
-    problem = SimpleNamespace(max_designs=most, rank_by="quality")
+    problem = SimpleNamespace(max_designs=most, rank_by="quality", listed_later=False)
     results = [
         MotionResult.model_construct(
             designs=[_as_of("design", angle) for angle in angles],

@@ -216,7 +216,9 @@ def _as_of(error: float, least: float) -> SimpleNamespace:
 def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbars, sixbars, most, offered, told):
     monkeypatch.setattr(by_type, "order_of", lambda _: lambda designs: sorted(designs, key=_error))
     limits = SimpleNamespace(min_transmission_angle=None)
-    problem = SimpleNamespace(max_designs=most, task_size=100.0, length_unit="mm", constraints=limits)
+    problem = SimpleNamespace(
+        max_designs=most, task_size=100.0, length_unit="mm", constraints=limits, listed_later=False
+    )
     results = [
         PathResult.model_construct(
             designs=[_as_of(*both) for both in designs],

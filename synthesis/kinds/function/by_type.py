@@ -23,7 +23,15 @@ from synthesis.kinds.function.verification import verify_function
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.sixbars import IN_WORDS
 from synthesis.outcome.sifting import DEFECTS, LENGTHS, OUTRANKED, Sifting
-from synthesis.outcome.simplest import HALF, as_one, offered_beside, passing, simplest_first, transmits
+from synthesis.outcome.simplest import (
+    HALF,
+    as_one,
+    offered_beside,
+    passing,
+    simplest_first,
+    told_of_offered,
+    transmits,
+)
 
 Solve = Callable[[FunctionProblem, Progress], FunctionResult]
 
@@ -116,30 +124,26 @@ def joined(problem: FunctionProblem, simple: FunctionResult, found: FunctionResu
         better = [design for design in better if design.metrics.min_transmission_angle > angle]
     offered = offered_beside(problem.max_designs, plain, better, order)
     sixbars = [design for design in offered if any(design is one for one in better)]
-    told = _told(problem, sound, plain, better, sixbars)
+    told = _told(problem, sound, plain, sixbars or better) + (
+        told_of_offered(problem, len(offered), len(sixbars)) if plain and better else ""
+    )
     return as_one(problem.max_designs, (simple, found), offered, len(sixbars), told, order)
 
 
 def _told(
-    problem: FunctionProblem,
-    sound: list[FunctionDesign],
-    plain: list[FunctionDesign],
-    better: list[FunctionDesign],
-    offered: list[FunctionDesign],
+    problem: FunctionProblem, sound: list[FunctionDesign], plain: list[FunctionDesign], better: list[FunctionDesign]
 ) -> str:
-    """What the types have to do with one another, in a sentence."""
+    """What the types have to do with one another, in a sentence; open where there are linkages of both sorts."""
     if not plain:
         return "No fourbar was found; sixbars were." if better else "Neither a fourbar nor a sixbar was found."
-    what = "transmission angle" if not sound else "error"
     if not better:
+        what = "error" if sound else "transmission angle"
         return f"No sixbar that was found is clearly better than the best fourbar in its {what}."
-    if not offered:
-        return f"Sixbars are clearly better in their {what}, for which max_designs leaves no room."
     if not sound:
         angle = max(design.metrics.min_transmission_angle for design in plain)
-        return f"The best fourbar transmits with {angle:.1f}° only; sixbars that transmit better are offered."
-    share = min(error_of(problem, one) for one in offered) / min(error_of(problem, one) for one in sound)
-    return f"Sixbars have down to {100.0 * share:.2g} % of the best fourbar's error and are offered beside it."
+        return f"The best fourbar transmits with {angle:.1f}° only; sixbars transmit better"
+    share = min(error_of(problem, one) for one in better) / min(error_of(problem, one) for one in sound)
+    return f"Sixbars have down to {100.0 * share:.2g} % of the best fourbar's error"
 
 
 def _summary(problem: FunctionProblem, sifting: Sifting[FunctionDesign]) -> str:

@@ -17,7 +17,7 @@ from synthesis.kinds.motion.stated_positions import MOST_HELD
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.outcome.ranking import ranked
-from synthesis.outcome.simplest import as_one, offered_beside, passing, simplest_first, transmits
+from synthesis.outcome.simplest import as_one, offered_beside, passing, simplest_first, told_of_offered, transmits
 
 Solve = Callable[[MotionProblem, Progress], MotionResult]
 
@@ -71,11 +71,8 @@ def joined(problem: MotionProblem, simple: MotionResult, found: MotionResult) ->
         told = f"The best linkage of two dyads has a least transmission angle of {best:.1f}°"
         if not better:
             told += ", and no sixbar that was found has more."
-        elif not sixbars:
-            told += "; sixbars have more, for which max_designs leaves no room."
         else:
-            beside = "beside it" if len(sixbars) < len(offered) else "in its place"
-            told += f"; sixbars that have more are offered {beside}."
+            told += f"; sixbars have more{told_of_offered(problem, len(offered), len(sixbars))}"
     return as_one(problem.max_designs, (simple, found), offered, len(sixbars), told, order)
 
 

@@ -18,7 +18,7 @@ from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.sixbar_search import solve_sixbars
 from synthesis.kinds.path.stated_mechanisms import Simple, simple_of
 from synthesis.model.kind import Progress, part_of
-from synthesis.outcome.simplest import HALF, as_one, offered_beside, passing, transmits
+from synthesis.outcome.simplest import HALF, as_one, offered_beside, passing, told_of_offered, transmits
 
 Solve = Callable[[PathProblem, Progress], PathResult]
 
@@ -92,8 +92,5 @@ def joined(problem: PathProblem, simple: PathResult, found: PathResult, before: 
     offered = offered_beside(problem.max_designs, (sound or plain) if better else plain, better, order)
     of_second = [design for design in offered if any(design is one for one in better)]
     if plain and better:
-        if not of_second:
-            told += "; max_designs leaves no room for them."
-        else:
-            told += f" and are offered {'beside it' if len(of_second) < len(offered) else 'in its place'}."
+        told += told_of_offered(problem, len(offered), len(of_second))
     return as_one(problem.max_designs, (simple, found), offered, len(of_second), told, order)
