@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -74,6 +75,20 @@ def test_dwells_are_solved_drawn_and_driven(client, name):
         assert np.isclose(np.ptp(held), told["error"], rtol=0.3, atol=1e-4 * way)
     analysed = client.post("/v1/analyses", json={"mechanism": design["mechanism"]})
     assert analysed.status_code == 200, analysed.text
+
+
+def test_what_the_summary_tells_of_a_design_is_true_in_any_order(client):
+    layout = {"link_width": 4.0, "pin_diameter": 2.0, "thickness": 2.0}
+    result = finished(client, {**HIGH, "max_designs": 2, "layout": layout, "rank_by": "planes"})["result"]
+    jitters = [design["metrics"]["jitter"] for design in result["designs"]]
+    told = re.search(r"in the (first|stillest) the output moves by (\S+) mm", result["summary"])
+    assert told, result["summary"]
+    assert told[1] == "stillest"
+    assert float(told[2]) <= min(jitters) * 1.05
+    plain = finished(client, {**HIGH, "max_designs": 2})["result"]
+    told = re.search(r"in the first the output moves by (\S+) mm", plain["summary"])
+    assert told, plain["summary"]
+    assert float(told[1]) == pytest.approx(plain["designs"][0]["metrics"]["jitter"], rel=0.05)
 
 
 @pytest.mark.parametrize(

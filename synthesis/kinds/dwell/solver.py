@@ -22,6 +22,7 @@ from synthesis.numerics.narrowing import narrowest
 from synthesis.outcome.placement import put
 from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import OUTRANKED, Sifting, reported
+from synthesis.outcome.usable import usable_first
 from synthesis.proof.measures import link_lengths
 
 LINK_RATIO = 8.0
@@ -268,10 +269,14 @@ def _summary(problem: DwellProblem, sifting: Sifting[DwellDesign]) -> str:
     if not sifting.passed:
         reasons = sifting.listed() or "no curve rests it"
         return f"No dwell sixbar was found that meets every demand ({reasons}); that none exists is not proven."
-    best, count = _ranked(problem, sifting.passed)[0], len(sifting.passed)
+    shown, count = _ranked(problem, sifting.passed), len(sifting.passed)
+    if problem.listed_later:
+        best, which = min(shown, key=lambda design: design.metrics.jitter), "stillest"
+    else:
+        best, which = usable_first(problem, shown[: problem.max_designs]).designs[0], "first"
     widths = " and ".join(f"{rest.width:.1f}°" for rest in best.targets)
     many = f"{count} dwell sixbars" if count > 1 else "One dwell sixbar"
     return (
-        f"{many}; in the first the output moves by {best.metrics.jitter:.2g} {unit} at most while it rests, and keeps "
-        f"within {problem.allowed:.3g} {unit} over {widths} of the crank."
+        f"{many}; in the {which} the output moves by {best.metrics.jitter:.2g} {unit} at most while it rests, and "
+        f"keeps within {problem.allowed:.3g} {unit} over {widths} of the crank."
     )
