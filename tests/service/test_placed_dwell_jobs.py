@@ -117,9 +117,15 @@ def test_what_the_summary_tells_of_a_design_is_true_in_any_order(client):
         ({"dwells": None}, "/problem/dwell_angle"),
         ({"output": {"type": "slider", "stroke": 0.0}}, "/problem/output/stroke"),
         ({"constraints": {"grashof": "double_rocker"}}, "/problem/constraints/grashof"),
+        ({**UNEQUAL, "constraints": {"grashof": "double_crank"}}, "/problem/constraints/grashof"),
     ],
 )
 def test_what_cannot_be_is_refused_at_its_field(client, changed, path):
     answer = client.post("/v1/jobs", json={"problem": {**HIGH, **changed}})
     assert answer.status_code == 422, answer.text
     assert {error["path"] for error in answer.json()["errors"]} == {path}
+
+
+def test_a_class_that_one_of_the_types_can_have_is_not_refused(client):
+    problem = {**UNEQUAL, "mechanism": "auto", "constraints": {"grashof": "double_crank"}}
+    assert client.post("/v1/jobs", json={"problem": problem}).status_code == 202

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from kinematics.compiling import njit
 from kinematics.linkage.fourbar import OPEN, Fourbar, coupler_points
 from synthesis.kinds.dwell.arcs import arcs, lines
-from synthesis.kinds.dwell.outputs import CYCLE, Carrier, Kind, Turning
+from synthesis.kinds.dwell.outputs import CYCLE, Carrier, Kind
+from synthesis.kinds.dwell.problem import Turning
 from synthesis.kinds.dwell.scoring import ROCKER, SLIDER, SLOT, judge
 
 Real = NDArray[np.float64]

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage.fourbar import OPEN, Fourbar, coupler_points
+from synthesis.kinds.dwell.problem import Turning
 from synthesis.numerics.narrowing import Values
 
 Real = NDArray[np.float64]
@@ -30,7 +31,6 @@ Complex = NDArray[np.complex128]
 
 Kind = Literal["rocker", "slider", "slot"]
 Carrier = Literal["coupler", "rocker"]
-Turning = Literal["crank_rocker", "double_crank"]
 
 CYCLE = 72
 """Crank angles of the turn at which the output is looked at."""

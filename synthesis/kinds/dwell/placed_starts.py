@@ -25,7 +25,8 @@ from synthesis.kinds.dwell.candidates import (
     of_two_lines,
     pieces_of,
 )
-from synthesis.kinds.dwell.outputs import CYCLE, SPARE, Carrier, Kind, Turning, points
+from synthesis.kinds.dwell.outputs import CYCLE, SPARE, Carrier, Kind, points
+from synthesis.kinds.dwell.problem import Turning
 from synthesis.kinds.dwell.programs import judge_program
 from synthesis.kinds.dwell.scoring import ROCKER, SLIDER, SLOT
 

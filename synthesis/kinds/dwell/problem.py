@@ -37,6 +37,13 @@ LOW, HIGH = 0.0, 1.0
 """Places of a dwell at the ends of the way, as shares of it."""
 
 
+SixbarType = Literal["pseudo_arc", "straight_slot", "watt_2"]
+"""How an output is kept at rest."""
+
+Turning = Literal["crank_rocker", "double_crank"]
+"""What the fourbar may be that the crank turns through in."""
+
+
 class Wanted(NamedTuple):
     """A dwell that is asked for: rotation of the crank, degrees, and share of the way; None at one of its ends."""
 
@@ -184,20 +191,25 @@ class DwellProblem(LinkageProblem):
         return self.dwells is not None or self.mechanism == "watt_2"
 
     @property
-    def types(self) -> tuple[Literal["pseudo_arc", "straight_slot", "watt_2"], ...]:
+    def types(self) -> tuple[SixbarType, ...]:
         """The types that are to be tried."""
         if self.mechanism != "auto":
             return (self.mechanism,)
-        slot = ("straight_slot",) if self.output.type == "rocker" else ()
-        return ("pseudo_arc", *slot, *(("watt_2",) if self.placed else ()))
+        slot: tuple[SixbarType, ...] = ("straight_slot",) if self.output.type == "rocker" else ()
+        pair: tuple[SixbarType, ...] = ("watt_2",) if self.placed else ()
+        return ("pseudo_arc", *slot, *pair)
 
     @property
-    def turning(self) -> tuple[Literal["crank_rocker", "double_crank"], ...]:
-        """What the fourbar that the crank turns through in may be."""
-        if not self.placed:
-            return ("crank_rocker",)
-        demanded = self.constraints.grashof
-        return tuple(one for one in ("crank_rocker", "double_crank") if demanded in ("any", one))
+    def searches(self) -> tuple[tuple[SixbarType, Turning], ...]:
+        """The types that are to be tried, each with what its fourbar may be, whatever class is demanded."""
+        classes: tuple[Turning, ...] = ("crank_rocker", "double_crank") if self.placed else ("crank_rocker",)
+        return tuple(
+            (name, turning)
+            for name in self.types
+            for turning in classes
+            # In a double crank P comes too near to the pivot of a slotted link.
+            if turning == "crank_rocker" or name != "straight_slot"
+        )
 
     def shortened(self, share: float) -> Self:
         """The same with dwells that are shorter, by a share of each."""
@@ -221,10 +233,9 @@ class DwellProblem(LinkageProblem):
             found.append(Contradiction(field, "too short beside the coordinates of the pivot; move the origin nearer"))
         if self.tolerance is not None and self.tolerance >= self.way:
             found.append(Contradiction("/tolerance", "as far as the output goes; nothing would have to rest"))
-        reason = "the crank turns through: only crank-rockers are searched"
-        if self.placed:
-            reason = "the crank turns through: only crank-rockers and double cranks are searched"
-        classes = ("crank_rocker", "double_crank") if self.placed else ("crank_rocker",)
+        classes = {turning for _, turning in self.searches}
+        searched = "crank-rockers and double cranks" if "double_crank" in classes else "crank-rockers"
+        reason = f"the crank turns through: only {searched} are searched"
         return [*found, *self.constraints.of_another_class(classes, reason)]
 
     def _contradicting_dwells(self) -> list[Contradiction]:

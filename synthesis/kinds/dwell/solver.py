@@ -12,9 +12,9 @@ import numpy as np
 
 from synthesis.kinds.dwell.candidates import Start, starts
 from synthesis.kinds.dwell.design import DwellDesign, DwellResult
-from synthesis.kinds.dwell.outputs import RESTING, Carrier, Kind, Task, Turning, judged
+from synthesis.kinds.dwell.outputs import RESTING, Carrier, Kind, Task, judged
 from synthesis.kinds.dwell.placed_starts import placed_starts
-from synthesis.kinds.dwell.problem import HIGH, LOW, DwellProblem
+from synthesis.kinds.dwell.problem import HIGH, LOW, DwellProblem, Turning
 from synthesis.kinds.dwell.shaped import Sixbar, mechanism_of, with_way
 from synthesis.kinds.dwell.verification import verify_dwell
 from synthesis.model.kind import Progress
@@ -122,9 +122,8 @@ def solve_dwell(problem: DwellProblem, progress: Progress) -> DwellResult:
 def _searches(problem: DwellProblem) -> list[_Search]:
     return [
         _Search(name, KINDS[name, problem.output.type], "rocker" if name == "watt_2" else "coupler", turning)
-        for name in problem.types
-        for turning in problem.turning
-        if turning == "crank_rocker" or name != "straight_slot"  # P comes too near to a slotted link's pivot
+        for name, turning in problem.searches
+        if problem.constraints.grashof in ("any", turning)
     ]
 
 
