@@ -1,11 +1,13 @@
 """The field ``mechanisms`` of kinds that know sixbars: ``auto``, or a list of the types that are looked for.
 
-A kind names its types by a literal of its own; left out, the field changes nothing.
+A kind names its types by a literal of its own, and says what its sixbars cannot keep; left out, the field changes
+nothing. Under ``auto`` all can be stated that can be without it: sixbars are looked for where they can keep it. A list
+is refused at the field that its sixbars cannot keep.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Literal, TypeVar
 
 from synthesis.model.linkage_statement import LinkageProblem
@@ -22,6 +24,26 @@ def named_among(stated: Auto | Sequence[str] | None, every: Sequence[Name]) -> t
     if stated is None:
         return ()
     return tuple(name for name in every if stated == "auto" or name in stated)
+
+
+def looked_for(
+    stated: Auto | Sequence[str] | None, every: Sequence[Name], lacking: Iterable[Contradiction]
+) -> tuple[Name, ...]:
+    """The sixbars that are looked for: those that are wanted, under ``auto`` only where they lack nothing."""
+    return () if stated == "auto" and any(True for _ in lacking) else named_among(stated, every)
+
+
+def refused(
+    stated: Auto | Sequence[str] | None, every: Sequence[str], lacking: Iterable[Contradiction]
+) -> list[Contradiction]:
+    """What a list with sixbars cannot be beside."""
+    return list(lacking) if isinstance(stated, list) and named_among(stated, every) else []
+
+
+def not_looked_for(lacking: Iterable[Contradiction]) -> str:
+    """What is said where ``auto`` has no sixbars, by the fields that they cannot keep."""
+    fields = ", ".join(dict.fromkeys(fault.path.strip("/").replace("/", ".") for fault in lacking))
+    return f"Sixbars were not looked for: they cannot keep {fields}."
 
 
 def beside_sixbars(problem: LinkageProblem) -> Iterator[Contradiction]:

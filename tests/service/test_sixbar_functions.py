@@ -256,28 +256,67 @@ def test_least_squares_are_no_greater_than_those_of_minimax(client):
     assert by["least_squares"]["structural_error"]["rms"] < FOURBARS_BEST / 100.0
 
 
+GRID = {"round": {"length": 0.5, "coordinates": 0.5}}
+ZONE = {"fixed_pivots": {"input": {"circle": {"center": [0.0, 0.0], "radius": 9.0}}}}
+
+
 @pytest.mark.parametrize(
-    ("more", "path"),
+    ("more", "paths"),
     [
-        ({"mechanisms": []}, "/mechanisms"),
-        ({"mechanisms": ["watt_1"]}, "/mechanisms"),
-        ({"mechanisms": "sixbar"}, "/mechanisms"),
-        ({"mechanisms": ["slider_crank"]}, "/mechanisms"),
-        ({"mechanisms": ["watt_2"], "mechanism": "slider_crank", "output_range": 50.0}, "/mechanisms"),
-        ({"mechanisms": ["watt_2"], "zeros": {"input": 10.0}}, "/zeros"),
-        ({"mechanisms": ["watt_2"], "manufacture": {"round": {"length": 0.5}}}, "/manufacture"),
-        (
-            {"mechanisms": ["watt_2"], "space": {"fixed_pivots": {"input": {"box": {"x": [0, 9], "y": [0, 9]}}}}},
-            "/space/fixed_pivots",
-        ),
-        ({"mechanisms": ["watt_2"], "precision_points": 9}, "/precision_points"),
-        ({"mechanisms": "auto", "precision_points": 8}, "/precision_points"),
+        ({"mechanisms": []}, {"/mechanisms"}),
+        ({"mechanisms": ["watt_1"]}, {"/mechanisms", "/mechanisms/0"}),
+        ({"mechanisms": "sixbar"}, {"/mechanisms"}),
+        ({"mechanisms": ["slider_crank"]}, {"/mechanisms"}),
+        ({"mechanisms": ["watt_2"], "mechanism": "slider_crank", "output_range": 50.0}, {"/mechanisms"}),
+        ({"mechanisms": ["watt_2"], "zeros": {"input": 10.0}}, {"/zeros"}),
+        ({"mechanisms": ["watt_2"], "manufacture": GRID}, {"/manufacture"}),
+        ({"mechanisms": ["fourbar", "watt_2"], "manufacture": GRID}, {"/manufacture"}),
+        ({"mechanisms": ["watt_2"], "space": ZONE}, {"/space/fixed_pivots"}),
+        ({"mechanisms": ["stephenson_2"], "constraints": {"grashof": "crank_rocker"}}, {"/constraints/grashof"}),
+        ({"mechanisms": ["watt_2"], "precision_points": 9}, {"/precision_points"}),
+        ({"mechanisms": "auto", "precision_points": 8}, {"/precision_points"}),
     ],
 )
-def test_what_cannot_be_is_refused_at_its_field(client, more, path):
+def test_what_cannot_be_is_refused_at_its_field(client, more, paths):
     answer = client.post("/v1/jobs", json={"problem": SINE | more})
     assert answer.status_code == 422, answer.text
-    assert any(path in str(error) for error in answer.json()["errors"]), answer.text
+    assert {error["path"] for error in answer.json()["errors"]} == {f"/problem{path}" for path in paths}
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"mechanism": "slider_crank", "output_range": 50.0},
+        {"zeros": {"input": 10.0}},
+        {"manufacture": GRID},
+        {"space": ZONE},
+        {"constraints": {"grashof": "crank_rocker"}},
+    ],
+)
+def test_what_is_refused_beside_a_list_is_taken_without_it_and_by_auto(client, more):
+    for types in ({}, {"mechanisms": "auto"}):
+        answer = client.post("/v1/jobs", json={"problem": SINE | more | types})
+        assert answer.status_code == 202, answer.text
+        assert client.delete(f"/v1/jobs/{answer.json()['id']}").status_code in (200, 202, 204)
+
+
+@pytest.mark.timeout(300)
+def test_a_type_without_a_class_is_dropped_where_one_is_demanded(client):
+    mixed = answered(
+        client, mechanisms=["stephenson_2", "watt_2"], constraints={"grashof": "double_crank"}, max_designs=1
+    )["result"]
+    assert {design["mechanism"]["type"] for design in mixed["designs"]} == {"watt_2"}
+    assert {design["metrics"]["grashof"] for design in mixed["designs"]} == {"double_crank"}
+    dropped = "Stephenson's sixbar of the second kind was not looked for"
+    assert dropped in mixed["summary"]
+    types = {"mechanisms": ["fourbar", "stephenson_2"]}
+    plain, beside = (
+        answered(client, constraints={"grashof": "crank_rocker"}, max_designs=1, **more)["result"]
+        for more in ({}, types)
+    )
+    assert beside["designs"] == plain["designs"]
+    assert dropped in beside["summary"]
+    assert dropped not in plain["summary"]
 
 
 @pytest.mark.parametrize(
@@ -285,10 +324,12 @@ def test_what_cannot_be_is_refused_at_its_field(client, more, path):
     [
         pytest.param({"mechanism": "slider_crank", "output_range": 50.0}, marks=pytest.mark.campaign),
         {"zeros": {"input": 30.0}, "criterion": "least_squares"},
+        {"manufacture": GRID},
     ],
 )
 def test_auto_says_where_it_has_no_sixbars(client, more):
     auto, plain = (answered(client, max_designs=1, **more, **types)["result"] for types in ({"mechanisms": "auto"}, {}))
     assert auto["designs"] == plain["designs"]
-    assert "Sixbars were not looked for" in auto["summary"]
+    fields = {"mechanism"} & set(more) or set(more) - {"output_range", "criterion"}
+    assert f"Sixbars were not looked for: they cannot keep {', '.join(fields)}." in auto["summary"]
     assert "Sixbars" not in plain["summary"]

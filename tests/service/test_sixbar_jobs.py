@@ -210,6 +210,23 @@ def test_more_than_five_positions_are_fitted_by_fourbars_under_auto(client):
     assert "Sixbars meet up to five positions; they were not looked for." in result["summary"]
 
 
+@pytest.mark.parametrize(
+    ("stated", "field"),
+    [
+        ({"ground_line": {"point": [0.0, -50.0], "angle": 0.0}}, "ground_line"),
+        ({"input_side": {"fixed_pivot": [40.0, -80.0]}}, "input_side"),
+        ({"manufacture": {"round": {"length": 0.5, "coordinates": 0.5}}}, "manufacture"),
+    ],
+)
+def test_auto_takes_what_sixbars_cannot_keep_and_says_that_it_has_none(client, stated, field):
+    plain = {"kind": "motion", "positions": FIVE[:3], "max_designs": 2, **stated}
+    without = finished(client, plain)["result"]
+    auto = finished(client, plain | {"mechanisms": "auto"})["result"]
+    assert auto["designs"] == without["designs"]
+    assert auto["search"] == without["search"]
+    assert f"Sixbars were not looked for: they cannot keep {field}." in auto["summary"]
+
+
 @pytest.mark.parametrize("types", [["fourbar"], ["slider_crank"]])
 def test_types_of_two_dyads_alone(client, types):
     result = answered(client, positions=FOURBAR_TASK, mechanisms=types)["result"]
@@ -350,7 +367,7 @@ def test_room_planes_and_forces_hold_together(client):
         ({"mechanisms": "fourbar"}, "/problem/mechanisms"),
         ({"input_side": {"fixed_pivot": [0.0, 0.0]}}, "/problem/input_side"),
         ({"output_side": {"dyad": "PR"}}, "/problem/output_side"),
-        ({"mechanisms": "auto", "ground_line": {"point": [0.0, 0.0], "angle": 0.0}}, "/problem/ground_line"),
+        ({"ground_line": {"point": [0.0, 0.0], "angle": 0.0}}, "/problem/ground_line"),
         ({"driver_dyad": True}, "/problem/driver_dyad"),
         ({"manufacture": {"tolerances": {"length": 0.1}}}, "/problem/manufacture"),
         ({"space": {"fixed_pivots": {"input": {"circle": {"center": [0, 0], "radius": 9}}}}}, "/problem/space"),

@@ -247,11 +247,13 @@ def _error(design) -> float:
         ({"mechanisms": "best"}, "/mechanisms"),
         ({"mechanism": "slider_crank"}, "/mechanism"),
         ({"gear_ratio": 2.0}, "/gear_ratio"),
-        ({"mechanisms": "auto", "placement_free": ["size"]}, "/placement_free"),
+        ({"placement_free": ["size"]}, "/placement_free"),
         ({"constraints": {"coupler_point": {"along": [0.0, 1.0]}}}, "/constraints/coupler_point"),
         ({"constraints": {"grashof": "double_rocker"}, "closed": False}, "/constraints/grashof"),
         ({"space": {"fixed_pivots": {"input": {"polygon": [[0, 0], [9, 0], [9, 9]]}}}}, "/space/fixed_pivots"),
-        ({"mechanisms": "auto", "manufacture": {"grid": 0.5}}, "/manufacture"),
+        ({"manufacture": {"round": {"length": 0.5, "coordinates": 0.5}}}, "/manufacture"),
+        ({"mechanisms": ["fourbar", "watt_1"], "manufacture": {"round": {"length": 0.5, "coordinates": 0.5}}},
+         "/manufacture"),
         ({"mechanisms": ["fourbar", "slider_crank"], "fixed_pivots": {"output": [1.0, 2.0]}}, "/fixed_pivots/output"),
         ({"method": "auto", "timing": "prescribed", "points": [
             {"x": x, "y": x * x, "crank_angle": 30.0 * x} for x in (0.0, 1.0, 2.0)]}, "/timing"),
@@ -261,3 +263,25 @@ def test_what_cannot_be_held_is_refused_at_its_field(client, stated, path):
     answer = client.post("/v1/jobs", json={"problem": TASK | stated})
     assert answer.status_code == 422, answer.text
     assert any(path in str(fault) for fault in answer.json()["errors"]), answer.text
+
+
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize(
+    ("stated", "field"),
+    [
+        pytest.param({"placement_free": ["size"]}, "placement_free", marks=pytest.mark.campaign),
+        pytest.param(
+            {"manufacture": {"round": {"length": 0.5, "coordinates": 0.5}}}, "manufacture", marks=pytest.mark.campaign
+        ),
+        ({"constraints": {"grashof": "double_rocker"}, "closed": False}, "constraints.grashof"),
+        ({"space": {"fixed_pivots": {"input": {"polygon": [[-99, -99], [99, -99], [0, 99]]}}}}, "space.fixed_pivots"),
+    ],
+)
+def test_auto_takes_what_sixbars_cannot_keep_and_says_that_it_has_none(client, stated, field):
+    plain = {key: value for key, value in TASK.items() if key != "mechanisms"} | {"max_designs": 1, "constraints": {}}
+    without = finished(client, plain | stated)["result"]
+    auto = finished(client, plain | stated | {"mechanisms": "auto"})["result"]
+    assert auto["designs"] == without["designs"]
+    assert auto["search"] == without["search"]
+    assert f"Sixbars were not looked for: they cannot keep {field}." in auto["summary"]
+    assert "Sixbars" not in without["summary"]

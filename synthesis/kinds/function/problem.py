@@ -11,11 +11,11 @@ import numpy as np
 from pydantic import ConfigDict, Field
 
 from synthesis.kinds.function.functions import FunctionStatement, Real
-from synthesis.kinds.function.stated_mechanisms import SIXBARS, Mechanisms, Sixbar, of_types
+from synthesis.kinds.function.stated_mechanisms import SIXBARS, UNCLASSED, Mechanisms, Sixbar, lacking, of_types
 from synthesis.model.dimension import ANGLE, OUTPUT
 from synthesis.model.linkage_statement import Constraints, LinkageProblem
 from synthesis.model.manufacture import Held, Made, kept_pivots
-from synthesis.model.stated_types import beside_sixbars, named_among
+from synthesis.model.stated_types import looked_for
 from synthesis.model.statement import (
     ABSURD,
     Contradiction,
@@ -226,9 +226,13 @@ class FunctionProblem(LinkageProblem):
     @property
     def sixbars(self) -> tuple[Sixbar, ...]:
         """The types of sixbars that are looked for."""
-        if self.mechanisms == "auto" and (self.slides or self.stated_zeros_alone or self.sided):
-            return ()
-        return named_among(self.mechanisms, SIXBARS)
+        named = looked_for(self.mechanisms, SIXBARS, lacking(self))
+        return named if self.constraints.grashof == "any" else tuple(name for name in named if name != UNCLASSED)
+
+    @property
+    def dropped(self) -> bool:
+        """Whether a type of sixbars is not looked for because a class is demanded, which it does not have."""
+        return len(self.sixbars) < len(looked_for(self.mechanisms, SIXBARS, lacking(self)))
 
     @property
     def of_simple(self) -> FunctionProblem | None:
@@ -251,11 +255,6 @@ class FunctionProblem(LinkageProblem):
     def stated_zeros_alone(self) -> bool:
         """Whether a zero is stated: they are counted from the ground line of a fourbar."""
         return isinstance(self.zeros, Zeros) and (self.zeros.input, self.zeros.output) != (None, None)
-
-    @property
-    def sided(self) -> bool:
-        """Whether something is stated that sixbars cannot keep."""
-        return any(True for _ in beside_sixbars(self))
 
     @property
     def slides(self) -> bool:

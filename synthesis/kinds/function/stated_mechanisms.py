@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field
 
-from synthesis.model.stated_types import Auto, beside_sixbars
+from synthesis.model.stated_types import Auto, beside_sixbars, refused
 from synthesis.model.statement import Contradiction
 
 Sixbar = Literal["watt_2", "stephenson_2", "stephenson_3"]
@@ -15,23 +15,33 @@ Sixbar = Literal["watt_2", "stephenson_2", "stephenson_3"]
 
 SIXBARS: tuple[Sixbar, ...] = get_args(Sixbar)
 
+UNCLASSED: Sixbar = "stephenson_2"
+"""The type whose links make no fourbar O2 A B O4."""
+
+NO_FOURBAR = "classifies the fourbar O2 A B O4, which Stephenson's sixbar of the second kind does not have"
+
 Mechanisms = Auto | Annotated[list[Literal["fourbar", "slider_crank"] | Sixbar], Field(min_length=1, max_length=5)]
 """Types by their names, or the simplest that does."""
 
 
-def of_types(problem: Any) -> Iterator[Contradiction]:
+def lacking(problem: Any) -> Iterator[Contradiction]:
+    """What is stated that sixbars cannot keep."""
+    if problem.slides:
+        yield Contradiction("/mechanism", "the output of sixbars turns; take them out of mechanisms")
+    if problem.stated_zeros_alone:
+        yield Contradiction("/zeros", "are counted from the ground line of a fourbar; leave them open for sixbars")
+    yield from beside_sixbars(problem)
+
+
+def of_types(problem: Any) -> list[Contradiction]:
     """What cannot be demanded of the types that are looked for."""
     stated = problem.mechanisms
     if stated is None or isinstance(stated, str):
-        return
+        return []
     if ("slider_crank" in stated) != problem.slides or (problem.slides and set(stated) != {"slider_crank"}):
         detail = (
             "the output of a slider_crank is a length, that of all others an angle: name it alone, in mechanism too"
         )
-        yield Contradiction("/mechanisms", detail)
-        return
-    if not problem.sixbars:
-        return
-    if problem.stated_zeros_alone:
-        yield Contradiction("/zeros", "are counted from the ground line of a fourbar; leave them open for sixbars")
-    yield from beside_sixbars(problem)
+        return [Contradiction("/mechanisms", detail)]
+    unclassed = problem.constraints.of_another_class((), NO_FOURBAR) if set(stated) == {UNCLASSED} else []
+    return [*unclassed, *refused(stated, problem.sixbars, lacking(problem))]

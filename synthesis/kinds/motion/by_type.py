@@ -13,9 +13,11 @@ from functools import partial
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sixbar_search import solve_sixbars
+from synthesis.kinds.motion.stated_mechanisms import lacking
 from synthesis.kinds.motion.stated_positions import MOST_HELD
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import LinkageDesign
+from synthesis.model.stated_types import not_looked_for
 from synthesis.outcome.ranking import ranked
 from synthesis.outcome.simplest import as_one, offered_beside, passing, simplest_first, told_of_offered, transmits
 
@@ -44,9 +46,16 @@ def solve_types(problem: MotionProblem, two_dyads: Solve, progress: Progress) ->
         partial(transmits, problem),
         partial(joined, problem),
         progress,
-        MANY if problem.mechanisms == "auto" else "",
+        _unlooked(problem),
     )
     return answer
+
+
+def _unlooked(problem: MotionProblem) -> str:
+    """What is said where ``auto`` has no sixbars."""
+    if problem.mechanisms != "auto":
+        return ""
+    return not_looked_for(lacking(problem)) if problem.few_enough else MANY
 
 
 def joined(problem: MotionProblem, simple: MotionResult, found: MotionResult) -> MotionResult:

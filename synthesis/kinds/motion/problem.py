@@ -11,11 +11,11 @@ from pydantic import ConfigDict, Field, PrivateAttr
 
 from synthesis.kinds.motion.contradictions import contradictions_of
 from synthesis.kinds.motion.stated_dyads import DriverDyad, DyadChoices, GroundLine
-from synthesis.kinds.motion.stated_mechanisms import SIXBARS, Chain, Mechanisms, Sixbar
+from synthesis.kinds.motion.stated_mechanisms import SIXBARS, Chain, Mechanisms, Sixbar, lacking
 from synthesis.kinds.motion.stated_positions import MOST_HELD, Position, Tolerance
 from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.model.manufacture import Held, Made, kept_pivots
-from synthesis.model.stated_types import named_among
+from synthesis.model.stated_types import looked_for
 from synthesis.model.statement import Contradiction, Flag
 
 LEAST_TOLERANCE = 1e-12
@@ -197,9 +197,7 @@ class MotionProblem(LinkageProblem):
     @property
     def sixbars(self) -> tuple[Sixbar, ...]:
         """The types of sixbars that are looked for."""
-        if self.mechanisms == "auto" and not self.few_enough:
-            return ()
-        return named_among(self.mechanisms, SIXBARS)
+        return looked_for(self.mechanisms, SIXBARS, lacking(self))
 
     @property
     def of_two_dyads(self) -> MotionProblem | None:

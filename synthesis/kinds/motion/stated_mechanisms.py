@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import cmath
+from collections.abc import Iterator
 from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field
 
 from synthesis.kinds.motion.stated_dyads import whole_point
-from synthesis.model.stated_types import Auto, beside_sixbars
+from synthesis.model.stated_types import Auto, beside_sixbars, refused
 from synthesis.model.statement import Contradiction, PartialPoint, PositiveLength, Statement
 
 Sixbar = Literal["watt_1", "stephenson_1", "stephenson_3"]
@@ -53,11 +54,16 @@ def of_sixbars(problem: Any) -> list[Contradiction]:
     if problem.chain is not None and not (isinstance(stated, list) and set(stated) <= set(SIXBARS)):
         detail = "belongs to sixbars; name types of sixbars alone in mechanisms"
         listed.append(Contradiction("/chain", detail))
-    if not problem.sixbars:
+    if not (isinstance(stated, list) and problem.sixbars):
         return [*listed, *_of_types(problem)]
+    return [*listed, *refused(stated, SIXBARS, lacking(problem)), *_faults_of_chain(problem)]
+
+
+def lacking(problem: Any) -> Iterator[Contradiction]:
+    """What is stated that sixbars cannot keep."""
     if not problem.few_enough:
         detail = "sixbars meet up to five positions, exactly or within tolerances; take fourbars for more, or for a fit"
-        listed.append(Contradiction("/mechanisms", detail))
+        yield Contradiction("/mechanisms", detail)
     for name, of_fourbars in (
         ("input_side", problem.input_side != type(problem.input_side)()),
         ("output_side", problem.output_side != type(problem.output_side)()),
@@ -66,8 +72,8 @@ def of_sixbars(problem: Any) -> list[Contradiction]:
     ):
         if of_fourbars:
             detail = "is of fourbars; leave it out, or take the sixbars out of mechanisms"
-            listed.append(Contradiction(f"/{name}", detail))
-    return [*listed, *beside_sixbars(problem), *_faults_of_chain(problem)]
+            yield Contradiction(f"/{name}", detail)
+    yield from beside_sixbars(problem)
 
 
 def _of_types(problem: Any) -> list[Contradiction]:

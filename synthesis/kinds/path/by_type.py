@@ -16,8 +16,9 @@ from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.nearness import error_of, least_error, order_of
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.sixbar_search import solve_sixbars
-from synthesis.kinds.path.stated_mechanisms import Simple, simple_of
+from synthesis.kinds.path.stated_mechanisms import Simple, lacking, simple_of
 from synthesis.model.kind import Progress, part_of
+from synthesis.model.stated_types import not_looked_for
 from synthesis.outcome.simplest import HALF, as_one, offered_beside, passing, told_of_offered, transmits
 
 Solve = Callable[[PathProblem, Progress], PathResult]
@@ -54,6 +55,8 @@ def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> Path
         if any(_stands_alone(problem, design) for design in passing(result.designs)):
             break
     assert result is not None
+    if problem.mechanisms == "auto" and not problem.sixbars:
+        result = result.model_copy(update={"summary": f"{result.summary} {not_looked_for(lacking(problem))}"})
     return result
 
 

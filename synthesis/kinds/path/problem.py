@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, Field, model_validator
 
-from synthesis.kinds.path.stated_mechanisms import SIXBARS, Mechanisms, Simple, Sixbar, of_types, simple_of
+from synthesis.kinds.path.stated_mechanisms import SIXBARS, Mechanisms, Simple, Sixbar, lacking, of_types, simple_of
 from synthesis.model.dimension import LENGTH
 from synthesis.model.linkage_statement import Constraints, LinkageProblem, Region
 from synthesis.model.manufacture import Held, Made, kept_pivots
-from synthesis.model.stated_types import named_among
+from synthesis.model.stated_types import looked_for
 from synthesis.model.statement import (
     Contradiction,
     Coordinate,
@@ -242,7 +242,7 @@ class PathProblem(LinkageProblem):
     @property
     def sixbars(self) -> tuple[Sixbar, ...]:
         """The types of sixbars that are looked for."""
-        return named_among(self.mechanisms, SIXBARS)
+        return looked_for(self.mechanisms, SIXBARS, lacking(self))
 
     def of_type(self, name: Simple) -> PathProblem:
         """The problem of one of the types with one closure, as it is stated without ``mechanisms``."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field
 
-from synthesis.model.stated_types import Auto, beside_sixbars, named_among
+from synthesis.model.stated_types import Auto, beside_sixbars, named_among, refused
 from synthesis.model.statement import Contradiction
 
 Simple = Literal["fourbar", "slider_crank", "geared_fivebar"]
@@ -40,20 +41,18 @@ def of_types(problem: Any) -> list[Contradiction]:
         listed.append(Contradiction("/mechanism", "names one type beside mechanisms, which names all; leave it out"))
     if problem.gear_ratio is not None and "geared_fivebar" not in simple_of(stated):
         listed.append(Contradiction("/gear_ratio", "no mechanism that is looked for has gears"))
-    return listed + (_of_sixbars(problem) if problem.sixbars else [])
+    return listed + refused(stated, SIXBARS, lacking(problem))
 
 
-def _of_sixbars(problem: Any) -> list[Contradiction]:
-    """What is a fourbar's alone, or not built for sixbars."""
-    listed, limits = [], problem.constraints
+def lacking(problem: Any) -> Iterator[Contradiction]:
+    """What is stated that sixbars cannot keep: it is a fourbar's alone, or not built for them."""
+    limits = problem.constraints
     for path, of_fourbars in (
         ("/timing", problem.prescribed),
         ("/placement_free", bool(problem.placement_free)),
         ("/constraints/coupler_point", limits.coupler_point is not None),
     ):
         if of_fourbars:
-            listed.append(
-                Contradiction(path, "is not for sixbars; leave it out, or take the sixbars out of mechanisms")
-            )
-    listed += limits.of_another_class(TURNING, "sixbars are looked for whose crank turns through")
-    return [*listed, *beside_sixbars(problem)]
+            yield Contradiction(path, "is not for sixbars; leave it out, or take the sixbars out of mechanisms")
+    yield from limits.of_another_class(TURNING, "sixbars are looked for whose crank turns through")
+    yield from beside_sixbars(problem)
