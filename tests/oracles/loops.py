@@ -21,13 +21,15 @@ class Followed(NamedTuple):
     """P and the rotation of the link with it at inputs, and how the linkage came there.
 
     ``branch``: the least determinant on the way over its value at the start; positive on one branch. ``angles``: the
-    least angle between two links at any moving pin on the way, degrees, by the pin and the links.
+    least angle between two links at any moving pin on the way, degrees, by the pin and the links. ``places``: the
+    joints at each step of the way.
     """
 
     points: np.ndarray
     turns: np.ndarray
     branch: float
     angles: dict[tuple[str, str, str], float]
+    places: list[dict[str, complex]]
 
 
 class Loops:
@@ -106,6 +108,7 @@ class Loops:
         start = np.linalg.det(self.jacobian(turns, at))
         least, points, turned = 1.0, [], []
         angles: dict[tuple[str, str, str], float] = {}
+        way = [self.places(turns, at)]
         for goal in inputs:
             for step in np.linspace(at, goal, max(2, int(abs(goal - at) / STEP) + 2))[1:]:
                 rate = -np.linalg.solve(self.jacobian(turns, at), self._by_input(at))
@@ -117,10 +120,41 @@ class Loops:
                 assert np.abs(self.residuals(solved.x, step)).max() < 1e-9 * size, "the loops do not close"
                 turns, at = solved.x, float(step)
                 least = min(least, np.linalg.det(self.jacobian(turns, at)) / start)
-                self._note(self.places(turns, at), angles)
-            points.append(self.places(turns, at)["P"])
+                way.append(self.places(turns, at))
+                self._note(way[-1], angles)
+            points.append(way[-1]["P"])
             turned.append(turns[self.moving.index(self.body)])
-        return Followed(np.array(points), np.array(turned), float(least), angles)
+        return Followed(np.array(points), np.array(turned), float(least), angles, way)
+
+    def pushed(self, places: dict[str, complex], link: str) -> float:
+        """The transmission angle at which a link at the ground is pushed, degrees, by the forces at all pins.
+
+        The link alone is loaded, by a torque of 1. Its pin's force f at a distance r from its pivot has the torque
+        f r sin μ = 1, whatever the chain between it and the input is.
+        """
+        pins = [
+            (joint, on)
+            for joint in places
+            if len(on := [n for n, listed in self.links.items() if joint in listed]) == 2
+        ]
+        bodies = [name for name in self.links if name != "ground"]
+        balance = np.zeros((3 * len(bodies), 2 * len(pins) + 1))
+        for k, (joint, on) in enumerate(pins):
+            x, y = places[joint].real, places[joint].imag
+            for sign, name in ((1.0, on[0]), (-1.0, on[1])):
+                if name != "ground":
+                    row = 3 * bodies.index(name)
+                    balance[row : row + 3, 2 * k : 2 * k + 2] = sign * np.array([[1.0, 0.0], [0.0, 1.0], [-y, x]])
+        balance[3 * bodies.index(self.input) + 2, -1] = 1.0
+        load = np.zeros(len(balance))
+        load[3 * bodies.index(link) + 2] = -1.0
+        forces = np.linalg.solve(balance, load)
+        pivot, pin = (
+            next(j for j in self.links[link] if (j in self.links["ground"]) == still) for still in (True, False)
+        )
+        k = next(n for n, (joint, _) in enumerate(pins) if joint == pin)
+        lever = np.hypot(*forces[2 * k : 2 * k + 2]) * abs(places[pin] - places[pivot])
+        return float(np.degrees(np.arcsin(min(1.0 / lever, 1.0))))
 
     def _by_input(self, at: float) -> np.ndarray:
         rates = [sum(1j * z * np.exp(1j * at) for name, z in loop if name == self.input) for loop in self.loops]

@@ -62,17 +62,23 @@ def held_against_loops(design, values, outputs, *, off: float) -> None:
     )
     first = np.angle(at["A"] - at["O2"])
     assert abs(math.remainder(inputs[0] - first, math.tau)) < 1e-9
-    met = Loops(traced).followed(inputs - inputs[0])
+    loops = Loops(traced)
+    met = loops.followed(inputs - inputs[0])
     assert met.branch > 0.0
     pivot, pin = links["output"]
     stands = np.degrees(np.angle(at[pin] - at[pivot]) + met.turns)
     wanted = [dials["output"]["place"] + dials["output"]["scale"] * (y - dials["output"]["at"]) for y in outputs]
     errors = [math.remainder(one - other, 360.0) for one, other in zip(stands, wanted, strict=True)]
     assert max(map(abs, errors)) <= off + 1e-7
-    for link, joint in (("coupler", "B"), ("link_5", "D")):
-        if link in design["metrics"]["transmission_angles"]:
-            seen = min(value for (pin, *on), value in met.angles.items() if pin == joint and link in on)
-            assert seen >= design["metrics"]["transmission_angles"][link] - 0.05
+    told = design["metrics"]["transmission_angles"]
+    last = "output" if design["mechanism"]["type"] == "stephenson_2" else "link_5"
+    seen = {last: min(loops.pushed(places, "output") for places in met.places)}
+    if last == "link_5":
+        seen["coupler"] = min(value for (pin, *on), value in met.angles.items() if pin == "B" and "coupler" in on)
+    assert set(told) == set(seen)
+    for link, angle in seen.items():
+        # Between the steps the least may be a little less.
+        assert told[link] - 1e-6 <= angle <= told[link] + 0.05
 
 
 def sine_is_met(design) -> None:
@@ -81,7 +87,7 @@ def sine_is_met(design) -> None:
 
 
 @pytest.mark.timeout(300)
-@pytest.mark.parametrize("kind", further(TYPES, ["watt_2"]))
+@pytest.mark.parametrize("kind", further(TYPES, ["stephenson_2"]))
 def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
     constraints = {"min_transmission_angle": 25.0, "max_link_ratio": 50.0}
     body = answered(client, mechanisms=[kind], constraints=constraints)
