@@ -95,6 +95,17 @@ class Space(Statement):
         """Whether there is nothing that a linkage would be held against."""
         return not self.swept and self.fixed_pivots is None and self.moving_pivots is None
 
+    def box_of_joints(self, farther: float = 0.0) -> tuple[float, float, float, float] | None:
+        """The box for joints, half a link's width within that of parts: x from, to, y from, to; None without a box.
+
+        It is drawn in by so much ``farther``. The clearance is one of obstacles: links may touch the sides of the box.
+        """
+        if self.box is None:
+            return None
+        (left, low), (right, high) = self.box
+        inward = 0.5 * self.link_width + farther
+        return left + inward, right - inward, low + inward, high - inward
+
     def carried(self, first: complex, place: complex, turn: complex) -> Self:
         """The same room where the body is elsewhere in its first position: what is drawn on the body goes with it.
 

@@ -191,8 +191,7 @@ def _placed(problem: FunctionProblem, found: Found, frame: _Frame) -> Placing:
     tables = [np.stack(boxes(regions))]
     if space is not None and space.box is not None:
         (left, low), (right, high) = space.box
-        half = 0.5 * space.link_width + INSET * min(right - left, high - low)
-        sides = np.array([left + half, right - half, low + half, high - half])
+        sides = np.array(space.box_of_joints(INSET * min(right - left, high - low)))
         swept = np.concatenate([*(joints[name][:1] for name in still), *(joints[name][1:] for name in moving)])
         outermost = swept[np.unique((swept[:, None] * HULL.conj()).real.argmax(axis=0))]
         points.append(outermost)

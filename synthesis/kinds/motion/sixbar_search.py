@@ -168,21 +168,20 @@ def _limits(problem: MotionProblem, task: MotionTask) -> Real:
     plain = [math.sin(math.radians(angle)), reach, ratio, shortest, longest]
     plain += [CLASSES.index(stated.grashof), stated.full_rotation]
     boxes = [_box(region, task) for region in (stated.fixed_pivot_region, stated.moving_pivot_region)]
-    space = problem.space
-    if space is not None and space.box is not None:
-        (left, low), (right, high) = space.box
-        half = 0.5 * space.link_width
-        boxes.append(_box(Region(x=(left + half, right - half), y=(low + half, high - half)), task))
-    else:
-        boxes.append(EVERYWHERE)
+    room = None if problem.space is None else problem.space.box_of_joints()
+    boxes.append(EVERYWHERE if room is None else _within(room, task))
     return np.concatenate([plain, *boxes])
 
 
 def _box(region: Region | None, task: MotionTask) -> Real:
-    if region is None:
-        return EVERYWHERE
-    low, high = (task.to_task(complex(region.x[k], region.y[k])) for k in (0, 1))
-    return np.array([low.real, high.real, low.imag, high.imag])
+    return EVERYWHERE if region is None else _within((*region.x, *region.y), task)
+
+
+def _within(sides: tuple[float, float, float, float], task: MotionTask) -> Real:
+    """Sides of a box, x from, to, y from, to, in the unit of the task."""
+    left, right, low, high = sides
+    corners = task.to_task(complex(left, low)), task.to_task(complex(right, high))
+    return np.array([corners[0].real, corners[1].real, corners[0].imag, corners[1].imag])
 
 
 def _summary(sifting: Sifting[LinkageDesign], search: SixbarSearch) -> str:

@@ -29,7 +29,6 @@ from synthesis.kinds.path.sixbar_rows import (
     sixbar_rows,
 )
 from synthesis.kinds.path.sixbar_shapes import Form
-from synthesis.model.space import Space
 from synthesis.numerics.augmented_lagrangian import hold
 from synthesis.numerics.levenberg import descend_each
 from synthesis.numerics.portions import in_portions
@@ -76,22 +75,14 @@ def sixbar_setting(problem: PathProblem, centre: complex, size: float, degrees: 
     out[COSINE] = min(out[COSINE], math.cos(math.radians(degrees)))
     out[RATIO] = min(out[RATIO], ratio)
     out[ROOM : ROOM + 4] = -math.inf, math.inf, -math.inf, math.inf
-    if problem.space is not None and problem.space.box is not None:
-        within = _within(problem.space, centre, size)
+    room = None if problem.space is None else problem.space.box_of_joints(ROOM_MARGIN * size)
+    if room is not None:
+        within = (np.array(room) - np.repeat([centre.real, centre.imag], 2)) / size
         out[ROOM : ROOM + 4] = within
         for pivot in range(2):
             at = slice(BOXES + 4 * pivot, BOXES + 4 * pivot + 4)
             out[at] = np.where(np.arange(4) % 2, np.minimum(out[at], within), np.maximum(out[at], within))
     return out
-
-
-def _within(space: Space, centre: complex, size: float) -> Real:
-    """The box for joints, half a link's width and the clearance within that for parts: x from, to, y from, to."""
-    assert space.box is not None
-    (left, low), (right, high) = space.box
-    inward = 0.5 * space.link_width + space.clearance + ROOM_MARGIN * size
-    x, y = np.array([left + inward, right - inward]), np.array([low + inward, high - inward])
-    return np.concatenate([x - centre.real, y - centre.imag]) / size
 
 
 def descended(
