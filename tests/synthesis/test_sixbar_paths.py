@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.sixbar_fit import ROOM_MARGIN, sixbar_setting
 from synthesis.kinds.path.sixbar_rows import ROOM
 from synthesis.registry import parse_problem
@@ -41,3 +42,9 @@ def test_the_box_of_joints_is_half_a_link_within_that_of_parts_whatever_obstacle
     assert sides == pytest.approx([-118.0, 138.0, -108.0, 148.0])
     assert problem.space.box_of_joints() == (-118.0, 138.0, -108.0, 148.0)
     assert problem.space.box_of_joints(1.0) == (-117.0, 137.0, -107.0, 147.0)
+
+
+def test_rounds_say_of_which_types_they_are():
+    told = PathProblem.model_json_schema()["properties"]["rounds"]["description"]
+    assert "For fourbars" in told
+    assert "sixbars among them, are drawn once, and it changes nothing" in told

@@ -231,7 +231,8 @@ class PathProblem(LinkageProblem):
     constraints: PathConstraints = PathConstraints()
     rounds: Annotated[Count, Field(ge=1, le=20)] = Field(
         default=3,
-        description="For fewer than nine points of free timing: how often linkages near them are drawn.",
+        description="For fourbars and fewer than nine points of free timing: how often linkages near them are drawn. "
+        "Other types, sixbars among them, are drawn once, and it changes nothing.",
     )
 
     @property
