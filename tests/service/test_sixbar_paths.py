@@ -16,6 +16,7 @@ from synthesis.model.answer import Search
 from tests.campaign import further
 from tests.oracles.loops import Loops
 from tests.service.answers import drawn, finished
+from tests.service.scripted_server import INSTANT
 
 TURN = np.linspace(0.0, 2.0 * np.pi, 36, endpoint=False)
 EIGHT = 40.0 * np.sin(TURN) + 25.0j * np.sin(2.0 * TURN) + 10.0 + 5.0j
@@ -239,30 +240,49 @@ def _error(design) -> float:
     return design.metrics.rms_distance
 
 
+ROUNDED = {"round": {"length": 0.5, "coordinates": 0.5}}
+TIMED = [{"x": x, "y": x * x, "crank_angle": 30.0 * x} for x in (0.0, 1.0, 2.0)]
+
+
 @pytest.mark.parametrize(
-    ("stated", "path"),
+    ("mechanisms", "paths"),
     [
-        ({"mechanisms": []}, "/mechanisms"),
-        ({"mechanisms": ["watt_2"]}, "/mechanisms/0"),
-        ({"mechanisms": "best"}, "/mechanisms"),
-        ({"mechanism": "slider_crank"}, "/mechanism"),
-        ({"gear_ratio": 2.0}, "/gear_ratio"),
-        ({"placement_free": ["size"]}, "/placement_free"),
-        ({"constraints": {"coupler_point": {"along": [0.0, 1.0]}}}, "/constraints/coupler_point"),
-        ({"constraints": {"grashof": "double_rocker"}, "closed": False}, "/constraints/grashof"),
-        ({"space": {"fixed_pivots": {"input": {"polygon": [[0, 0], [9, 0], [9, 9]]}}}}, "/space/fixed_pivots"),
-        ({"manufacture": {"round": {"length": 0.5, "coordinates": 0.5}}}, "/manufacture"),
-        ({"mechanisms": ["fourbar", "watt_1"], "manufacture": {"round": {"length": 0.5, "coordinates": 0.5}}},
-         "/manufacture"),
-        ({"mechanisms": ["fourbar", "slider_crank"], "fixed_pivots": {"output": [1.0, 2.0]}}, "/fixed_pivots/output"),
-        ({"method": "auto", "timing": "prescribed", "points": [
-            {"x": x, "y": x * x, "crank_angle": 30.0 * x} for x in (0.0, 1.0, 2.0)]}, "/timing"),
+        ([], {"/problem/mechanisms"}),
+        (["watt_2"], {"/problem/mechanisms", "/problem/mechanisms/0"}),
+        ("best", {"/problem/mechanisms"}),
+    ],
+)
+def test_what_names_no_type_is_refused(scripted, mechanisms, paths):
+    answer = scripted.client.post("/v1/jobs", json={"problem": TASK | {"mechanisms": mechanisms}})
+    assert answer.status_code == 422, answer.text
+    assert {fault["path"] for fault in answer.json()["errors"]} == paths
+
+
+@pytest.mark.parametrize(
+    ("stated", "path", "of_one"),
+    [
+        ({"mechanism": "slider_crank", "constraints": {}}, "/mechanism", {}),
+        ({"gear_ratio": 2.0, "constraints": {}}, "/gear_ratio", {"mechanism": "geared_fivebar"}),
+        ({"placement_free": ["size"]}, "/placement_free", {}),
+        ({"constraints": {"coupler_point": {"along": [0.0, 1.0]}}}, "/constraints/coupler_point", {}),
+        ({"constraints": {"grashof": "double_rocker"}, "closed": False}, "/constraints/grashof", {}),
+        ({"space": {"fixed_pivots": {"input": {"polygon": [[0, 0], [9, 0], [9, 9]]}}}}, "/space/fixed_pivots", {}),
+        ({"space": {"moving_pivots": {"input": {"polygon": [[0, 0], [9, 0], [9, 9]]}}}}, "/space/moving_pivots", {}),
+        ({"manufacture": ROUNDED}, "/manufacture", {}),
+        ({"manufacture": {"tolerances": {"length": 0.1}}}, "/manufacture", {}),
+        ({"mechanisms": ["fourbar", "slider_crank"], "fixed_pivots": {"output": [1.0, 2.0]}, "constraints": {}},
+         "/fixed_pivots/output", {}),
+        ({"method": "auto", "timing": "prescribed", "closed": False, "points": TIMED}, "/timing", {}),
     ],
 )  # fmt: skip
-def test_what_cannot_be_held_is_refused_at_its_field(client, stated, path):
-    answer = client.post("/v1/jobs", json={"problem": TASK | stated})
+def test_what_types_cannot_be_asked_is_refused_at_its_field_and_is_none_without_them(scripted, stated, path, of_one):
+    problem = TASK | {"seed": INSTANT} | stated
+    answer = scripted.client.post("/v1/jobs", json={"problem": problem})
     assert answer.status_code == 422, answer.text
-    assert any(path in str(fault) for fault in answer.json()["errors"]), answer.text
+    assert [fault["path"] for fault in answer.json()["errors"]] == [f"/problem{path}"]
+    alone = {name: value for name, value in problem.items() if name != "mechanisms"} | of_one
+    answer = scripted.client.post("/v1/jobs", json={"problem": alone})
+    assert answer.status_code == 202, answer.text
 
 
 @pytest.mark.timeout(300)
