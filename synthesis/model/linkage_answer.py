@@ -189,11 +189,10 @@ class GearedFivebarMechanism(Answer):
 class SixbarMechanism(Answer):
     """A sixbar of Watt's or Stephenson's chain, by its skeleton.
 
-    A fourbar with a driver dyad: crank O6–D and link D–C, where C is a point of the driven link; Watt's sixbar of the
-    second kind, two fourbars in series, where input or output is driven, Stephenson's of the third kind where the
-    coupler is. Or a linkage that carries the body by a link that is joined neither to the ground nor to the fourbar
-    alone: the one with P. Or a function generator, which has no P. ``links`` are lengths by name; the skeleton says
-    all.
+    A fourbar with a driver dyad: crank O6–D and link D–C, where C is a point of the driven link; a Watt II sixbar, two
+    fourbars in series, where input or output is driven, a Stephenson III sixbar where the coupler is. Or a linkage that
+    carries the body by a link that is joined neither to the ground nor to the fourbar alone: the one with P. Or a
+    function generator, which has no P. ``links`` are lengths by name; the skeleton says all.
     """
 
     type: Literal["watt_1", "watt_2", "stephenson_1", "stephenson_2", "stephenson_3"]

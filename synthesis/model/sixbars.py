@@ -11,13 +11,13 @@ Links = Mapping[str, tuple[str, ...]]
 """The joints on each link by its name; P is on the link that carries the body."""
 
 IN_WORDS: Mapping[str, str] = {
-    "watt_1": "Watt's sixbar of the first kind",
-    "watt_2": "Watt's sixbar of the second kind",
-    "stephenson_1": "Stephenson's sixbar of the first kind",
-    "stephenson_2": "Stephenson's sixbar of the second kind",
-    "stephenson_3": "Stephenson's sixbar of the third kind",
+    "watt_1": "Watt I sixbar",
+    "watt_2": "Watt II sixbar",
+    "stephenson_1": "Stephenson I sixbar",
+    "stephenson_2": "Stephenson II sixbar",
+    "stephenson_3": "Stephenson III sixbar",
 }
-"""What a sentence calls each type."""
+"""What each type is called, in sentences and on sheets."""
 
 
 def lengths_of(joints: Mapping[str, complex], links: Links) -> dict[str, float]:

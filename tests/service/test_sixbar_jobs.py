@@ -14,6 +14,7 @@ import pytest
 from synthesis.kinds.motion import by_type
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.model.answer import Search
+from synthesis.model.sixbars import IN_WORDS
 from tests.campaign import further
 from tests.oracles.loops import Loops
 from tests.service.answers import finished
@@ -75,8 +76,7 @@ def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
     place = f"/v1/jobs/{body['id']}/designs/0"
     root = ET.fromstring(client.get(f"{place}.svg").text)
     assert {e.get("data-joint") for e in root.iter()} - {None} == set(designs[0]["mechanism"]["skeleton"]["joints"])
-    name = {"watt_1": "Watt's sixbar", "stephenson_1": "Stephenson's sixbar", "stephenson_3": "Stephenson's sixbar"}
-    assert name[kind] in client.get(f"{place}.svg").text
+    assert IN_WORDS[kind] in client.get(f"{place}.svg").text
     for ending in ("dxf", "csv"):
         assert client.get(f"{place}.{ending}").status_code == 200, ending
     motion = client.get(f"{place}/motion?steps=72").json()

@@ -13,6 +13,7 @@ from kinematics.linkage.fourbar import Fourbar, positions
 from synthesis.kinds.path import by_type
 from synthesis.kinds.path.design import PathResult
 from synthesis.model.answer import Search
+from synthesis.model.sixbars import IN_WORDS
 from tests.campaign import further
 from tests.oracles.loops import Loops
 from tests.service.answers import drawn, finished
@@ -97,7 +98,8 @@ def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
     assert designs[0]["point_link"] in body["result"]["summary"]
     place = f"/v1/jobs/{body['id']}/designs/0"
     drawn(client, place, designs[0])
-    assert "Stephenson" in client.get(f"{place}.svg").text or kind == "watt_1"
+    assert IN_WORDS[kind] in client.get(f"{place}.svg").text
+    assert f"a {IN_WORDS[kind]} with P on" in body["result"]["summary"]
     assert client.post("/v1/analyses", json={"mechanism": designs[0]["mechanism"]}).status_code == 200
     assert client.get(f"/v1/jobs/{body['id']}/report.html").status_code == 200
 

@@ -45,6 +45,7 @@ from synthesis.kinds.straight_line.design import StraightLineDesign
 from synthesis.kinds.straight_line.problem import StraightLineProblem
 from synthesis.model.dimension import Dimension
 from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, SixbarMechanism
+from synthesis.model.sixbars import IN_WORDS
 
 SAMPLES = 721
 """Points of a diagram's curve, and of P's path during a dwell."""
@@ -62,8 +63,8 @@ NAMES = {
     "slider_crank": "Slider-crank",
     "geared_fivebar": "Geared fivebar",
     "inverted_slider_crank": "Inverted slider-crank",
-    "watt_2": "Fourbar with a driver dyad (Watt's sixbar)",
-    "stephenson_3": "Fourbar with a driver dyad on its coupler (Stephenson's sixbar)",
+    "watt_2": "Fourbar with a driver dyad (Watt II sixbar)",
+    "stephenson_3": "Fourbar with a driver dyad on its coupler (Stephenson III sixbar)",
     "crank_shaper": "Crank-shaper",
     "whitworth": "Whitworth quick return",
     "drag_link_rocker": "Drag-link sixbar with a rocker",
@@ -72,26 +73,13 @@ NAMES = {
     "dwell_rocker": "Dwell sixbar with a rocker",
     "dwell_slider": "Dwell sixbar with a slider",
     "dwell_slot": "Dwell sixbar with a slotted rocker",
-    "dwell_watt_rocker": "Watt's dwell sixbar with a rocker",
-    "dwell_watt_slider": "Watt's dwell sixbar with a slider",
-    "watt_1": "Watt sixbar for parallel motion",
+    "dwell_watt_rocker": "Watt II dwell sixbar with a rocker",
+    "dwell_watt_slider": "Watt II dwell sixbar with a slider",
+    "watt_1": "Watt I sixbar for parallel motion",
 }
 """What the types are called on a sheet."""
 
-CARRIER_NAMES = {
-    "watt_1": "Watt's sixbar of the first kind",
-    "stephenson_1": "Stephenson's sixbar of the first kind",
-    "stephenson_3": "Stephenson's sixbar of the third kind",
-}
-"""Sixbars without a driver, which carry a body by themselves."""
-
-GENERATOR_NAMES = {
-    "fourbar": "Fourbar",
-    "slider_crank": "Slider-crank",
-    "watt_2": "Watt's sixbar of the second kind as",
-    "stephenson_2": "Stephenson's sixbar of the second kind as",
-    "stephenson_3": "Stephenson's sixbar of the third kind as",
-}
+GENERATOR_NAMES = {**IN_WORDS, "fourbar": "Fourbar", "slider_crank": "Slider-crank"}
 """What begins the title of a function generator."""
 
 STROKE_NAMES = NAMES | {"fourbar": "Crank-rocker", "slider_crank": "Offset slider-crank"}
@@ -149,7 +137,7 @@ def guided(design: LinkageDesign, problem: MotionProblem | PathProblem, linkage:
         for target in design.targets
     ]
     driven = not isinstance(design.mechanism, SixbarMechanism) or "driver_coupler" in design.mechanism.links
-    name = (NAMES if driven else CARRIER_NAMES)[design.mechanism.type]
+    name = (NAMES if driven else IN_WORDS)[design.mechanism.type]
     return Content(
         name,
         name,

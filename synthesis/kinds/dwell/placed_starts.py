@@ -1,7 +1,7 @@
 """Starts for dwells of stated lengths and places: sixbars of all types, scored by their motion alone.
 
 Outputs of coupler curves rest on arcs or lines: on the best of each curve for the longest dwell, or on two, each as
-long as a dwell of its own. Watt's sixbars, whose P goes to and fro on a circle about O4 or all around it, are drawn at
+long as a dwell of its own. Watt II sixbars, whose P goes to and fro on a circle about O4 or all around it, are drawn at
 random.
 """
 

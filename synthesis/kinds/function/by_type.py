@@ -172,4 +172,4 @@ def _summary(problem: FunctionProblem, sifting: Sifting[FunctionDesign]) -> str:
         text = f"the least root mean square structural error found is {error.rms:.4g}° (at most {error.max:.4g}°)"
     else:
         text = f"the least greatest structural error found is {error.max:.4g}°"
-    return f"{weighed}; {text}, by {IN_WORDS[best.mechanism.type]}; no proof that none is better."
+    return f"{weighed}; {text}, by a {IN_WORDS[best.mechanism.type]}; no proof that none is better."

@@ -11,7 +11,7 @@ from synthesis.model.stated_types import Auto, beside_sixbars, refused
 from synthesis.model.statement import Contradiction
 
 Sixbar = Literal["watt_2", "stephenson_2", "stephenson_3"]
-"""Sixbars whose output is no fourbar's: in Watt's first kind and Stephenson's first, a fourbar drives it."""
+"""Sixbars whose output is no fourbar's: in Watt I and Stephenson I sixbars, a fourbar drives it."""
 
 SIXBARS: tuple[Sixbar, ...] = get_args(Sixbar)
 

@@ -1,7 +1,7 @@
 """A driver dyad on the coupler: a crank and a link that move a finished fourbar by a point of its coupler.
 
 Where the fourbar's links turn too far for a rocker, or one of them turns back, a pin C of the coupler is pulled along
-its path instead: Stephenson's sixbar of the third kind, driven from its far pivot. With C₁ and Cₙ the ends of the path
+its path instead: the Stephenson III sixbar, driven from its far pivot. With C₁ and Cₙ the ends of the path
 and r the distance of C from the crank's pivot O6, crank a and link b are those of the rocker's driver,
 
     a = |rₙ − r₁|/2,    b = (rₙ + r₁)/2,

@@ -22,7 +22,7 @@ from synthesis.model.linkage_answer import (
 
 
 class ParallelMotionMechanism(Answer):
-    """Watt's sixbar of the first kind that carries the link P–Q without turning it.
+    """The Watt I sixbar that carries the link P–Q without turning it.
 
     A fourbar O2 A B O4 with the coupler point P, a pin C on its input, the guide C–Q and the body P–Q.
     """

@@ -88,7 +88,7 @@ class SourceLinkage(Statement):
 
 
 class ParallelMotionProblem(LinkageProblem):
-    """Parallel motion: a Watt sixbar that carries a link along a coupler curve without turning it.
+    """Parallel motion: a Watt I sixbar that carries a link along a coupler curve without turning it.
 
     The curve is that of a fourbar (`linkage`), or of the fourbars that a problem of path generation finds (`path`). Two
     cognates of a fourbar trace one curve; one of them, moved to the other's pivot and joined to its crank, guides a

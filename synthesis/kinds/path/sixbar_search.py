@@ -35,6 +35,7 @@ from synthesis.kinds.path.verify_traced import verify_traced
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import SixbarMechanism
 from synthesis.model.linkages import to_complex
+from synthesis.model.sixbars import IN_WORDS
 from synthesis.outcome.ranking import distinct
 from synthesis.outcome.sifting import Sifting, reported
 from synthesis.outcome.simplest import SOUND
@@ -75,10 +76,6 @@ EXACT_STEPS, EXACT_TOLERANCE = 300, 1e-14
 
 SAME_DESIGN = 1e-3
 """Sixbars whose joints agree to this share of the task's size are one."""
-
-
-NAMES = {"watt_1": "Watt I", "stephenson_1": "Stephenson I", "stephenson_3": "Stephenson III"}
-"""What the types are called."""
 
 
 class _Candidate(NamedTuple):
@@ -224,7 +221,7 @@ def _answer(problem: PathProblem, mechanisms: list[SixbarMechanism], progress: P
     ordered = order_of(problem)
     if sifting.passed:
         best = ordered(sifting.passed)[0]
-        text += f" The best is a {NAMES[best.mechanism.type]} sixbar with P on {best.point_link}"
+        text += f" The best is a {IN_WORDS[best.mechanism.type]} with P on {best.point_link}"
         if problem.fitted:
             text += f"; its rms distance is {best.metrics.rms_distance:.3g} {problem.length_unit}"
         if best.metrics.both_way_rms is not None:
