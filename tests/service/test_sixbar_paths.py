@@ -158,6 +158,23 @@ def test_a_stroke_is_drawn_within_tolerances_from_a_given_pivot(client):
     assert all(target["point_residual"] <= 0.5 for design in designs for target in design["targets"])
 
 
+NINE = [40 + 30j, 32 + 42j, 20 + 45j, 8 + 40j, 2 + 30j, 6 + 20j, 12 + 14j, 24 + 12j, 30 + 20j]
+
+
+def test_sixbars_that_meet_the_points_stand_before_a_slider_crank_that_is_fitted_to_them(client):
+    mixed = {"mechanisms": ["slider_crank", "stephenson_3"], "constraints": {"min_transmission_angle": 20.0}}
+    nine = {"points": listed(NINE), "method": "auto", "closed": False, "max_designs": 3}
+    result = answered(client, **nine, **mixed)["result"]
+    designs = result["designs"]
+    assert [design["mechanism"]["type"] for design in designs] == ["stephenson_3", "stephenson_3", "slider_crank"]
+    errors = [design["metrics"]["max_distance"] for design in designs]
+    assert max(errors[:2]) < 1e-9 * SIZE < errors[2]
+    assert "curve_distance" not in designs[0]["metrics"]
+    assert "curve_distance" in designs[2]["metrics"]
+    assert "No linkage" not in result["summary"]
+    assert f"with P on {designs[0]['point_link']}, which meets the points" in result["summary"]
+
+
 def test_auto_takes_the_fourbar_where_one_is_near_and_sound(client):
     known = Fourbar(0j, 60.0 + 0j, 20.0, 55.0, 45.0, 30.0 + 20.0j)
     points = positions(known, np.array([0.3, 0.8, 1.3, 1.8, 2.3])).p
@@ -188,8 +205,11 @@ def test_types_with_one_closure_are_looked_for_too(client, kind, more):
 
 def _as_of(error: float, least: float) -> SimpleNamespace:
     """As much of a design as decides what is offered."""
-    metrics = SimpleNamespace(min_transmission_angle=least, rms_distance=error, excursion=0.0, link_ratio=2.0)
-    return SimpleNamespace(metrics=metrics, verification=SimpleNamespace(passed=True))
+    metrics = SimpleNamespace(
+        min_transmission_angle=least, rms_distance=error, excursion=0.0, link_ratio=2.0,
+        curve_distance=error if error else None,
+    )  # fmt: skip
+    return SimpleNamespace(metrics=metrics, verification=SimpleNamespace(passed=True), mechanism=None)
 
 
 @pytest.mark.parametrize(
@@ -214,6 +234,8 @@ def _as_of(error: float, least: float) -> SimpleNamespace:
         ([], [(3.0, 15.0)], 5, [3.0], "No fourbar was found that meets all demands; sixbars do."),
         ([], [], 5, [], "No fourbar was found that meets all demands; nor was a sixbar."),
         ([(4.0, 30.0)], [(1.0, 30.0)], 1, [1.0], "offered in its place."),
+        ([(4.0, 30.0)], [(0.0, 30.0)], 1, [0.0], "The error of the best fourbar is 4 mm; sixbars have at most half"),
+        ([(0.0, 10.0)], [(0.0, 15.0)], 5, [0.0], "No fourbar that was found is sound, and no sixbar is."),
     ],
 )
 def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbars, sixbars, most, offered, told):

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import itertools
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from synthesis.kinds.path.design import PathResult
+from synthesis.kinds.path.fallback import exact_or_fitted
+from synthesis.kinds.path.nearness import order_of
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.sixbar_fit import ROOM_MARGIN, sixbar_setting
 from synthesis.kinds.path.sixbar_rows import ROOM
+from synthesis.model.answer import Search
 from synthesis.registry import parse_problem
 
 TURN = np.linspace(0.0, 2.0 * np.pi, 36, endpoint=False)
@@ -48,3 +54,47 @@ def test_rounds_say_of_which_types_they_are():
     told = PathProblem.model_json_schema()["properties"]["rounds"]["description"]
     assert "For fourbars" in told
     assert "sixbars among them, are drawn once, and it changes nothing" in told
+
+
+def as_of(error: float | None, quality: float, *, passed: bool = True) -> SimpleNamespace:
+    """As much of a design as decides its place; one without an error meets its points."""
+    metrics = SimpleNamespace(
+        rms_distance=error or 0.0, excursion=0.0, curve_distance=error, quality=quality, size=quality,
+        min_transmission_angle=25.0 + quality, link_ratio=2.0,
+    )  # fmt: skip
+    residuals = [SimpleNamespace(residual=error or 0.0)]
+    return SimpleNamespace(metrics=metrics, targets=residuals, verification=SimpleNamespace(passed=passed))
+
+
+@pytest.mark.parametrize("order", ["quality", "accuracy", "size", "transmission_angle"])
+def test_what_meets_the_points_stands_before_what_is_fitted_to_them_in_every_order(order):
+    few = {"points": TASK["points"][:9], "mechanisms": ["slider_crank", "stephenson_3"], "rank_by": order}
+    problem = parse_problem({"kind": "path", **few})
+    far, near, broken = as_of(8.0, 0.9), as_of(1.0, 0.1), as_of(None, 0.95, passed=False)
+    exact = as_of(None, 0.2), as_of(None, 0.5)
+    for designs in itertools.permutations([far, near, broken, *exact]):
+        order_found = order_of(problem)(list(designs))
+        assert {id(one) for one in order_found[:2]} == {id(one) for one in exact}
+        assert order_found[2] is near
+        assert order_found[3] is far
+        assert order_found[4] is broken
+
+
+@pytest.mark.parametrize(
+    ("more", "complete", "told"),
+    [
+        ({"mechanism": "slider_crank"}, False, "No slider-crank was found that meets the points exactly"),
+        ({}, True, "No fourbar meets the points exactly"),
+        ({"mechanisms": ["fourbar", "watt_1"]}, False, "No sixbar was found that meets the points exactly"),
+    ],
+)
+def test_of_which_type_none_meets_the_points_is_told_before_it_is_fitted(more, complete, told):
+    problem = parse_problem({"kind": "path", "points": TASK["points"][:6], **more})
+
+    def answer(count: int) -> PathResult:
+        design = SimpleNamespace(targets=[SimpleNamespace(point_residual=0.1)], verification=SimpleNamespace(passed=1))
+        search = Search(method="a", complete=complete, candidates=1, accepted=count, rejected={}, seed=0)
+        return PathResult.model_construct(designs=[design] * count, search=search, summary="")
+
+    found = exact_or_fitted(problem, lambda *_: None, lambda *_: answer(0), lambda *_: answer(1))
+    assert found.summary.startswith(f"{told} and keeps all demands; they are fitted instead.")

@@ -13,10 +13,10 @@ from collections.abc import Callable
 from typing import Literal
 
 from synthesis.kinds.path.design import PathDesign, PathResult
-from synthesis.kinds.path.nearness import error_of, least_error, order_of
+from synthesis.kinds.path.nearness import error_of, least_error, meets_the_points, order_of
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.sixbar_search import solve_sixbars
-from synthesis.kinds.path.stated_mechanisms import Simple, lacking, simple_of
+from synthesis.kinds.path.sixbar_search import best_sixbar, solve_sixbars
+from synthesis.kinds.path.stated_mechanisms import NAMES, Simple, lacking, simple_of
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.stated_types import not_looked_for
 from synthesis.outcome.simplest import HALF, as_one, offered_beside, passing, told_of_offered, transmits
@@ -25,9 +25,6 @@ Solve = Callable[[PathProblem, Progress], PathResult]
 
 NEAR = 1e-3
 """Error, as a share of the task's size, at which no better linkage is looked for."""
-
-NAMES = {"fourbar": "fourbar", "slider_crank": "slider-crank", "geared_fivebar": "geared fivebar", "sixbar": "sixbar"}
-"""What the types are called."""
 
 
 def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> PathResult:
@@ -55,9 +52,10 @@ def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> Path
         if any(_stands_alone(problem, design) for design in passing(result.designs)):
             break
     assert result is not None
+    told = "" if problem.listed_later else best_sixbar(problem, result.designs)
     if problem.mechanisms == "auto" and not problem.sixbars:
-        result = result.model_copy(update={"summary": f"{result.summary} {not_looked_for(lacking(problem))}"})
-    return result
+        told = f" {not_looked_for(lacking(problem))}"
+    return result.model_copy(update={"summary": f"{result.summary}{told}"})
 
 
 def _stands_alone(problem: PathProblem, design: PathDesign) -> bool:
@@ -86,6 +84,9 @@ def joined(problem: PathProblem, simple: PathResult, found: PathResult, before: 
     elif not sound and (alone := [design for design in better if transmits(problem, design)]):
         better = alone
         told = f"No {first} that was found is sound; {other}s are"
+    elif not sound and all(map(meets_the_points, plain)):
+        better = []
+        told = f"No {first} that was found is sound, and no {other} is."
     else:
         least = least_error(sound or plain, problem)
         better = [design for design in better if error_of(design, problem) <= HALF * least]

@@ -13,6 +13,7 @@ from collections.abc import Callable
 
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.stated_mechanisms import NAMES
 from synthesis.model.kind import Progress, part_of
 
 FIRST_PART = 0.8
@@ -55,13 +56,16 @@ def exact_or_fitted(problem: PathProblem, progress: Progress, exact: Solve, fitt
     )
     counted = {name: getattr(first, name) for name in ("triples", "given_pivots", "family", "timed")}
     shown = [*near, *first.designs] if problem.include_failed else near
-    begun = "No linkage meets the points exactly and keeps all demands; they are fitted instead."
+    name = NAMES["sixbar" if problem.sixbars else problem.mechanism]
+    begun = (
+        f"No {name}{'' if first.search.complete else ' was found that'} meets the points exactly and keeps all demands"
+    )
     return second.model_copy(
         update={
             **counted,
             "designs": shown[: problem.max_designs],
             "search": account,
-            "summary": f"{begun} {second.summary} Exactly: {first.summary}",
+            "summary": f"{begun}; they are fitted instead. {second.summary} Exactly: {first.summary}",
         }
     )
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import partial
 
 from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.problem import PathProblem
@@ -89,11 +88,24 @@ def ranked_by_nearness(designs: list[PathDesign], problem: PathProblem) -> list[
     return ranked(nearest_first, problem.rank_by, own, group=unusable if chooses_usable(problem) else None)
 
 
+def meets_the_points(design: PathDesign) -> bool:
+    """Whether a design was to meet its points exactly, and not to come near: it is measured at the points alone."""
+    return design.metrics.curve_distance is None
+
+
 def order_of(problem: PathProblem) -> Callable[[list[PathDesign]], list[PathDesign]]:
-    """How designs are ordered: fits by nearness, what meets the points exactly as all kinds are."""
-    if problem.fitted:
-        return partial(ranked_by_nearness, problem=problem)
-    return partial(ranked, rank_by=problem.rank_by)
+    """How designs are ordered: what meets the points exactly first, as all kinds are, then fits by nearness.
+
+    Both are in one answer where several types of linkages are looked for: some can meet more points than others.
+    Designs that break a check stand last.
+    """
+
+    def ordered(designs: list[PathDesign]) -> list[PathDesign]:
+        exact = ranked([design for design in designs if meets_the_points(design)], problem.rank_by)
+        fits = ranked_by_nearness([design for design in designs if not meets_the_points(design)], problem)
+        return sorted([*exact, *fits], key=lambda design: not design.verification.passed)
+
+    return ordered
 
 
 _GRADES = 2

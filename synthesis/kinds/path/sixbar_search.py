@@ -26,7 +26,7 @@ from synthesis.kinds.path.curve_fits import thinning
 from synthesis.kinds.path.curve_target import DENSE, FEW_POINTS, SHAPE_POINTS, Target, angles_at, smooth_steps
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.fallback import exact_or_fitted
-from synthesis.kinds.path.nearness import FAR, MOST_UNEVEN, near_the_nearest, order_of, steady
+from synthesis.kinds.path.nearness import FAR, MOST_UNEVEN, meets_the_points, near_the_nearest, order_of, steady
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.sixbar_fit import Fits, descended, held, sixbar_setting
 from synthesis.kinds.path.sixbar_mechanism import fitted_sixbar
@@ -38,7 +38,7 @@ from synthesis.model.linkages import to_complex
 from synthesis.model.sixbars import IN_WORDS
 from synthesis.outcome.ranking import distinct
 from synthesis.outcome.sifting import Sifting, reported
-from synthesis.outcome.simplest import SOUND
+from synthesis.outcome.simplest import SOUND, passing
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -218,20 +218,27 @@ def _answer(problem: PathProblem, mechanisms: list[SixbarMechanism], progress: P
         sifting.withdraw(near_the_nearest(steady(sifting.passed, problem), problem), FAR)
     progress(1.0, "verified")
     text = f"{sifting.accepted} of {sifting.candidates} sixbars that were fitted satisfy all demands."
-    ordered = order_of(problem)
-    if sifting.passed:
-        best = ordered(sifting.passed)[0]
-        text += f" The best is a {IN_WORDS[best.mechanism.type]} with P on {best.point_link}"
-        if problem.fitted:
-            text += f"; its rms distance is {best.metrics.rms_distance:.3g} {problem.length_unit}"
-        if best.metrics.both_way_rms is not None:
-            text += f", {best.metrics.both_way_rms:.3g} both ways"
-        text += "."
     text += sifting.reasons()
     if not sifting.passed:
         text += " None was found; others may exist."
     return PathResult(
-        designs=sifting.designs(ordered),
+        designs=sifting.designs(order_of(problem)),
         search=sifting.search("sixbar_shapes"),
         summary=text,
     )
+
+
+def best_sixbar(problem: PathProblem, designs: Sequence[PathDesign]) -> str:
+    """What is told of the first sixbar of an answer that keeps all demands, in a sentence; empty where none does."""
+    sixbars = [one for one in passing(designs) if isinstance(one.mechanism, SixbarMechanism)]
+    if not sixbars:
+        return ""
+    best = sixbars[0]
+    text = f" The best sixbar is a {IN_WORDS[best.mechanism.type]} with P on {best.point_link}"
+    if meets_the_points(best):
+        text += ", which meets the points"
+    else:
+        text += f"; its rms distance is {best.metrics.rms_distance:.3g} {problem.length_unit}"
+    if best.metrics.both_way_rms is not None:
+        text += f", {best.metrics.both_way_rms:.3g} both ways"
+    return f"{text}."

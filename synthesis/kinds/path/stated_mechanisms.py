@@ -23,6 +23,9 @@ SIXBARS: tuple[Sixbar, ...] = get_args(Sixbar)
 Mechanisms = Auto | Annotated[list[Simple | Sixbar], Field(min_length=1, max_length=6)]
 """Types by their names, or the simplest that does."""
 
+NAMES = {"fourbar": "fourbar", "slider_crank": "slider-crank", "geared_fivebar": "geared fivebar", "sixbar": "sixbar"}
+"""What the types are called; sixbars together."""
+
 TURNING = ("any", "crank_rocker", "double_crank")
 """Classes of fourbars within sixbars: their crank turns through."""
 
