@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from random import Random
 from typing import Any
 
-from benchmarks.independent.cut_gears import Run, external, is_undercut, rack, ring, run
+from benchmarks.independent.cut_gears import Run, external, involute_radius, is_undercut, rack, ring, run
 from benchmarks.independent.fitted_trains import Best, best_train, same_answer, statements
 from synthesis.analyses import parse_request
 from synthesis.dispatch import solve
@@ -118,6 +118,9 @@ def compare_pair(pair: dict[str, Any], said: dict[str, Any], found: Compared) ->
         if gear["undercut"] != is_undercut(body):
             found.faults.append(f"undercut of {gear['teeth']} teeth: {pair}")
         found.undercut += gear["undercut"]
+        begins = involute_radius(body)
+        if begins < body.tip - NEAR_LIMIT and abs(0.5 * gear["form_diameter"] - begins) > NEAR_LIMIT:
+            found.faults.append(f"involute of {gear['teeth']} teeth begins at {begins:.5f}: {pair}")
     thin = any(gear["tip_thickness"] is None or gear["tip_thickness"] <= 0.0 for gear in said["gears"])
     cut = any(gear["undercut"] for gear in said["gears"])
     if thin or cut or said["interference"] or said["tips_foul"] or said["ring_trimmed"]:

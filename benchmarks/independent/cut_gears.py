@@ -305,6 +305,33 @@ def is_undercut(body: Body) -> bool:
     return False
 
 
+def involute_radius(body: Body) -> float:
+    """The radius from which on the straight flank of the rack, not its rounded tip, made a gear, undercut or not."""
+    r = 0.5 * body.teeth + body.shift
+    low, high = (r - body.rack.depth) * (1.0 + 1e-9), body.tip
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        ends = [math.acos(min(1.0, (r - depth) / middle)) for depth in (_straight(body.rack), body.rack.depth)]
+        flank = _most(-ends[0], ends[0], middle, body)
+        tip = max(_most(ends[0], ends[1], middle, body), _most(-ends[1], -ends[0], middle, body))
+        low, high = (low, middle) if flank >= tip else (middle, high)
+    return high
+
+
+@njit(cache=True, nogil=True)
+def _most(low: float, high: float, radius: float, body: Body) -> float:
+    """The greatest angle that the rack cuts between two angles: a grid, narrowed around its best."""
+    best, first, last = -9.0, low, high
+    for _ in range(8):
+        step, at = (high - low) / 100, low
+        for i in range(101):
+            found = _by_rack(low + i * step, radius, body.teeth, body.shift, body.rack)
+            if found > best:
+                best, at = found, low + i * step
+        low, high = max(first, at - step), min(last, at + step)
+    return best
+
+
 def _shifted(body: Body, radius: float) -> float:
     """Half the angle of the tooth that the endless rack cuts, moved out by the shift."""
     return _sharp(body.teeth, body.rack.angle, radius) + 2.0 * body.shift * math.tan(body.rack.angle) / body.teeth

@@ -6,8 +6,9 @@ base circle, the involute begins at
 
     f = r sin φ − m (k − x) / sin φ,
 
-negative where the rack undercuts the gear. A ring is shaped by a cutter with the teeth of a gear, whose tip corner is
-sharp: with the distance a_c and the pressure angle φ_c of cutting the involute of the ring ends at
+negative where the rack undercuts the gear; its involute then begins where the fillet crosses it, which
+:func:`kinematics.gear.profile.involute_start` tells. A ring is shaped by a cutter with the teeth of a gear, whose tip
+corner is sharp: with the distance a_c and the pressure angle φ_c of cutting the involute of the ring ends at
 
     f = a_c sin φ_c + √(r_ac² − r_bc²).
 
@@ -56,7 +57,9 @@ def straight_depth(pressure_angle: float, dedendum: float) -> float:
 
 
 def rack_cut_form(gear: Gear, depth: float) -> float:
-    """Where the involute of an external gear begins, from the base circle's tangent point on; negative: undercut.
+    """Where the rack's straight flank ends on an external gear, from the base circle's tangent point on.
+
+    There the involute begins; negative: undercut.
 
     ``depth``: how far below its reference line the straight flank of the rack reaches, modules.
     """

@@ -9,7 +9,7 @@ pitch point, that is after the rack has moved by s = d tan ψ − y,
     Q(ψ) = (r − d + i d tan ψ − ρ e^{−iψ}) e^{−is/r},       0 ≤ ψ ≤ π/2 − φ
 
 (F. L. Litvin & A. Fuentes, Gear Geometry and Applied Theory, 2004, ch. 10). It meets the involute smoothly, or crosses
-it where the gear is undercut.
+it where the gear is undercut: there its involute begins.
 
 A helical gear is shown as the plane of rotation cuts it. There the rack is stretched by q = 1/cos β along its pitch
 line, its corner with it: a normal that has turned by θ in the normal plane has turned by ψ here, tan ψ = tan θ / q, and
@@ -21,15 +21,17 @@ the point is met after s = d tan ψ + ρ sin θ (1/q − q) − q y, so that
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.gear.flanks import corner_rounding
-from kinematics.gear.teeth import Gear
+from kinematics.gear.teeth import Gear, involute
 
 Outline = NDArray[np.complex128]
+Reals = NDArray[np.float64]
 
 FLANK, FILLET, ARC = 24, 20, 4
 """Points on a flank, a fillet, and half of a tip or root arc: chords within about 1e-4 of a module of the curve."""
@@ -97,7 +99,7 @@ def _corner(gear: Gear, helix_angle: float) -> _Corner:
 
 
 def _external(gear: Gear, corner: _Corner) -> Outline:
-    fillet = _fillet(gear, corner, np.linspace(0.0, _fillet_end(gear, corner), FILLET))
+    fillet = _fillet(gear.pitch_radius, corner, np.linspace(0.0, _fillet_end(gear, corner), FILLET))
     start, tip = max(abs(fillet[-1]), gear.base_radius), _tip(gear)
     least, most = (math.sqrt(max((end / gear.base_radius) ** 2 - 1.0, 0.0)) for end in (start, tip))
     rolls = np.linspace(least, most, FLANK)
@@ -113,42 +115,93 @@ def _distinct(points: Outline) -> Outline:
     return np.asarray(points[np.concatenate([[True], kept])])
 
 
-def _fillet_end(gear: Gear, corner: _Corner) -> float:
-    """The parameter at which the fillet passes into the flank.
+def involute_start(gear: Gear, helix_angle: float = 0.0) -> float:
+    """Where the involute of an external gear begins as its rack leaves it, from the base circle's tangent point on.
 
-    Without undercut it is the end of the corner, where both are tangent. With undercut the fillet goes beyond the
-    flank and comes back to it: it is sampled for the last place beyond, and the crossing after that is bisected.
+    Without undercut it is :func:`kinematics.gear.flanks.rack_cut_form`; of an undercut gear it is where the fillet
+    crosses the flank, above the base circle.
+
+    Parameters
+    ----------
+    gear : Gear
+        In the plane of rotation.
+    helix_angle : float
+        Radians; of a helical gear, whose rack is that of the normal plane.
+
+    Raises
+    ------
+    DimensionError
+        Where the rack's tooth comes to a point before it has cut to the root circle.
     """
-    end = corner.end
-    psi = np.linspace(0.0, end, 8 * FILLET)
-    past = _beyond(gear, _fillet(gear, corner, psi))
-    beyond = np.flatnonzero(past > 1e-9 / gear.teeth)
-    inside = np.flatnonzero(np.isneginf(past))
-    if not len(beyond) and len(inside) and inside[-1] + 1 < len(psi):
-        # Of a slight undercut all that is beyond may lie between two samples, where the involute begins.
-        psi = np.linspace(psi[inside[-1]], psi[inside[-1] + 1], 8 * FILLET)
-        beyond = np.flatnonzero(_beyond(gear, _fillet(gear, corner, psi)) > 1e-9 / gear.teeth)
-    if not len(beyond) or beyond[-1] + 1 == len(psi):
-        return end
-    low, high = psi[beyond[-1]], psi[beyond[-1] + 1]
-    for _ in range(50):
-        middle = 0.5 * (low + high)
-        low, high = (
-            (middle, high) if _beyond(gear, _fillet(gear, corner, np.array([middle])))[0] > 0.0 else (low, middle)
-        )
-    return float(low)
+    radius, corner = np.array([gear.pitch_radius]), _corner(gear, helix_angle)
+    return float(_starts(radius, gear.pressure_angle, np.array([_base_space(gear)]), corner)[0])
 
 
-def _beyond(gear: Gear, fillet: Outline) -> NDArray[np.float64]:
-    """Angle by which points of the fillet lie inside the involute tooth; negative below the base circle."""
-    radius = np.abs(fillet)
-    involute = [_space_angle(gear, r) if r >= gear.base_radius else math.inf for r in radius]
-    return np.asarray(np.angle(fillet) - np.array(involute))
+def full_depth_starts(teeth: NDArray[np.float64], pressure_angle: float) -> NDArray[np.float64]:
+    """Where the involutes of full-depth spur gears without shift begin, in modules, as :func:`involute_start`."""
+    corner = _corner(Gear(10.0, 1.0, pressure_angle), 0.0)  # the rack is one, whatever the teeth
+    space = 0.5 * math.pi / teeth - involute(pressure_angle)
+    return _starts(0.5 * teeth, pressure_angle, space, corner)
 
 
-def _fillet(gear: Gear, corner: _Corner, theta: NDArray[np.float64]) -> Outline:
-    """Points of the trochoid of the rack's corner, from the root circle up."""
-    r, below, q = gear.pitch_radius, corner.below, corner.stretch
+def _starts(radius: Reals, phi: float, space: Reals, corner: _Corner) -> Reals:
+    """Where involutes begin, of gears of these pitch radii with this half of a space on their base circles."""
+    ends = _straight_ends(radius, phi, corner)
+    starts = ends.copy()
+    cut = ends < 0.0
+    if cut.any():
+        met = np.abs(_fillet(radius[cut], corner, _crossing(radius[cut], phi, space[cut], corner)))
+        starts[cut] = np.sqrt(np.maximum(met**2 - (radius[cut] * math.cos(phi)) ** 2, 0.0))
+    return starts
+
+
+def _straight_ends(radius: Reals, phi: float, corner: _Corner) -> Reals:
+    """Where the end of the rack's straight flank cuts, from the base circle's tangent point on; negative: undercut."""
+    deep = corner.below + corner.rounding * math.cos(corner.end)
+    return radius * math.sin(phi) - deep / math.sin(phi)
+
+
+def _crossing(radius: Reals, phi: float, space: Reals, corner: _Corner) -> Reals:
+    """The parameters at which the fillets of undercut gears cross their flanks.
+
+    From the root up the fillet meets the base circle inside the tooth, beyond the flank, and ends at the same radius
+    as a point of the flank, but in the space: in between it crosses once.
+    """
+    base = radius * math.cos(phi)
+
+    def bisected(is_low: Callable[[Reals], NDArray[np.bool_]], low: Reals) -> Reals:
+        high = np.full_like(low, corner.end)
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            below = is_low(middle)
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        return low
+
+    def inside(theta: Reals) -> NDArray[np.bool_]:
+        point = _fillet(radius, corner, theta)
+        there = np.arccos(np.minimum(1.0, base / np.abs(point)))
+        return np.asarray(np.angle(point) > space + np.tan(there) - there)
+
+    at_base = bisected(lambda theta: np.abs(_fillet(radius, corner, theta)) < base, np.zeros_like(radius))
+    return bisected(inside, at_base)
+
+
+def _fillet_end(gear: Gear, corner: _Corner) -> float:
+    """The parameter at which the fillet passes into the flank: tangent at the corner's end, or crossing it before."""
+    radius, phi = np.array([gear.pitch_radius]), gear.pressure_angle
+    if _straight_ends(radius, phi, corner)[0] >= 0.0:
+        return corner.end
+    return float(_crossing(radius, phi, np.array([_base_space(gear)]), corner)[0])
+
+
+def _base_space(gear: Gear) -> float:
+    """Half the angle of the space between two external teeth, continued to the base circle."""
+    return math.pi / gear.teeth - gear.tooth_thickness / (2.0 * gear.pitch_radius) - involute(gear.pressure_angle)
+
+
+def _fillet(r: float | Reals, corner: _Corner, theta: Reals) -> Outline:
+    """Points of the trochoid of the rack's corner on gears of pitch radius ``r``, from the root circle up."""
+    below, q = corner.below, corner.stretch
     along = below * (np.tan(theta) / q)
     moved = along - corner.beside + corner.rounding * np.sin(theta) * (1.0 / q - q)
     circle = corner.rounding * np.exp(-1j * theta)

@@ -24,25 +24,27 @@ from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.gear_pair import MILLIMETRE, RPM
 from synthesis.mechanisms.base import MechanismError
 from synthesis.model.answer import Answer, optional
+from synthesis.model.gear_answer import ON_LIMIT, tool_contact
 from synthesis.model.gear_statement import PressureAngle, ShiftCoefficient, ToothNumber
 from synthesis.model.gear_strength import Loaded, PairStrength, StatedStrength, told
-from synthesis.model.mesh_limits import USUAL_CUTTER
+from synthesis.model.mesh_limits import USUAL_CUTTER, usual_cutter
 from synthesis.model.statement import Flag, Number, PositiveNumber, Statement
 
 Addendum = Annotated[float, Field(strict=True, ge=0.3, le=1.25)]
 
-ON_LIMIT = 1e-9
-"""Share of the module within which a limit counts as kept."""
-
 
 @dataclass(frozen=True)
 class RunningPair:
-    """Two gears in the plane of rotation, where their involutes begin, and the cutter of a ring."""
+    """Two gears in the plane of rotation, where their involutes begin, and the cutter of a ring.
+
+    ``undercut``: whether the rack takes away from the flanks above the base circles; a ring is shaped.
+    """
 
     contact: Contact
     tight: Mesh
     shortening: float
     ring: ShapedRing | None
+    undercut: tuple[bool, bool]
 
     @property
     def gears(self) -> tuple[Gear, Gear]:
@@ -56,17 +58,10 @@ class RunningPair:
         return one.root_radius, two.root_radius if self.ring is None else self.ring.root_radius
 
     @property
-    def undercut(self) -> tuple[bool, bool]:
-        """Whether the rack takes away from the flanks above the base circles; a ring is shaped."""
-        one, two = (form < -ON_LIMIT * self.gears[0].module for form in self.contact.forms)
-        return one, two and self.ring is None
-
-    @property
-    def form_radii(self) -> tuple[float | None, float | None]:
-        """Radii at which the involutes begin (of a ring: end); None of an undercut gear."""
+    def form_radii(self) -> tuple[float, float]:
+        """Radii at which the involutes begin; of a ring: end."""
         one, two = (
-            None if cut else math.hypot(gear.base_radius, form)
-            for gear, form, cut in zip(self.gears, self.contact.forms, self.undercut, strict=True)
+            math.hypot(gear.base_radius, form) for gear, form in zip(self.gears, self.contact.forms, strict=True)
         )
         return one, two
 
@@ -134,8 +129,9 @@ class GivenGearPair(Statement):
                 raise MechanismError("/shift", f"leaves the {name} gear no tooth above its base circle")
         depth = straight_depth(phi, FULL_DEPTH_DEDENDUM) * math.cos(angle)
         ring = ShapedRing(two, self._cutter_teeth) if self.internal else None
-        forms = rack_cut_form(one, depth), rack_cut_form(two, depth) if ring is None else ring.form
-        return RunningPair(Contact(Mesh(one, two, self.centre_distance), forms), tight, shortening, ring)
+        contact = tool_contact(Mesh(one, two, self.centre_distance), ring, angle)
+        cut, other = (rack_cut_form(gear, depth) < -ON_LIMIT * one.module for gear in (one, two))
+        return RunningPair(contact, tight, shortening, ring, (cut, other and ring is None))
 
     def _gear(self, place: int, angle: float, phi: float) -> Gear:
         plain = HelicalGear(self.teeth[place], self.module, angle, phi).transverse_gear
@@ -145,7 +141,7 @@ class GivenGearPair(Statement):
 
     @property
     def _cutter_teeth(self) -> int:
-        return min(USUAL_CUTTER, self.teeth[1] // 2) if self.cutter_teeth is None else self.cutter_teeth
+        return int(usual_cutter(self.teeth[1])) if self.cutter_teeth is None else self.cutter_teeth
 
 
 class RunningGear(Answer):
@@ -159,7 +155,9 @@ class RunningGear(Answer):
     base_diameter: float
     tip_diameter: float
     root_diameter: float = Field(description="As the rack, or the cutter of a ring, leaves it.")
-    form_diameter: float | None = Field(description="Where the involute ends; null where the gear is undercut.")
+    form_diameter: float = Field(
+        description="Where the involute ends; of an undercut gear where its fillet crosses the flank."
+    )
     tooth_thickness: float = Field(description="On the pitch circle.")
     tip_thickness: float | None = Field(description="Null where a ring's tips lie below its base circle.")
     least_shift: float | None = Field(description="Below which the rack undercuts; null for a ring.")
@@ -363,7 +361,7 @@ def _gears(given: GivenGearPair, pair: RunningPair, speed: float) -> list[dict[s
                 "base_diameter": 2.0 * gear.base_radius,
                 "tip_diameter": 2.0 * gear.tip_radius,
                 "root_diameter": 2.0 * pair.root_radii[place],
-                "form_diameter": None if form is None else 2.0 * form,
+                "form_diameter": 2.0 * form,
                 "tooth_thickness": gear.tooth_thickness,
                 "tip_thickness": None if math.isnan(tip) else tip,
                 "least_shift": None if gear.internal else least,

@@ -9,14 +9,15 @@ from typing import Self
 
 from pydantic import Field
 
-from kinematics.gear.flanks import Contact, rack_cut_form, straight_depth
+from kinematics.gear.flanks import Contact, ShapedRing, rack_cut_form, straight_depth
+from kinematics.gear.profile import involute_start
 from kinematics.gear.teeth import FULL_DEPTH_DEDENDUM, Gear, Mesh, saving_shift
 from kinematics.gear.train import OrdinaryTrain
 from synthesis.model.answer import Answer, optional
 from synthesis.model.dimension import Angle, Length
 
 ON_LIMIT = 1e-9
-"""Share of the centre distance by which contact may reach beyond an involute: rounding, of teeth on the limit."""
+"""Share of the module or the centre distance within which a limit of teeth counts as kept: rounding, of teeth on it."""
 
 
 class Ratio(Answer):
@@ -88,28 +89,25 @@ class MeshGeometry(Answer):
     backlash: Length | None = optional("Play on the working pitch circles.")
 
 
-def rack_contact(mesh: Mesh, depths: tuple[float, float] | None = None) -> Contact:
-    """A mesh of external gears with the involutes that the rack of full-depth teeth leaves.
+def tool_contact(mesh: Mesh, ring: ShapedRing | None = None, helix_angle: float = 0.0) -> Contact:
+    """A mesh with the involutes that its tools leave: racks on external gears, undercut ones too, a cutter on a ring.
 
-    ``depths``: how far below its reference line the straight flank of the rack reaches, modules, where it is another.
+    ``helix_angle``: radians, of helical gears.
     """
-    gears = mesh.pinion, mesh.gear
-    if depths is None:
-        depth = straight_depth(mesh.pinion.pressure_angle, FULL_DEPTH_DEDENDUM)
-        depths = depth, depth
-    one, two = (rack_cut_form(gear, depth) for gear, depth in zip(gears, depths, strict=True))
-    return Contact(mesh, (one, two))
+    ends = involute_start(mesh.gear, helix_angle) if ring is None else ring.form
+    return Contact(mesh, (involute_start(mesh.pinion, helix_angle), ends))
 
 
 def rack_undercuts(mesh: Mesh) -> tuple[bool, bool]:
     """Whether the rack of full-depth teeth takes away from the flanks of the pinion, and of the gear."""
-    one, two = (form < -ON_LIMIT * mesh.centre_distance for form in rack_contact(mesh).forms)
+    depth = straight_depth(mesh.pinion.pressure_angle, FULL_DEPTH_DEDENDUM)
+    one, two = (rack_cut_form(gear, depth) < -ON_LIMIT * mesh.centre_distance for gear in (mesh.pinion, mesh.gear))
     return one, two
 
 
 def fitted_geometry(stage: int, driver: int, driven: int, mesh: Mesh) -> MeshGeometry:
     """Geometry of a mesh whose teeth are fitted; contact in a fillet is interference too."""
-    contact, slack = rack_contact(mesh), ON_LIMIT * mesh.centre_distance
+    contact, slack = tool_contact(mesh), ON_LIMIT * mesh.centre_distance
     one, two = (mesh.pinion, mesh.gear) if driver <= driven else (mesh.gear, mesh.pinion)
     sliding = contact.specific_sliding if driver <= driven else contact.specific_sliding[::-1]
     return MeshGeometry(

@@ -22,7 +22,7 @@ from kinematics.gear.teeth import Gear, Mesh
 from kinematics.gear.train import TrainStage
 from synthesis.model.answer import Answer, optional
 from synthesis.model.dimension import ROTATIONAL_SPEED, Length
-from synthesis.model.gear_answer import rack_contact
+from synthesis.model.gear_answer import tool_contact
 from synthesis.model.statement import PositiveNumber, Statement
 
 Positive = Annotated[float, Field(strict=True, ge=1e-6, le=1e6)]
@@ -350,7 +350,7 @@ def stage_contact(stage: TrainStage, place: int, pressure_angle: float, unit: fl
         Millimetres in the unit of the module.
     """
     gears = replace(stage, module=stage.module * unit).cut_gears(pressure_angle)
-    return rack_contact(Mesh(gears[place], gears[place + 1]))
+    return tool_contact(Mesh(gears[place], gears[place + 1]))
 
 
 def told(loaded: Loaded, stated: StrengthMethod, face_width: float | None, unit: float) -> dict[str, Any]:

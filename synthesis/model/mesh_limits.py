@@ -5,9 +5,9 @@ external tip circle z + 2 must stay inside √(z² cos² φ + (z₁ + z₂)² si
 would dig into the planet's flank: its addendum is the smaller of 1 and (R − √(R² cos² φ + (R − P)² sin² φ))/2, which
 leaves the contact ratio to be watched (Norton, Sec. 9.2–9.5; Colbourne 1987, ch. 8, for tips that foul).
 
-Where contact in fillets is looked at, external gears are cut by a rack whose straight flank ends a ``depth`` below its
-reference line, and rings by a cutter; the involute then ends where :mod:`kinematics.gear.flanks` says, and the ring's
-teeth are shortened so far that they do not reach below it.
+Where contact in fillets is looked at, external gears are cut by the rack of full-depth teeth, rings by a cutter. The
+involute then ends where :mod:`kinematics.gear.flanks` says, of undercut gears where the fillet crosses the flank
+(:mod:`kinematics.gear.profile`), and the ring's teeth are shortened so far that they do not reach below it.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.gear.flanks import CUTTER_ADDENDUM
+from kinematics.gear.profile import full_depth_starts
 
 Real = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -28,6 +29,11 @@ USUAL_CUTTER = 20
 
 ROUNDING = 1e-12
 """A tip this share of its limit beyond it is on it."""
+
+
+def usual_cutter(ring: Real | float) -> Real:
+    """Teeth of the cutter that shapes a ring of so many teeth where none is stated."""
+    return np.asarray(np.minimum(USUAL_CUTTER, ring // 2))
 
 
 def external_sound(pinion: Real, gear: Real, angle: float) -> Mask:
@@ -46,48 +52,49 @@ def external_contact(pinion: Real, gear: Real, angle: float) -> Real:
     return np.asarray((tips[0] + tips[1] - (pinion + gear) * sine) / (2.0 * np.pi * cosine))
 
 
-def external_fillets_clear(pinion: Real, gear: Real, angle: float, depth: float) -> Mask:
+def external_fillets_clear(pinion: Real, gear: Real, angle: float) -> Mask:
     """Whether neither tip of two external gears reaches below the involute that a rack leaves on the other."""
     clear = np.ones(np.broadcast(pinion, gear).shape, np.bool_)
     for own, mate in ((pinion, gear), (gear, pinion)):
         reached = (pinion + gear) * np.sin(angle) - np.sqrt((mate + 2.0) ** 2 - (mate * np.cos(angle)) ** 2)
-        clear &= reached >= _rack_form(own, angle, depth) - ROUNDING * own
+        clear &= reached >= _rack_form(own, angle) - ROUNDING * own
     return clear
 
 
 def ring_fillet_clear(planet: Real, ring: Real, angle: float) -> Mask:
     """Whether a planet's tip stays within the involute that the usual cutter, with sharp corners, leaves on a ring."""
-    cutter = np.minimum(USUAL_CUTTER, ring // 2)
+    cutter = usual_cutter(ring)
     cosine, sine = np.cos(angle), np.sin(angle)
     reached = (ring - planet) * sine + np.sqrt((planet + 2.0) ** 2 - (planet * cosine) ** 2)
     form = (ring - cutter) * sine + np.sqrt((cutter + 2.0 * CUTTER_ADDENDUM) ** 2 - (cutter * cosine) ** 2)
     return np.asarray(reached <= form + ROUNDING * ring, np.bool_)
 
 
-def _rack_form(teeth: Real, angle: float, depth: float) -> Real:
-    """Where the involute begins that a rack leaves, from the base circle's tangent point on; 0 of undercut gears."""
-    return np.asarray(np.maximum(teeth * np.sin(angle) - 2.0 * depth / np.sin(angle), 0.0))
+def _rack_form(teeth: Real, angle: float) -> Real:
+    """Where the involute begins that a rack leaves, from the base circle's tangent point on."""
+    numbers, places = np.unique(teeth, return_inverse=True)
+    return np.asarray(2.0 * full_depth_starts(numbers, angle)[places].reshape(teeth.shape))
 
 
-def ring_addendum(planet: Real, ring: Real, angle: float, depth: float | None = None) -> Real:
+def ring_addendum(planet: Real, ring: Real, angle: float, fillets: bool = False) -> Real:
     """Addendum of a ring, in modules, that just does not dig into its planet, or its fillet, at most 1."""
-    form = 0.0 if depth is None else _rack_form(planet, angle, depth)
+    form = _rack_form(planet, angle) if fillets else 0.0
     limit = np.sqrt((ring * np.cos(angle)) ** 2 + ((ring - planet) * np.sin(angle) + form) ** 2)
     return np.asarray(np.minimum(1.0, np.floor(0.5 * (ring - limit) / ADDENDUM_STEP) * ADDENDUM_STEP))
 
 
-def internal_contact(planet: Real, ring: Real, angle: float, depth: float | None = None) -> Real:
+def internal_contact(planet: Real, ring: Real, angle: float, fillets: bool = False) -> Real:
     """Contact ratio of a planet and its ring, the ring's teeth shortened where they must be."""
     cosine, sine = np.cos(angle), np.sin(angle)
-    tip = ring - 2.0 * ring_addendum(planet, ring, angle, depth)
+    tip = ring - 2.0 * ring_addendum(planet, ring, angle, fillets)
     own = np.sqrt((planet + 2.0) ** 2 - (planet * cosine) ** 2)
     far = np.sqrt(np.maximum(tip**2 - (ring * cosine) ** 2, 0.0))
     return np.asarray((own - far + (ring - planet) * sine) / (2.0 * np.pi * cosine))
 
 
-def tips_clear(planet: Real, ring: Real, angle: float, depth: float | None = None) -> Mask:
+def tips_clear(planet: Real, ring: Real, angle: float, fillets: bool = False) -> Mask:
     """Whether the tips of a planet and its ring pass each other; a matter of rings hardly larger than their planets."""
-    tip, inner, apart = planet + 2.0, ring - 2.0 * ring_addendum(planet, ring, angle, depth), ring - planet
+    tip, inner, apart = planet + 2.0, ring - 2.0 * ring_addendum(planet, ring, angle, fillets), ring - planet
     base, ring_base = planet * np.cos(angle), ring * np.cos(angle)
     inside = inner >= apart + tip
     meets = (inner > np.abs(apart - tip)) & (inner >= ring_base)

@@ -55,9 +55,7 @@ def test_every_mesh_is_told_as_the_analysis_of_its_pair_has_it(
                 pair = {"mechanism": pair_of(design["mechanism"], mesh["gears"])}
                 told = client.post("/v1/analyses", json=pair).raise_for_status().json()
                 assert mesh["fillet_interference"] == any(gear["fillet_interference"] for gear in told["gears"])
-    assert any(found["report"]) == (angle == 20.0 or arrangement == "simple"), (
-        "full-depth rings reach into the fillets of their planets"
-    )
+    assert any(found["report"]), "full-depth rings reach into the fillets of their planets, undercut ones too"
     assert not any(found["refuse"])
 
 
@@ -81,6 +79,21 @@ def test_planets_of_many_teeth_reach_the_fillets_of_a_ring(client: httpx.Client)
     assert refused["designs"] == []
     assert refused["search"]["complete"]
     assert refused["search"]["rejected"]["fillet_interference"] > 0
+
+
+def test_undercut_planets_are_met_above_their_fillets(client: httpx.Client) -> None:
+    """Their involutes begin where the fillet crosses the flank, above the base circle."""
+    teeth = {"min": 9, "max": 60, "ring_max": 120, "gears": {"planet": {"min": 10, "max": 15}}}
+    members = {"input": "sun", "output": "carrier", "fixed": "ring"}
+    stated = {"ratio": 3.0, "teeth": teeth, "max_designs": 100, "fillets": "refuse", **members}
+    designs = solved(client, **stated, min_contact_ratio=1.0)["designs"]
+    undercut = [design for design in designs if design["metrics"]["undercut"]]
+    assert undercut
+    for design in undercut[:12]:
+        for mesh in design["metrics"]["meshes"]:
+            pair = {"mechanism": pair_of(design["mechanism"], mesh["gears"])}
+            told = client.post("/v1/analyses", json=pair).raise_for_status().json()
+            assert min(gear["involute_left"] for gear in told["gears"]) > -1e-6
 
 
 def test_an_unknown_word_is_refused(client: httpx.Client) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from benchmarks.gears import Compared, compare_pair, compare_pairs
+from benchmarks.independent.cut_gears import external, involute_radius, rack
 from synthesis.analyses import parse_request
 from synthesis.mechanisms.base import MechanismError
 
@@ -58,6 +59,28 @@ def test_500_random_pairs() -> None:
     assert found.sound > 250
     assert found.in_fillet > 10
     assert found.undercut > 20
+
+
+@pytest.mark.parametrize("teeth", [9, 13, 15, 16, 17, 20])
+@pytest.mark.parametrize("shift", [-0.3, 0.0])
+def test_the_involute_of_an_undercut_gear_begins_where_the_fillet_crosses_it(teeth: int, shift: float) -> None:
+    """As a rack cut the gear, point by point."""
+    told = analysed(teeth=[teeth, 40], shift=[shift, 0.0])["gears"][0]
+    assert told["undercut"] == (teeth < 18 or shift < 0.0)
+    cut = external(teeth, shift, 1.0, rack(math.radians(20.0)))
+    assert 0.5 * told["form_diameter"] == pytest.approx(involute_radius(cut), abs=5e-5)
+    assert 0.5 * told["form_diameter"] > 0.5 * told["base_diameter"]
+
+
+def test_a_ring_reaches_below_the_involute_of_an_undercut_pinion() -> None:
+    """A ring whose tip stops at the base circle of its pinion still meets what the rack has taken away."""
+    told = analysed(teeth=[13, 40], internal=True, addendum=[1.0, 0.647271])
+    pinion = told["gears"][0]
+    assert pinion["undercut"]
+    assert pinion["fillet_interference"]
+    assert pinion["involute_left"] < -0.3
+    short = analysed(teeth=[13, 40], internal=True, addendum=[1.0, 0.52])
+    assert not short["gears"][0]["fillet_interference"]
 
 
 def test_full_depth_ring_reaches_into_the_fillet_of_its_pinion() -> None:

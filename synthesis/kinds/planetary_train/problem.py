@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from fractions import Fraction
 from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
-from kinematics.gear.flanks import straight_depth
-from kinematics.gear.teeth import FULL_DEPTH_DEDENDUM
 from synthesis.model.dimension import LENGTH
 from synthesis.model.gear_statement import CommonPressureAngle, ExactRatio, Module, RangedTeeth, ToothRange
 from synthesis.model.ratio_target import parse_target
@@ -150,11 +147,6 @@ class PlanetaryProblem(StatedProblem):
     def least_room(self) -> float:
         """Least room between gears that do not mesh, in modules."""
         return max(self.min_clearance / self.module - TOUCH, TOUCH)
-
-    @property
-    def flank_depth(self) -> float:
-        """How far below its reference line the straight flank of the rack reaches, modules."""
-        return straight_depth(math.radians(self.pressure_angle), FULL_DEPTH_DEDENDUM)
 
     def roles(self, arrangement: Arrangement) -> list[tuple[str, str, str]]:
         """Every choice of input, output and fixed member that the statement leaves."""

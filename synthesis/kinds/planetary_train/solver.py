@@ -77,7 +77,7 @@ def demands_of(problem: PlanetaryProblem, arrangement: Arrangement) -> Demands:
         problem.min_contact_ratio,
         problem.least_room,
         math.inf if problem.max_size is None else problem.max_size / problem.module * (1.0 + SIZE_SLACK),
-        problem.flank_depth if problem.fillets == "refuse" else None,
+        problem.fillets == "refuse",
     )
 
 
@@ -231,5 +231,5 @@ def _addendum(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[s
     mates = [np.array([float(teeth[mate])]) for mate in arrangement.meshing(gear)]
     ring = np.array([float(teeth[gear])])
     angle = math.radians(problem.pressure_angle)
-    depth = problem.flank_depth if problem.fillets == "refuse" else None
-    return min(round(float(mesh_limits.ring_addendum(mate, ring, angle, depth)[0]), 6) for mate in mates)
+    fillets = problem.fillets == "refuse"
+    return min(round(float(mesh_limits.ring_addendum(mate, ring, angle, fillets)[0]), 6) for mate in mates)

@@ -41,7 +41,7 @@ class Demands(NamedTuple):
     """What sound tooth numbers must satisfy.
 
     ``limits`` are the fewest and most teeth by gear, ``least_room`` is in modules, ``largest`` a pitch diameter in
-    modules. ``flank_depth`` is that of the rack's straight flank, in modules, where contact in fillets is refused.
+    modules. ``clear_fillets``: contact in fillets is refused.
     """
 
     limits: dict[str, tuple[int, int]]
@@ -51,7 +51,7 @@ class Demands(NamedTuple):
     least_contact: float
     least_room: float
     largest: float
-    flank_depth: float | None
+    clear_fillets: bool
 
 
 class _Rule(NamedTuple):
@@ -306,7 +306,7 @@ def _mesh_rules(numbers: ToothNumbers) -> list[_Rule]:
         numbers._demands.pressure_angle,
         numbers._demands.least_contact,
     )
-    own, depth = numbers._own, numbers._demands.flank_depth
+    own, fillets = numbers._own, numbers._demands.clear_fillets
     rules = []
     for one, other in arrangement.meshes:
         if not {one, other} & own:
@@ -328,24 +328,23 @@ def _mesh_rules(numbers: ToothNumbers) -> list[_Rule]:
         def sound(block: Block, pair: Callable[[Block], tuple[bool, Real, Real]] = pair) -> Mask:
             internal, first, second = pair(block)
             if internal:
-                return mesh_limits.tips_clear(first, second, angle, depth)
+                return mesh_limits.tips_clear(first, second, angle, fillets)
             return mesh_limits.external_sound(first, second, angle)
 
         def lasting(block: Block, pair: Callable[[Block], tuple[bool, Real, Real]] = pair) -> Mask:
             internal, first, second = pair(block)
             if internal:
-                return np.asarray(mesh_limits.internal_contact(first, second, angle, depth) >= least, np.bool_)
+                return np.asarray(mesh_limits.internal_contact(first, second, angle, fillets) >= least, np.bool_)
             return np.asarray(mesh_limits.external_contact(first, second, angle) >= least, np.bool_)
 
         def clear(block: Block, pair: Callable[[Block], tuple[bool, Real, Real]] = pair) -> Mask:
             internal, first, second = pair(block)
-            assert depth is not None
             if internal:
                 return mesh_limits.ring_fillet_clear(first, second, angle)
-            return mesh_limits.external_fillets_clear(first, second, angle, depth)
+            return mesh_limits.external_fillets_clear(first, second, angle)
 
         rules += [_Rule("interference", gears, sound), _Rule("contact_ratio", gears, lasting)]
-        if depth is not None:
+        if fillets:
             rules.append(_Rule("fillet_interference", gears, clear))
     return rules
 

@@ -14,16 +14,16 @@ from fractions import Fraction
 from kinematics.errors import DimensionError
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from kinematics.gear.assembly import Gap, fits_at, gaps, is_coaxial, pin_distances
-from kinematics.gear.flanks import Contact, ShapedRing, rack_cut_form
+from kinematics.gear.flanks import ShapedRing
 from kinematics.gear.planetary import speed_ratio, speeds
 from kinematics.gear.power import power_flow
 from kinematics.gear.teeth import Gear, Mesh
 from synthesis.kinds.planetary_train.design import MeshContact, PlanetaryMechanism, PlanetaryMetrics
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
-from synthesis.model import mesh_limits
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
-from synthesis.model.gear_answer import ON_LIMIT
+from synthesis.model.gear_answer import ON_LIMIT, tool_contact
+from synthesis.model.mesh_limits import usual_cutter
 from synthesis.model.ratio_target import decimal
 from synthesis.outcome.exhaustive import within_tolerance
 from synthesis.proof.checks import at_least, at_most
@@ -220,12 +220,5 @@ def _meshes(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangemen
 
 def _in_fillet(problem: PlanetaryProblem, mesh: Mesh) -> bool:
     """Whether contact goes below an involute: of gears as a rack cuts them, of a ring as the usual cutter shapes it."""
-    one, two = mesh.pinion, mesh.gear
-    if two.internal:
-        ring = ShapedRing(two, min(mesh_limits.USUAL_CUTTER, int(two.teeth) // 2))
-        forms = rack_cut_form(one, problem.flank_depth), ring.form
-    else:
-        forms = rack_cut_form(one, problem.flank_depth), rack_cut_form(two, problem.flank_depth)
-    # Below the base circle there is no involute to begin on: what interference is, is told as that.
-    contact = Contact(mesh, (max(forms[0], 0.0), forms[1] if two.internal else max(forms[1], 0.0)))
-    return min(contact.margins) < -ON_LIMIT * mesh.centre_distance
+    ring = ShapedRing(mesh.gear, int(usual_cutter(mesh.gear.teeth))) if mesh.gear.internal else None
+    return min(tool_contact(mesh, ring).margins) < -ON_LIMIT * mesh.centre_distance
