@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from fractions import Fraction
 from functools import cache
 from typing import Any
 
@@ -20,7 +21,7 @@ from synthesis.model.gear_strength import CarriedPower, Judge, Loaded, stage_con
 from synthesis.registry import parse_problem
 
 POWER: dict[str, Any] = {
-    "power_kw": 2.0,
+    "power_kw": 1.5,
     "speed_rpm": 1450.0,
     "allowable_bending": [200.0, 180.0],
     "allowable_contact": [700.0, 650.0],
@@ -68,6 +69,7 @@ def carrying() -> dict[tuple[tuple[int, ...], ...], bool]:
 
 def test_a_brute_force_finds_the_same() -> None:
     every = carrying()
+    assert 1 < sum(every.values()) < len(every) - 1
     result = solved(**FEW, modules=[1.5, 2.0], strength=POWER, max_designs=200)
     found = {
         tuple(tuple(sorted(getattr(stage, side) for stage in design.mechanism.stages)) for side in ("driver", "driven"))
@@ -85,6 +87,50 @@ def test_a_brute_force_finds_the_same() -> None:
             least = next((module, width) for module, width in zip((1.5, 2.0), widths, strict=True) if width is not None)
             assert (stage.module, stage.face_width) == pytest.approx(least), "not the least module and face"
             speed *= stage.driver / stage.driven
+
+
+@pytest.mark.parametrize("rank_by", ["error", "size"])
+def test_ties_and_front_are_of_all_trains_that_carry(rank_by: str) -> None:
+    """However few designs are asked for; by the same brute force."""
+    few = [gears for gears, carries in carrying().items() if carries]
+    assert len(few) < len(carrying())
+    errors = {gears: abs(Fraction(math.prod(gears[1]), math.prod(gears[0])) / Fraction(5, 4) - 1) for gears in few}
+    front: list[tuple[int, Fraction]] = []
+    for size, error in sorted((sum(map(sum, gears)), error) for gears, error in errors.items()):
+        if not front or error < front[-1][1]:
+            front.append((size, error))
+    assert len(front) > 2
+    result = solved(**FEW, modules=[1.5, 2.0], strength=POWER, max_designs=1, rank_by=rank_by)
+    assert result.search.every_judged
+    assert result.search.ties == sum(error == min(errors.values()) for error in errors.values())
+    found = [(one.size, abs(one.ratio.exact) / Fraction(5, 4) - 1) for one in result.pareto]
+    assert [(size, abs(error)) for size, error in found] == front
+
+
+def test_trains_of_the_front_carry_the_power() -> None:
+    """Each with the least modules and faces of its stages in their order, as it would be made as a design."""
+    stated = {"ratio": "12.3", "max_stages": 2, "teeth": {"min": 18, "max": 90}, "tolerance": 0.01}
+    result = solved(**stated, modules=[2.0, 3.0, 4.0], strength=POWER, max_designs=1)
+    assert len(result.pareto) > 1
+    for train in result.pareto:
+        speed, ratio = POWER["speed_rpm"], Fraction(1)
+        for stage in train.stages:
+            widths = [(module, narrowest(stage.driver, stage.driven, module, speed)) for module in (2.0, 3.0, 4.0)]
+            least = next((module, width) for module, width in widths if width is not None)
+            assert (stage.module, stage.face_width) == pytest.approx(least)
+            speed *= stage.driver / stage.driven
+            ratio *= -Fraction(stage.driven, stage.driver)
+        assert train.ratio.exact == ratio
+    assert result.pareto[-1].stages == result.designs[0].mechanism.stages
+
+
+def test_the_ratio_of_a_train_of_the_front_counts_its_idler() -> None:
+    stated: dict[str, Any] = {"ratio": "-4", "max_stages": 2, "teeth": {"min": 17, "max": 40}, "module": 4.0}
+    result = solved(**stated, strength=POWER, max_designs=1)
+    assert result.pareto
+    for train in result.pareto:
+        assert train.ratio.value < 0.0
+        assert len(train.stages) + len(train.idlers or []) == 3
 
 
 def test_too_much_power_is_told_with_what_is_carried() -> None:

@@ -1,8 +1,9 @@
 """Which trains carry a stated power: in which order of their stages, with which modules and over which faces.
 
 The search orders trains by error or size whatever they carry. They are judged in that order, so that the first that
-carry the power are the best that do, and where all trains of the search were judged there is no other. What a train has
-to carry is the power at the speed of each of its shafts; a mesh carries more of it the faster it turns.
+carry the power are the best that do, and where all trains of the search were judged there is no other. Those behind
+them are judged too, up to a limit, for the ties and the Pareto set. What a train has to carry is the power at the speed
+of each of its shafts; a mesh carries more of it the faster it turns.
 """
 
 from __future__ import annotations
@@ -35,7 +36,15 @@ EQUAL = 1e-12
 
 
 class Borne(NamedTuple):
-    """A train as it carries the power, and how it is made."""
+    """A train as it carries the power: its stages, whose least faces are yet to be found, and its idlers."""
+
+    train: Train
+    stages: list[Stage]
+    idlers: list[Idler]
+
+
+class Made(NamedTuple):
+    """A train that carries the power, and how it is made."""
 
     train: Train
     mechanism: GearTrainMechanism
@@ -44,14 +53,16 @@ class Borne(NamedTuple):
 class Judged(NamedTuple):
     """What became of the trains of a search.
 
-    ``failed`` of the trains that were judged do not carry the power; the ``strongest`` of them carries so many W (0:
-    not known, of trains with idlers).
-    ``every``: the search has no other trains.
+    ``borne`` are the best that carry the power, ``front`` the Pareto set of all judged that do. ``failed`` of those
+    that rank before the last of them do not; the ``strongest`` of all carries so many W (0: not known, of trains with
+    idlers). ``every``: the search has no trains but the ``judged``.
     """
 
-    borne: list[Borne]
+    borne: list[Made]
+    front: list[Made]
     failed: int
     strongest: float
+    judged: int
     every: bool
 
 
@@ -114,18 +125,34 @@ class Bearing:
         return next((stage for stage in choices if self._enough(self._power(stage, idlers, speed))), None)
 
     def _faced(self, train: Train, stages: list[Stage | None], idlers: list[Idler]) -> Borne | None:
-        """The train with the least faces of its stages; None where one of them does not carry the power."""
+        """The train, if its stages have faces that carry the power; those are looked for where rounding decides."""
         chosen = [stage for stage in stages if stage is not None]
         if len(chosen) < len(stages):
             return None
-        speed, faced = self.stated.speed, []
-        for number, stage in enumerate(chosen, 1):
-            width = self._width(stage, tuple(idler.teeth for idler in idlers if idler.stage == number), speed)
-            if width is None:
-                return None
-            faced.append(stage.model_copy(update={"face_width": width}))
+        borne = Borne(train, chosen, idlers)
+        weakest = min(self._power(stage, between, speed) for stage, between, speed in self._driven(borne))
+        if weakest < self.stated.power * (1.0 + EQUAL) and None in self._faces(borne):
+            return None
+        return borne
+
+    def made(self, borne: Borne) -> Made:
+        """A train with the least faces of its stages."""
+        faced = [
+            stage.model_copy(update={"face_width": width})
+            for stage, width in zip(borne.stages, self._faces(borne), strict=True)
+        ]
+        return Made(borne.train, assembled(self.problem, borne.train, faced, borne.idlers))
+
+    def _faces(self, borne: Borne) -> list[float | None]:
+        """The least face of each stage; None of one that does not carry the power."""
+        return [self._width(stage, between, speed) for stage, between, speed in self._driven(borne)]
+
+    def _driven(self, borne: Borne) -> Iterator[tuple[Stage, tuple[int, ...], float]]:
+        """Each stage with the teeth of its idlers and the speed of the shaft that drives it, rad/s."""
+        speed = self.stated.speed
+        for number, stage in enumerate(borne.stages, 1):
+            yield stage, tuple(idler.teeth for idler in borne.idlers if idler.stage == number), speed
             speed *= stage.driver / stage.driven
-        return Borne(train, assembled(self.problem, train, faced, idlers))
 
     def _enough(self, power: float) -> bool:
         return power >= self.stated.power * (1.0 - EQUAL)
@@ -196,7 +223,7 @@ def hunts(train: Train) -> bool:
 def judged(
     problem: GearTrainProblem, task: Task, stated: CarriedPower, ranked: Callable[[int], Outcome]
 ) -> tuple[Judged, Outcome]:
-    """The best trains that carry a power, and the search with the ties and the Pareto set of those that do.
+    """The best trains that carry a power, and the search with the ties of those that do.
 
     Parameters
     ----------
@@ -208,27 +235,36 @@ def judged(
     wanted = max(FIRST_JUDGED, problem.max_designs)
     while True:
         outcome = ranked(wanted)
-        every = len(outcome.trains) < wanted
-        borne: list[Borne] = []
         for train in outcome.trains:
-            if len(borne) >= problem.max_designs:
-                break
             if train not in verdicts and bearing.tried < MOST_TRIED:
                 verdicts[train] = bearing.carrying(train)
-            found = verdicts.get(train)
-            if found is not None:
-                borne.append(found)
-        spent = bearing.tried >= MOST_TRIED or wanted >= MOST_JUDGED
-        if every or spent or len(borne) >= problem.max_designs:
+        every = len(outcome.trains) < wanted
+        if every or bearing.tried >= MOST_TRIED or wanted >= MOST_JUDGED:
             break
         wanted *= 4
-    made = {found.train: found for found in borne}
-    hunting = {train for train in made if hunts(train)} if problem.hunting_tooth == "prefer" else set()
-    trains = order(task, made, hunting)
-    every = every and all(train in verdicts for train in outcome.trains)
-    failed = sum(found is None for found in verdicts.values())
-    answer = Judged([made[train] for train in trains[: problem.max_designs]], failed, bearing.strongest, every)
-    return answer, outcome._replace(trains=trains, ties=_ties(task, trains), pareto=_pareto(problem, task, trains))
+    met = [verdicts[train] for train in outcome.trains if train in verdicts]
+    carry = {found.train: found for found in met if found is not None}
+    hunting = {train for train in carry if hunts(train)} if problem.hunting_tooth == "prefer" else set()
+    trains = order(task, carry, hunting)
+    answer = Judged(
+        [bearing.made(carry[train]) for train in trains[: problem.max_designs]],
+        [bearing.made(carry[train]) for train in _pareto(problem, task, trains)],
+        _failed(met, problem.max_designs),
+        bearing.strongest,
+        len(verdicts),
+        every and all(train in verdicts for train in outcome.trains),
+    )
+    return answer, outcome._replace(trains=trains, ties=_ties(task, trains), pareto=[])
+
+
+def _failed(met: list[Borne | None], wanted: int) -> int:
+    """How many do not carry the power of those that stand before the last one wanted, or of all."""
+    failed = 0
+    for found in met:
+        if wanted == 0:
+            break
+        failed, wanted = (failed + 1, wanted) if found is None else (failed, wanted - 1)
+    return failed
 
 
 def _ties(task: Task, trains: list[Train]) -> int:

@@ -63,24 +63,38 @@ class GearTrainDesign(Answer):
 
 
 class ParetoTrain(Answer):
-    """A train that none is both smaller and nearer than."""
+    """A train that none is both smaller and nearer than; with `strength` made as it carries the power."""
 
     size: int = Field(description="Sum of the teeth or largest gear, as the problem measures it.")
     relative_error: float
     stages: list[Stage]
     ratio: Ratio
+    idlers: list[Idler] | None = optional("With `strength`, where the ratio takes one.")
 
 
 class GearTrainSearch(Search):
-    """The search of a finite set of trains; ``complete`` is always true: the ranking is proven.
+    """The search of a finite set of trains.
 
+    ``complete``: the ranking of the designs is proven, and an empty answer is a proof. It is false where an idler could
+    not be found, where the distances that a mesh can have were searched in steps, and with `strength` where fewer
+    trains than asked for carry the power and not every train was judged.
     ``candidates`` are the trains that stand out: the designs and those that verification refused. ``combinations`` is
     the number of trains that the search covers, most of them by bounds.
     """
 
     combinations: int
-    ties: int = Field(description="Trains whose error is exactly that of the nearest one, of whatever size.")
+    ties: int = Field(
+        description="Trains whose error is exactly that of the nearest one, of whatever size; with `strength` of "
+        "the judged that carry the power."
+    )
     least_error: float | None = Field(description="Relative error of the nearest train; null where there is none.")
+    judged: int | None = optional(
+        "With `strength`: how many trains were judged, the first of the ranking, about 1000 at most."
+    )
+    every_judged: bool | None = optional(
+        "Whether there are no others: `ties` and `pareto` are then those of all trains that carry the power, otherwise "
+        "of the judged that do."
+    )
 
 
 class GearTrainResult(Result[GearTrainDesign]):
@@ -89,5 +103,5 @@ class GearTrainResult(Result[GearTrainDesign]):
     search: GearTrainSearch
     pareto: list[ParetoTrain] = Field(
         description="The Pareto set of error against size, smallest first, of the trains within the tolerance "
-        "(within 1 % where none is stated)."
+        "(within 1 % where none is stated); with `strength` of the trains judged that carry the power."
     )

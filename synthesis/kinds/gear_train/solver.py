@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 from synthesis.kinds.gear_train.carrying import Judged, judged
-from synthesis.kinds.gear_train.design import GearTrainDesign, GearTrainResult, GearTrainSearch, ParetoTrain
+from synthesis.kinds.gear_train.design import (
+    GearTrainDesign,
+    GearTrainResult,
+    GearTrainSearch,
+    Idler,
+    ParetoTrain,
+    Stage,
+)
 from synthesis.kinds.gear_train.making import mechanism_of, stages_of
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.search import Outcome, Train, order, search
@@ -42,17 +49,38 @@ def solve_gear_train(problem: GearTrainProblem, progress: Progress) -> GearTrain
             combinations=outcome.combinations,
             ties=outcome.ties,
             least_error=_least_error(task, outcome),
+            judged=None if borne is None else borne.judged,
+            every_judged=None if borne is None else borne.every,
         ),
         summary=_summary(problem, task, outcome, sifting.passed, borne),
-        pareto=[
-            ParetoTrain(
-                size=train.size(task.largest),
-                relative_error=task.target.relative_error(train.ratio),
-                stages=stages_of(problem, task, train),
-                ratio=Ratio.of(train.ratio * (-1) ** len(train.drivers)),
-            )
-            for train in outcome.pareto
-        ],
+        pareto=_front(problem, task, outcome) if borne is None else _borne_front(problem, task, borne),
+    )
+
+
+def _front(problem: GearTrainProblem, task: Task, outcome: Outcome) -> list[ParetoTrain]:
+    return [
+        _pareto_train(task, train, stages_of(problem, task, train), Ratio.of(train.ratio * (-1) ** len(train.drivers)))
+        for train in outcome.pareto
+    ]
+
+
+def _borne_front(problem: GearTrainProblem, task: Task, borne: Judged) -> list[ParetoTrain]:
+    """The Pareto set of the trains that carry the power, as they carry it."""
+    return [
+        _pareto_train(task, one.train, one.mechanism.stages, one.mechanism.ratio, one.mechanism.idlers)
+        for one in borne.front
+    ]
+
+
+def _pareto_train(
+    task: Task, train: Train, stages: list[Stage], ratio: Ratio, idlers: list[Idler] | None = None
+) -> ParetoTrain:
+    return ParetoTrain(
+        size=train.size(task.largest),
+        relative_error=task.target.relative_error(train.ratio),
+        stages=stages,
+        ratio=ratio,
+        idlers=idlers or None,
     )
 
 
