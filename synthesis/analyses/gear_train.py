@@ -1,7 +1,8 @@
 """The analysis of an ordinary gear train: speeds, torques, mesh geometry, forces and losses.
 
 Speeds are exact fractions of the input's. The torque on a shaft is the power that reaches it over its speed; each mesh
-passes on a stated share of the power, or 1 − μ H with the friction coefficient μ and the loss factor H of its teeth.
+passes on a stated share of the power, or 1 − μ H with the friction coefficient μ and the loss factor H of its teeth. A
+torque against the speed of the input takes power out there: the output drives, and has to bring the losses too.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import replace
+from fractions import Fraction
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -21,15 +23,17 @@ from kinematics.gear.train import OrdinaryTrain, TrainStage
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
 from synthesis.analyses.drift import WANTED, Drift, drifting
 from synthesis.model.answer import Answer, optional
+from synthesis.model.dynamics import METRES
 from synthesis.model.gear_answer import MeshGeometry, Ratio, mesh_geometries, rack_undercuts
 from synthesis.model.gear_statement import ExactRatio, PressureAngle, ShiftCoefficient, ToothNumber
 from synthesis.model.gear_strength import Loaded, PairStrength, StrengthMethod, stage_contact, told
 from synthesis.model.statement import Number, PositiveNumber, Statement
 
-METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
-
 SAME_DISTANCE = 1e-6
 """Share of a centre distance by which a stated one may differ from that of the teeth."""
+
+SAME_RATIO = 1e-9
+"""Share by which the number that is stated beside a ratio's numerator and denominator may differ from them."""
 
 FRICTION = 0.05
 """Friction coefficient of lubricated steel teeth, where none is stated."""
@@ -75,6 +79,13 @@ class GivenRatio(Statement):
     denominator: Annotated[int, Field(strict=True, ge=1)]
     value: Number
 
+    def faults(self, ratio: Fraction) -> list[tuple[str, str]]:
+        """What is wrong where the teeth have another ratio."""
+        same = self.numerator == ratio * self.denominator
+        if same and math.isclose(self.value, float(ratio), rel_tol=SAME_RATIO):
+            return []
+        return [("/mechanism/ratio", f"the teeth have the ratio {ratio}; leave the ratio out")]
+
 
 class GivenGearTrain(Statement):
     """An ordinary gear train as in a design."""
@@ -118,7 +129,10 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
     )
 
     length_unit: Literal["mm", "cm", "m", "in"] = "mm"
-    input_torque: Number = Field(default=1.0, description="Torque on the input shaft, N m.")
+    input_torque: Number = Field(
+        default=1.0,
+        description="Torque on the input shaft, N m; against its speed at the first position the output drives.",
+    )
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.0, le=1.0)] | None = Field(
         default=None, description="Share of the power that every mesh passes on; from the friction where left out."
     )
@@ -145,10 +159,15 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         if not faults:
             faults += self._wrong_distances()
         if not faults and self.mechanism.ratio is not None:
-            ratio, stated = self.mechanism.train().ratio, self.mechanism.ratio
-            if stated.numerator != ratio * stated.denominator:
-                faults.append(("/mechanism/ratio", f"the teeth have the ratio {ratio}; leave the ratio out"))
+            faults += self.mechanism.ratio.faults(self.mechanism.train().ratio)
+        if not faults and self.flows_back and any(0.0 in stage for stage in shares_of(self)):
+            faults.append(("/friction", "with so much of it a mesh loses all power, so that the output drives nothing"))
         return faults
+
+    @property
+    def flows_back(self) -> bool:
+        """Whether power leaves at the input, at the first position: the output drives."""
+        return self.input_torque * float(self.motion.inputs()[1][0]) < 0.0
 
     def _wrong_strength(self) -> list[tuple[str, str]]:
         stated = self.strength
@@ -214,7 +233,7 @@ class Shaft(Answer):
     """A shaft that passes torque on, from the input shaft to the output shaft."""
 
     speed_ratio: float
-    torque: float = Field(description="N m, with the losses before it.")
+    torque: float = Field(description="N m, with the losses between the input and it.")
 
 
 class GearTrainAnalysis(DrivenAnalysis):
@@ -222,7 +241,7 @@ class GearTrainAnalysis(DrivenAnalysis):
 
     valid: list[bool]
     ratio: Ratio
-    efficiency: float | None = Field(description="Output power over input power.")
+    efficiency: float | None = Field(description="Power that leaves over power that enters.")
     shafts: list[Shaft]
     gears: list[TurningGear]
     meshes: list[LoadedMesh]
@@ -234,10 +253,11 @@ def _analysis(request: GearTrainAnalysisRequest) -> dict[str, Any]:
     """Speeds, torques, gears and meshes of a train over the motion."""
     at, speed, time = request.motion.inputs()
     train = request.mechanism.train()
-    shares = tuple(tuple(_share(request, mesh) for mesh in stage) for stage in train.meshes)
+    shares = shares_of(request)
     passed = tuple(tuple(1.0 if share is None else share for share in stage) for stage in shares)
     known = all(share is not None for stage in shares for share in stage)
-    torques = train.torques(request.input_torque, passed)
+    gained = tuple(tuple(1.0 / share for share in stage) for stage in passed) if request.flows_back else passed
+    torques = train.torques(request.input_torque, gained)
     speeds = [1.0, *(float(stage[-1]) for stage in train.speeds)]
     return {
         "input_angle": at.tolist(),
@@ -251,6 +271,11 @@ def _analysis(request: GearTrainAnalysisRequest) -> dict[str, Any]:
         "centre_distances": list(train.centre_distances),
         **drifting(train.ratio, request.wanted_ratio),
     }
+
+
+def shares_of(request: GearTrainAnalysisRequest) -> tuple[tuple[float | None, ...], ...]:
+    """Share of the power that each mesh of each stage passes on."""
+    return tuple(tuple(_share(request, mesh) for mesh in stage) for stage in request.mechanism.train().meshes)
 
 
 def _share(request: GearTrainAnalysisRequest, mesh: Mesh) -> float | None:
@@ -310,7 +335,8 @@ def _meshes(
         zip(train.stages, train.meshes, shares, train.speeds, torques[:-1], strict=True)
     ):
         begin = len(loaded)
-        # The tangential force passes through an idler; each mesh takes its losses from it.
+        # The tangential force passes through an idler; each mesh takes its losses from it. It is that of the gear that
+        # drives: where the output does, a mesh has lost its share before its force reaches the driver.
         radius = 0.5 * stage.module * stage.driver
         if stage.shifts != (0.0, 0.0):
             radius *= meshes[0].centre_distance / meshes[0].standard_distance
@@ -318,6 +344,9 @@ def _meshes(
         for (driver, driven), mesh, share, turn in zip(
             itertools.pairwise(stage.gears), meshes, efficiencies, turns[:-1], strict=True
         ):
+            passed = 1.0 if share is None else share
+            if request.flows_back:
+                force /= passed
             parts = mesh.approach, mesh.recess
             approach, recess = parts if driver <= driven else parts[::-1]
             loaded.append(
@@ -341,7 +370,8 @@ def _meshes(
                     power *= mesh.centre_distance / mesh.standard_distance
                 turning = abs(float(turn) * speed)
                 loaded[-1]["strength"] = _strength(request, stage, place, number, power, turning)
-            force *= 1.0 if share is None else share
+            if not request.flows_back:
+                force *= passed
     return loaded
 
 

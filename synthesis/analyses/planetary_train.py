@@ -12,10 +12,11 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field
 
 from kinematics.gear.arrangements import ARRANGEMENTS
-from kinematics.gear.planetary import EXTERNAL, GROUND, INTERNAL, Mesh, Speeds, Train, speeds
+from kinematics.gear.planetary import EXTERNAL, GROUND, INTERNAL, Mesh, Speeds, Train, speed_ratio, speeds
 from kinematics.gear.power import PowerFlow, power_flow
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.analyses.drift import WANTED, Drift, drifting
+from synthesis.analyses.gear_train import GivenRatio
 from synthesis.analyses.shift_table import (
     MOST_STATES,
     GivenElement,
@@ -66,7 +67,9 @@ class GivenPlanetaryTrain(Statement):
     module: Any = None
     pressure_angle: Any = None
     addendum: Any = None
-    ratio: Any = None
+    ratio: GivenRatio | None = Field(
+        default=None, description="As in a design: compared with the teeth where all three members are stated."
+    )
 
     def train(self) -> Train:
         """The speed equations; for a statement without faults."""
@@ -86,6 +89,12 @@ class GivenPlanetaryTrain(Statement):
             for row in self.meshes
         ]
         return Train(tuple(rows), frozenset(self.planet_bodies))
+
+    def driven_ratio(self) -> Fraction | None:
+        """Input over output speed with the fixed member held; None where one of them is not stated, or none follows."""
+        if self.input is None or self.output is None or self.fixed is None:
+            return None
+        return speed_ratio(self.train(), self.input, self.output, [self.fixed])
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
@@ -192,6 +201,9 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
         return faults or [*self._wrong_table(), *self._wrong_ratio()]
 
     def _wrong_ratio(self) -> list[tuple[str, str]]:
+        stated, ratio = self.mechanism.ratio, self.mechanism.driven_ratio()
+        if stated is not None and ratio is not None and (faults := stated.faults(ratio)):
+            return faults
         if self.wanted_ratio is None or (self.mechanism.input is not None and self.mechanism.output is not None):
             return []
         return [("/wanted_ratio", "state the mechanism's input and output too, whose ratio is meant")]
@@ -292,7 +304,10 @@ def _analysis(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
         known = {**held, str(mechanism.input): Fraction(1)}
     solution = speeds(train, known, request.locked)
     complete = solution.open == 0 and solution.contradiction is None
-    flow = _flow(request, train, solution, known) if complete else None
+    # Which way power flows follows from the torques and the speeds as the motion has them at its first position.
+    backwards = turning and float(speed[0]) < 0.0
+    flow = _flow(request, train, solution, known, -1 if backwards else 1) if complete else None
+    unit = abs(float(speed[0])) if turning else 1.0
     ratio = _ratio(request, solution) if complete else None
     bodies = []
     for body in train.bodies:
@@ -305,9 +320,7 @@ def _analysis(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
                 "speed": None if share is None else share * (float(speed[0]) if turning else 1.0),
                 "exact_speed": None if rate is None else str(rate),
                 "torque": None if flow is None or body in train.planets else float(flow.torques[body]),
-                "power": None
-                if flow is None or body in train.planets
-                else float(flow.powers[body]) * (float(speed[0]) if turning else 1.0),
+                "power": None if flow is None or body in train.planets else float(flow.powers[body]) * unit,
                 **(
                     request.motion.geared(share, at, speed)
                     if turning and share is not None
@@ -315,7 +328,6 @@ def _analysis(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
                 ),
             }
         )
-    unit = float(speed[0]) if turning else 1.0
     asked: dict[str, Any] = {"shift_table": request.table()} if request.include else {}
     return {
         "input_angle": at.tolist(),
@@ -359,7 +371,7 @@ def _ratio(request: PlanetaryAnalysisRequest, solution: Speeds) -> Fraction | No
 
 
 def _flow(
-    request: PlanetaryAnalysisRequest, train: Train, solution: Speeds, known: dict[str, Fraction]
+    request: PlanetaryAnalysisRequest, train: Train, solution: Speeds, known: dict[str, Fraction], sense: int
 ) -> PowerFlow | None:
     """Torques and powers, where the known torques determine them; none with clutches, whose torque no mesh tells."""
     if request.locked:
@@ -371,7 +383,7 @@ def _flow(
     if loads is None:
         stated = [*known, *torques, request.mechanism.input, request.mechanism.output, request.mechanism.fixed]
         loads = [body for body in dict.fromkeys(stated) if body is not None and body in train.members]
-    rates = {body: rate for body, rate in solution.values.items() if rate is not None}
+    rates = {body: sense * rate for body, rate in solution.values.items() if rate is not None}
     return power_flow(train, rates, loads, torques, decimal(request.mesh_efficiency))
 
 

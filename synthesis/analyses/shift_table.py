@@ -44,10 +44,9 @@ class GivenElement(Statement):
         """The members that it acts on."""
         return self.clutch or (str(self.brake),)
 
-    @property
-    def drives(self) -> str | None:
-        """The member that it puts on the input shaft."""
-        if self.clutch is None or INPUT not in self.clutch:
+    def drives(self, driving: str | None) -> str | None:
+        """The member that it puts on the input shaft; None where the input sits on a member, whatever that is named."""
+        if driving is not None or self.clutch is None or INPUT not in self.clutch:
             return None
         return next((body for body in self.clutch if body != INPUT), INPUT)
 
@@ -87,10 +86,13 @@ def element_faults(train: Train, driving: str | None, elements: Sequence[GivenEl
             faults.append((f"{path}/name", "another element has this name"))
         unknown = [body for body in element.bodies if body not in known]
         part = "brake" if element.clutch is None else "clutch"
-        if unknown or element.brake == INPUT:
+        if unknown or (element.brake == INPUT and INPUT not in train.members):
             faults.append((f"{path}/{part}", f"expected members of {', '.join(known)}"))
         elif len(set(element.bodies)) < len(element.bodies):
             faults.append((f"{path}/clutch", "joins a member with itself"))
+        elif driving is None and element.clutch is not None and INPUT in element.clutch and INPUT in train.members:
+            told = "a member is named input: give it another name, or state the mechanism's input"
+            faults.append((f"{path}/clutch", told))
     return faults
 
 
@@ -129,9 +131,9 @@ def _states(
 ) -> Iterator[dict[str, Any]]:
     for engaged in itertools.combinations(elements, _engaged_at_once(train, driving)):
         inputs = [] if driving is None else [driving]
-        inputs += [element.drives for element in engaged if element.drives is not None]
+        inputs += [body for element in engaged if (body := element.drives(driving)) is not None]
         held = [str(element.brake) for element in engaged if element.brake is not None]
-        joined = [element.clutch for element in engaged if element.clutch is not None and element.drives is None]
+        joined = [element.clutch for element in engaged if element.clutch and element.drives(driving) is None]
         if not inputs or set(inputs) & set(held):
             continue
         known = {**dict.fromkeys(held, 0), **dict.fromkeys(inputs, 1)}

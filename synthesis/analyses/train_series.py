@@ -8,10 +8,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field
 
-from kinematics.gear.planetary import speed_ratio
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
 from synthesis.analyses.drift import WANTED, Drift, drifting
-from synthesis.analyses.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest, GivenGearTrain
+from synthesis.analyses.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest, GivenGearTrain, GivenRatio
 from synthesis.analyses.planetary_train import GivenPlanetaryTrain, PlanetaryAnalysis, PlanetaryAnalysisRequest
 from synthesis.model.answer import optional
 from synthesis.model.gear_answer import Ratio
@@ -26,7 +25,18 @@ class GivenTrainSeries(Statement):
 
     type: Literal["train_series"]
     units: list[GivenUnit] = Field(min_length=1, max_length=8)
-    ratio: Any = None
+    ratio: GivenRatio | None = Field(default=None, description="As in a design: compared with that of the teeth.")
+
+    def driven_ratio(self) -> Fraction:
+        """Input speed of the first unit over output speed of the last, of units without faults."""
+        return math.prod((unit_ratio(unit) for unit in self.units), start=Fraction(1))
+
+
+def unit_ratio(unit: GivenGearTrain | GivenPlanetaryTrain) -> Fraction:
+    """Input over output speed of a unit that passes its motion on."""
+    ratio = unit.driven_ratio() if isinstance(unit, GivenPlanetaryTrain) else unit.train().ratio
+    assert ratio is not None
+    return ratio
 
 
 class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
@@ -59,7 +69,10 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
     )
 
     length_unit: Literal["mm", "cm", "m", "in"] = "mm"
-    input_torque: Number = Field(default=1.0, description="Torque on the first input, N m.")
+    input_torque: Number = Field(
+        default=1.0,
+        description="Torque on the first input, N m; against its speed at the first position the output drives.",
+    )
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.5, le=1.0)] = Field(
         default=0.99, description="Of every mesh as an ordinary pair."
     )
@@ -77,11 +90,13 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
                 own += [(f"/mechanism/{part}", "state it") for part in named]
                 if not own:
                     own = PlanetaryAnalysisRequest(mechanism=unit).faults()
-                if not own and _planetary_ratio(unit) is None:
+                if not own and unit.driven_ratio() is None:
                     own = [("/mechanism", "with these members the train does not pass its motion on")]
             else:
                 own = GearTrainAnalysisRequest(mechanism=unit).faults()
             faults += [(f"/mechanism/units/{k}{path.removeprefix('/mechanism')}", detail) for path, detail in own]
+        if not faults and self.mechanism.ratio is not None:
+            faults += self.mechanism.ratio.faults(self.mechanism.driven_ratio())
         return faults
 
     def answer(self) -> dict[str, Any]:
@@ -92,20 +107,24 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
 class SeriesShaft(TurningPart):
     """The input, a shaft between two units, or the output."""
 
-    torque: float | None = Field(description="N m that it passes on; null where losses before it are not known.")
+    torque: float | None = Field(
+        description="N m, with the losses between the input and it; null where those are not known, or where no torque "
+        "of the output drives the input."
+    )
 
 
 class TrainSeriesAnalysis(DrivenAnalysis):
     """What the analysis core knows of trains in series.
 
-    Every unit is told by its own family for its own input at speed 1 and torque 1; multiplied by the speed ratio and
-    the torque of the shaft that drives it, its speeds and torques are those in the series.
+    Every unit is told by its own family for its own input at speed 1 and torque 1, or −1 where the output drives; with
+    its speeds multiplied by the speed ratio of its input, and its torques by the torque there over its own, they are
+    those in the series.
     """
 
     valid: list[bool]
     ratio: Ratio
-    efficiency: float | None = Field(description="Output power over input power.")
-    self_locking: bool = Field(description="The input cannot drive the output, whatever its torque.")
+    efficiency: float | None = Field(description="Power that leaves over power that enters.")
+    self_locking: bool = Field(description="What drives cannot turn the other end, whatever its torque.")
     shafts: list[SeriesShaft] = Field(description="The input, the shafts between the units, the output.")
     units: list[PlanetaryAnalysis | GearTrainAnalysis] = Field(
         description="In the order of the power, for one position of the own input."
@@ -113,50 +132,57 @@ class TrainSeriesAnalysis(DrivenAnalysis):
     drift: Drift | None = optional("Where a ratio is wanted, and the series turns its way.")
 
 
-def _planetary_ratio(unit: GivenPlanetaryTrain) -> Fraction | None:
-    return speed_ratio(unit.train(), str(unit.input), str(unit.output), [str(unit.fixed)])
-
-
 def _analysis(request: TrainSeriesAnalysisRequest) -> dict[str, Any]:
     at, speed, time = request.motion.inputs()
-    share, torque = Fraction(1), request.input_torque
-    shafts = [{"speed_ratio": 1.0, "torque": torque, **request.motion.geared(1.0, at, speed)}]
+    share, power = Fraction(1), 1.0
+    back = request.input_torque * float(speed[0]) < 0.0
+    shafts = [{"speed_ratio": 1.0, "torque": request.input_torque, **request.motion.geared(1.0, at, speed)}]
     units: list[dict[str, Any]] = []
-    efficiencies: list[float | None] = []
+    known = True
     for unit in request.mechanism.units:
-        stated = {"mechanism": unit, "motion": {"at": 0.0}, "mesh_efficiency": request.mesh_efficiency}
-        if isinstance(unit, GivenPlanetaryTrain):
-            told = PlanetaryAnalysisRequest.model_validate(stated).answer()
-            ratio = _planetary_ratio(unit)
-            assert ratio is not None
-        else:
-            told = GearTrainAnalysisRequest.model_validate({**stated, "length_unit": request.length_unit}).answer()
-            ratio = unit.train().ratio
+        told = _told(request, unit, back)
         units.append(told)
-        efficiencies.append(told["efficiency"])
-        share /= ratio
+        share /= unit_ratio(unit)
+        passed = told["efficiency"]
+        # Where the output drives, what comes in there is more than what leaves at the input.
+        known = known and passed is not None and not (back and passed == 0.0)
+        if known:
+            power *= 1.0 / passed if back else passed
         turning = float(share)
-        known = all(one is not None for one in efficiencies)
-        passed = math.prod(one for one in efficiencies if one is not None)
         shafts.append(
             {
                 "speed_ratio": turning,
-                "torque": request.input_torque * passed / turning if known else None,
+                "torque": request.input_torque * power / turning if known else None,
                 **request.motion.geared(turning, at, speed),
             }
         )
-    known = all(one is not None for one in efficiencies)
+    efficiencies = [told["efficiency"] for told in units]
     return {
         "input_angle": at.tolist(),
         "time": None if time is None else time.tolist(),
         "valid": [True] * len(at),
         "ratio": Ratio.of(1 / share).model_dump(),
-        "efficiency": math.prod(one for one in efficiencies if one is not None) if known else None,
+        "efficiency": None if None in efficiencies else math.prod(efficiencies),
         "self_locking": any(told.get("self_locking") for told in units),
         "shafts": shafts,
         "units": units,
         **drifting(1 / share, request.wanted_ratio),
     }
+
+
+def _told(
+    request: TrainSeriesAnalysisRequest, unit: GivenGearTrain | GivenPlanetaryTrain, back: bool
+) -> dict[str, Any]:
+    """A unit alone, its input at speed 1 and with torque 1, or −1 where the output drives."""
+    torque = -1.0 if back else 1.0
+    stated: dict[str, Any] = {
+        "mechanism": unit, "motion": {"at": 0.0}, "mesh_efficiency": request.mesh_efficiency,
+    }  # fmt: skip
+    if isinstance(unit, GivenPlanetaryTrain):
+        stated["torques"] = {str(unit.input): torque}
+        return PlanetaryAnalysisRequest.model_validate(stated).answer()
+    stated |= {"length_unit": request.length_unit, "input_torque": torque}
+    return GearTrainAnalysisRequest.model_validate(stated).answer()
 
 
 FAMILY = Family(TrainSeriesAnalysisRequest, TrainSeriesAnalysis)

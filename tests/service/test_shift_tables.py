@@ -28,6 +28,12 @@ SET: dict[str, Any] = {
 }
 
 
+NAMED: dict[str, Any] = {
+    "type": "planetary_train",
+    "meshes": [{"first": "input", "second": "ring", "carrier": "arm", "first_teeth": 20, "second_teeth": 60}],
+}
+
+
 def told(client: httpx.Client, **body: Any) -> dict[str, Any]:
     answer: dict[str, Any] = client.post("/v1/analyses", json=body).raise_for_status().json()
     return answer
@@ -71,6 +77,23 @@ def test_without_elements_every_member_can_be_held_and_any_two_joined(client: ht
     assert less[0]["efficiency"] < table[0]["efficiency"]
 
 
+def test_a_member_may_have_any_name(client: httpx.Client) -> None:
+    """A clutch to a member named input joins that member, where the input shaft sits on one."""
+
+    def table(name: str, **fields: Any) -> list[tuple[str, float]]:
+        meshes = [
+            {"first": name, "second": "p", "carrier": "arm", "first_teeth": 30, "second_teeth": 20},
+            {"first": "p", "second": "ring", "carrier": "arm", "first_teeth": 20, "second_teeth": 70, "internal": True},
+        ]
+        mechanism = {"type": "planetary_train", "meshes": meshes, "planet_bodies": ["p"], "output": "ring", **fields}
+        held = [{"name": "brake", "brake": name}, {"name": "lock", "clutch": [name, "arm"]}]
+        states = told(client, mechanism=mechanism, include=["shift_table"], elements=held)["shift_table"]
+        return [(state["exact_ratio"], state["efficiency"]) for state in states]
+
+    assert [ratio for ratio, _ in table("sun", input="arm")] == ["1", "7/10"]
+    assert table("input", input="arm") == table("sun", input="arm")
+
+
 @pytest.mark.parametrize(
     ("body", "path"),
     [
@@ -86,6 +109,10 @@ def test_without_elements_every_member_can_be_held_and_any_two_joined(client: ht
         (
             {"mechanism": SIMPSON, "elements": [{"name": "a", "brake": "sun", "clutch": ["sun", "ring_1"]}]},
             "/elements/0",
+        ),
+        (
+            {"mechanism": {**NAMED, "output": "ring"}, "elements": [{"name": "a", "clutch": ["input", "arm"]}]},
+            "/elements/0/clutch",
         ),
         ({"mechanism": SIMPSON, "elements": []}, "/elements"),
         ({"mechanism": SET, "include": ["shift_tables"]}, "/include/0"),

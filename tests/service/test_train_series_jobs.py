@@ -15,6 +15,7 @@ from synthesis.registry import examples
 from tests.service.answers import finished
 
 STATED = examples("train_series")[2]
+WHEELS = {"type": "gear_train", "stages": [{"driver": 20, "driven": 30}]}
 
 
 @pytest.fixture(scope="module")
@@ -58,10 +59,79 @@ def test_the_analysis_of_a_design(client: httpx.Client, job: Any) -> None:
     assert less.get("analysis", less)["efficiency"] < told["efficiency"]
 
 
+def test_where_the_output_drives_it_brings_the_losses(client: httpx.Client, job: Any) -> None:
+    """Whichever of torque and speed is negative; units are told as their own families tell them."""
+    mechanism = job["result"]["designs"][0]["mechanism"]
+    body = {"mechanism": mechanism, "mesh_efficiency": 0.95}
+
+    def told(torque: float, speed: float) -> Any:
+        asked = {**body, "input_torque": torque, "motion": {"at": 0.0, "speed": speed}}
+        return client.post("/v1/analyses", json=asked).raise_for_status().json()
+
+    forwards, backwards = told(3.0, 100.0), told(-3.0, 100.0)
+    assert told(3.0, -100.0)["efficiency"] == backwards["efficiency"]
+    assert told(-3.0, -100.0)["efficiency"] == forwards["efficiency"] != backwards["efficiency"]
+    powers = [shaft["torque"] * shaft["omega"][0] for shaft in backwards["shafts"]]
+    assert powers[0] == pytest.approx(-300.0)
+    assert powers[-1] < powers[1] < powers[0]
+    assert backwards["efficiency"] == pytest.approx(powers[0] / powers[-1])
+    assert not backwards["self_locking"]
+    planetary = mechanism["units"][1]
+    alone = {
+        "mechanism": planetary, "mesh_efficiency": 0.95, "torques": {planetary["input"]: -1.0},
+        "motion": {"at": 0.0, "speed": 7.0},
+    }  # fmt: skip
+    single = client.post("/v1/analyses", json=alone).raise_for_status().json()
+    assert powers[1] / powers[2] == pytest.approx(single["efficiency"]) == backwards["units"][1]["efficiency"]
+    # Turning the other way with the torque turned round too, the powers are the same.
+    turned = {**alone, "torques": {planetary["input"]: 1.0}, "motion": {"at": 0.0, "speed": -7.0}}
+    again = client.post("/v1/analyses", json=turned).raise_for_status().json()
+    assert again["efficiency"] == single["efficiency"]
+    assert [one["power"] for one in again["bodies"]] == pytest.approx([one["power"] for one in single["bodies"]])
+
+
+WOLFROM = {
+    "type": "planetary_train", "arrangement": "wolfrom", "input": "sun", "output": "ring_2", "fixed": "ring_1",
+    "teeth": {"sun": 18, "planet_1": 40, "planet_2": 39, "ring_1": 98, "ring_2": 97},
+}  # fmt: skip
+
+
+def test_a_series_that_locks_is_not_driven_back(client: httpx.Client) -> None:
+    """Forwards it runs, with a small efficiency; backwards no torque on its output takes it along."""
+    mechanism = {"type": "train_series", "units": [WHEELS, WOLFROM, WHEELS]}
+    asked = {"mechanism": mechanism, "mesh_efficiency": 0.97, "motion": {"at": 0.0}}
+    forwards, backwards = (
+        client.post("/v1/analyses", json={**asked, "input_torque": torque}).raise_for_status().json()
+        for torque in (1.0, -1.0)
+    )
+    assert not forwards["self_locking"]
+    assert 0.0 < forwards["efficiency"] < 0.5
+    assert backwards["self_locking"]
+    assert backwards["efficiency"] == 0.0
+    assert [shaft["torque"] is None for shaft in backwards["shafts"]] == [False, False, True, True]
+
+
+def test_the_ratio_of_a_mechanism_is_compared(client: httpx.Client, job: Any) -> None:
+    mechanism = job["result"]["designs"][0]["mechanism"]
+    planetary = mechanism["units"][1]
+    other = {"numerator": 999, "denominator": 7, "value": 999 / 7}
+    inner = [mechanism["units"][0], {**planetary, "ratio": other}]
+    for wrong, path in [
+        ({**mechanism, "ratio": other}, "/mechanism/ratio"),
+        ({**mechanism, "ratio": "nonsense"}, "/mechanism/ratio"),
+        ({**mechanism, "ratio": {**mechanism["ratio"], "value": 1.0}}, "/mechanism/ratio"),
+        ({**mechanism, "units": inner}, "/mechanism/units/1/ratio"),
+        ({**planetary, "ratio": other}, "/mechanism/ratio"),
+    ]:
+        answer = client.post("/v1/analyses", json={"mechanism": wrong})
+        assert answer.status_code == 422, answer.text
+        assert path in [fault["path"] for fault in answer.json()["errors"]]
+    assert client.post("/v1/analyses", json={"mechanism": planetary}).status_code == 200
+
+
 SET = STATED["units"][1]
 GEARS = STATED["units"][0]
 TEETH = {"type": "planetary_train", "arrangement": "simple"}
-WHEELS = {"type": "gear_train", "stages": [{"driver": 20, "driven": 30}]}
 
 
 @pytest.mark.parametrize(

@@ -46,6 +46,31 @@ def test_forces_carry_the_torque() -> None:
     assert found.meshes[0].tangential_force * first.pitch_line_velocity * 1e-3 == pytest.approx(500.0)
 
 
+@pytest.mark.parametrize(("torque", "speed"), [(-5.0, 10.0), (5.0, -10.0)])
+def test_the_output_brings_the_losses_where_it_drives(torque: float, speed: float) -> None:
+    """Power that leaves at the input is less than what enters at the output, by every mesh that it passes."""
+    idlers = [{"stage": 2, "teeth": 30}]
+    found = analysed(TWO, idlers, input_torque=torque, motion={"at": 0.0, "speed": speed}, mesh_efficiency=0.97)
+    power = [shaft.torque * speed * shaft.speed_ratio for shaft in found.shafts]
+    assert power == pytest.approx([-50.0, -50.0 / 0.97, -50.0 / 0.97**3])
+    assert found.efficiency == pytest.approx(power[0] / power[-1])
+    # The force of a mesh is that of the gear that drives it, here the one nearer the output.
+    fast, slow = 10.0 * 0.014, 10.0 / 8.0 * 0.016
+    assert [mesh.tangential_force for mesh in found.meshes] == pytest.approx(
+        [50.0 / 0.97 / fast, 50.0 / 0.97**2 / slow, 50.0 / 0.97**3 / slow]
+    )
+
+
+def test_teeth_that_lose_all_power_are_not_driven_back() -> None:
+    """No torque at the output is enough; a train that drives forwards tells that nothing arrives."""
+    mechanism = {"type": "gear_train", "stages": [{"driver": 3, "driven": 3}]}
+    stated = {"mechanism": mechanism, "friction": 1.0, "motion": {"at": 0.0}}
+    forwards = parse_request({**stated, "input_torque": 1.0})
+    assert forwards.faults() == []
+    assert forwards.answer()["efficiency"] == 0.0
+    assert [path for path, _ in parse_request({**stated, "input_torque": -1.0}).faults()] == ["/friction"]
+
+
 def test_an_idler_turns_the_direction_and_costs_a_mesh() -> None:
     plain = analysed([{"driver": 20, "driven": 60}], mesh_efficiency=0.98)
     idler = analysed([{"driver": 20, "driven": 60}], [{"stage": 1, "teeth": 30}], mesh_efficiency=0.98)
