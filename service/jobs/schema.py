@@ -97,15 +97,15 @@ batches = Table(
     Index("batches_by_idempotency_key", "tenant", "idempotency_key", unique=True),
 )
 
-# The problems of batches that have ended; their ids follow that of the batch. What is small comes before what is large,
-# which a database need not read then.
+# The problems of batches that have ended. They are known by their batch and number, and to clients by their id. What is
+# small comes before what is large, which a database need not read then.
 samples = Table(
     "samples",
     metadata,
-    Column("id", String(26), primary_key=True),
-    Column("batch", String(26), nullable=False),
+    Column("id", String(26), nullable=False),
+    Column("batch", String(26), primary_key=True),
     Column("tenant", String(TENANT_LENGTH), nullable=False),
-    Column("number", Integer, nullable=False),
+    Column("number", Integer, primary_key=True),
     Column("status", String(10), nullable=False),
     Column("cached", Boolean, nullable=False),
     Column("started_at", String(27), nullable=False),
@@ -114,6 +114,7 @@ samples = Table(
     Column("figures", Text),
     Column("error", Text),
     Column("result", Text),
+    Index("samples_by_id", "id", unique=True),
     Index("samples_by_digest", "tenant", "digest"),
 )
 

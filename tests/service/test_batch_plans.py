@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+from ulid import ULID
 
 from service.jobs.batches import identity
 from service.jobs.batches.plan import NoSuchPlace, Plan
@@ -64,11 +65,14 @@ def test_each_part_of_a_range_has_its_sample():
     assert latin_hypercube([Span(-2.0, 6.0)], 16, 6)[0] != ranges
 
 
-def test_ids_of_samples_follow_that_of_the_batch():
-    batch = "01K6WM2B7Q3W9Z0V5N8XJ4R1TZ"
-    ids = [sample_id(batch, n) for n in range(10_000)]
-    assert ids == sorted(set(ids))
-    assert batch < ids[0]
+def test_ids_of_samples_are_none_that_are_made_in_the_same_millisecond():
+    """These follow one another: the batch, its shares, the next batch, a job."""
+    first = ULID.from_str("01K6WM2B7Q3W9Z0V5N8XJ4R1TZ")
+    made = [str(ULID.from_int(int(first) + n)) for n in range(20)]
+    ids = [sample_id(batch, n) for batch in (made[0], made[1], made[17]) for n in range(10_000)]
+    assert len({*ids, *made}) == len(ids) + len(made)
+    assert ids[:10_000] == sorted(ids[:10_000])
+    assert {ULID.from_str(found).milliseconds for found in ids} == {first.milliseconds}
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -111,8 +115,9 @@ def test_a_row_for_each_sample_whatever_came_of_it(status, without):
     table = table_of(batch(Status(status)), varied, ended)
     assert table.columns == ["/seed", "status", "cached", "designs", "size", "job", "error"]
     assert table.rows[0][:6] == [1, without, False, None, None, None]
-    assert table.rows[1] == [2, "succeeded", True, 2, 0.1 + 0.2, "01K6WM2B7Q3W9Z0V5N8XJ4R1TF", None]
-    assert table.rows[3] == [4, "failed", False, None, None, "01K6WM2B7Q3W9Z0V5N8XJ4R1TH", "no"]
+    ids = [sample_id("01K6WM2B7Q3W9Z0V5N8XJ4R1TD", n) for n in (1, 3)]
+    assert table.rows[1] == [2, "succeeded", True, 2, 0.1 + 0.2, ids[0], None]
+    assert table.rows[3] == [4, "failed", False, None, None, ids[1], "no"]
     read = list(csv.DictReader(io.StringIO(table.as_csv())))
     assert float(read[1]["size"]) == 0.1 + 0.2
     assert [row["/seed"] for row in read] == ["1", "2", "3", "4"]

@@ -1,9 +1,11 @@
 """Batches in the store: each sample is there once, whatever dies, comes late or is cancelled in between."""
 
 from datetime import UTC, datetime, timedelta
+from types import SimpleNamespace
 
 import pytest
 from sqlalchemy import select, update
+from ulid import ULID
 
 from service.jobs.admission import KeyReused, QueueFull, Repeatable
 from service.jobs.batches.plan import Plan
@@ -88,6 +90,32 @@ def test_no_sample_is_stored_twice(store, single, engine):
     assert store.store(batch, again.job_id, again.attempt, None, [ended(0)])
     assert not store.store(batch, claim.job_id, claim.attempt, None, [ended(0)])
     assert numbers(engine) == [0]
+
+
+def test_batches_and_jobs_of_one_millisecond_have_their_own_samples(store, single, engine, monkeypatch):
+    """Ids that are made in one millisecond follow one another."""
+    at = datetime.now(UTC).timestamp()
+    monkeypatch.setattr("ulid.time", SimpleNamespace(time_ns=lambda: int(at * 1e9), time=lambda: at))
+    made_at_once = [made(store, 40, tenant=tenant) for tenant in ("a", "b")]
+    job = single.create(tenant="a", kind="motion", label=None, problem="{}", cost=Cost.LONG)
+    ids = sorted(int(ULID.from_str(row.id)) for row in (*made_at_once, job))
+    assert ids[2] - ids[0] <= 2 * (1 + SHARES), "or this tests nothing"
+    while (claim := single.take("m", [Cost.SHORT])) is not None:
+        share = Share.read(claim.problem)
+        [batch] = [batch for batch in made_at_once if batch.id == claim.batch]
+        assert store.ended(batch, share.first, share.end) == set()
+        new = [ended(n) for n in range(share.first, share.end)]
+        assert store.store(batch, claim.job_id, claim.attempt, None, new)
+    for batch in made_at_once:
+        rows = store.table(store.get(batch.id))
+        assert [row.number for row in rows] == list(range(40))
+        assert single.get(sample_id(batch.id, 1)).batch == batch.id
+    assert single.get(job.id).status is Status.QUEUED
+    for gone, left in (made_at_once, made_at_once[::-1]):
+        before = len(store.table(left)) if store.get(left.id) else 0
+        assert store.delete(gone.id)
+        assert len(store.table(left)) == before
+    assert numbers(engine) == []
 
 
 @pytest.mark.parametrize(

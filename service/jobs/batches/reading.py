@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import fields
+from hashlib import sha256
 from typing import Any
 
 from sqlalchemy import Connection, select
@@ -15,13 +16,22 @@ from service.jobs.schema import JobSummary, SampleRow, batches, samples
 from service.jobs.statements import MAX_IDS
 from service.jobs.states import Status
 
+_RANDOM_BITS, _NUMBER_BITS = 80, 14
+"""Bits of a ULID below its time; and those for the number of a sample, of which there are 10 000 at most."""
+
 _SAMPLE = [samples.c[name] for name in ("id", "batch", "tenant", "number", "status", "started_at", "finished_at")]
 _OF_BATCH = [batches.c[name] for name in ("kind", "label", "created_at")]
 
 
 def sample_id(batch_id: str, number: int) -> str:
-    """The id of a sample: that of its batch, counted on. So no sample can be stored twice."""
-    return str(ULID.from_int(int(ULID.from_str(batch_id)) + 1 + number))
+    """The id of a sample: the time of its batch, a hash of the batch's id, and the number.
+
+    Ids that are made in one millisecond follow one another, so that none may be made from another by counting.
+    """
+    made_at = int(ULID.from_str(batch_id)) >> _RANDOM_BITS
+    own = int.from_bytes(sha256(batch_id.encode()).digest()) & ((1 << _RANDOM_BITS - _NUMBER_BITS) - 1)
+    assert 0 <= number < 1 << _NUMBER_BITS
+    return str(ULID.from_int((made_at << _RANDOM_BITS) | (own << _NUMBER_BITS) | number))
 
 
 def sample_as_job(connection: Connection, job_id: str) -> SampleRow | None:

@@ -152,7 +152,7 @@ class BatchStore:
         """The samples that have ended, in their order."""
         query = select(
             samples.c.number, samples.c.status, samples.c.cached, samples.c.figures, samples.c.error
-        ).where(_of(batch.id, batch.total)).order_by(samples.c.id)  # fmt: skip
+        ).where(samples.c.batch == batch.id).order_by(samples.c.number)  # fmt: skip
         with self._engine.connect() as connection:
             return [
                 TableRow(row.number, Status(row.status), row.cached, json.loads(row.figures or "null"), row.error)
@@ -169,11 +169,8 @@ class BatchStore:
 
     def ended(self, batch: BatchSummary, first: int, end: int) -> set[int]:
         """Which of the samples from ``first`` to before ``end`` are stored."""
-        query = select(samples.c.number).where(
-            samples.c.id >= sample_id(batch.id, first), samples.c.id < sample_id(batch.id, end)
-        )
         with self._engine.connect() as connection:
-            return set(connection.execute(query).scalars())
+            return _ended(connection, batch.id, first, end)
 
     def answers(self, tenant: str, digests: Collection[str]) -> dict[str, str]:
         """The results of the tenant's problems of these digests that have one, by digest; JSON."""
@@ -266,8 +263,7 @@ class BatchStore:
             return False
         for first in range(0, row.total, MAX_IDS):
             with self._engine.begin() as connection:
-                portion = _of(batch_id, min(MAX_IDS, row.total - first), first)
-                connection.execute(delete(samples).where(portion))
+                connection.execute(delete(samples).where(*_of(batch_id, first, first + MAX_IDS)))
         with self._engine.begin() as connection:
             connection.execute(delete(jobs).where(jobs.c.batch == batch_id))
             return connection.execute(delete(batches).where(batches.c.id == batch_id)).rowcount > 0
@@ -344,8 +340,13 @@ def _stored(connection: Connection, batch: BatchSummary, new: Sequence[Ended]) -
     return True
 
 
-def _of(batch_id: str, count: int, first: int = 0) -> Any:
-    return samples.c.id.between(sample_id(batch_id, first), sample_id(batch_id, first + count - 1))
+def _of(batch_id: str, first: int, end: int) -> Sequence[Any]:
+    """The samples of a batch from ``first`` to before ``end``."""
+    return samples.c.batch == batch_id, samples.c.number >= first, samples.c.number < end
+
+
+def _ended(connection: Connection, batch_id: str, first: int, end: int) -> set[int]:
+    return set(connection.execute(select(samples.c.number).where(*_of(batch_id, first, end))).scalars())
 
 
 def _row(connection: Connection, batch_id: str) -> Any:

@@ -40,16 +40,17 @@ def upgrade() -> None:
     op.create_index("batches_by_idempotency_key", "batches", ["tenant", "idempotency_key"], unique=True)
     op.create_table(
         "samples",
-        sa.Column("id", sa.String(26), primary_key=True),
-        sa.Column("batch", sa.String(26), nullable=False),
+        sa.Column("id", sa.String(26), nullable=False),
+        sa.Column("batch", sa.String(26), primary_key=True),
         sa.Column("tenant", sa.String(100), nullable=False),
-        sa.Column("number", sa.Integer, nullable=False),
+        sa.Column("number", sa.Integer, primary_key=True),
         sa.Column("status", sa.String(10), nullable=False),
         sa.Column("cached", sa.Boolean, nullable=False),
         *(sa.Column(f"{moment}_at", sa.String(27), nullable=False) for moment in MOMENTS[1:]),
         sa.Column("digest", sa.String(64)),
         *(sa.Column(name, sa.Text) for name in ("figures", "error", "result")),
     )
+    op.create_index("samples_by_id", "samples", ["id"], unique=True)
     op.create_index("samples_by_digest", "samples", ["tenant", "digest"])
 
 
