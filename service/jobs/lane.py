@@ -30,6 +30,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from service.jobs import faults, worker
 from service.jobs.batches.store import BatchStore
+from service.jobs.database import unreachable
 from service.jobs.executor import Changed
 from service.jobs.faults import Fault
 from service.jobs.orphans import tell_children
@@ -387,7 +388,9 @@ class Lane(threading.Thread):
         while True:
             try:
                 return write(*args, **options)
-            except SQLAlchemyError:
-                log.exception("the store refused a write", lane=self.name)
+            except SQLAlchemyError as error:
+                if not unreachable(error):  # it would be refused each time, and the lane be lost
+                    raise
+                log.exception("the store is out of reach", lane=self.name)
                 if self._stopping.wait(RETRY_PERIOD_S):
                     return None

@@ -151,6 +151,44 @@ def test_a_sample_that_kills_its_workers_fails_by_itself(store, single, engine):
     assert store.crashed(again.job_id, "another mark", 0, killed=False) is None
 
 
+@pytest.mark.parametrize("total", [1, 3, 40])
+def test_workers_that_die_before_any_sample_is_begun_fail_one_after_the_other(store, single, engine, total):
+    batch = made(store, total)
+    most = total * (MAX_CRASHES + 1) + min(total, SHARES)  # and one of each share with nothing left to do
+    deaths = 0
+    while (claim := take(single, f"m{deaths}")) is not None and deaths <= most:
+        assert store.crashed(claim.job_id, claim.mark, None, killed=False) is not None
+        deaths += 1
+    assert numbers(engine) == list(range(total))
+    assert (store.get(batch.id).status, deaths) == (Status.FAILED, most)
+
+
+def test_what_is_stored_already_is_not_blamed(store, single, engine):
+    """A share goes on past what was stored of it by itself."""
+    batch = made(store, 4 * SHARES)
+    claim = take(single, "a")
+    assert Share.read(claim.problem) == Share(0, 4)
+    assert store.give_up(claim.job_id, claim.mark, 0, lambda _: "{}") is Status.QUEUED
+    for n in range(1, 4):
+        claim = again(single, claim.job_id)
+        assert store.crashed(claim.job_id, claim.mark, 0, killed=False) is Status.QUEUED
+        claim = again(single, claim.job_id)
+        assert Share.read(claim.problem) == Share(0, 4, alone=n)
+        assert store.give_up(claim.job_id, claim.mark, None, lambda _: "{}") is not None
+    assert numbers(engine) == [0, 1, 2, 3]
+    assert store.get(batch.id).failed == 4
+
+
+def again(single, share_id):
+    """The claim of a share whose turn it is somewhen; the others wait again behind it."""
+    others = []
+    while (claim := take(single, f"again{len(others)}")).job_id != share_id:
+        others.append(claim)
+    for other in others:
+        assert single.requeue(other.job_id, other.mark)
+    return claim
+
+
 def test_kills_from_outside_are_forgiven_more_often(store, single, engine):
     made(store, 1)
     for kill in range(MAX_KILLS):

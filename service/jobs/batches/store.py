@@ -188,7 +188,7 @@ class BatchStore:
     ) -> bool:
         """Store a slice; what is left of its share goes back into the queue. False where the attempt counts no more."""
         change = (
-            moved("succeed", share_id, finished_at=now(), progress_fraction=1.0, progress_message="succeeded")
+            _done(share_id)
             if left is None
             else _back(share_id, left, turn=turn_of(jobs.c.tenant, jobs.c.cost, share=True), crashes=0)
         )
@@ -208,7 +208,8 @@ class BatchStore:
         Returns
         -------
         Status or None
-            ``queued``, or None where the share is that of another attempt, or cancelled; nothing changed.
+            ``queued``; ``succeeded`` where nothing of the share is left to do; or None where it is that of another
+            attempt, or cancelled; nothing changed.
         """
         return self._given_back(share_id, claim, number, MAX_KILLS if killed else MAX_CRASHES, WORKER_DIED.as_json)
 
@@ -227,12 +228,18 @@ class BatchStore:
             if row is None:
                 return None
             left = Share.read(row.problem)
-            at = left.first if number is None else number
+            at = _to_blame(connection, row.batch, left, number)
             over = row.crashes >= retries
             share = Share(left.first, left.end, None if over else at)
-            change = _back(share_id, share, turn=AT_ONCE, crashes=0 if over else row.crashes + 1)
+            change = (
+                _done(share_id)
+                if at is None
+                else _back(share_id, share, turn=AT_ONCE, crashes=0 if over else row.crashes + 1)
+            )
             if connection.execute(change.where(jobs.c.claim == claim)).rowcount == 0:
                 return None
+            if at is None:
+                return Status.SUCCEEDED
             if over:
                 found = _row(connection, row.batch)
                 failed = Ended(at, Status.FAILED, now(), now(), error=error(sample_id(row.batch, at)))
@@ -309,6 +316,20 @@ def _dealt(total: int) -> list[Share]:
     count = min(total, SHARES)
     bounds = [total * n // count for n in range(count + 1)]
     return [Share(first, end) for first, end in pairwise(bounds)]
+
+
+def _to_blame(connection: Connection, batch_id: str, left: Share, number: int | None) -> int | None:
+    """The sample at which a worker is taken to have died: the one that it was at, else the one that it had to begin.
+
+    None where all of the share are stored.
+    """
+    stored = _ended(connection, batch_id, left.first, left.end)
+    supposed = (n for n in (number, left.alone) if n is not None)
+    return next((n for n in (*supposed, *range(left.first, left.end)) if n not in stored), None)
+
+
+def _done(share_id: str) -> Any:
+    return moved("succeed", share_id, finished_at=now(), progress_fraction=1.0, progress_message="succeeded")
 
 
 def _back(share_id: str, left: Share, **values: Any) -> Any:
