@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections import OrderedDict
+from collections import OrderedDict, deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -23,7 +23,7 @@ from service.jobs import faults
 from service.jobs.batches.identity import digest
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.reading import sample_id
-from service.jobs.batches.rows import BatchRow, Ended, Share
+from service.jobs.batches.rows import BatchRow, BatchSummary, Ended, Share
 from service.jobs.batches.store import BatchStore
 from service.jobs.database import patiently
 from service.jobs.schema import Claim, now
@@ -49,12 +49,12 @@ log = structlog.get_logger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class _Stated:
-    """A sample as it is to be solved: the problem and its digest, or what is wrong with its statement."""
+    """A sample as it is to be solved: the problem and its digest, or why there is none."""
 
     number: int
-    problem: Any
-    digest: str | None
-    wrong: Sequence[tuple[str, str]]
+    problem: Any = None
+    digest: str | None = None
+    fault: faults.Fault | None = None
 
 
 class Slices:
@@ -72,12 +72,15 @@ class Slices:
         Nothing of it is stored where the lane says that it is to stop; that is soon done again.
         """
         share = Share.read(claim.problem)
-        known = self._known(batch_id)
-        if known is None:
-            patiently(self._store.store, None, claim.job_id, claim.attempt, None, [])
-            return "superseded"
-        batch, plan = known
-        todo, end = self._window(batch, share)
+        try:
+            known = self._known(batch_id)
+            if known is None:
+                patiently(self._store.store, None, claim.job_id, claim.attempt, None, [])
+                return "superseded"
+            batch, plan = known
+            todo, end = self._window(batch, share)
+        except MemoryError:
+            return self._without_its_plan(claim, batch_id, share)
         new: list[Ended] = []
         outcome: Outcome = "slice"
         until = time.perf_counter() + SLICE_S
@@ -103,11 +106,28 @@ class Slices:
             batch = patiently(self._store.begun, batch_id)
             if batch is None:
                 return None
-            self._plans[batch_id] = batch, Plan.read(batch.plan)
+            try:
+                plan = Plan.read(batch.plan)
+            except MemoryError:
+                self._plans.clear()
+                plan = Plan.read(batch.plan)
+            self._plans[batch_id] = batch, plan
             if len(self._plans) > PLANS:
                 self._plans.popitem(last=False)
         self._plans.move_to_end(batch_id)
         return self._plans[batch_id]
+
+    def _without_its_plan(self, claim: Claim, batch_id: str, share: Share) -> Outcome:
+        """Fail what is left of a share whose plan takes more memory than a job may: none of it can be solved."""
+        self._plans.clear()
+        batch = patiently(self._store.summaries, [batch_id]).get(batch_id)
+        new = []
+        if batch is not None:
+            there = patiently(self._store.ended, batch, share.first, share.end)
+            left = (number for number in range(share.first, share.end) if number not in there)
+            new = [_failed(batch, number, now(), self._out_of_memory) for number in left]
+        patiently(self._store.store, batch, claim.job_id, claim.attempt, None, new)
+        return "out of memory"
 
     def _window(self, batch: BatchRow, share: Share) -> tuple[list[int], int]:
         """The samples to be solved next, and where those begin that come after them."""
@@ -122,9 +142,9 @@ class Slices:
         self, batch: BatchRow, plan: Plan, todo: Sequence[int], new: Sequence[Ended]
     ) -> Iterator[tuple[_Stated, str | None]]:
         """The samples as they are stated, each with the answer that the store or the slice has of its like."""
-        together = LOOKED_UP if plan.reuse else 1
-        for start in range(0, len(todo), together):
-            group = [_stated(batch, plan, number) for number in todo[start : start + together]]
+        left = deque(todo)
+        while left:
+            group = self._group(batch, plan, left)
             answers: dict[str, str] = {}
             if plan.reuse:
                 wanted = {stated.digest for stated in group if stated.digest is not None}
@@ -134,50 +154,82 @@ class Slices:
                     answers.setdefault(new[-1].digest, new[-1].result)
                 yield stated, None if stated.digest is None else answers.get(stated.digest)
 
+    def _group(self, batch: BatchRow, plan: Plan, left: deque[int]) -> list[_Stated]:
+        """The next samples, taken from those that are ``left``: as many as are looked for together.
+
+        Where one takes too much memory to be stated, those before it; the error is its own when it comes first.
+        """
+        group: list[_Stated] = []
+        for number in list(left)[: LOOKED_UP if plan.reuse else 1]:
+            try:
+                group.append(self._stated(batch, plan, number))
+            except MemoryError:
+                if not group:
+                    raise
+                break
+            left.popleft()
+        return group
+
     def _ended(self, batch: BatchRow, plan: Plan, stated: _Stated, answer: str | None) -> Ended:
+        began = now()
+        try:
+            result = self._solved(stated) if answer is None else answer
+            if isinstance(result, faults.Fault):
+                return _failed(batch, stated.number, began, result)
+            return Ended(
+                stated.number,
+                Status.SUCCEEDED,
+                began,
+                now(),
+                cached=answer is not None,
+                digest=stated.digest,
+                figures=_figures(result, plan.metrics),
+                result=result,
+            )
+        except MemoryError:
+            raise
+        except Exception:  # the boundary of the solvers: whatever defect they have ends this sample only
+            log.exception("the solver raised", batch=batch.id, sample=stated.number)
+            return _failed(batch, stated.number, began, faults.INTERNAL_ERROR)
+
+    def _solved(self, stated: _Stated) -> str | faults.Fault:
+        """The answer in JSON, or why there is none."""
+        from service.explained import sentence
         from service.stated import consistent
         from synthesis import dispatch
         from synthesis.model.statement import ContradictionError
 
-        began = now()
-        if stated.wrong:
-            return _failed(batch, stated.number, began, faults.invalid_problem(stated.wrong))
-        result = answer
-        if result is None:
-            try:
-                with self._solving.at_work(stated.number):
-                    result = dispatch.solve(stated.problem, self._solving.stoppable(_silent)).model_dump_json()
-            except MemoryError:
-                raise
-            except ContradictionError:
-                return _failed(batch, stated.number, began, faults.invalid_problem(consistent(stated.problem)))
-            except Exception:  # the boundary of the solvers: whatever defect they have ends this sample only
-                log.exception("the solver raised", batch=batch.id, sample=stated.number)
-                return _failed(batch, stated.number, began, faults.INTERNAL_ERROR)
-        return Ended(
-            stated.number,
-            Status.SUCCEEDED,
-            began,
-            now(),
-            cached=answer is not None,
-            digest=stated.digest,
-            figures=_figures(result, plan.metrics),
-            result=result,
-        )
+        if stated.fault is not None:
+            return stated.fault
+        try:
+            with self._solving.at_work(stated.number):
+                return dispatch.solve(stated.problem, self._solving.stoppable(_silent)).model_dump_json()
+        except ContradictionError as error:
+            # Some are seen by the solver alone, and stand among those of the statement nowhere.
+            path, detail = error.contradiction
+            return faults.invalid_problem(consistent(stated.problem) or [(path, sentence(detail))])
+
+    def _stated(self, batch: BatchRow, plan: Plan, number: int) -> _Stated:
+        from service.stated import well_formed
+
+        try:
+            with self._solving.at_work(number):
+                problem, wrong = well_formed(batch.kind, plan.statement(number))
+                if wrong:
+                    return _Stated(number, fault=faults.invalid_problem(wrong))
+                return _Stated(number, problem, digest(problem))
+        except MemoryError:
+            raise
+        except Exception:  # a defect of what checks or tells problems apart ends this sample only
+            log.exception("a statement could not be read", batch=batch.id, sample=number)
+            return _Stated(number, fault=faults.INTERNAL_ERROR)
 
 
 def _silent(_fraction: float, _message: str) -> None:
     pass
 
 
-def _stated(batch: BatchRow, plan: Plan, number: int) -> _Stated:
-    from service.stated import well_formed
-
-    problem, wrong = well_formed(batch.kind, plan.statement(number))
-    return _Stated(number, problem, None if problem is None else digest(problem), wrong)
-
-
-def _failed(batch: BatchRow, number: int, began: str, fault: faults.Fault) -> Ended:
+def _failed(batch: BatchSummary, number: int, began: str, fault: faults.Fault) -> Ended:
     error = fault.as_json(sample_id(batch.id, number))
     return Ended(number, Status.FAILED, began, now(), error=error)
 

@@ -1,0 +1,169 @@
+"""What a worker does with a share: each sample ends by itself, whatever its solver, its statement or its plan does."""
+
+import json
+
+import pytest
+
+from service.jobs import faults
+from service.jobs.batches import slices
+from service.jobs.batches.plan import Plan
+from service.jobs.batches.slices import Slices
+from service.jobs.batches.store import BatchStore
+from service.jobs.solving import Solving
+from service.jobs.states import Cost
+from service.jobs.store import JobStore
+from synthesis import dispatch
+from synthesis.model.answer import Result, Search
+from synthesis.model.statement import Contradiction, ContradictionError
+from tests.service.running import PROBLEM
+
+INVALID, DEFECT, MEMORY = "/problems/invalid-problem", "/problems/internal-error", "/problems/out-of-memory"
+
+# The linkage can just not be assembled, which nothing but the solver sees.
+APART = {
+    "kind": "parallel_motion",
+    "linkage": {
+        "fixed_pivots": {"input": [0.0, 0.0], "output": [60.0, 0.0]},
+        "links": {"input": 20.0, "coupler": 40.0, "output": 40.0 - 80.0 * 5e-7},
+        "coupler_point": {"distance": 60.0, "angle": 30.0},
+        "assembly": "open",
+        "reference_input_angle": 180.0,
+    },
+}
+
+
+class Bench:
+    """A store, and the slices of a worker in this process."""
+
+    def __init__(self, engine):
+        self.engine = engine
+        self.store, self.single = BatchStore(engine), JobStore(engine)
+        self.slices = Slices(self.store, Solving(), faults.out_of_memory(1))
+
+    def batch(self, *seeds, problem=PROBLEM, reuse=False, tenant=""):
+        plan = Plan(problem, ["/seed"], [list(seeds)], True, ["size"], reuse)
+        return self.store.create(
+            tenant=tenant, kind=problem["kind"], label=None, plan=plan, cost=Cost.SHORT, max_queued=1000,
+            repeatable=None,
+        )[0]  # fmt: skip
+
+    def run(self):
+        """Run all that is queued; the outcomes."""
+        outcomes = []
+        while (claim := self.single.take(f"m{len(outcomes)}", [Cost.SHORT])) is not None:
+            outcomes.append(self.slices.run(claim, claim.batch))
+            assert len(outcomes) < 1000
+        return outcomes
+
+    def ended(self, batch):
+        """The batch, and of each sample the type of its error."""
+        now = self.store.get(batch.id)
+        return now, [None if row.error is None else json.loads(row.error)["type"] for row in self.store.table(now)]
+
+
+@pytest.fixture
+def bench(emptied):
+    return Bench(emptied)
+
+
+class Solver:
+    """Has no designs for any problem; raises what is set for a seed."""
+
+    def __init__(self):
+        self.given, self.raises = [], {}
+
+    def solve(self, problem, _progress):
+        self.given.append(problem.seed)
+        if problem.seed in self.raises:
+            raise self.raises[problem.seed]
+        search = Search(method="scripted", complete=True, candidates=0, accepted=0, rejected={}, seed=problem.seed)
+        return Result(designs=[], search=search, summary="scripted")
+
+
+@pytest.fixture
+def solver(monkeypatch):
+    scripted = Solver()
+    monkeypatch.setattr(dispatch, "solve", scripted.solve)
+    return scripted
+
+
+def test_a_contradiction_that_only_the_solver_sees_fails_its_sample(bench):
+    batch = bench.batch(1, 2, problem=APART)
+    assert bench.run() == ["slice", "slice"]
+    now, errors = bench.ended(batch)
+    assert (now.failed, errors) == (2, [INVALID, INVALID])
+    [told, _] = [json.loads(row.error) for row in bench.store.table(now)]
+    assert [fault["path"].startswith("/linkage") for fault in told["errors"]] == [True]
+
+
+def test_whatever_is_raised_ends_one_sample_only(bench, solver, monkeypatch):
+    solver.raises = {1: ContradictionError(Contradiction("/seed", "no")), 2: ValueError(), 3: RecursionError()}
+    broken_for(monkeypatch, "digest", lambda problem: problem.seed == 5)
+    broken_for(monkeypatch, "_figures", lambda result: json.loads(result)["search"]["seed"] == 6)
+    batch = bench.batch(*range(7))
+    assert set(bench.run()) == {"slice"}
+    now, errors = bench.ended(batch)
+    assert errors == [None, INVALID, DEFECT, DEFECT, None, DEFECT, DEFECT]
+    assert (now.status.value, now.succeeded, now.failed) == ("succeeded", 2, 5)
+
+
+def broken_for(monkeypatch, name, which):
+    """A function of the slices has a defect where its first argument is such."""
+    sound = getattr(slices, name)
+
+    def broken(first, *others):
+        if which(first):
+            raise TypeError("a defect")
+        return sound(first, *others)
+
+    monkeypatch.setattr(slices, name, broken)
+
+
+def test_a_plan_that_takes_too_much_memory_fails_its_batch(bench, solver, monkeypatch):
+    def read(_text):
+        raise MemoryError
+
+    batch = bench.batch(*range(40))
+    with monkeypatch.context() as small:
+        small.setattr(slices.Plan, "read", read)
+        assert bench.run() == ["out of memory"] * 16
+    now, errors = bench.ended(batch)
+    assert (now.status.value, errors, solver.given) == ("failed", [MEMORY] * 40, [])
+    other = bench.batch(1)
+    assert bench.run() == ["slice"]
+    assert bench.ended(other)[0].status.finished
+
+
+def test_a_plan_has_the_memory_of_those_that_are_kept(bench, solver, monkeypatch):
+    bench.batch(1)
+    bench.run()
+    read, held = slices.Plan.read, []
+
+    def read_alone(text):
+        held.append(len(bench.slices._plans))
+        if held[-1]:
+            raise MemoryError
+        return read(text)
+
+    monkeypatch.setattr(slices.Plan, "read", read_alone)
+    batch = bench.batch(2)
+    assert bench.run() == ["slice"]
+    assert (bench.ended(batch)[1], held) == ([None], [1, 0])
+
+
+def test_what_takes_too_much_memory_fails_alone(bench, solver, monkeypatch):
+    """Statements are read ahead, to look for their answers together; those before it are not blamed."""
+    read = slices.digest
+
+    def read_alone(problem):
+        if problem.seed == 3:
+            raise MemoryError
+        return read(problem)
+
+    monkeypatch.setattr(slices, "digest", read_alone)
+    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
+    solver.raises = {6: MemoryError()}
+    batch = bench.batch(*range(8), reuse=True)
+    assert bench.run() == ["out of memory", "out of memory", "slice"]
+    now, errors = bench.ended(batch)
+    assert (errors, now.succeeded) == ([None, None, None, MEMORY, None, None, MEMORY, None], 6)
