@@ -30,7 +30,8 @@ MAX_KILLS = 20
 where the system kills what takes the last of the memory, so there is an end to it."""
 
 AT_ONCE = 0
-"""The turn of a job that has had one, and was put back: before all that are new, whose turns begin with 1."""
+"""The turn of a job that has had one, and was put back: before all that are new, whose turns begin with 1. Shares of
+batches are put back all the time, and a batch may have thousands of samples that end with a worker: they wait again."""
 
 MAX_IDS = 500
 """Ids in one statement; databases bound the number of its parameters."""
@@ -54,12 +55,6 @@ def moved(name: str, job_id: Any, **values: Any) -> Any:
 
 
 NO_KEY: Mapping[str, None] = {"idempotency_key": None, "request_hash": None}
-BACK_IN_QUEUE: Mapping[str, Any] = {
-    "progress_fraction": 0.0,
-    "progress_message": "queued",
-    "started_at": None,
-    "turn": AT_ONCE,
-}
 
 
 def died(job_id: str, retries: int) -> ReturningUpdate[Any]:
@@ -78,7 +73,7 @@ def died(job_id: str, retries: int) -> ReturningUpdate[Any]:
             progress_message=case((worn_out, "failed"), else_="queued"),
             crashes=jobs.c.crashes + 1,
             revision=jobs.c.revision + 1,
-            turn=AT_ONCE,
+            turn=TURN_AGAIN,
         )
         .returning(jobs.c.status)
     )
@@ -121,6 +116,22 @@ def turn_of(tenant: Any, cost: Any, *, share: bool = False) -> Later:
     first = AT_ONCE + 1
     return Later(func.coalesce(own.scalar_subquery(), first), func.coalesce(present.scalar_subquery(), first))
 
+
+def turn_as_long() -> Any:
+    """The turn of a job or share that is taken for long from now on: after those of its tenant that are."""
+    tenant = jobs.c.tenant
+    return case((SINGLE, turn_of(tenant, Cost.LONG)), else_=turn_of(tenant, Cost.LONG, share=True))
+
+
+TURN_AGAIN = case((SINGLE, AT_ONCE), else_=turn_of(jobs.c.tenant, jobs.c.cost, share=True))
+"""The turn of what had one, and was put back."""
+
+BACK_IN_QUEUE: Mapping[str, Any] = {
+    "progress_fraction": 0.0,
+    "progress_message": "queued",
+    "started_at": None,
+    "turn": TURN_AGAIN,
+}
 
 # What every job goes through is stated once. SQLAlchemy takes several times as long to put a statement together, and to
 # recognize it in its cache of compiled ones, as the database to execute it.

@@ -42,7 +42,7 @@ from service.jobs.statements import (
     died,
     moved,
     new_row,
-    turn_of,
+    turn_as_long,
 )
 from service.jobs.states import FINISHED, MOVES, UNFINISHED, Cost, Status
 
@@ -263,8 +263,7 @@ class JobStore:
 
     def requeue_as_long(self, job_id: str, claim: str) -> bool:
         """Put a running job back into the queue because it takes longer than a short one may; it waits its turn."""
-        turn = turn_of(jobs.c.tenant, Cost.LONG)
-        values: dict[str, Any] = {**BACK_IN_QUEUE, "cost": Cost.LONG, "turn": turn}
+        values: dict[str, Any] = {**BACK_IN_QUEUE, "cost": Cost.LONG, "turn": turn_as_long()}
         return self._changed(moved("requeue", job_id, **values).where(jobs.c.claim == claim))
 
     def requeue_unfinished(self) -> int:

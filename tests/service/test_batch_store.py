@@ -136,19 +136,17 @@ def test_a_batch_ends_with_its_last_sample(store, single, statuses, whole):
 
 def test_a_sample_that_kills_its_workers_fails_by_itself(store, single, engine):
     batch = made(store, 3 * SHARES)
-    for crash in range(MAX_CRASHES):
-        claim = take(single, f"m{crash}")
+    claim = take(single, "a")
+    for _ in range(MAX_CRASHES):
         assert store.crashed(claim.job_id, claim.mark, 1, killed=False) is Status.QUEUED
-        again = take(single, f"n{crash}")
-        assert Share.read(again.problem) == Share(0, 3, alone=1), "it comes next, by itself"
-        assert single.requeue(again.job_id, again.mark)
-    claim = take(single, "last")
+        claim = again(single, claim.job_id)
+        assert Share.read(claim.problem) == Share(0, 3, alone=1), "it comes by itself"
     assert store.crashed(claim.job_id, claim.mark, 1, killed=False) is Status.QUEUED
     assert numbers(engine) == [1]
     assert single.get(sample_id(batch.id, 1)).status is Status.FAILED
-    again = take(single, "on")
-    assert Share.read(again.problem) == Share(0, 3)
-    assert store.crashed(again.job_id, "another mark", 0, killed=False) is None
+    claim = again(single, claim.job_id)
+    assert Share.read(claim.problem) == Share(0, 3)
+    assert store.crashed(claim.job_id, "another mark", 0, killed=False) is None
 
 
 @pytest.mark.parametrize("total", [1, 3, 40])
@@ -295,6 +293,46 @@ def test_a_slice_waits_its_turn_again(store, single):
     store.store(batch, claim.job_id, claim.attempt, Share(0, 1), [])
     other = made(store, 1, tenant="b")
     assert {take(single, f"n{n}").batch for n in range(2)} == {batch.id, other.id}
+
+
+def put_back(how, store, single, engine, claim):
+    """A share, or job, whose worker did not come to its end."""
+    if how == "lease":
+        with engine.begin() as connection:
+            connection.execute(update(jobs).where(jobs.c.id == claim.job_id).values(due_at=0.0))
+        assert LeaseStore(engine).take_back([claim.job_id]) == [(claim.job_id, Status.QUEUED)]
+    elif how == "restart":
+        single.requeue_unfinished()
+    elif how == "stop":
+        assert single.requeue(claim.job_id, claim.mark)
+    elif how == "crash":
+        assert store.crashed(claim.job_id, claim.mark, None, killed=False) is Status.QUEUED
+    else:
+        assert store.give_up(claim.job_id, claim.mark, None, lambda _: "{}") is Status.QUEUED
+
+
+@pytest.mark.parametrize("how", ["crash", "give up", "lease", "stop", "restart"])
+def test_a_batch_whose_samples_take_their_workers_along_holds_nobody_up(store, single, engine, how):
+    made(store, 100, tenant="a")
+    theirs = {single.create(tenant="b", kind="motion", label=None, problem="{}", cost=Cost.SHORT).id for _ in range(4)}
+    for n in range(9):
+        claim = take(single, f"m{n}")
+        theirs.discard(claim.job_id)
+        if claim.batch is not None:
+            put_back(how, store, single, engine, claim)
+        else:
+            assert single.succeed(claim.job_id, claim.attempt, "{}")
+    assert theirs == set()
+
+
+def test_a_batch_that_takes_longer_than_expected_goes_round_among_the_long(store, single):
+    made(store, 100, tenant="a")
+    mine = single.create(tenant="a", kind="motion", label=None, problem="{}", cost=Cost.LONG).id
+    while (claim := single.take("m", [Cost.SHORT])) is not None:
+        assert single.requeue_as_long(claim.job_id, claim.mark)
+    theirs = {single.create(tenant="b", kind="motion", label=None, problem="{}", cost=Cost.LONG).id for _ in range(4)}
+    taken = [single.take(f"n{n}", [Cost.LONG]) for n in range(10)]
+    assert {mine, *theirs} <= {claim.job_id for claim in taken}
 
 
 def test_answers_are_found_by_digest_and_are_ones_own(store, single):

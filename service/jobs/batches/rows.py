@@ -44,7 +44,7 @@ class BatchRow(BatchSummary):
 class Share:
     """What is left of a share: the samples from ``first`` to before ``end``, but for those that are stored already.
 
-    ``alone`` is one that a worker has died of, or may have: it comes next, by itself.
+    ``alone`` is one that a worker has died of, or may have: in the next turn of the share it comes by itself.
     """
 
     first: int

@@ -24,7 +24,6 @@ from service.jobs.batches.rows import BatchRow, BatchSummary, Ended, Share, Tabl
 from service.jobs.faults import WORKER_DIED
 from service.jobs.schema import as_stored, batches, jobs, now, samples
 from service.jobs.statements import (
-    AT_ONCE,
     BACK_IN_QUEUE,
     COUNT_QUEUED,
     MAX_CRASHES,
@@ -187,11 +186,7 @@ class BatchStore:
         self, batch: BatchSummary | None, share_id: str, attempt: int, left: Share | None, new: Sequence[Ended]
     ) -> bool:
         """Store a slice; what is left of its share goes back into the queue. False where the attempt counts no more."""
-        change = (
-            _done(share_id)
-            if left is None
-            else _back(share_id, left, turn=turn_of(jobs.c.tenant, jobs.c.cost, share=True), crashes=0)
-        )
+        change = _done(share_id) if left is None else _back(share_id, left, crashes=0)
         with self._engine.begin() as connection:
             if connection.execute(change.where(jobs.c.attempt == attempt)).rowcount == 0:
                 return False
@@ -231,11 +226,7 @@ class BatchStore:
             at = _to_blame(connection, row.batch, left, number)
             over = row.crashes >= retries
             share = Share(left.first, left.end, None if over else at)
-            change = (
-                _done(share_id)
-                if at is None
-                else _back(share_id, share, turn=AT_ONCE, crashes=0 if over else row.crashes + 1)
-            )
+            change = _done(share_id) if at is None else _back(share_id, share, crashes=0 if over else row.crashes + 1)
             if connection.execute(change.where(jobs.c.claim == claim)).rowcount == 0:
                 return None
             if at is None:
