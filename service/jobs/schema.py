@@ -68,11 +68,6 @@ QUEUED = text("status = 'queued'")
 for _name, _columns in (("turn", ("cost", "turn", "id")), ("tenant", ("tenant", "cost", "batch", "turn"))):
     Index(f"jobs_queued_by_{_name}", *(jobs.c[c] for c in _columns), sqlite_where=QUEUED, postgresql_where=QUEUED)
 
-# Single jobs have no batch, and jobs without an answer no digest.
-for _name, _key in (("batch", [jobs.c.batch]), ("digest", [jobs.c.tenant, jobs.c.digest])):
-    _given = text(f"{_name} IS NOT NULL")
-    Index(f"jobs_by_{_name}", *_key, sqlite_where=_given, postgresql_where=_given)
-
 # Many problems at once: what was stated, and how far it is. The plan is JSON: the problem, and what is varied of it.
 batches = Table(
     "batches",
@@ -97,8 +92,9 @@ batches = Table(
     Index("batches_by_idempotency_key", "tenant", "idempotency_key", unique=True),
 )
 
-# The problems of batches that have ended. They are known by their batch and number, and to clients by their id. What is
-# small comes before what is large, which a database need not read then.
+# The problems of batches that have ended. They are known by their batch and number, and to clients by their id. One
+# that is the same as another of its batch has the answer of that one, by its number (same_as), and no digest: by a
+# digest a batch has few answers. What is small comes before what is large, which a database need not read then.
 samples = Table(
     "samples",
     metadata,
@@ -111,12 +107,18 @@ samples = Table(
     Column("started_at", String(27), nullable=False),
     Column("finished_at", String(27), nullable=False),
     Column("digest", String(64)),
+    Column("same_as", Integer),
     Column("figures", Text),
     Column("error", Text),
     Column("result", Text),
     Index("samples_by_id", "id", unique=True),
-    Index("samples_by_digest", "tenant", "digest"),
 )
+
+# Single jobs have no batch, and what has no answer of its own has no digest.
+_BY_DIGEST = [samples.c.tenant, samples.c.digest, samples.c.batch]
+for _name, _key in (("batch", [jobs.c.batch]), ("digest", [jobs.c.tenant, jobs.c.digest]), ("digest", _BY_DIGEST)):
+    _given = text(f"{_name} IS NOT NULL")
+    Index(f"{_key[0].table.name}_by_{_name}", *_key, sqlite_where=_given, postgresql_where=_given)
 
 # Who runs jobs for several servers: a row for each worker host that is there.
 hosts = Table(

@@ -1,5 +1,6 @@
 """Batches in the store: each sample is there once, whatever dies, comes late or is cancelled in between."""
 
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from types import SimpleNamespace
 
@@ -10,8 +11,8 @@ from ulid import ULID
 from service.jobs.admission import KeyReused, QueueFull, Repeatable
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.reading import sample_id
-from service.jobs.batches.rows import Ended, Share
-from service.jobs.batches.store import SHARES, BatchStore
+from service.jobs.batches.rows import Ended, OwnAnswer, Share
+from service.jobs.batches.store import SHARES, BatchStore, _one_result_each
 from service.jobs.leases import LeaseStore
 from service.jobs.schema import jobs, samples
 from service.jobs.statements import MAX_CRASHES, MAX_KILLS
@@ -335,15 +336,67 @@ def test_a_batch_that_takes_longer_than_expected_goes_round_among_the_long(store
     assert {mine, *theirs} <= {claim.job_id for claim in taken}
 
 
-def test_answers_are_found_by_digest_and_are_ones_own(store, single):
-    job = single.create(tenant="a", kind="motion", label=None, problem="{}", cost=Cost.SHORT)
+def solved(store, single, batch, new):
+    """Store these samples of a batch of one share, and end it."""
     claim = take(single, "m")
-    single.succeed(job.id, claim.attempt, "{1}", "one")
-    batch = made(store, 2, tenant="a")
-    claim = take(single, "n")
-    store.store(batch, claim.job_id, claim.attempt, None, [ended(0, digest="two"), ended(1, Status.FAILED)])
-    assert store.answers("a", ["one", "two", "three"]) == {"one": "{1}", "two": '{"of": 0}'}
-    assert store.answers("b", ["one", "two"]) == {}
+    assert claim.batch == batch.id
+    assert store.store(batch, claim.job_id, claim.attempt, None, new)
+
+
+def test_answers_are_found_by_digest_and_are_ones_own(store, single, monkeypatch):
+    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
+    for digest, result in (("one", "{1}"), ("none", None), ("two", "{2}")):
+        job = single.create(tenant="a", kind="motion", label=None, problem="{}", cost=Cost.SHORT)
+        claim = take(single, "m")
+        if result is None:
+            single.fail(job.id, claim.attempt, "{}")
+        else:
+            single.succeed(job.id, claim.attempt, result, digest)
+    earlier = made(store, 3, tenant="a")
+    solved(store, single, earlier, [ended(0, digest="three"), failed(1), ended(2, digest="four")])
+    now = made(store, 9, tenant="a")
+    solved(store, single, now, [ended(7, digest="four"), same(8, 7)])
+    wanted = ["one", "two", "three", "four", "five", "none"]
+    results = {"one": "{1}", "two": "{2}", "three": '{"of": 0}'}
+    assert store.answers(now, wanted) == results | {"four": OwnAnswer(7, "[1, 2.5]")}
+    assert store.answers(earlier, ["three", "one"]) == {"one": "{1}", "three": OwnAnswer(0, "[1, 2.5]")}
+    assert store.answers(made(store, 1, tenant="b"), wanted) == {}
+    assert store.answers(now, []) == {}
+
+
+def failed(number):
+    return Ended(number, Status.FAILED, "2026-01-01T00:00:00.000000Z", "2026-01-01T00:00:01.000000Z", error="{}")
+
+
+def same(number, other):
+    """A sample that is the same as another of its batch."""
+    return replace(ended(number, cached=True), same_as=other, result=None)
+
+
+def test_of_many_equal_answers_one_is_read(store, single, engine, monkeypatch):
+    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
+    for _ in range(2):
+        many = made(store, 40, tenant="a")
+        solved(store, single, many, [ended(n, digest="ab"[n % 2]) for n in range(40)])
+    with engine.connect() as connection:
+        rows = connection.execute(_one_result_each("a", ["a", "b", "c"])).all()
+    assert [(digest, result is None) for digest, result in rows] == [("a", False), ("b", False), ("c", True)]
+    found = store.answers(made(store, 1, tenant="a"), ["a", "b"])
+    assert [int(found[digest][7:-1]) % 2 for digest in ("a", "b")] == [0, 1]
+
+
+def test_what_is_the_same_as_another_has_its_answer(store, single, monkeypatch):
+    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
+    batch, other = made(store, 3), made(store, 2)
+    solved(store, single, batch, [ended(1, digest="one"), same(0, 1), failed(2)])
+    solved(store, single, other, [replace(ended(1), result="{3}"), same(0, 1)])
+    read = [single.get(sample_id(batch.id, n)) for n in range(3)]
+    assert [(job.result, job.error, job.cached) for job in read] == [
+        ('{"of": 1}', None, True), ('{"of": 1}', None, False), (None, "{}", False),
+    ]  # fmt: skip
+    assert single.get(sample_id(other.id, 0)).result == "{3}"
+    assert [row.figures for row in store.table(batch)] == [[1, 2.5], [1, 2.5], None]
+    assert store.get(batch.id).cached == 1
 
 
 def test_pages_of_batches(store):

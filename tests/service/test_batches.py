@@ -85,21 +85,39 @@ def test_a_batch_has_the_answers_of_its_problems(client):
 @pytest.mark.embedded
 def test_equal_problems_are_answered_from_the_store(client):
     problem = {**EXAMPLE["problem"], "seed": 11}
-    body = {"problem": problem, "vary": [{"field": "/positions/1/x", "values": [171.25, 172.25, 171.25]}]}
+
+    def of(*values, **fields):
+        return finished(client, post(client, {"problem": problem, "vary": [varied(values)], **fields}))
+
+    def varied(values):
+        return {"field": "/positions/1/x", "values": [*values]}
+
+    def cached(batch):
+        rows = table(client, batch)
+        assert batch["cached"] == sum(row["cached"] for row in rows)
+        jobs = [client.get(f"/v1/jobs/{row['job']}").json() for row in rows]
+        assert [job["cached"] for job in jobs] == [row["cached"] for row in rows]
+        assert [job["problem"]["positions"][1]["x"] for job in jobs] == [row["/positions/1/x"] for row in rows]
+        return [row["cached"] for row in rows], [job["result"] for job in jobs]
+
     single = {**problem, "positions": [{**p, "x": 172.25} if p["x"] == 184.0 else p for p in problem["positions"]]}
     job = client.post("/v1/jobs", json={"problem": single}, headers={"Prefer": "wait=30"}).json()
-    first = finished(client, post(client, body))
-    rows = table(client, first)
-    assert rows[1]["cached"], "by a job of the same problem"
-    assert first["cached"] == sum(row["cached"] for row in rows) >= 1
-    assert client.get(f"/v1/jobs/{rows[1]['job']}").json()["result"] == job["result"]
-    again = finished(client, post(client, body))
-    assert again["cached"] == 3
-    assert client.get(f"/v1/jobs/{table(client, again)[0]['job']}").json()["cached"]
-    anew = finished(client, post(client, {**body, "reuse": False}))
-    assert anew["cached"] == 0
-    told = [[row["size"] for row in table(client, each)] for each in (first, again, anew)]
-    assert told[0] == told[1] == told[2]
+    first = of(171.25, 172.25, 173.25)
+    which, results = cached(first)
+    assert (which, results[1]) == ([False, True, False], job["result"])
+    problem = {"max_designs": 10, **dict(reversed(problem.items()))}  # the default, and another order
+    again = of(173.25, 172.25, 174.25, 171.25)
+    assert cached(again)[0] == [True, True, False, True]
+    assert cached(again)[1][:2] == results[:0:-1]
+    anew = of(171.25, 172.25, 173.25, reuse=False)
+    assert cached(anew)[0] == [False] * 3
+    many = of(*[171.25] * 40)
+    assert cached(many) == ([True] * 40, [results[0]] * 40)
+    told = [[row["size"] for row in table(client, each)] for each in (first, anew)]
+    assert told[0] == told[1]
+    for batch in (first, anew, again):
+        assert client.delete(f"/v1/batches/{batch['id']}").status_code == 204
+    assert cached(many)[1] == [results[0]] * 40, "whatever becomes of the batches that it was taken from"
 
 
 @pytest.mark.embedded

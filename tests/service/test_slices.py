@@ -3,12 +3,15 @@
 import json
 
 import pytest
+from sqlalchemy import select
 
 from service.jobs import faults
 from service.jobs.batches import slices
 from service.jobs.batches.plan import Plan
+from service.jobs.batches.reading import sample_id
 from service.jobs.batches.slices import Slices
 from service.jobs.batches.store import BatchStore
+from service.jobs.schema import samples
 from service.jobs.solving import Solving
 from service.jobs.states import Cost
 from service.jobs.store import JobStore
@@ -167,3 +170,51 @@ def test_what_takes_too_much_memory_fails_alone(bench, solver, monkeypatch):
     assert bench.run() == ["out of memory", "out of memory", "slice"]
     now, errors = bench.ended(batch)
     assert (errors, now.succeeded) == ([None, None, None, MEMORY, None, None, MEMORY, None], 6)
+
+
+def results(bench, batch):
+    """What is stored of the samples of a batch: whether there is a result, and the number of the same."""
+    with bench.engine.connect() as connection:
+        rows = connection.execute(
+            select(samples.c.result, samples.c.same_as).where(samples.c.batch == batch.id).order_by(samples.c.number)
+        )
+        return [(row.result is not None, row.same_as) for row in rows]
+
+
+def test_equal_samples_are_solved_once_and_stored_once(bench, solver, monkeypatch):
+    """Within those whose answers are looked for together, later in the slice, and in a later slice of the batch."""
+    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
+    monkeypatch.setattr(slices, "SLICE_S", 60.0)
+    monkeypatch.setattr(slices, "MOST", 3 * slices.LOOKED_UP)
+    later, slice_after = 2 * slices.LOOKED_UP, 3 * slices.LOOKED_UP
+    seeds = [5, 5, *range(10, 10 + slice_after)]
+    seeds[later], seeds[slice_after] = 5, 5
+    batch = bench.batch(*seeds, reuse=True)
+    assert bench.run() == ["slice", "slice"]
+    again = [1, later, slice_after]
+    assert solver.given == [seed for n, seed in enumerate(seeds) if n not in again]
+    stored = results(bench, batch)
+    assert [(n, row) for n, row in enumerate(stored) if row != (True, None)] == [(n, (False, 0)) for n in again]
+    now, errors = bench.ended(batch)
+    assert (now.cached, set(errors)) == (3, {None})
+    jobs = [bench.single.get(sample_id(batch.id, n)) for n in (0, *again)]
+    assert [job.cached for job in jobs] == [False, True, True, True]
+    assert {job.result for job in jobs} == {jobs[0].result}
+    assert json.loads(jobs[0].result)["search"]["seed"] == 5
+
+
+def test_an_answer_of_another_batch_is_copied_once(bench, solver, monkeypatch):
+    """It may be removed there."""
+    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
+    first = bench.batch(1, reuse=True)
+    bench.run()
+    second = bench.batch(1, 1, 1, reuse=True)
+    anew = bench.batch(1, 1)
+    theirs = bench.batch(1, reuse=True, tenant="other")
+    bench.run()
+    assert solver.given == [1, 1, 1, 1], "once, twice without reuse, and once for another tenant"
+    assert results(bench, second) == [(True, None), (False, 0), (False, 0)]
+    assert results(bench, anew) == [(True, None)] * 2
+    assert [bench.store.get(batch.id).cached for batch in (first, second, anew, theirs)] == [0, 3, 0, 0]
+    assert bench.store.delete(first.id)
+    assert json.loads(bench.single.get(sample_id(second.id, 2)).result)["search"]["seed"] == 1

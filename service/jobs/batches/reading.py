@@ -8,7 +8,7 @@ from dataclasses import fields
 from hashlib import sha256
 from typing import Any
 
-from sqlalchemy import Connection, select
+from sqlalchemy import Connection, func, select
 from ulid import ULID
 
 from service.jobs.batches.plan import Plan
@@ -21,6 +21,10 @@ _RANDOM_BITS, _NUMBER_BITS = 80, 14
 
 _SAMPLE = [samples.c[name] for name in ("id", "batch", "tenant", "number", "status", "started_at", "finished_at")]
 _OF_BATCH = [batches.c[name] for name in ("kind", "label", "created_at")]
+
+_other = samples.alias()
+_OF_SAME = select(_other.c.result).where(_other.c.batch == samples.c.batch, _other.c.number == samples.c.same_as)
+_RESULT = func.coalesce(samples.c.result, _OF_SAME.scalar_subquery()).label("result")
 
 
 def sample_id(batch_id: str, number: int) -> str:
@@ -36,7 +40,7 @@ def sample_id(batch_id: str, number: int) -> str:
 
 def sample_as_job(connection: Connection, job_id: str) -> SampleRow | None:
     """The sample of this id as a job; None where there is none, or where it has not ended."""
-    query = select(*_SAMPLE, *_OF_BATCH, samples.c.cached, samples.c.result, samples.c.error, batches.c.plan)
+    query = select(*_SAMPLE, *_OF_BATCH, samples.c.cached, _RESULT, samples.c.error, batches.c.plan)
     row = connection.execute(query.where(samples.c.id == job_id, batches.c.id == samples.c.batch)).one_or_none()
     if row is None:
         return None

@@ -63,7 +63,10 @@ class Share:
 
 @dataclass(frozen=True, slots=True)
 class Ended:
-    """A sample that has ended: its ``result`` with the ``figures`` of it for the table, or its ``error``, in JSON."""
+    """A sample that has ended: its ``result`` with the ``figures`` of it for the table, or its ``error``, in JSON.
+
+    One that is the ``same_as`` another of its batch, by the number of that one, has its figures and no result itself.
+    """
 
     number: int
     status: Literal[Status.SUCCEEDED, Status.FAILED]
@@ -71,9 +74,18 @@ class Ended:
     finished_at: str
     cached: bool = False
     digest: str | None = None
+    same_as: int | None = None
     figures: str | None = None
     error: str | None = None
     result: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class OwnAnswer:
+    """The answer of an equal problem of the same batch: the number of that sample, and its figures for the table."""
+
+    number: int
+    figures: str | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,7 @@ from service.jobs import faults
 from service.jobs.batches.identity import digest
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.reading import sample_id
-from service.jobs.batches.rows import BatchRow, BatchSummary, Ended, Share
+from service.jobs.batches.rows import BatchRow, BatchSummary, Ended, OwnAnswer, Share
 from service.jobs.batches.store import BatchStore
 from service.jobs.database import patiently
 from service.jobs.schema import Claim, now
@@ -140,19 +140,21 @@ class Slices:
 
     def _with_answers(
         self, batch: BatchRow, plan: Plan, todo: Sequence[int], new: Sequence[Ended]
-    ) -> Iterator[tuple[_Stated, str | None]]:
-        """The samples as they are stated, each with the answer that the store or the slice has of its like."""
+    ) -> Iterator[tuple[_Stated, str | OwnAnswer | None]]:
+        """The samples as they are stated, each with the answer that the slice or the store has of its like."""
+        own: dict[str, OwnAnswer] = {}
         left = deque(todo)
         while left:
             group = self._group(batch, plan, left)
-            answers: dict[str, str] = {}
+            stored: dict[str, str | OwnAnswer] = {}
             if plan.reuse:
                 wanted = {stated.digest for stated in group if stated.digest is not None}
-                answers = patiently(self._store.answers, batch.tenant, wanted)
+                stored = patiently(self._store.answers, batch, wanted - own.keys())
             for stated in group:
-                if plan.reuse and new and new[-1].digest is not None and new[-1].result is not None:
-                    answers.setdefault(new[-1].digest, new[-1].result)
-                yield stated, None if stated.digest is None else answers.get(stated.digest)
+                if plan.reuse and new and new[-1].digest is not None:
+                    own[new[-1].digest] = OwnAnswer(new[-1].number, new[-1].figures)
+                known_by = stated.digest or ""
+                yield stated, own.get(known_by) or stored.get(known_by)
 
     def _group(self, batch: BatchRow, plan: Plan, left: deque[int]) -> list[_Stated]:
         """The next samples, taken from those that are ``left``: as many as are looked for together.
@@ -170,8 +172,18 @@ class Slices:
             left.popleft()
         return group
 
-    def _ended(self, batch: BatchRow, plan: Plan, stated: _Stated, answer: str | None) -> Ended:
+    def _ended(self, batch: BatchRow, plan: Plan, stated: _Stated, answer: str | OwnAnswer | None) -> Ended:
         began = now()
+        if isinstance(answer, OwnAnswer):
+            return Ended(
+                stated.number,
+                Status.SUCCEEDED,
+                began,
+                now(),
+                cached=True,
+                same_as=answer.number,
+                figures=answer.figures,
+            )
         try:
             result = self._solved(stated) if answer is None else answer
             if isinstance(result, faults.Fault):

@@ -14,13 +14,27 @@ from datetime import datetime
 from itertools import pairwise
 from typing import Any
 
-from sqlalchemy import Connection, Engine, case, delete, exists, insert, select, update
+from sqlalchemy import (
+    Connection,
+    Engine,
+    Select,
+    String,
+    case,
+    column,
+    delete,
+    exists,
+    func,
+    insert,
+    select,
+    update,
+    values,
+)
 from ulid import ULID
 
 from service.jobs.admission import Repeatable, made_by, once, surely
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.reading import sample_id
-from service.jobs.batches.rows import BatchRow, BatchSummary, Ended, Share, TableRow
+from service.jobs.batches.rows import BatchRow, BatchSummary, Ended, OwnAnswer, Share, TableRow
 from service.jobs.faults import WORKER_DIED
 from service.jobs.schema import as_stored, batches, jobs, now, samples
 from service.jobs.statements import (
@@ -171,15 +185,25 @@ class BatchStore:
         with self._engine.connect() as connection:
             return _ended(connection, batch.id, first, end)
 
-    def answers(self, tenant: str, digests: Collection[str]) -> dict[str, str]:
-        """The results of the tenant's problems of these digests that have one, by digest; JSON."""
-        found: dict[str, str] = {}
+    def answers(self, batch: BatchSummary, digests: Collection[str]) -> dict[str, str | OwnAnswer]:
+        """What the tenant has of problems of these digests: an answer of the batch's own, or a result in JSON.
+
+        What is asked for is found at once, however many have the same digest: of the tenant's one is taken, and of a
+        batch there are not many, since those that are the same as another of it have none.
+        """
+        if not digests:
+            return {}
+        own = select(samples.c.digest, samples.c.number, samples.c.figures).where(
+            samples.c.tenant == batch.tenant, samples.c.batch == batch.id, samples.c.digest.in_(digests)
+        )
+        found: dict[str, str | OwnAnswer] = {}
         with self._engine.connect() as connection:
-            for table in (jobs, samples):
-                query = select(table.c.digest, table.c.result).where(
-                    table.c.tenant == tenant, table.c.digest.in_(digests), table.c.result.is_not(None)
-                )
-                found |= {row.digest: row.result for row in connection.execute(query)}
+            for row in connection.execute(own):
+                found[row.digest] = OwnAnswer(row.number, row.figures)
+            left = [digest for digest in digests if digest not in found]
+            if left:
+                query = _one_result_each(batch.tenant, left)
+                found |= {row.digest: row.result for row in connection.execute(query) if row.result is not None}
         return found
 
     def store(
@@ -350,6 +374,19 @@ def _stored(connection: Connection, batch: BatchSummary, new: Sequence[Ended]) -
         insert(samples), [{**of, **asdict(sample), "id": sample_id(batch.id, sample.number)} for sample in new]
     )
     return True
+
+
+def _one_result_each(tenant: str, digests: Collection[str]) -> Select[Any]:
+    """The digests, each with one result that the tenant has by it, or with None."""
+    wanted = values(column("digest", String), name="wanted").data([(digest,) for digest in digests]).cte("wanted")
+    results = [
+        select(table.c.result)
+        .where(table.c.tenant == tenant, table.c.digest == wanted.c.digest)
+        .limit(1)
+        .scalar_subquery()
+        for table in (samples, jobs)
+    ]
+    return select(wanted.c.digest, func.coalesce(*results).label("result"))
 
 
 def _of(batch_id: str, first: int, end: int) -> Sequence[Any]:

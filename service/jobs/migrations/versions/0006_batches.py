@@ -16,13 +16,18 @@ def _turns_of_tenants(*columns: str) -> None:
     op.create_index("jobs_queued_by_tenant", "jobs", columns, sqlite_where=QUEUED, postgresql_where=QUEUED)
 
 
+def _of_those_given(table: str, *columns: str, name: str | None = None) -> None:
+    name = name or columns[-1]
+    given = sa.text(f"{name} IS NOT NULL")
+    op.create_index(f"{table}_by_{name}", table, columns, sqlite_where=given, postgresql_where=given)
+
+
 def upgrade() -> None:
     op.add_column("jobs", sa.Column("batch", sa.String(26)))
     op.add_column("jobs", sa.Column("digest", sa.String(64)))
     _turns_of_tenants("tenant", "cost", "batch", "turn")
-    for name, columns in (("batch", ["batch"]), ("digest", ["tenant", "digest"])):
-        given = sa.text(f"{name} IS NOT NULL")
-        op.create_index(f"jobs_by_{name}", "jobs", columns, sqlite_where=given, postgresql_where=given)
+    _of_those_given("jobs", "batch")
+    _of_those_given("jobs", "tenant", "digest")
     op.create_table(
         "batches",
         sa.Column("id", sa.String(26), primary_key=True),
@@ -48,10 +53,11 @@ def upgrade() -> None:
         sa.Column("cached", sa.Boolean, nullable=False),
         *(sa.Column(f"{moment}_at", sa.String(27), nullable=False) for moment in MOMENTS[1:]),
         sa.Column("digest", sa.String(64)),
+        sa.Column("same_as", sa.Integer),
         *(sa.Column(name, sa.Text) for name in ("figures", "error", "result")),
     )
     op.create_index("samples_by_id", "samples", ["id"], unique=True)
-    op.create_index("samples_by_digest", "samples", ["tenant", "digest"])
+    _of_those_given("samples", "tenant", "digest", "batch", name="digest")
 
 
 MOMENTS = ("created", "started", "finished")
