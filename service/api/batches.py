@@ -23,11 +23,11 @@ from service.api.batch_schemas import (
     whole_batch,
 )
 from service.api.body import JsonRoute
-from service.api.errors import invalid_request, not_found
+from service.api.errors import invalid_request, not_found, queue_full
 from service.api.events import event_schema, followed
 from service.api.guard import GuardedRoute, Tenant
 from service.api.idempotency import KEY, key_reused, repeatable
-from service.api.jobs import ULID, cursor_of, id_of_cursor, queue_full
+from service.api.ids import ULID, cursor_of, id_of_cursor
 from service.api.replies import as_json, unless_known
 from service.api.state import Batches, BatchPoller
 from service.jobs.admission import KeyReused, QueueFull

@@ -27,6 +27,9 @@ MAX_ERRORS = 20
 STORE_RETRY_AFTER_S = 2
 """When to ask again while the store is out of reach; PostgreSQL restarts within a second or two."""
 
+QUEUE_RETRY_AFTER_S = 5
+"""When a client who found no place in the queue should send its job again."""
+
 log = structlog.get_logger(__name__)
 
 
@@ -121,6 +124,14 @@ def store_unavailable() -> Refusal:
         503, "store-unavailable", "Store unavailable",
         "The job store does not answer; send this again later. With an Idempotency-Key that makes one job at most.",
         headers={"Retry-After": str(STORE_RETRY_AFTER_S)},
+    )  # fmt: skip
+
+
+def queue_full() -> Refusal:
+    """There is no place for more in the queue."""
+    return Refusal(
+        503, "queue-full", "Queue full", "As many of your jobs wait as may; send this one again later.",
+        headers={"Retry-After": str(QUEUE_RETRY_AFTER_S)},
     )  # fmt: skip
 
 

@@ -17,7 +17,8 @@ from pydantic_core import to_json
 from service.api import errors
 from service.api.errors import Refusal, not_found, store_unavailable
 from service.api.guard import GuardedRoute, Tenant
-from service.api.jobs import NO_JOB, TAG, ULID
+from service.api.ids import ULID
+from service.api.jobs import NO_JOB, TAG
 from service.api.schemas import list_item
 from service.api.state import Poller
 from service.head import asked_for_head

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import re
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Body, Header, Query, Request, Response
@@ -12,9 +10,10 @@ from pydantic_core import to_json
 
 from service.api import errors
 from service.api.body import JsonRoute
-from service.api.errors import Refusal, invalid_problem, invalid_request, not_found
+from service.api.errors import Refusal, invalid_problem, not_found, queue_full
 from service.api.guard import Tenant
 from service.api.idempotency import KEY, key_reused, repeatable
+from service.api.ids import ULID, cursor_of, id_of_cursor
 from service.api.prefer import wait_seconds
 from service.api.replies import as_json, unless_known
 from service.api.schemas import Job, JobList, JobRequest, list_item, whole_job
@@ -30,12 +29,6 @@ TAG = {"name": "jobs", "description": "State a problem, follow the job, read the
 
 RETRY_AFTER_S = 1
 """When a client that does not wait should look again; most jobs are done by then."""
-
-QUEUE_RETRY_AFTER_S = 5
-"""When a client whose job found no place in the queue should send it again."""
-
-ULID = re.compile("[0-7][0-9A-HJKMNP-TV-Z]{25}")
-"""What can be the id of a job. Only that reaches the database, which need not stand every string."""
 
 NO_JOB = "There is no job with this id."
 
@@ -227,14 +220,6 @@ async def delete_job(desk: Desk, tenant: Tenant, job_id: str) -> Response:
     return Response(status_code=204) if job == "deleted" else as_json(whole_job(job), 202)
 
 
-def queue_full() -> Refusal:
-    """There is no place for more in the queue."""
-    return Refusal(
-        503, "queue-full", "Queue full", "As many of your jobs wait as may; send this one again later.",
-        headers={"Retry-After": str(QUEUE_RETRY_AFTER_S)},
-    )  # fmt: skip
-
-
 async def job_of(desk: JobDesk, tenant: str, job_id: str) -> JobRow:
     """The job of a tenant.
 
@@ -247,19 +232,3 @@ async def job_of(desk: JobDesk, tenant: str, job_id: str) -> JobRow:
     if job is None:
         raise not_found(NO_JOB)
     return job
-
-
-def cursor_of(job_id: str) -> str:
-    """The cursor of the page that follows the job."""
-    return base64.urlsafe_b64encode(job_id.encode()).decode().rstrip("=")
-
-
-def id_of_cursor(cursor: str) -> str:
-    """The id in a cursor; raises a refusal for what is none of ours."""
-    try:
-        job_id = base64.b64decode(cursor + "=" * (-len(cursor) % 4), altchars=b"-_", validate=True).decode()
-    except ValueError:
-        job_id = ""
-    if not ULID.fullmatch(job_id):
-        raise invalid_request([("/query/cursor", "This is not a cursor that the service has given out.")])
-    return job_id

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from datetime import UTC, datetime
 from typing import Any
 
@@ -167,8 +168,8 @@ _written(Later, sqlite="max({})", postgresql="greatest({})")
 
 
 @dataclass(frozen=True, slots=True)
-class JobSummary:
-    """A job without its problem and its answer."""
+class Entry:
+    """What jobs and batches have."""
 
     id: str
     tenant: str
@@ -178,6 +179,12 @@ class JobSummary:
     created_at: str
     started_at: str | None
     finished_at: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class JobSummary(Entry):
+    """A job without its problem and its answer."""
+
     progress_fraction: float
     progress_message: str
     attempt: int
@@ -217,6 +224,16 @@ class Claim:
     kind: str
     problem: str
     batch: str | None = None
+
+
+def as_values(row: Sequence[Any]) -> list[Any]:
+    """The columns of an entry that were asked for in the order of its fields, as the values of these."""
+    values = [*row]
+    values[_STATUS] = Status(values[_STATUS])
+    return values
+
+
+_STATUS = [field.name for field in fields(Entry)].index("status")
 
 
 def now() -> str:

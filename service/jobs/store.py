@@ -19,7 +19,7 @@ from ulid import ULID
 from service.jobs.admission import Repeatable, made_by, once, surely
 from service.jobs.batches.reading import sample_as_job, samples_as_jobs
 from service.jobs.database import QUEUE_LOCK
-from service.jobs.schema import QUEUED, Claim, JobRow, JobSummary, as_stored, jobs, now
+from service.jobs.schema import QUEUED, Claim, JobRow, JobSummary, as_stored, as_values, jobs, now
 from service.jobs.statements import (
     BACK_IN_QUEUE,
     BY_ID,
@@ -55,7 +55,6 @@ _CROWD = 500
 
 _NO_END = 1 << 30
 
-_STATUS = COLUMNS.index("status")
 _MESSAGE_LENGTH = 200  # the width of its column
 
 
@@ -134,13 +133,13 @@ class JobStore:
 
     def _made_by(self, tenant: str, repeatable: Repeatable) -> JobRow | None:
         row = made_by(self._engine, jobs, WHOLE, tenant, repeatable)
-        return None if row is None else JobRow(*_values(row))
+        return None if row is None else JobRow(*as_values(row))
 
     def get(self, job_id: str) -> JobRow | None:
         """The job, or None where there is none; a problem of a batch that has ended is one, too."""
         with self._engine.connect() as connection:
             row = connection.execute(BY_ID, {"job": job_id}).one_or_none()
-            return sample_as_job(connection, job_id) if row is None else JobRow(*_values(row))
+            return sample_as_job(connection, job_id) if row is None else JobRow(*as_values(row))
 
     def unfinished(self) -> dict[str, int]:
         """How many jobs are in each of the states that are not final."""
@@ -156,7 +155,7 @@ class JobStore:
             for start in range(0, len(job_ids), MAX_IDS):
                 query = select(*SUMMARY).where(jobs.c.id.in_(job_ids[start : start + MAX_IDS]), SINGLE)
                 for row in connection.execute(query):
-                    by_id[row.id] = JobSummary(*_values(row))
+                    by_id[row.id] = JobSummary(*as_values(row))
             by_id |= samples_as_jobs(connection, [job_id for job_id in job_ids if job_id not in by_id])
         return by_id
 
@@ -178,7 +177,7 @@ class JobStore:
         if before is not None:
             query = query.where(jobs.c.id < before)
         with self._engine.connect() as connection:
-            return [JobSummary(*_values(row)) for row in connection.execute(query)]
+            return [JobSummary(*as_values(row)) for row in connection.execute(query)]
 
     def take(self, mark: str, costs: Sequence[Cost], passed_over: Collection[str] = ()) -> Claim | None:
         """Claim the queued job whose turn it is under a mark; None when there is none.
@@ -325,9 +324,3 @@ def _next(connection: Connection, cost: Cost, passed_over: Collection[str]) -> s
 
 def _claim(row: Any) -> Claim:
     return Claim(row.id, row.tenant, row.claim, row.attempt, Cost(row.cost), row.kind, row.problem, row.batch)
-
-
-def _values(row: Sequence[Any]) -> list[Any]:
-    values = [*row]
-    values[_STATUS] = Status(values[_STATUS])
-    return values

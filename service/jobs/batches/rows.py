@@ -6,21 +6,14 @@ import json
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
+from service.jobs.schema import Entry
 from service.jobs.states import Status
 
 
 @dataclass(frozen=True, slots=True)
-class BatchSummary:
+class BatchSummary(Entry):
     """A batch without its plan."""
 
-    id: str
-    tenant: str
-    kind: str
-    label: str | None
-    status: Status
-    created_at: str
-    started_at: str | None
-    finished_at: str | None
     total: int
     succeeded: int
     failed: int

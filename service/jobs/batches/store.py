@@ -36,7 +36,7 @@ from service.jobs.batches.plan import Plan
 from service.jobs.batches.reading import sample_id
 from service.jobs.batches.rows import BatchRow, BatchSummary, Ended, OwnAnswer, Share, TableRow
 from service.jobs.faults import WORKER_DIED
-from service.jobs.schema import as_stored, batches, jobs, now, samples
+from service.jobs.schema import as_stored, as_values, batches, jobs, now, samples
 from service.jobs.statements import (
     BACK_IN_QUEUE,
     COUNT_QUEUED,
@@ -131,14 +131,14 @@ class BatchStore:
 
     def _made_by(self, tenant: str, repeatable: Repeatable) -> BatchRow | None:
         row = made_by(self._engine, batches, _WHOLE, tenant, repeatable)
-        return None if row is None else BatchRow(*_values(row))
+        return None if row is None else BatchRow(*as_values(row))
 
     def get(self, batch_id: str) -> BatchRow | None:
         """The batch, or None where there is none."""
         self._settle([batch_id])
         with self._engine.connect() as connection:
             row = _row(connection, batch_id)
-        return None if row is None else BatchRow(*_values(row))
+        return None if row is None else BatchRow(*as_values(row))
 
     def summaries(self, batch_ids: Sequence[str]) -> dict[str, BatchSummary]:
         """The batches of these ids that there are, by id."""
@@ -148,7 +148,7 @@ class BatchStore:
             for start in range(0, len(batch_ids), MAX_IDS):
                 query = select(*_SUMMARY).where(batches.c.id.in_(batch_ids[start : start + MAX_IDS]))
                 for row in connection.execute(query):
-                    found[row.id] = BatchSummary(*_values(row))
+                    found[row.id] = BatchSummary(*as_values(row))
         return found
 
     def page(self, *, tenant: str, limit: int, before: str | None) -> list[BatchSummary]:
@@ -178,7 +178,7 @@ class BatchStore:
         with self._engine.begin() as connection:
             connection.execute(change.values(status=Status.RUNNING, started_at=now(), revision=batches.c.revision + 1))
             row = _row(connection, batch_id)
-        return None if row is None or row.status not in UNFINISHED else BatchRow(*_values(row))
+        return None if row is None or row.status not in UNFINISHED else BatchRow(*as_values(row))
 
     def ended(self, batch: BatchSummary, first: int, end: int) -> set[int]:
         """Which of the samples from ``first`` to before ``end`` are stored."""
@@ -258,7 +258,7 @@ class BatchStore:
             if over:
                 found = _row(connection, row.batch)
                 failed = Ended(at, Status.FAILED, now(), now(), error=error(sample_id(row.batch, at)))
-                if found is None or not _stored(connection, BatchRow(*_values(found)), [failed]):
+                if found is None or not _stored(connection, BatchRow(*as_values(found)), [failed]):
                     connection.rollback()
                     return None
         return Status.QUEUED
@@ -400,12 +400,3 @@ def _ended(connection: Connection, batch_id: str, first: int, end: int) -> set[i
 
 def _row(connection: Connection, batch_id: str) -> Any:
     return connection.execute(select(*_WHOLE).where(batches.c.id == batch_id)).one_or_none()
-
-
-def _values(row: Sequence[Any]) -> list[Any]:
-    values = [*row]
-    values[_STATUS] = Status(values[_STATUS])
-    return values
-
-
-_STATUS = [field.name for field in fields(BatchSummary)].index("status")
