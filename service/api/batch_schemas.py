@@ -160,7 +160,7 @@ class BatchTable(BaseModel):
 
     columns: list[str] = Field(
         description="The varied fields, `status`, `cached`, `designs` (how many passed), the metrics of the best "
-        "design, `job` (its id, once it has ended) and `error`."
+        "design, `job` (its id, once it has ended) and `failure` (why it failed)."
     )
     rows: list[list[Any]]
 
@@ -195,7 +195,6 @@ def batch_item(batch: BatchSummary) -> dict[str, Any]:
     }
 
 
-def whole_batch(batch: BatchRow, plan: Any) -> bytes:
-    """A batch as :class:`Batch`, in JSON."""
-    stated = {name: getattr(plan, name) for name in ("problem", "fields", "metrics", "reuse")}
-    return to_json({**batch_item(batch), **stated})
+def whole_batch(batch: BatchRow) -> bytes:
+    """A batch as :class:`Batch`, in JSON: its item goes on with the members of what was stated."""
+    return to_json(batch_item(batch))[:-1] + b"," + batch.stated.encode()[1:]

@@ -9,6 +9,7 @@ from fastapi import APIRouter, Body, Header, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import to_json
 from starlette.concurrency import run_in_threadpool
+from starlette.responses import StreamingResponse
 
 from service.api import errors
 from service.api.batch_plans import MORE_IS_BETTER, by_default, plan_of
@@ -34,7 +35,7 @@ from service.jobs.admission import KeyReused, QueueFull
 from service.jobs.batches.desk import BatchDesk
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.rows import BatchRow
-from service.jobs.batches.table import Table, table_of
+from service.jobs.batches.table import Table
 
 TAG = {"name": "batches", "description": "Vary the fields of a problem, and read the answers as a table."}
 
@@ -90,6 +91,7 @@ async def create_batch(
     ] = None,
 ) -> Response:
     """Accept a problem whose fields are varied. Once this is answered the batch is stored, and each problem ends."""
+    keys = request.headers.getlist("idempotency-key")
     kind, plan, cost = await run_in_threadpool(plan_of, body)
     try:
         batch = await desk.accept(
@@ -98,7 +100,7 @@ async def create_batch(
             label=body.label,
             plan=plan,
             cost=cost,
-            repeatable=repeatable(request.headers.getlist("idempotency-key"), body),
+            repeatable=await run_in_threadpool(repeatable, keys, body),
         )
     except KeyReused:
         raise key_reused() from None
@@ -106,8 +108,8 @@ async def create_batch(
         raise queue_full() from None
     headers = {"Location": f"/v1/batches/{batch.id}"}
     if batch.status.finished:
-        return as_json(_shown(batch), 200, headers)
-    return as_json(_shown(batch), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
+        return as_json(whole_batch(batch), 200, headers)
+    return as_json(whole_batch(batch), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
 
 
 class BatchFilter(BaseModel):
@@ -157,7 +159,7 @@ async def get_batch(
 ) -> Response:
     """The batch as it stands."""
     batch = await _batch_of(desk, tenant, batch_id)
-    return unless_known(request, batch.revision, lambda: _shown(batch))
+    return unless_known(request, batch.revision, lambda: whole_batch(batch))
 
 
 @router.delete(
@@ -177,7 +179,7 @@ async def delete_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response
     batch = await desk.cancel_or_delete(tenant, batch_id) if ULID.fullmatch(batch_id) else None
     if batch is None:
         raise not_found(NO_BATCH)
-    return Response(status_code=204) if batch == "deleted" else as_json(_shown(batch), 202)
+    return Response(status_code=204) if batch == "deleted" else as_json(whole_batch(batch), 202)
 
 
 @router.get(
@@ -190,7 +192,7 @@ async def delete_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response
 async def tabulate_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Response:
     """A row for each problem, in the order of the samples, ended or not."""
     _, table = await _tabulated(desk, tenant, batch_id)
-    return as_json(await run_in_threadpool(to_json, {"columns": table.columns, "rows": table.rows}))
+    return StreamingResponse(table.as_json(), media_type="application/json")
 
 
 @router.get(
@@ -206,7 +208,7 @@ async def tabulate_batch(desk: Batches, tenant: Tenant, batch_id: str) -> Respon
 async def tabulate_batch_as_csv(desk: Batches, tenant: Tenant, batch_id: str) -> Response:
     """The same as CSV; numbers have all their digits."""
     _, table = await _tabulated(desk, tenant, batch_id)
-    return Response(await run_in_threadpool(table.as_csv), media_type="text/csv; charset=utf-8")
+    return StreamingResponse(table.as_csv(), media_type="text/csv; charset=utf-8")
 
 
 class Weighed(BaseModel):
@@ -229,7 +231,7 @@ class Weighed(BaseModel):
     response_class=Response,
     responses={
         200: {"model": BatchFront},
-        **errors.responses(e404=NO_BATCH, e422="A metric is not one of the batch; `errors` says which."),
+        **errors.responses(e404=NO_BATCH, e422="A metric is none of the batch, or named twice; `errors` says which."),
     },
 )
 async def weigh_up_batch(
@@ -241,19 +243,9 @@ async def weigh_up_batch(
     table has them.
     """
     plan, table = await _tabulated(desk, tenant, batch_id)
-    for name, metrics in (("least", weighed.least), ("greatest", weighed.greatest)):
-        for metric in metrics:
-            if metric not in plan.metrics:
-                raise invalid_request([(f"/query/{name}", f"The metrics of the batch are {_listed(plan.metrics)}.")])
-    least, greatest = list(dict.fromkeys(weighed.least)), list(dict.fromkeys(weighed.greatest))
-    if not least and not greatest:
-        usual = by_default(plan.metrics)
-        least = [name for name in usual if name not in MORE_IS_BETTER]
-        greatest = [name for name in usual if name in MORE_IS_BETTER]
-        if not usual:
-            raise invalid_request([("/query/least", "Name what is to be least, or greatest.")])
+    least, greatest = _quantities(weighed, plan.metrics)
     front = await run_in_threadpool(table.front, least, greatest)
-    return as_json(to_json({"columns": front.columns, "rows": front.rows, "least": least, "greatest": greatest}))
+    return StreamingResponse(front.as_json(least=least, greatest=greatest), media_type="application/json")
 
 
 @following.get(
@@ -293,19 +285,26 @@ async def _batch_of(desk: BatchDesk, tenant: str, batch_id: str) -> BatchRow:
 
 
 async def _tabulated(desk: BatchDesk, tenant: str, batch_id: str) -> tuple[Plan, Table]:
-    batch = await _batch_of(desk, tenant, batch_id)
-    ended = await desk.table(batch)
-
-    def tabulated() -> tuple[Plan, Table]:
-        plan = Plan.read(batch.plan)
-        return plan, table_of(batch, plan, ended)
-
-    return await run_in_threadpool(tabulated)
+    tabulated = await desk.table(await _batch_of(desk, tenant, batch_id))
+    if tabulated is None:
+        raise not_found(NO_BATCH)
+    return tabulated
 
 
-def _listed(names: Sequence[str]) -> str:
-    return ", ".join(names) or "none"
-
-
-def _shown(batch: BatchRow) -> bytes:
-    return whole_batch(batch, Plan.read(batch.plan))
+def _quantities(weighed: Weighed, metrics: Sequence[str]) -> tuple[list[str], list[str]]:
+    """What is to be least and what greatest, by their names; raises a refusal for what cannot be meant."""
+    faults = []
+    for k, name in enumerate([*weighed.least, *weighed.greatest]):
+        place = "/query/least" if k < len(weighed.least) else "/query/greatest"
+        if name not in metrics:
+            faults.append((place, f"The metrics of the batch are {', '.join(metrics) or 'none'}."))
+        elif name in [*weighed.least, *weighed.greatest][:k]:
+            faults.append((place, f"{name} is named already; it can be weighed up once, one way."))
+    usual = [] if weighed.least or weighed.greatest else by_default(metrics)
+    if not (weighed.least or weighed.greatest or usual):
+        faults.append(("/query/least", "Name what is to be least, or greatest."))
+    if faults:
+        raise invalid_request(faults)
+    if usual:
+        return [n for n in usual if n not in MORE_IS_BETTER], [n for n in usual if n in MORE_IS_BETTER]
+    return weighed.least, weighed.greatest

@@ -3,17 +3,20 @@
 import csv
 import io
 import json
+import time
 
 import numpy as np
 import pytest
 from ulid import ULID
 
+from service.api.batch_schemas import MOST_SAMPLES
 from service.jobs.batches import identity
+from service.jobs.batches import table as table_module
 from service.jobs.batches.plan import NoSuchPlace, Plan
 from service.jobs.batches.reading import sample_id
 from service.jobs.batches.rows import BatchSummary, TableRow
 from service.jobs.batches.sampling import Span, evenly, latin_hypercube
-from service.jobs.batches.table import table_of, unbeaten
+from service.jobs.batches.table import Table, table_of, unbeaten
 from service.jobs.states import Status
 from synthesis.registry import KINDS, example, parse_problem
 
@@ -24,10 +27,14 @@ def plan(fields, values, grid=True, metrics=(), problem=PROBLEM):
     return Plan(problem, fields, values, grid, list(metrics), True)
 
 
+def csv_of(table):
+    return b"".join(table.as_csv()).decode()
+
+
 def test_evenly_spaced_numbers_are_whole_where_the_ends_and_all_between_are():
     assert evenly(10, 30, 3) == [10, 20, 30]
     assert all(isinstance(value, int) for value in evenly(30, 10, 3))
-    assert evenly(0, 1, 3) == [0, 0.5, 1]
+    assert list(evenly(0, 1, 3)) == [0, 0.5, 1]
     assert evenly(2.0, 3.0, 1) == [2.0]
     spaced = evenly(0.1, 0.7, 7)
     assert (spaced[0], spaced[-1]) == (0.1, 0.7)
@@ -48,7 +55,7 @@ def test_a_field_is_set_and_nothing_else_changes():
         "constraints": {"link_length": {"min": 1}},
     }
     assert json.dumps(PROBLEM) == before
-    assert Plan.read(varied.written()) == varied
+    assert Plan.read(varied.stated_as_json(), varied.values_as_json()) == varied
 
 
 @pytest.mark.parametrize("field", ["/positions/2/x", "/positions/-1/x", "/positions/01", "/positions/x", "/kind/x"])
@@ -61,7 +68,8 @@ def test_each_part_of_a_range_has_its_sample():
     ranges, listed = latin_hypercube([Span(-2.0, 6.0), ["a", "b", "c", "d"]], 16, 5)
     assert sorted(int((value + 2.0) * 2.0) for value in ranges) == list(range(16))
     assert sorted(listed) == sorted("abcd" * 4)
-    assert latin_hypercube([Span(-2.0, 6.0), ["a", "b", "c", "d"]], 16, 5) == [ranges, listed]
+    again = latin_hypercube([Span(-2.0, 6.0), ["a", "b", "c", "d"]], 16, 5)
+    assert [[*values] for values in again] == [[*ranges], [*listed]]
     assert latin_hypercube([Span(-2.0, 6.0)], 16, 6)[0] != ranges
 
 
@@ -113,29 +121,71 @@ def test_a_row_for_each_sample_whatever_came_of_it(status, without):
         TableRow(3, Status.FAILED, False, None, '{"detail": "no"}'),
     ]
     table = table_of(batch(Status(status)), varied, ended)
-    assert table.columns == ["/seed", "status", "cached", "designs", "size", "job", "error"]
+    assert table.columns == ["/seed", "status", "cached", "designs", "size", "job", "failure"]
     assert table.rows[0][:6] == [1, without, False, None, None, None]
     ids = [sample_id("01K6WM2B7Q3W9Z0V5N8XJ4R1TD", n) for n in (1, 3)]
     assert table.rows[1] == [2, "succeeded", True, 2, 0.1 + 0.2, ids[0], None]
     assert table.rows[3] == [4, "failed", False, None, None, ids[1], "no"]
-    read = list(csv.DictReader(io.StringIO(table.as_csv())))
+    read = list(csv.DictReader(io.StringIO(csv_of(table))))
     assert float(read[1]["size"]) == 0.1 + 0.2
     assert [row["/seed"] for row in read] == ["1", "2", "3", "4"]
 
 
 def test_values_of_any_type_are_in_the_csv():
     varied = plan(["/mechanisms", "/label"], [[["fourbar"], None], ['a,"b"\n', "c"]], grid=False)
-    read = list(csv.reader(io.StringIO(table_of(batch(Status.QUEUED, 2), varied, []).as_csv())))
+    read = list(csv.reader(io.StringIO(csv_of(table_of(batch(Status.QUEUED, 2), varied, [])))))
     assert [row[:2] for row in read[1:]] == [['["fourbar"]', 'a,"b"\n'], ["", "c"]]
 
 
 def test_a_front_is_what_no_other_beats():
     rng = np.random.default_rng(3)
-    for columns in (1, 2, 3):
-        table = rng.integers(0, 12, (200, columns)).astype(float)
+    for columns, values, rows in ((1, 12, 200), (2, 12, 200), (2, 400, 700), (3, 12, 200), (3, 60, 700), (5, 9, 700)):
+        table = rng.integers(-2, values, (rows, columns)) * rng.choice([-1.0, 1.0], columns)
         beaten = [((table <= row).all(axis=1) & (table < row).any(axis=1)).any() for row in table]
         assert unbeaten(table) == [n for n, is_beaten in enumerate(beaten) if not is_beaten]
     assert unbeaten(np.empty((0, 2))) == []
+
+
+@pytest.mark.parametrize("columns", [2, 4])
+def test_the_front_of_the_largest_batch_takes_no_seconds(columns):
+    """All rows are in it, which takes the longest: compared one by one they would take more than a second."""
+    table = np.random.default_rng(4).random((MOST_SAMPLES, columns))
+    table[:, -1] = -table[:, :-1].sum(axis=1)
+    began = time.thread_time()
+    assert unbeaten(table) == list(range(MOST_SAMPLES))
+    assert time.thread_time() - began < 1.0
+
+
+def test_a_plan_of_draws_is_small_and_read_as_it_was():
+    """Ten thousand times one of two large objects are not written out; doubles keep all their bits."""
+    points = [[{"x": 1.0 * k, "y": 0.1 * n} for k in range(80)] for n in (1, 2)]
+    drawn = latin_hypercube([points, Span(0.1, 0.7), ["a", None]], MOST_SAMPLES, 0)
+    before = plan(["/points", "/x", "/y"], drawn, grid=False, problem={"kind": "path"})
+    stored = before.values_as_json()
+    assert len(stored) < 200_000
+    read = Plan.read(before.stated_as_json(), stored)
+    assert read.total == MOST_SAMPLES
+    assert [read.sample(n) for n in range(MOST_SAMPLES)] == [before.sample(n) for n in range(MOST_SAMPLES)]
+    assert sum(read.sample(n)[0] == points[1] for n in range(MOST_SAMPLES)) == MOST_SAMPLES // 2
+
+
+def test_a_table_comes_in_pieces_that_make_one(monkeypatch):
+    monkeypatch.setattr(table_module, "AT_ONCE", 3)
+    varied = plan(["/seed"], [[*range(8)]], metrics=["size"])
+    whole = table_of(batch(Status.QUEUED, 8), varied, [])
+    pieces = list(whole.as_json(least=["size"]))
+    assert len(pieces) == 5
+    assert json.loads(b"".join(pieces)) == {"columns": whole.columns, "least": ["size"], "rows": whole.rows}
+    assert [row[0] for row in csv.reader(io.StringIO(csv_of(whole)))] == ["/seed", *map(str, range(8))]
+    nothing = Table(["a"], [])
+    assert json.loads(b"".join(nothing.as_json())) == {"columns": ["a"], "rows": []}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_column_of_a_table_has_the_name_of_another(kind):
+    varied = plan(["/seed"], [[1]], metrics=KINDS[kind].metrics)
+    columns = table_of(batch(Status.QUEUED, 1), varied, []).columns
+    assert len(set(columns)) == len(columns)
 
 
 def test_rows_without_a_number_are_not_weighed_up():

@@ -170,7 +170,7 @@ def test_a_sample_that_contradicts_itself_fails_alone(client):
     error = client.get(f"/v1/jobs/{failed['job']}").json()["error"]
     assert (error["type"], error["instance"]) == ("/problems/invalid-problem", f"/v1/jobs/{failed['job']}")
     assert error["errors"][0]["path"].startswith("/positions/1")
-    assert error["detail"] == failed["error"]
+    assert error["detail"] == failed["failure"]
 
 
 def test_a_broken_sample_fails_and_the_others_do_not(scripted):
@@ -180,7 +180,7 @@ def test_a_broken_sample_fails_and_the_others_do_not(scripted):
     assert [row["status"] for row in rows] == ["succeeded", "failed", "failed"] + ["succeeded"] * 5
     types = [scripted.job(row["job"])["error"]["type"] for row in rows[1:3]]
     assert types == ["/problems/internal-error", "/problems/out-of-memory"]
-    assert "secret" not in rows[1]["error"]
+    assert "secret" not in rows[1]["failure"]
 
 
 @pytest.mark.parametrize("moment", ["before", "after"])
@@ -386,7 +386,18 @@ def test_hostile_bodies_are_refused(scripted, text):
     )
 
 
-@pytest.mark.parametrize("query", ["least=weight", "greatest=size&greatest=status", "by=size", "least=/seed"])
+@pytest.mark.parametrize(
+    "query",
+    [
+        "least=weight",
+        "greatest=size&greatest=status",
+        "by=size",
+        "least=/seed",
+        "least=size&greatest=size",
+        "least=size&least=size",
+        "greatest=size&greatest=size",
+    ],
+)
 def test_a_front_is_of_metrics_of_the_batch(scripted, query):
     batch = post(scripted.client, stated(INSTANT))
     answer = scripted.client.get(f"/v1/batches/{batch['id']}/front?{query}")

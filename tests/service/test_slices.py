@@ -123,7 +123,7 @@ def broken_for(monkeypatch, name, which):
 
 
 def test_a_plan_that_takes_too_much_memory_fails_its_batch(bench, solver, monkeypatch):
-    def read(_text):
+    def read(*_texts):
         raise MemoryError
 
     batch = bench.batch(*range(40))
@@ -142,11 +142,11 @@ def test_a_plan_has_the_memory_of_those_that_are_kept(bench, solver, monkeypatch
     bench.run()
     read, held = slices.Plan.read, []
 
-    def read_alone(text):
+    def read_alone(*texts):
         held.append(len(bench.slices._plans))
         if held[-1]:
             raise MemoryError
-        return read(text)
+        return read(*texts)
 
     monkeypatch.setattr(slices.Plan, "read", read_alone)
     batch = bench.batch(2)

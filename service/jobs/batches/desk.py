@@ -10,8 +10,9 @@ from starlette.concurrency import run_in_threadpool
 
 from service.jobs.admission import Repeatable
 from service.jobs.batches.plan import Plan
-from service.jobs.batches.rows import BatchRow, BatchSummary, TableRow
+from service.jobs.batches.rows import BatchRow, BatchSummary
 from service.jobs.batches.store import BatchStore
+from service.jobs.batches.table import Table, table_of
 from service.jobs.executor import Executor
 from service.jobs.finished import FinishedJobs
 from service.jobs.notifier import ChangeNotifier
@@ -72,9 +73,13 @@ class BatchDesk:
         """At most ``limit`` batches of the tenant, newest first."""
         return await run_in_threadpool(self.store.page, tenant=tenant, limit=limit, before=before)
 
-    async def table(self, batch: BatchSummary) -> list[TableRow]:
-        """The samples of a batch that have ended."""
-        return await run_in_threadpool(self.store.table, batch)
+    async def table(self, batch: BatchRow) -> tuple[Plan, Table] | None:
+        """What a batch is made of, and its table; None where it has been removed since it was read."""
+        return await run_in_threadpool(self._table, batch)
+
+    def _table(self, batch: BatchRow) -> tuple[Plan, Table] | None:
+        plan = self.store.plan(batch)
+        return None if plan is None else (plan, table_of(batch, plan, self.store.table(batch)))
 
     async def cancel_or_delete(self, tenant: str, batch_id: str) -> BatchRow | Literal["deleted"] | None:
         """Cancel the batch when it is unfinished (returns it), else remove it; None where the tenant has none such.

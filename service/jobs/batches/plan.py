@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-Values = Sequence[Any]
+from service.jobs.batches.values import Values, read, written
 
 
 class NoSuchPlace(LookupError):
@@ -79,17 +79,26 @@ class Plan:
     def _steps(self) -> list[list[str]]:
         return [steps(field) for field in self.fields]
 
-    def written(self) -> str:
-        """The plan in JSON, for :meth:`read`."""
-        return json.dumps({name: getattr(self, name) for name in _WRITTEN}, separators=(",", ":"))
+    def stated_as_json(self) -> str:
+        """What is shown of the plan, as an object in JSON: all but the values, of which there may be very many."""
+        return _as_json({name: getattr(self, name) for name in _SHOWN})
+
+    def values_as_json(self) -> str:
+        """The values in JSON, for :meth:`read`."""
+        return _as_json({"grid": self.grid, "values": [written(values) for values in self.values]})
 
     @classmethod
-    def read(cls, text: str) -> Plan:
-        """The plan that :meth:`written` has written."""
-        return cls(**json.loads(text))
+    def read(cls, stated: str, values: str) -> Plan:
+        """The plan of which :meth:`stated_as_json` and :meth:`values_as_json` have written these."""
+        varied = json.loads(values)
+        return cls(**json.loads(stated), grid=varied["grid"], values=[read(each) for each in varied["values"]])
 
 
-_WRITTEN = ("problem", "fields", "values", "grid", "metrics", "reuse")
+_SHOWN = ("problem", "fields", "metrics", "reuse")
+
+
+def _as_json(value: Any) -> str:
+    return json.dumps(value, separators=(",", ":"))
 
 
 def steps(pointer: str) -> list[str]:

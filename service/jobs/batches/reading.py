@@ -40,13 +40,13 @@ def sample_id(batch_id: str, number: int) -> str:
 
 def sample_as_job(connection: Connection, job_id: str) -> SampleRow | None:
     """The sample of this id as a job; None where there is none, or where it has not ended."""
-    query = select(*_SAMPLE, *_OF_BATCH, samples.c.cached, _RESULT, samples.c.error, batches.c.plan)
+    query = select(*_SAMPLE, *_OF_BATCH, samples.c.cached, _RESULT, samples.c.error, batches.c.stated, batches.c.plan)
     row = connection.execute(query.where(samples.c.id == job_id, batches.c.id == samples.c.batch)).one_or_none()
     if row is None:
         return None
     return SampleRow(
         **_summary(row),
-        problem=json.dumps(Plan.read(row.plan).statement(row.number)),
+        problem=json.dumps(Plan.read(row.stated, row.plan).statement(row.number)),
         result=row.result,
         error=row.error,
         batch=row.batch,

@@ -28,9 +28,9 @@ class BatchSummary(Entry):
 
 @dataclass(frozen=True, slots=True)
 class BatchRow(BatchSummary):
-    """A batch with what was stated: ``plan`` is JSON, :meth:`service.jobs.batches.plan.Plan.read` reads it."""
+    """A batch with what was stated, as :meth:`service.jobs.batches.plan.Plan.stated_as_json` has it."""
 
-    plan: str
+    stated: str
 
 
 @dataclass(frozen=True, slots=True)

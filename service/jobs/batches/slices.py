@@ -107,10 +107,12 @@ class Slices:
             if batch is None:
                 return None
             try:
-                plan = Plan.read(batch.plan)
+                plan = patiently(self._store.plan, batch)
             except MemoryError:
                 self._plans.clear()
-                plan = Plan.read(batch.plan)
+                plan = patiently(self._store.plan, batch)
+            if plan is None:
+                return None
             self._plans[batch_id] = batch, plan
             if len(self._plans) > PLANS:
                 self._plans.popitem(last=False)

@@ -102,7 +102,7 @@ class BatchStore:
             "failed": 0,
             "cached": 0,
             "revision": 1,
-            "plan": plan.written(),
+            "stated": plan.stated_as_json(),
         }
         key = {} if repeatable is None else {"idempotency_key": repeatable.key, "request_hash": repeatable.request_hash}
         shares = [
@@ -114,7 +114,7 @@ class BatchStore:
             queued = connection.execute(COUNT_QUEUED, {"of": tenant, "most": max_queued}).scalar_one()
             if queued >= max_queued:
                 return False
-            connection.execute(insert(batches), {**row, **NO_KEY, **key})
+            connection.execute(insert(batches), {**row, "plan": plan.values_as_json(), **NO_KEY, **key})
             turn = select(turn_of(tenant, cost, share=True))
             first = connection.execute(turn).scalar_one()
             connection.execute(insert(jobs), [{**share, "turn": first + n} for n, share in enumerate(shares)])
@@ -171,6 +171,12 @@ class BatchStore:
                 TableRow(row.number, Status(row.status), row.cached, json.loads(row.figures or "null"), row.error)
                 for row in connection.execute(query)
             ]
+
+    def plan(self, batch: BatchRow) -> Plan | None:
+        """The plan of a batch; None where it has been removed since."""
+        with self._engine.connect() as connection:
+            values = connection.execute(select(batches.c.plan).where(batches.c.id == batch.id)).scalar_one_or_none()
+        return None if values is None else Plan.read(batch.stated, values)
 
     def begun(self, batch_id: str) -> BatchRow | None:
         """Note that a worker is at the batch; the batch, or None where it is not to be worked at any more."""

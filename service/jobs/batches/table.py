@@ -5,17 +5,23 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from pydantic_core import to_json
 
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.reading import sample_id
 from service.jobs.batches.rows import BatchSummary, TableRow
 from service.jobs.faults import WORKER_DIED
 from service.jobs.states import Status
+
+Rows = np.ndarray[Any, np.dtype[np.float64]]
+
+AT_ONCE = 200
+"""Rows that are written in one go."""
 
 
 @dataclass(frozen=True)
@@ -25,13 +31,27 @@ class Table:
     columns: list[str]
     rows: list[list[Any]]
 
-    def as_csv(self) -> str:
-        """The table as CSV (RFC 4180). Numbers have all their digits; what is no number and no text is JSON."""
-        text = io.StringIO()
-        writer = csv.writer(text)
-        writer.writerow(self.columns)
-        writer.writerows([_cell(value) for value in row] for row in self.rows)
-        return text.getvalue()
+    def as_csv(self) -> Iterator[bytes]:
+        """The table as CSV (RFC 4180), piece by piece.
+
+        Numbers have all their digits; what is no number and no text is JSON.
+        """
+        yield _written([self.columns])
+        for rows in self._pages():
+            yield _written([[_cell(value) for value in row] for row in rows])
+
+    def as_json(self, **more: Any) -> Iterator[bytes]:
+        """An object of the columns, of whatever ``more``, and of the rows, in JSON, piece by piece."""
+        yield to_json({"columns": self.columns, **more})[:-1] + b',"rows":['
+        comma = b""
+        for rows in self._pages():
+            yield comma + to_json(rows)[1:-1]
+            comma = b","
+        yield b"]}"
+
+    def _pages(self) -> Iterator[list[list[Any]]]:
+        for start in range(0, len(self.rows), AT_ONCE):
+            yield self.rows[start : start + AT_ONCE]
 
     def front(self, least: Sequence[str], greatest: Sequence[str]) -> Table:
         """The rows that no other beats: none is as good in all of these columns and better in one.
@@ -52,7 +72,7 @@ class Table:
 
 def table_of(batch: BatchSummary, plan: Plan, ended: Sequence[TableRow]) -> Table:
     """The table of a batch as it stands: the varied fields, what came of the sample, its best design, its job."""
-    columns = [*plan.fields, "status", "cached", "designs", *plan.metrics, "job", "error"]
+    columns = [*plan.fields, "status", "cached", "designs", *plan.metrics, "job", "failure"]
     by_number = {row.number: row for row in ended}
     nothing = [None] * (1 + len(plan.metrics))
     # Of a finished batch, what has not ended was cancelled with it, or given up with its share.
@@ -73,18 +93,48 @@ def table_of(batch: BatchSummary, plan: Plan, ended: Sequence[TableRow]) -> Tabl
     return Table(columns, rows)
 
 
-def unbeaten(table: np.ndarray[Any, np.dtype[np.float64]]) -> list[int]:
+def unbeaten(table: Rows) -> list[int]:
     """The rows of a table, less being better in each column, that no other beats, in their order.
 
-    Each is compared with those that are kept so far, in the order of the first column, among equals of the second, and
-    so on: what beats a row stands before it.
+    Equal rows do not beat one another. Of the different ones, sorted by the first column, among equals by the second,
+    and so on, one is beaten where another before it is as good in each other column. With two columns the least so far
+    of the second tells; with more, rows are compared with those that are kept so far, many at once.
     """
-    kept: list[int] = []
-    for n in np.lexsort(table.T[::-1]):
-        before = table[kept]
-        if not ((before <= table[n]).all(axis=1) & (before < table[n]).any(axis=1)).any():
-            kept.append(int(n))
-    return sorted(kept)
+    if len(table) == 0:
+        return []
+    different, which = np.unique(table + 0.0, axis=0, return_inverse=True)  # -0.0 is 0.0
+    others = different[:, 1:]
+    kept = np.zeros(len(different), bool)
+    if others.shape[1] < 2:
+        kept[0] = True
+        if others.shape[1] == 1:
+            kept[1:] = others[1:, 0] < np.minimum.accumulate(others[:-1, 0])
+    else:
+        for start in range(0, len(different), _COMPARED):
+            block = others[start : start + _COMPARED]
+            left = np.flatnonzero(~_as_good(block, others[:start][kept[:start]]).any(axis=1))
+            before = np.tri(len(left), k=-1, dtype=bool)
+            left = left[~(_as_good(block[left], block[left]) & before).any(axis=1)]
+            kept[start + left] = True
+    return [int(n) for n in np.flatnonzero(kept[which.reshape(-1)])]
+
+
+_COMPARED = 256
+"""Rows that are compared with those before them together."""
+
+
+def _as_good(rows: Rows, others: Rows) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    """Whether of each row (n) each other one (m) is as good in each column; shape (n, m)."""
+    as_good = np.ones((len(rows), len(others)), bool)
+    for row, other in zip(rows.T, others.T, strict=True):
+        as_good &= other <= row[:, None]
+    return as_good
+
+
+def _written(rows: Iterable[Sequence[Any]]) -> bytes:
+    text = io.StringIO()
+    csv.writer(text).writerows(rows)
+    return text.getvalue().encode()
 
 
 def _number(value: Any) -> bool:
