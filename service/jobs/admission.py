@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from sqlalchemy import ColumnElement, Connection, Engine, Table, select
+from sqlalchemy import ColumnElement, Connection, Engine, Table, func, select
 from sqlalchemy.exc import IntegrityError, SQLAlchemyError
 
-from service.jobs.database import unreachable
+from service.jobs.database import QUEUE_LOCK, unreachable
 
 SETTLE_S = 5.0
 """How long something new is tried to be stored when the database breaks off in the middle, so that nobody knows
@@ -68,6 +68,15 @@ def surely(engine: Engine, there: Callable[[Connection], bool], insert: Callable
             if asked_at is None or not (broken and unreachable(error)) or time.monotonic() > asked_at + SETTLE_S:
                 raise
             time.sleep(_SETTLE_PERIOD_S)  # the database is being started again
+
+
+def one_after_the_other(connection: Connection, tenant: str) -> None:
+    """Let nobody else who asks for this insert jobs of the tenant before this transaction is at its end.
+
+    SQLite has one writer at a time. PostgreSQL has many, who do not see each other's rows before the commit.
+    """
+    if connection.dialect.name == "postgresql":
+        connection.execute(select(func.pg_advisory_xact_lock(QUEUE_LOCK, func.hashtext(tenant))))
 
 
 def once(make: Callable[[], T], made: Callable[[], T | None]) -> tuple[T, bool]:

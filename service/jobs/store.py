@@ -16,9 +16,8 @@ from typing import Any
 from sqlalchemy import Connection, Engine, delete, func, select, text, update
 from ulid import ULID
 
-from service.jobs.admission import Repeatable, made_by, once, surely
+from service.jobs.admission import Repeatable, made_by, once, one_after_the_other, surely
 from service.jobs.batches.reading import sample_as_job, samples_as_jobs
-from service.jobs.database import QUEUE_LOCK
 from service.jobs.schema import QUEUED, Claim, JobRow, JobSummary, as_stored, as_values, jobs, now
 from service.jobs.statements import (
     BACK_IN_QUEUE,
@@ -310,8 +309,7 @@ def _inserted(connection: Connection, row: Mapping[str, Any], max_queued: int | 
     asked = {"of": row["tenant"], "most": most}
     postgresql = connection.dialect.name == "postgresql"
     if postgresql and connection.execute(COUNT_QUEUED, asked).scalar_one() > min(_FEW, most - _CROWD):
-        # SQLite has one writer at a time. PostgreSQL has many, who do not see each other's rows before the commit.
-        connection.execute(select(func.pg_advisory_xact_lock(QUEUE_LOCK, func.hashtext(row["tenant"]))))
+        one_after_the_other(connection, row["tenant"])
     return connection.execute(INSERT, {**row, **asked, "as": row["cost"]}).rowcount > 0
 
 

@@ -1,5 +1,6 @@
 """Batches in the store: each sample is there once, whatever dies, comes late or is cancelled in between."""
 
+import threading
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from types import SimpleNamespace
@@ -269,9 +270,56 @@ def test_a_request_with_a_key_makes_one_batch(store):
 
 def test_a_full_queue_takes_no_batch(store, single):
     single.create(tenant="", kind="motion", label=None, problem="{}")
-    with pytest.raises(QueueFull):
-        made(store, 2, max_queued=1)
-    assert made(store, 2, max_queued=2) is not None
+    for most in (1, 2):
+        with pytest.raises(QueueFull):
+            made(store, 2, max_queued=most)
+    assert store.page(tenant="", limit=9, before=None) == []
+    assert made(store, 2, max_queued=3) is not None
+    assert made(store, 100, tenant="other", max_queued=SHARES) is not None
+
+
+def test_in_a_small_queue_a_batch_has_few_shares(store, single, engine):
+    batch = made(store, 100, max_queued=3)
+    shares = [Share.read(take(single, f"m{n}").problem) for n in range(3)]
+    assert take(single, "none") is None
+    assert [n for share in shares for n in range(share.first, share.end)] == list(range(batch.total))
+
+
+def test_of_batches_that_come_at_once_the_queue_takes_as_many_as_it_has_room_for(store, single, engine):
+    answers, begin = [], threading.Barrier(6)
+
+    def post():
+        begin.wait()
+        try:
+            answers.append(made(store, 100, max_queued=2 * SHARES + 1))
+        except QueueFull as full:
+            answers.append(full)
+
+    threads = [threading.Thread(target=post) for _ in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sorted(isinstance(answer, QueueFull) for answer in answers) == [False] * 2 + [True] * 4
+    with engine.connect() as connection:
+        turns = list(connection.execute(select(jobs.c.turn).order_by(jobs.c.turn)).scalars())
+    assert turns == list(range(1, 2 * SHARES + 1)), "each has a turn of its own"
+
+
+def test_the_same_request_that_comes_at_once_has_one_batch(store, engine):
+    answers, begin = [], threading.Barrier(6)
+
+    def post():
+        begin.wait()
+        answers.append(made(store, 4, repeatable=Repeatable("key", "hash"), max_queued=4).id)
+
+    threads = [threading.Thread(target=post) for _ in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(answers) == 6
+    assert len(set(answers)) == 1
 
 
 def test_single_jobs_do_not_wait_for_the_shares_of_their_tenant(store, single):

@@ -31,7 +31,7 @@ from sqlalchemy import (
 )
 from ulid import ULID
 
-from service.jobs.admission import Repeatable, made_by, once, surely
+from service.jobs.admission import Repeatable, made_by, once, one_after_the_other, surely
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.reading import sample_id
 from service.jobs.batches.rows import BatchRow, BatchSummary, Ended, OwnAnswer, Share, TableRow
@@ -86,7 +86,8 @@ class BatchStore:
         KeyReused
             When another request of the tenant has made a batch under this key.
         QueueFull
-            When it would be new, and ``max_queued`` jobs of the tenant are queued already.
+            When it would be new, and with its shares more than ``max_queued`` jobs of the tenant were queued. It has
+            no more shares than that.
         """
         row: dict[str, Any] = {
             "id": str(ULID()),
@@ -107,14 +108,16 @@ class BatchStore:
         key = {} if repeatable is None else {"idempotency_key": repeatable.key, "request_hash": repeatable.request_hash}
         shares = [
             {**new_row(tenant, kind, None, share.written(), cost), **NO_KEY, "batch": row["id"]}
-            for share in _dealt(plan.total)
+            for share in _dealt(plan.total, min(SHARES, max_queued))
         ]
 
         def inserted(connection: Connection) -> bool:
-            queued = connection.execute(COUNT_QUEUED, {"of": tenant, "most": max_queued}).scalar_one()
-            if queued >= max_queued:
-                return False
+            # Counted when nobody else inserts any more: in SQLite, whoever has written is alone.
+            one_after_the_other(connection, tenant)
             connection.execute(insert(batches), {**row, "plan": plan.values_as_json(), **NO_KEY, **key})
+            queued = connection.execute(COUNT_QUEUED, {"of": tenant, "most": max_queued}).scalar_one()
+            if queued + len(shares) > max_queued:
+                return False
             turn = select(turn_of(tenant, cost, share=True))
             first = connection.execute(turn).scalar_one()
             connection.execute(insert(jobs), [{**share, "turn": first + n} for n, share in enumerate(shares)])
@@ -332,9 +335,9 @@ class BatchStore:
                 connection.execute(change)
 
 
-def _dealt(total: int) -> list[Share]:
-    """The shares of a batch: as even as can be."""
-    count = min(total, SHARES)
+def _dealt(total: int, most: int) -> list[Share]:
+    """The shares of a batch, so many at most: as even as can be."""
+    count = min(total, most)
     bounds = [total * n // count for n in range(count + 1)]
     return [Share(first, end) for first, end in pairwise(bounds)]
 
