@@ -1,8 +1,9 @@
-"""Removes finished jobs and batches when their time is over."""
+"""Removes finished jobs and batches when their time is over, and ends batches that were lost."""
 
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Awaitable
 from datetime import UTC, datetime, timedelta
 
 import structlog
@@ -15,7 +16,7 @@ from service.jobs.store import JobStore
 MAX_REMOVED_AT_ONCE = 200
 """Jobs removed by one statement, so that nobody who writes meanwhile waits for long."""
 
-MAX_PERIOD_S = 3600.0
+MAX_PERIOD_S = 600.0
 MIN_PERIOD_S = 0.5
 _PAUSE_S = 0.05
 """Between two such statements, so that others get to write."""
@@ -24,27 +25,45 @@ log = structlog.get_logger(__name__)
 
 
 async def keep_tidy(store: JobStore, batches: BatchStore, finished: FinishedJobs, days: float | None) -> None:
-    """Remove jobs and batches that finished more than ``days`` ago, now and again and again.
+    """End what was lost, and remove jobs and batches that finished more than ``days`` ago, now and again and again.
 
-    Nothing where ``days`` is None.
+    Where ``days`` is None they are kept. What fails is tried again the next time, and stands in nothing else's way.
     """
-    if days is None:
-        return
-    kept = timedelta(days=days)
-    period_s = min(max(kept.total_seconds() / 10, MIN_PERIOD_S), MAX_PERIOD_S)
+    kept = None if days is None else timedelta(days=days)
+    period_s = MAX_PERIOD_S if kept is None else min(max(kept.total_seconds() / 10, MIN_PERIOD_S), MAX_PERIOD_S)
     while True:
-        removed = 0
-        try:
-            while gone := await run_in_threadpool(store.delete_finished, datetime.now(UTC) - kept, MAX_REMOVED_AT_ONCE):
-                removed += gone
-                finished.removed()
-                await asyncio.sleep(_PAUSE_S)
-            while await run_in_threadpool(batches.delete_finished, datetime.now(UTC) - kept):
-                log.info("old batch removed")
-                finished.removed()
-                await asyncio.sleep(_PAUSE_S)
-        except Exception:  # whatever a database driver raises: the jobs are still there the next time
-            log.exception("old jobs could not be removed")
-        if removed:
-            log.info("old jobs removed", jobs=removed)
+        await _tried(_tidied(batches), "lost batches could not be ended")
+        if kept is not None:
+            await _tried(_without_old_jobs(store, finished, kept), "old jobs could not be removed")
+            await _tried(_without_old_batches(batches, finished, kept), "old batches could not be removed")
         await asyncio.sleep(period_s)
+
+
+async def _tried(work: Awaitable[None], failure: str) -> None:
+    try:
+        await work
+    except Exception:  # whatever a database driver raises: what there is to do is still there the next time
+        log.exception(failure)
+
+
+async def _tidied(batches: BatchStore) -> None:
+    lost = await run_in_threadpool(batches.tidy)
+    if lost:
+        log.warning("lost batches ended", batches=lost)
+
+
+async def _without_old_jobs(store: JobStore, finished: FinishedJobs, kept: timedelta) -> None:
+    removed = 0
+    while gone := await run_in_threadpool(store.delete_finished, datetime.now(UTC) - kept, MAX_REMOVED_AT_ONCE):
+        removed += gone
+        finished.removed()
+        await asyncio.sleep(_PAUSE_S)
+    if removed:
+        log.info("old jobs removed", jobs=removed)
+
+
+async def _without_old_batches(batches: BatchStore, finished: FinishedJobs, kept: timedelta) -> None:
+    while await run_in_threadpool(batches.delete_finished, datetime.now(UTC) - kept):
+        log.info("old batch removed")
+        finished.removed()
+        await asyncio.sleep(_PAUSE_S)

@@ -70,7 +70,7 @@ for _name, _columns in (("turn", ("cost", "turn", "id")), ("tenant", ("tenant", 
     Index(f"jobs_queued_by_{_name}", *(jobs.c[c] for c in _columns), sqlite_where=QUEUED, postgresql_where=QUEUED)
 
 # Many problems at once: what was stated and how far it is, which is shown, and the plan, the values of all problems,
-# which only their answers and the table need. Both are JSON.
+# which only their answers and the table need. Both are JSON. One that is removed is none; it is about to vanish.
 batches = Table(
     "batches",
     metadata,
@@ -87,6 +87,7 @@ batches = Table(
     Column("failed", Integer, nullable=False),
     Column("cached", Integer, nullable=False),
     Column("revision", Integer, nullable=False),
+    Column("removed", Boolean, nullable=False),
     Column("stated", Text, nullable=False),
     Column("plan", Text, nullable=False),
     Column("idempotency_key", String(200)),

@@ -10,12 +10,13 @@ from sqlalchemy import select, update
 from ulid import ULID
 
 from service.jobs.admission import KeyReused, QueueFull, Repeatable
+from service.jobs.batches import removal
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.reading import sample_id
 from service.jobs.batches.rows import Ended, OwnAnswer, Share
 from service.jobs.batches.store import SHARES, BatchStore, _one_result_each
 from service.jobs.leases import LeaseStore
-from service.jobs.schema import jobs, samples
+from service.jobs.schema import batches, jobs, samples
 from service.jobs.statements import MAX_CRASHES, MAX_KILLS
 from service.jobs.states import Cost, Status
 from service.jobs.store import JobStore
@@ -249,6 +250,55 @@ def test_only_a_finished_batch_is_removed_and_then_with_all_that_it_has(store, s
     assert take(single, "b").batch == other.id
 
 
+def test_of_a_batch_whose_removal_breaks_off_nothing_is_seen(store, single, engine, monkeypatch):
+    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
+    key = Repeatable("key", "hash")
+    batch, other = made(store, 250, repeatable=key), made(store, 2)
+    solved(store, single, batch, [ended(n, digest=f"{n}") for n in range(250)])
+    solved(store, single, other, [ended(n) for n in range(2)])
+    portions = []
+
+    def dies(_seconds):
+        portions.append(len(numbers(engine)))
+        if len(portions) == 2:
+            raise SystemError
+
+    with monkeypatch.context() as dying:
+        dying.setattr(removal.time, "sleep", dies)
+        with pytest.raises(SystemError):
+            store.delete(batch.id)
+    assert portions == [250 + 2 - removal.PORTION, 250 + 2 - 2 * removal.PORTION], "others may write in between"
+    left = sample_id(batch.id, numbers(engine)[-1])
+    assert (store.get(batch.id), store.summaries([batch.id]), store.plan(batch)) == (None, {}, None)
+    assert (single.get(left), single.summaries([left])) == (None, {})
+    assert [found.id for found in store.page(tenant="", limit=9, before=None)] == [other.id]
+    assert store.delete_finished(datetime.now(UTC) + timedelta(seconds=1)) == 1, "the other one"
+    assert not store.delete(batch.id)
+    again = made(store, 2, repeatable=key)
+    assert again.id != batch.id
+    assert store.tidy() == 0
+    assert numbers(engine) == []
+    with engine.connect() as connection:
+        assert list(connection.execute(select(batches.c.id)).scalars()) == [again.id]
+        assert set(connection.execute(select(jobs.c.batch)).scalars()) == {again.id}
+
+
+def test_what_was_lost_is_ended_without_being_looked_at(store, single, engine):
+    lost, waiting, whole = (made(store, 1, tenant=tenant) for tenant in "abc")
+    claims = {claim.batch: claim for claim in [take(single, f"m{n}") for n in range(3)]}
+    change = update(jobs).where(jobs.c.id == claims[lost.id].job_id)
+    with engine.begin() as connection:
+        connection.execute(change.values(due_at=0.0, crashes=MAX_KILLS))
+    assert [move[1] for move in LeaseStore(engine).take_back([claims[lost.id].job_id])] == [Status.FAILED]
+    assert single.requeue(claims[waiting.id].job_id, claims[waiting.id].mark)
+    assert store.store(whole, claims[whole.id].job_id, claims[whole.id].attempt, None, [ended(0)])
+    assert store.tidy() == 1
+    assert store.tidy() == 0
+    with engine.connect() as connection:
+        told = connection.execute(select(batches.c.status).order_by(batches.c.tenant)).scalars()
+        assert list(told) == ["failed", "queued", "succeeded"]
+
+
 def test_old_batches_are_removed(store, single):
     old, young = made(store, 1), made(store, 1)
     store.cancel(old.id)
@@ -331,8 +381,8 @@ def test_single_jobs_do_not_wait_for_the_shares_of_their_tenant(store, single):
 
 
 def test_batches_of_tenants_go_round(store, single):
-    batches = {made(store, 100, tenant=tenant).id: tenant for tenant in ("a", "b")}
-    taken = [batches[take(single, f"m{n}").batch] for n in range(8)]
+    tenants = {made(store, 100, tenant=tenant).id: tenant for tenant in ("a", "b")}
+    taken = [tenants[take(single, f"m{n}").batch] for n in range(8)]
     assert [{*taken[n : n + 2]} for n in range(0, 8, 2)] == [{"a", "b"}] * 4
 
 

@@ -12,6 +12,7 @@ from sqlalchemy import Connection, func, select
 from ulid import ULID
 
 from service.jobs.batches.plan import Plan
+from service.jobs.batches.removal import THERE
 from service.jobs.schema import JobSummary, SampleRow, batches, samples
 from service.jobs.statements import MAX_IDS
 from service.jobs.states import Status
@@ -21,6 +22,7 @@ _RANDOM_BITS, _NUMBER_BITS = 80, 14
 
 _SAMPLE = [samples.c[name] for name in ("id", "batch", "tenant", "number", "status", "started_at", "finished_at")]
 _OF_BATCH = [batches.c[name] for name in ("kind", "label", "created_at")]
+_ITS_BATCH = (batches.c.id == samples.c.batch, THERE)
 
 _other = samples.alias()
 _OF_SAME = select(_other.c.result).where(_other.c.batch == samples.c.batch, _other.c.number == samples.c.same_as)
@@ -41,7 +43,7 @@ def sample_id(batch_id: str, number: int) -> str:
 def sample_as_job(connection: Connection, job_id: str) -> SampleRow | None:
     """The sample of this id as a job; None where there is none, or where it has not ended."""
     query = select(*_SAMPLE, *_OF_BATCH, samples.c.cached, _RESULT, samples.c.error, batches.c.stated, batches.c.plan)
-    row = connection.execute(query.where(samples.c.id == job_id, batches.c.id == samples.c.batch)).one_or_none()
+    row = connection.execute(query.where(samples.c.id == job_id, *_ITS_BATCH)).one_or_none()
     if row is None:
         return None
     return SampleRow(
@@ -57,7 +59,7 @@ def sample_as_job(connection: Connection, job_id: str) -> SampleRow | None:
 def samples_as_jobs(connection: Connection, job_ids: Sequence[str]) -> dict[str, JobSummary]:
     """Those of these ids that are samples, as jobs without their problems and answers."""
     found = {}
-    query = select(*_SAMPLE, *_OF_BATCH).where(batches.c.id == samples.c.batch)
+    query = select(*_SAMPLE, *_OF_BATCH).where(*_ITS_BATCH)
     for start in range(0, len(job_ids), MAX_IDS):
         for row in connection.execute(query.where(samples.c.id.in_(job_ids[start : start + MAX_IDS]))):
             found[row.id] = JobSummary(**_summary(row))

@@ -21,7 +21,6 @@ from sqlalchemy import (
     String,
     case,
     column,
-    delete,
     exists,
     func,
     insert,
@@ -32,6 +31,7 @@ from sqlalchemy import (
 from ulid import ULID
 
 from service.jobs.admission import Repeatable, made_by, once, one_after_the_other, surely
+from service.jobs.batches import removal
 from service.jobs.batches.plan import Plan
 from service.jobs.batches.reading import sample_id
 from service.jobs.batches.rows import BatchRow, BatchSummary, Ended, OwnAnswer, Share, TableRow
@@ -52,6 +52,12 @@ from service.jobs.states import FINISHED, UNFINISHED, Cost, Status
 
 SHARES = 16
 """Shares of a batch at most: more workers than this do not make it faster."""
+
+_LOST = (
+    batches.c.status.in_(UNFINISHED),
+    ~exists().where(jobs.c.batch == batches.c.id, jobs.c.status.in_(UNFINISHED)),
+)
+"""Batches of whose shares none is left, and that are not at their end."""
 
 _SUMMARY = [batches.c[field.name] for field in fields(BatchSummary)]
 _WHOLE = [batches.c[field.name] for field in fields(BatchRow)]
@@ -114,7 +120,9 @@ class BatchStore:
         def inserted(connection: Connection) -> bool:
             # Counted when nobody else inserts any more: in SQLite, whoever has written is alone.
             one_after_the_other(connection, tenant)
-            connection.execute(insert(batches), {**row, "plan": plan.values_as_json(), **NO_KEY, **key})
+            connection.execute(
+                insert(batches), {**row, "removed": False, "plan": plan.values_as_json(), **NO_KEY, **key}
+            )
             queued = connection.execute(COUNT_QUEUED, {"of": tenant, "most": max_queued}).scalar_one()
             if queued + len(shares) > max_queued:
                 return False
@@ -149,18 +157,18 @@ class BatchStore:
         found: dict[str, BatchSummary] = {}
         with self._engine.connect() as connection:
             for start in range(0, len(batch_ids), MAX_IDS):
-                query = select(*_SUMMARY).where(batches.c.id.in_(batch_ids[start : start + MAX_IDS]))
+                query = select(*_SUMMARY).where(batches.c.id.in_(batch_ids[start : start + MAX_IDS]), removal.THERE)
                 for row in connection.execute(query):
                     found[row.id] = BatchSummary(*as_values(row))
         return found
 
     def page(self, *, tenant: str, limit: int, before: str | None) -> list[BatchSummary]:
         """At most ``limit`` batches of a tenant, newest first, from those older than the batch ``before``."""
-        query = select(batches.c.id).where(batches.c.tenant == tenant).order_by(batches.c.id.desc()).limit(limit)
+        query = select(batches.c.id).where(batches.c.tenant == tenant, removal.THERE)
         if before is not None:
             query = query.where(batches.c.id < before)
         with self._engine.connect() as connection:
-            ids = list(connection.execute(query).scalars())
+            ids = list(connection.execute(query.order_by(batches.c.id.desc()).limit(limit)).scalars())
         found = self.summaries(ids)
         return [found[batch_id] for batch_id in ids if batch_id in found]
 
@@ -178,7 +186,8 @@ class BatchStore:
     def plan(self, batch: BatchRow) -> Plan | None:
         """The plan of a batch; None where it has been removed since."""
         with self._engine.connect() as connection:
-            values = connection.execute(select(batches.c.plan).where(batches.c.id == batch.id)).scalar_one_or_none()
+            query = select(batches.c.plan).where(batches.c.id == batch.id, removal.THERE)
+            values = connection.execute(query).scalar_one_or_none()
         return None if values is None else Plan.read(batch.stated, values)
 
     def begun(self, batch_id: str) -> BatchRow | None:
@@ -287,17 +296,26 @@ class BatchStore:
             return running if cancelled.rowcount else None
 
     def delete(self, batch_id: str) -> bool:
-        """Remove a finished batch and its samples, these in portions, so that nobody waits for long; whether it was."""
-        with self._engine.connect() as connection:
-            row = _row(connection, batch_id)
-        if row is None or row.status not in FINISHED:
+        """Remove a finished batch with all that it has; whether there was one."""
+        if not removal.mark(self._engine, batch_id):
             return False
-        for first in range(0, row.total, MAX_IDS):
-            with self._engine.begin() as connection:
-                connection.execute(delete(samples).where(*_of(batch_id, first, first + MAX_IDS)))
-        with self._engine.begin() as connection:
-            connection.execute(delete(jobs).where(jobs.c.batch == batch_id))
-            return connection.execute(delete(batches).where(batches.c.id == batch_id)).rowcount > 0
+        removal.clear(self._engine, batch_id)
+        return True
+
+    def tidy(self) -> int:
+        """End the batches that were lost, and remove what is left of those whose removal broke off.
+
+        Returns
+        -------
+        int
+            How many were lost: none of their shares is left, and what these had still to do was given up.
+        """
+        with self._engine.connect() as connection:
+            lost = list(connection.execute(select(batches.c.id).where(*_LOST)).scalars())
+        self._settle(lost)
+        for batch_id in removal.marked(self._engine):
+            removal.clear(self._engine, batch_id)
+        return len(lost)
 
     def delete_finished(self, before: datetime) -> int:
         """Remove the oldest batch that finished before a time; tells how many."""
@@ -307,6 +325,7 @@ class BatchStore:
                 batches.c.id < str(ULID.from_datetime(before)),
                 batches.c.status.in_(FINISHED),
                 batches.c.finished_at < as_stored(before),
+                removal.THERE,
             )
             .order_by(batches.c.id)
             .limit(1)
@@ -317,15 +336,13 @@ class BatchStore:
 
     def _settle(self, batch_ids: Iterable[str]) -> None:
         """End batches of whose shares none is left: what these had still to do was given up, and has failed."""
-        unfinished = exists().where(jobs.c.batch == batches.c.id, jobs.c.status.in_(UNFINISHED))
-        lost = (batches.c.status.in_(UNFINISHED), ~unfinished)
         ids = list(batch_ids)
         for start in range(0, len(ids), MAX_IDS):
             these = batches.c.id.in_(ids[start : start + MAX_IDS])
             with self._engine.connect() as connection:
-                if connection.execute(select(batches.c.id).where(these, *lost)).first() is None:
+                if connection.execute(select(batches.c.id).where(these, *_LOST)).first() is None:
                     continue
-            change = update(batches).where(these, *lost).values(
+            change = update(batches).where(these, *_LOST).values(
                 status=case((batches.c.succeeded > 0, Status.SUCCEEDED), else_=Status.FAILED),
                 failed=batches.c.total - batches.c.succeeded,
                 finished_at=now(),
@@ -408,4 +425,4 @@ def _ended(connection: Connection, batch_id: str, first: int, end: int) -> set[i
 
 
 def _row(connection: Connection, batch_id: str) -> Any:
-    return connection.execute(select(*_WHOLE).where(batches.c.id == batch_id)).one_or_none()
+    return connection.execute(select(*_WHOLE).where(batches.c.id == batch_id, removal.THERE)).one_or_none()

@@ -37,6 +37,7 @@ def upgrade() -> None:
         sa.Column("status", sa.String(10), nullable=False),
         *(sa.Column(f"{moment}_at", sa.String(27), nullable=moment != "created") for moment in MOMENTS),
         *(sa.Column(name, sa.Integer, nullable=False) for name in COUNTS),
+        sa.Column("removed", sa.Boolean, nullable=False),
         *(sa.Column(name, sa.Text, nullable=False) for name in ("stated", "plan")),
         sa.Column("idempotency_key", sa.String(200)),
         sa.Column("request_hash", sa.String(64)),
