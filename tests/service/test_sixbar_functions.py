@@ -232,10 +232,16 @@ def test_demands_are_kept_together(client):
 
 
 def test_pivots_that_are_stated_are_those_of_input_and_output(client):
+    """The second fourbar is turned and sized so that its pins keep their region, where it is most even or not."""
     pivots = {"input": [10.0, 5.0], "output": [90.0, 30.0]}
-    design = passed(answered(client, mechanisms=["watt_2"], fixed_pivots=pivots, max_designs=1))[0]
+    region = {"x": [-5.0, 110.0], "y": [-5.0, 75.0]}
+    more = {"fixed_pivots": pivots, "constraints": {"moving_pivot_region": region}}
+    design = passed(answered(client, mechanisms=["watt_2"], max_designs=1, **more))[0]
     assert design["mechanism"]["fixed_pivots"]["O2"] == pytest.approx(pivots["input"])
     assert design["mechanism"]["fixed_pivots"]["O6"] == pytest.approx(pivots["output"])
+    joints = design["mechanism"]["skeleton"]["joints"]
+    for name in "ABCD":
+        assert all(region[axis][0] <= at <= region[axis][1] for axis, at in zip("xy", joints[name], strict=True))
     sine_is_met(design)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 from synthesis.dispatch import solve
 from synthesis.kinds.indexing.design import SphericalGenevaMechanism
 from synthesis.kinds.indexing.on_sphere import _edges, measured_on_sphere
+from synthesis.kinds.indexing.smallest import outgrown
 from synthesis.registry import examples, parse_problem
 from tests.campaign import further
 
@@ -37,6 +39,29 @@ def test_a_size_is_found_at_which_the_wheel_is_held(fields: dict[str, Any], by: 
     result = solve(parse_problem({**STATED, **fields, name: 0.99 * size, "include_failed": True}))
     (smaller,) = result.designs
     assert [one.name for one in smaller.verification.checks if not one.passed] == [check]
+
+
+@pytest.mark.parametrize(
+    ("broken_beyond", "mended_from", "found"),
+    [
+        (None, 3.0, 3.0),  # a larger drive has less play
+        (2.5, 3.0, 1.0),  # before the play is gone something else breaks, which the first size keeps
+        (2.5, 2.0, 2.0),
+    ],
+)
+@pytest.mark.parametrize("undrawn", [False, True])
+def test_a_larger_drive_that_breaks_something_else_is_not_taken(
+    broken_beyond: float | None, mended_from: float, found: float, undrawn: bool
+) -> None:
+    def of_size(size: float, _: str) -> Any:
+        beyond = broken_beyond is not None and size > broken_beyond
+        if beyond and undrawn:
+            return "not_drawable"
+        names = ["play"] * (size < mended_from) + ["box"] * beyond
+        checks = [SimpleNamespace(name=name, passed=False) for name in names]
+        return SimpleNamespace(size=size, verification=SimpleNamespace(checks=checks))
+
+    assert outgrown((1.0, "wall"), of_size).size == pytest.approx(found, rel=1e-5)
 
 
 def test_a_roller_that_has_no_room_beside_a_horn_is_refused() -> None:

@@ -26,7 +26,7 @@ from synthesis.kinds.function.task import USUAL_GROUND, FunctionTask, dials_of
 from synthesis.model.linkage_answer import SixbarMechanism
 from synthesis.model.linkages import to_complex
 from synthesis.model.sixbars import lengths_of, sixbar_mechanism
-from synthesis.numerics.placing import Boxes, Placing, placed
+from synthesis.numerics.placing import ROUNDING, Boxes, Placing, placed
 from synthesis.outcome.placement import boxes
 
 Real = NDArray[np.float64]
@@ -179,11 +179,6 @@ def _placed(problem: FunctionProblem, found: Found, frame: _Frame) -> Placing:
     """The similarity that brings a sixbar from its own frame to where it fits."""
     links, joints = LINKS[found.type], frame.joints
     still = links[GROUND]
-    if problem.fixed_pivots is not None:
-        o2, there = to_complex(problem.fixed_pivots.input), to_complex(problem.fixed_pivots.output)
-        ends = complex(joints[still[0]][0]), complex(joints[still[-1]][0])
-        along = (there - o2) / (ends[1] - ends[0])
-        return Placing(o2 - along * ends[0], along, True)
     constraints, space = problem.constraints, problem.space
     moving = [name for name in joints if name not in still]
     regions = [constraints.fixed_pivot_region] * len(still) + [constraints.moving_pivot_region] * len(moving)
@@ -196,14 +191,29 @@ def _placed(problem: FunctionProblem, found: Found, frame: _Frame) -> Placing:
         outermost = swept[np.unique((swept[:, None] * HULL.conj()).real.argmax(axis=0))]
         points.append(outermost)
         tables.append(np.repeat(sides[:, None], len(outermost), axis=1))
-    if not np.isfinite(np.concatenate(tables, axis=1)).any() and constraints.link_length is None:
-        return Placing(0j, complex(_preferred(joints)), True)
     least, most = _sizes(problem, found, joints)
     limits = Boxes(*np.concatenate(tables, axis=1))
+    if problem.fixed_pivots is not None:
+        o2, there = to_complex(problem.fixed_pivots.input), to_complex(problem.fixed_pivots.output)
+        ends = complex(joints[still[0]][0]), complex(joints[still[-1]][0])
+        along = (there - o2) / (ends[1] - ends[0])
+        origin = o2 - along * ends[0]
+        kept = least <= abs(along) <= most and _within(origin + along * np.concatenate(points), limits)
+        return Placing(origin, along, kept)
+    if not np.isfinite(np.concatenate(tables, axis=1)).any() and constraints.link_length is None:
+        return Placing(0j, complex(_preferred(joints)), True)
     tried = _tried(np.concatenate(points), limits, least, most, _preferred(joints))
     if tried.fits or len(points) > 1:
         return tried
     return placed(points[0], limits, least, most, complex(_preferred(joints)))
+
+
+def _within(places: Complex, limits: Boxes) -> bool:
+    """Whether places lie in their boxes, but for rounding."""
+    margin = ROUNDING * float(np.abs(places).max())
+    x, y = places.real, places.imag
+    inside = (limits.left - margin <= x) & (x <= limits.right + margin)
+    return bool(np.all(inside & (limits.low - margin <= y) & (y <= limits.high + margin)))
 
 
 def _tried(points: Complex, limits: Boxes, least: float, most: float, preferred: float) -> Placing:

@@ -79,22 +79,24 @@ def outgrown(
         if high > LARGEST * least[0]:
             return design
         lacking = _lacking(of_size(high, sized_by))
+        if lacking is None:
+            return design
     while high - low > GROWN_TO * high:
         middle = 0.5 * (low + high)
         lacking = _lacking(of_size(middle, sized_by))
-        if lacking:
-            low, sized_by = middle, OUTGROWN[lacking[0]]
-        else:
+        if lacking == []:
             high = middle
+        else:
+            low, sized_by = middle, OUTGROWN[lacking[0]] if lacking else sized_by
     return of_size(high, sized_by)
 
 
-def _lacking(design: IndexingDesign | str) -> list[str]:
-    """The checks that a design breaks, where all of them are such as a larger one may keep."""
+def _lacking(design: IndexingDesign | str) -> list[str] | None:
+    """The checks that a design breaks; None where there is none, or one that no larger drive keeps is among them."""
     if isinstance(design, str):
-        return []
+        return None
     broken = [check.name for check in design.verification.checks if not check.passed]
-    return broken if set(broken) <= OUTGROWN.keys() else []
+    return broken if set(broken) <= OUTGROWN.keys() else None
 
 
 def _margins(problem: IndexingProblem, drive: Geneva, size: float) -> dict[str, float]:
