@@ -73,7 +73,22 @@ class Working(NamedTuple):
     line: float
 
 
+class Rack(NamedTuple):
+    """Of the pressure angle φ: sine and cosine, 4 tan φ by which a shift thickens a tooth, and inv φ."""
+
+    sine: float
+    cosine: float
+    slope: float
+    involute: float
+
+
 inv, _tangent = njit(cache=True, nogil=True)(involute), njit(cache=True, nogil=True)(tangent_of_involute)
+
+
+@njit(cache=True, nogil=True)
+def _rack(demands: Demands) -> Rack:
+    phi = demands.pressure_angle
+    return Rack(math.sin(phi), math.cos(phi), 4.0 * math.tan(phi), inv(phi))
 
 
 @njit(cache=True, nogil=True)
@@ -105,8 +120,13 @@ def with_sum(teeth: int, mate: int, total: float, demands: Demands) -> Working:
 @njit(cache=True, nogil=True)
 def margin(teeth: int, mate: int, working: Working, shift: float, demands: Demands) -> float:
     """The margin of a split; ``shift`` is that of the first gear."""
-    phi, other = demands.pressure_angle, working.total - shift
-    sine, cosine = math.sin(phi), math.cos(phi)
+    return _margin(teeth, mate, working, shift, demands, _rack(demands))
+
+
+@njit(cache=True, nogil=True)
+def _margin(teeth: int, mate: int, working: Working, shift: float, demands: Demands, rack: Rack) -> float:
+    other = working.total - shift
+    sine, cosine = rack.sine, rack.cosine
     base, mate_base = 0.5 * teeth * cosine, 0.5 * mate * cosine
     heads = 1.0 + shift - working.shortening, 1.0 + other - working.shortening
     tip, mate_tip = 0.5 * teeth + heads[0], 0.5 * mate + heads[1]
@@ -121,11 +141,10 @@ def margin(teeth: int, mate: int, working: Working, shift: float, demands: Deman
     least = min(least, form, mate_form, working.line - mate_reach - form, working.line - reach - mate_form)
     least = min(least, reach + mate_reach - working.line - demands.contact_ratio * math.pi * cosine)
     # inv φ at a tip is reach / base − atan(reach / base).
-    slope = 4.0 * math.tan(phi)
-    sharper = inv(phi) - reach / base + math.atan(reach / base)
-    mate_sharper = inv(phi) - mate_reach / mate_base + math.atan(mate_reach / mate_base)
-    thick = tip * ((math.pi + slope * shift) / teeth + 2.0 * sharper)
-    mate_thick = mate_tip * ((math.pi + slope * other) / mate + 2.0 * mate_sharper)
+    sharper = rack.involute - reach / base + math.atan(reach / base)
+    mate_sharper = rack.involute - mate_reach / mate_base + math.atan(mate_reach / mate_base)
+    thick = tip * ((math.pi + rack.slope * shift) / teeth + 2.0 * sharper)
+    mate_thick = mate_tip * ((math.pi + rack.slope * other) / mate + 2.0 * mate_sharper)
     return min(least, thick - demands.tip_thickness, mate_thick - demands.tip_thickness)
 
 
@@ -150,10 +169,11 @@ def best_split(teeth: int, mate: int, working: Working, demands: Demands, enough
     low, high = _span(working, demands)
     if not low <= high:
         return math.nan, -math.inf
-    steepest = 2.0 / math.sin(demands.pressure_angle) + STEEP
+    rack = _rack(demands)
+    steepest = 2.0 / rack.sine + STEEP
     one, other = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    left = margin(teeth, mate, working, one, demands)
-    right = margin(teeth, mate, working, other, demands)
+    left = _margin(teeth, mate, working, one, demands, rack)
+    right = _margin(teeth, mate, working, other, demands, rack)
     for _ in range(SECTIONS):
         most, rest = max(left, right), steepest * (high - low)
         if most >= enough or (most + rest < -KEPT and (enough < math.inf or rest < TOLD)):
@@ -163,11 +183,11 @@ def best_split(teeth: int, mate: int, working: Working, demands: Demands, enough
         if left < right:
             low, one, left = one, other, right
             other = low + GOLDEN * (high - low)
-            right = margin(teeth, mate, working, other, demands)
+            right = _margin(teeth, mate, working, other, demands, rack)
         else:
             high, other, right = other, one, left
             one = high - GOLDEN * (high - low)
-            left = margin(teeth, mate, working, one, demands)
+            left = _margin(teeth, mate, working, one, demands, rack)
     return (one, left) if left > right else (other, right)
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -197,8 +198,17 @@ def demands_of(problem: GearTrainProblem) -> Demands:
 
 def _between(asked: NDArray[np.bool_], low: float, high: float, ends: bool, demands: Demands) -> NDArray[np.float64]:
     """Between which distances, in modules, pairs suit that are asked for."""
-    least, most = (np.where(asked, end, math.nan) for end in (low, high))
-    return np.asarray(shifting.sound_between(least, most, ends, demands))
+    return _sound_between(asked.tobytes(), len(asked), low, high, ends, demands)
+
+
+@lru_cache(maxsize=8)
+def _sound_between(asked: bytes, n: int, low: float, high: float, ends: bool, demands: Demands) -> NDArray[np.float64]:
+    """What pairs can take up depends on no ratio: who tries one ratio after another has it found once."""
+    pairs = np.frombuffer(asked, np.bool_).reshape(n, n)
+    least, most = (np.where(pairs, end, math.nan) for end in (low, high))
+    found = np.asarray(shifting.sound_between(least, most, ends, demands))
+    found.flags.writeable = False
+    return found
 
 
 def _stages_apart(problem: GearTrainProblem) -> int:
