@@ -27,6 +27,9 @@ class Fault:
         return json.dumps(told)
 
 
+MAX_ERRORS = 20
+"""Errors of one problem that are told: a batch may state ten thousand that have thousands each."""
+
 INTERNAL_ERROR = Fault(
     "/problems/internal-error",
     "Internal error",
@@ -62,11 +65,14 @@ def out_of_memory(limit_mb: int) -> Fault:
 
 
 def invalid_problem(errors: Sequence[tuple[str, str]]) -> Fault:
-    """A sample of a batch states no problem; ``errors`` are pairs of the place in it and what is wrong there."""
+    """A sample of a batch states no problem; ``errors`` are pairs of the place in it and what is wrong there.
+
+    The first :data:`MAX_ERRORS` of them are told.
+    """
     return Fault(
         "/problems/invalid-problem",
         "Invalid problem",
         422,
         f"With these values the problem cannot be meant: {errors[0][0]}: {errors[0][1]}",
-        errors,
+        errors[:MAX_ERRORS],
     )

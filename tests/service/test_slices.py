@@ -218,3 +218,26 @@ def test_an_answer_of_another_batch_is_copied_once(bench, solver, monkeypatch):
     assert [bench.store.get(batch.id).cached for batch in (first, second, anew, theirs)] == [0, 3, 0, 0]
     assert bench.store.delete(first.id)
     assert json.loads(bench.single.get(sample_id(second.id, 2)).result)["search"]["seed"] == 1
+
+
+def test_of_many_faults_of_a_sample_some_are_stored(bench):
+    """Ten thousand samples of a thousand faults each would be a gigabyte."""
+    batch = bench.batch(1, problem={"kind": "path", "points": [{"x": 1.0}] * 500})
+    bench.run()
+    [row] = bench.store.table(batch)
+    told = json.loads(row.error)
+    assert [fault["path"] for fault in told["errors"]] == [f"/points/{n}/y" for n in range(faults.MAX_ERRORS)]
+    assert told["detail"].endswith("/points/0/y: This field is required.")
+
+
+@pytest.mark.parametrize(("length", "kept"), [(1000, 4), (slices.PLANS_SIZE // 3, 2), (slices.PLANS_SIZE, 1)])
+def test_plans_are_kept_as_far_as_they_are_small(bench, solver, monkeypatch, length, kept):
+    reads, read = [], slices.Plan.read
+    monkeypatch.setattr(slices.Plan, "read", lambda *texts: reads.append(1) or read(*texts))
+    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
+    monkeypatch.setattr(slices, "MOST", 1)
+    for n in range(4):
+        bench.batch(n, n + 10, problem={**PROBLEM, "kind": "motion", "seed": 1} | {"note": "a" * length})
+    assert bench.run() == ["slice"] * 8
+    assert len(bench.slices._plans) == kept
+    assert len(reads) == (4 if kept == 4 else 8), "the batches go round"

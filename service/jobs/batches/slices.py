@@ -39,8 +39,9 @@ MOST = 200
 LOOKED_UP = 16
 """Samples whose answers are looked for together among those that are stored."""
 
-PLANS = 4
-"""Plans that a worker keeps: reading one of ten thousand samples takes a while, and there are many slices."""
+PLANS_SIZE = 2 << 20
+"""Characters of the plans that a worker keeps: reading one takes a while, and there are many slices. They take some ten
+times as much memory. The one that is worked at is kept in any case."""
 
 Outcome = Literal["slice", "superseded", "stopped", "out of memory"]
 
@@ -57,6 +58,15 @@ class _Stated:
     fault: faults.Fault | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class _Kept:
+    """A batch, its plan, and how many characters that is."""
+
+    batch: BatchRow
+    plan: Plan
+    size: int
+
+
 class Slices:
     """Solves slices in a worker process, one after the other."""
 
@@ -64,7 +74,7 @@ class Slices:
         self._store = store
         self._solving = solving
         self._out_of_memory = out_of_memory
-        self._plans: OrderedDict[str, tuple[BatchRow, Plan]] = OrderedDict()
+        self._plans: OrderedDict[str, _Kept] = OrderedDict()
 
     def run(self, claim: Claim, batch_id: str) -> Outcome:
         """Solve a slice of the share that was claimed. The store has it when this returns.
@@ -107,17 +117,24 @@ class Slices:
             if batch is None:
                 return None
             try:
-                plan = patiently(self._store.plan, batch)
+                known = self._read(batch)
             except MemoryError:
                 self._plans.clear()
-                plan = patiently(self._store.plan, batch)
-            if plan is None:
+                known = self._read(batch)
+            if known is None:
                 return None
-            self._plans[batch_id] = batch, plan
-            if len(self._plans) > PLANS:
+            self._plans[batch_id] = known
+            while len(self._plans) > 1 and sum(each.size for each in self._plans.values()) > PLANS_SIZE:
                 self._plans.popitem(last=False)
         self._plans.move_to_end(batch_id)
-        return self._plans[batch_id]
+        kept = self._plans[batch_id]
+        return kept.batch, kept.plan
+
+    def _read(self, batch: BatchRow) -> _Kept | None:
+        values = patiently(self._store.values, batch)
+        if values is None:
+            return None
+        return _Kept(batch, Plan.read(batch.stated, values), len(batch.stated) + len(values))
 
     def _without_its_plan(self, claim: Claim, batch_id: str, share: Share) -> Outcome:
         """Fail what is left of a share whose plan takes more memory than a job may: none of it can be solved."""

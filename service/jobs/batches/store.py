@@ -185,10 +185,15 @@ class BatchStore:
 
     def plan(self, batch: BatchRow) -> Plan | None:
         """The plan of a batch; None where it has been removed since."""
-        with self._engine.connect() as connection:
-            query = select(batches.c.plan).where(batches.c.id == batch.id, removal.THERE)
-            values = connection.execute(query).scalar_one_or_none()
+        values = self.values(batch)
         return None if values is None else Plan.read(batch.stated, values)
+
+    def values(self, batch: BatchRow) -> str | None:
+        """What the plan of a batch has beside what was stated, as it is written; None where it has been removed."""
+        query = select(batches.c.plan).where(batches.c.id == batch.id, removal.THERE)
+        with self._engine.connect() as connection:
+            values: str | None = connection.execute(query).scalar_one_or_none()
+        return values
 
     def begun(self, batch_id: str) -> BatchRow | None:
         """Note that a worker is at the batch; the batch, or None where it is not to be worked at any more."""
