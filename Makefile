@@ -42,7 +42,8 @@ suite: $(STAMP)
 
 # The same tests of the service on PostgreSQL and Celery with RabbitMQ, and with Redis, side by side: the real servers,
 # on free ports. What only PostgreSQL has a part in is tried beside one of the two brokers.
-ON_STORE := tests/service/test_store.py tests/service/test_batch_store.py tests/service/test_idempotency.py tests/cluster/test_schema.py
+ON_STORE := tests/service/test_store.py tests/service/test_batch_store.py tests/service/test_upgrade.py \
+    tests/service/test_idempotency.py tests/cluster/test_schema.py
 ON_KEYS := tests/service/test_limits.py tests/service/test_access.py
 ON_BROKER := $(addprefix tests/service/test_,turns.py jobs_api.py events.py faults.py batches.py) \
     $(filter-out $(ON_STORE),$(wildcard tests/cluster/test_*.py))
