@@ -15,6 +15,7 @@ from service.jobs.notifier import ChangeNotifier
 from service.jobs.progress import PERIOD_S
 from tests.campaign import further
 from tests.service.running import (
+    PROBLEM,
     REACHED_S,
     SCRIPTED,
     SOON_S,
@@ -155,6 +156,19 @@ def test_a_job_that_takes_too_long_fails(server):
     assert job["error"]["type"] == "/problems/timeout"
     assert job["error"]["instance"] == f"/v1/jobs/{job['id']}"
     assert server.post(INSTANT, wait=20)["status"] == "succeeded"
+
+
+def test_a_sample_that_takes_too_long_fails_by_itself(server):
+    body = {"problem": PROBLEM, "vary": [{"field": "/seed", "values": [INSTANT, NATIVE, INSTANT]}], "reuse": False}
+    place = server.client.post("/v1/batches", json=body).raise_for_status().headers["location"]
+    assert server.post(INSTANT, wait=20)["status"] == "succeeded"
+    ended = until(lambda: (now := server.client.get(place).json())["finished_at"] and now, REACHED_S, "the end")
+    assert (ended["status"], ended["succeeded"], ended["failed"]) == ("succeeded", 2, 1)
+    table = server.client.get(f"{place}/table.json").json()
+    rows = [dict(zip(table["columns"], row, strict=True)) for row in table["rows"]]
+    assert [row["status"] for row in rows] == ["succeeded", "failed", "succeeded"]
+    error = server.job(rows[1]["job"])["error"]
+    assert (error["type"], error["instance"]) == ("/problems/timeout", f"/v1/jobs/{rows[1]['job']}")
 
 
 def test_only_the_time_of_the_solver_counts_against_a_job(server):

@@ -10,8 +10,8 @@ from concurrent.futures import ThreadPoolExecutor
 import httpx
 import pytest
 
-from tests.service.running import PROBLEM, SCRIPTED, RunningServer, until
-from tests.service.scripted_server import GATED, INSTANT
+from tests.service.running import PROBLEM, REACHED_S, SCRIPTED, RunningServer, until
+from tests.service.scripted_server import BRIEF, GATED, INSTANT
 
 pytestmark = pytest.mark.slow
 
@@ -48,6 +48,29 @@ def test_a_full_queue_refuses_until_it_has_room(server):
     server.reaches(waiting[-1].json()["id"], "succeeded")
     assert post(server, INSTANT).status_code == 202
     assert server.sample("mechsynth_http_rejections_total", reason="queue-full") == refused_before + 1
+
+
+def test_the_shares_of_a_batch_take_places_of_the_queue(server):
+    """Of which there are three."""
+    gate = server.folder / "open"
+    gate.unlink(missing_ok=True)
+    first = post(server, GATED).json()
+    server.reaches(first["id"], "running")
+    body = {"problem": PROBLEM, "vary": [{"field": "/seed", "values": [*range(INSTANT + BRIEF, INSTANT + BRIEF + 9)]}]}
+    batch = server.client.post("/v1/batches", json=body)
+    assert batch.status_code == 202
+    for path, again in (("/v1/batches", body), ("/v1/jobs", {"problem": PROBLEM})):
+        refused = server.client.post(path, json=again)
+        assert (refused.status_code, refused.json()["type"]) == (503, "/problems/queue-full"), path
+    assert len(server.client.get("/v1/batches").json()["batches"]) == 1
+    gate.touch()
+    ended = until(
+        lambda: (now := server.client.get(batch.headers["location"]).json())["finished_at"] and now,
+        REACHED_S,
+        "the end",
+    )
+    assert (ended["status"], ended["succeeded"]) == ("succeeded", 9)
+    assert post(server, INSTANT).status_code == 202
 
 
 @pytest.mark.campaign

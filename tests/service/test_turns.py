@@ -11,7 +11,7 @@ from service.jobs.states import Cost
 from service.jobs.store import JobStore
 from service.jobs.turns import ASK_PERIOD_S, PATIENCE_S, Turns
 from synthesis.registry import KINDS, parse_problem
-from tests.service.running import PROBLEM, SCRIPTED, SOON_S, RunningServer, until
+from tests.service.running import PROBLEM, REACHED_S, SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT, NATIVE, STEPS
 from tests.service.test_access import client_with, post
 from tests.service.test_access import made as made_key
@@ -254,6 +254,17 @@ def test_short_jobs_that_turn_out_to_be_long_do_not_block_others(server, gate):
     gate.touch()
     for job in mistaken:
         server.reaches(job["id"], "succeeded")
+
+
+def test_a_batch_whose_samples_turn_out_to_be_long_does_not_block_others(server, gate):
+    body = {"problem": PROBLEM, "vary": [{"field": "/seed", "values": [STEPS] * 6}], "reuse": False}
+    place = server.client.post("/v1/batches", json=body).raise_for_status().headers["location"]
+    for client in (server.guest, server.client):
+        assert post(client).json()["status"] == "succeeded"
+    assert server.client.get(place).json()["done"] == 0
+    gate.touch()
+    ended = until(lambda: (now := server.client.get(place).json())["finished_at"] and now, REACHED_S, "the end")
+    assert (ended["status"], ended["succeeded"]) == ("succeeded", 6)
 
 
 def test_a_flood_of_one_tenant_leaves_a_worker_to_the_others(server, gate):
