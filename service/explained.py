@@ -7,6 +7,9 @@ from typing import Any
 
 from synthesis.model.stated_path import stated_steps
 
+MAX_FAULTS = 20
+"""A client corrects what it is shown and asks again; a longer list of faults helps nobody."""
+
 MAX_STEP = 100
 """Longest name in a path, characters."""
 

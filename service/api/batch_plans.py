@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 import math
+import time
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from typing import Any
 
 from service.api.batch_schemas import MOST_SAMPLES, BatchRequest, Vary
-from service.api.errors import MAX_ERRORS, Refusal, invalid_problem, invalid_request
+from service.api.errors import Refusal, invalid_problem, invalid_request
+from service.explained import MAX_FAULTS, pointer
 from service.jobs.batches.plan import NoSuchPlace, Plan, steps
 from service.jobs.batches.sampling import Span, evenly, latin_hypercube
+from service.jobs.batches.values import Picked, Values
 from service.jobs.states import Cost
 from service.stated import Faults, consistent, well_formed
 from synthesis.model.linkage_answer import ERRORS
@@ -23,6 +26,10 @@ LOOKED_AT = 100
 TRIED_BYTES = 4_000_000
 """Statements that are tried, in bytes of JSON: a second of work. All values of a plan, where its problem is of a usual
 size; of a larger one as many, evenly spread, and :data:`LOOKED_AT` at least."""
+
+CHECKED_S = 1.0
+"""Seconds of processor after which no further value is tried and no further sample looked at: statements with very many
+faults take longer than their size tells."""
 
 TABLE_BYTES = 16 << 20
 """What the values of all samples may take together, since the table shows them in each row."""
@@ -46,10 +53,9 @@ def plan_of(body: BatchRequest) -> tuple[str, Plan, Cost]:
     if not isinstance(kind, str) or kind not in KINDS:
         detail = f"Kind must be given and be one of: {', '.join(KINDS)}."
         raise invalid_problem([("/problem/kind", detail)])
-    try:
-        json.dumps(body.problem, allow_nan=False)
-    except ValueError:
-        raise invalid_problem([("/problem", "Every number must be finite.")]) from None
+    faults = [*islice(_not_finite(body), MAX_FAULTS)]
+    if faults:
+        raise invalid_request(faults)
     faults = [*_faults_of_fields(body), *_faults_of_sampling(body), *_faults_of_metrics(body, kind)]
     if faults:
         raise invalid_request(faults)
@@ -62,10 +68,14 @@ def plan_of(body: BatchRequest) -> tuple[str, Plan, Cost]:
         body.reuse,
     )
     _require_places(plan)
-    faults = list(_faults_of_values(body, kind, plan))
+    until = time.thread_time() + CHECKED_S
+    faults = _faults_of_the_problem(kind, plan)
+    if faults:
+        raise invalid_problem(faults)
+    faults = _faults_of_values(body, kind, plan, until)
     if faults:
         raise invalid_request(faults)
-    return kind, plan, _cost(kind, plan)
+    return kind, plan, _cost(kind, plan, until)
 
 
 def by_default(metrics: Sequence[str]) -> list[str]:
@@ -73,6 +83,47 @@ def by_default(metrics: Sequence[str]) -> list[str]:
     error = next((name for name in ERRORS if name in metrics), None)
     known = (*(() if error is None else (error,)), *MORE_IS_BETTER, *LESS_IS_BETTER)
     return [name for name in known if name in metrics]
+
+
+def _not_finite(body: BatchRequest) -> Iterator[tuple[str, str]]:
+    """The numbers, wherever they stand, that are infinite or none."""
+    pending: list[tuple[tuple[str | int, ...], Any]] = [
+        (("vary", k, "values"), varied.values) for k, varied in reversed([*enumerate(body.vary)])
+    ]
+    pending.append((("problem",), body.problem))
+    while pending:
+        place, value = pending.pop()
+        if isinstance(value, float) and not math.isfinite(value):
+            yield pointer(place), "This must be a finite number."
+        elif isinstance(value, dict | list):
+            inside = value.items() if isinstance(value, dict) else enumerate(value)
+            pending += [((*place, step), member) for step, member in reversed([*inside])]
+
+
+def _faults_of_the_problem(kind: str, plan: Plan) -> list[tuple[str, str]]:
+    """What is wrong with the problem whatever the varied fields are, by the first sample and the last."""
+    found: Faults = []
+    for number in (0, plan.total - 1):
+        before = found
+        _, faults = well_formed(kind, plan.statement(number))
+        found = [(path, detail) for path, detail in faults if _apart(path, plan.fields)]
+        if not found:
+            return []
+    agreed = set(before)
+    return [(f"/problem{path}", detail) for path, detail in found if (path, detail) in agreed]
+
+
+def _apart(path: str, fields: Sequence[str]) -> bool:
+    """Whether what is wrong at this place of a problem is so whatever the varied fields are.
+
+    It may not be where it lies in one of them or on the way to it, or in an object of which a field varies: what that
+    object may have can go by it.
+    """
+    for field in fields:
+        object_, _, _ = field.rpartition("/")
+        if f"{path}/".startswith(f"{object_ or field}/") or field.startswith(f"{path}/"):
+            return False
+    return True
 
 
 def _faults_of_fields(body: BatchRequest) -> Iterator[tuple[str, str]]:
@@ -149,23 +200,28 @@ def _require_places(plan: Plan) -> None:
             raise invalid_request([(f"/vary/{k}/field", str(nowhere))]) from None
 
 
-def _faults_of_values(body: BatchRequest, kind: str, plan: Plan) -> list[tuple[str, str]]:
-    """What is wrong with values by themselves: each is tried once."""
+def _faults_of_values(body: BatchRequest, kind: str, plan: Plan, until: float) -> list[tuple[str, str]]:
+    """What is wrong with values by themselves: each is tried once, as long as there is time."""
     found: dict[tuple[str, str], None] = {}
     most = max(LOOKED_AT, TRIED_BYTES // len(json.dumps(plan.statement(0))))
     every = sum(map(len, plan.values)) if plan.grid else plan.total
     step = -(-every // most)
     for places, values in islice(_tried(plan), 0, None, step):
+        if time.thread_time() > until:
+            break
         _, faults = well_formed(kind, plan.stated(values))
         for path, detail in faults:
+            if len(found) > MAX_FAULTS:
+                break
             for k, field in enumerate(plan.fields):
                 if k in places and (path == field or path.startswith(f"{field}/")):
-                    given = body.vary[k].values is not None and body.sampling != "latin_hypercube"
+                    given = body.vary[k].values is not None
                     unknown = detail.startswith("There is no such field")
-                    place = "/field" if unknown and path == field else f"/values/{places[k]}" if given else ""
-                    shown = "" if given or unknown else f" This is of the value {json.dumps(values[k])}."
+                    inside = f"/values/{places[k]}{path[len(field) :]}" if given else ""
+                    place = "/field" if unknown and path == field else inside
+                    shown = "" if given or unknown else f" This is of the value {values[k]}."
                     found[f"/vary/{k}{place}", f"{detail}{shown}"] = None
-        if len(found) > MAX_ERRORS:
+        if len(found) > MAX_FAULTS:
             break
     return list(found)
 
@@ -174,7 +230,7 @@ def _tried(plan: Plan) -> Iterable[tuple[dict[int, int], list[Any]]]:
     """Samples in which each value occurs: the places of those that are new in it, by field, and all its values."""
     if not plan.grid:
         for number in range(plan.total):
-            yield dict.fromkeys(range(len(plan.fields)), number), plan.sample(number)
+            yield {k: _place(values, number) for k, values in enumerate(plan.values)}, plan.sample(number)
         return
     first = plan.sample(0)
     for k, values in enumerate(plan.values):
@@ -182,13 +238,21 @@ def _tried(plan: Plan) -> Iterable[tuple[dict[int, int], list[Any]]]:
             yield {k: place}, [*first[:k], value, *first[k + 1 :]]
 
 
-def _cost(kind: str, plan: Plan) -> Cost:
-    """What a problem of the batch costs, the longest of those that are looked at."""
+def _place(values: Values, number: int) -> int:
+    """Where the value of a sample stands among those that are stated."""
+    return values.places[number] if isinstance(values, Picked) else number
+
+
+def _cost(kind: str, plan: Plan, until: float) -> Cost:
+    """What a problem of the batch costs, the longest of those that are looked at: one at least, others while there is
+    time.
+    """
     refused: Faults | None = None
-    brief = []
-    count = min(plan.total, LOOKED_AT)
-    for n in range(count):
-        problem, faults = well_formed(kind, plan.statement(n * plan.total // count))
+    brief: list[bool] = []
+    for number in _spread(plan.total, LOOKED_AT):
+        if time.thread_time() > until and (brief or refused):
+            break
+        problem, faults = well_formed(kind, plan.statement(number))
         faults = faults or consistent(problem)
         if faults:
             refused = refused or faults
@@ -197,6 +261,14 @@ def _cost(kind: str, plan: Plan) -> Cost:
     if not brief and refused is not None:
         raise _none_states_a_problem(plan, refused)
     return Cost.SHORT if all(brief) else Cost.LONG
+
+
+def _spread(total: int, most: int) -> Iterator[int]:
+    """So many numbers below the total, evenly spread; the first ones of them too, as well as may be."""
+    count = min(total, most)
+    step = next(step for step in range(max(1, round(count * 0.618)), count + 1) if math.gcd(step, count) == 1)
+    for n in range(count):
+        yield n * step % count * total // count
 
 
 def _none_states_a_problem(plan: Plan, faults: Faults) -> Refusal:

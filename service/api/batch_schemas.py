@@ -50,7 +50,7 @@ class Vary(BaseModel):
         },
     )  # fmt: skip
 
-    field: Annotated[str, Field(strict=True, min_length=2, max_length=500, pattern="^/")] = Field(
+    field: Annotated[str, Field(strict=True, min_length=2, max_length=500, pattern="^(/([^~/]|~[01])*)+$")] = Field(
         description="JSON pointer into the problem. Objects that are not stated are made, elements of lists are not.",
         examples=["/positions/1/x"],
     )

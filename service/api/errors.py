@@ -16,13 +16,10 @@ from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
 from service import telemetry
-from service.explained import explained, place
+from service.explained import MAX_FAULTS, explained, place
 from service.jobs.database import unreachable
 
 PROBLEM_JSON = "application/problem+json"
-
-MAX_ERRORS = 20
-"""A client corrects what it is shown and asks again; a longer list of faults helps nobody."""
 
 STORE_RETRY_AFTER_S = 2
 """When to ask again while the store is out of reach; PostgreSQL restarts within a second or two."""
@@ -57,7 +54,7 @@ class ProblemDetails(BaseModel):
     detail: str = Field(description="What went wrong this time.")
     instance: str = Field(description="The path of the request.", examples=["/v1/jobs"])
     errors: list[FieldError] | None = Field(
-        default=None, description=f"The faults of an invalid request by place, {MAX_ERRORS} at most."
+        default=None, description=f"The faults of an invalid request by place, {MAX_FAULTS} at most."
     )
 
 
@@ -226,13 +223,14 @@ def _answer(
         "instance": request.scope.get("raw_path", b"").decode("ascii", "replace"),
     }
     if errors:
-        content["errors"] = [{"path": path, "detail": text} for path, text in errors[:MAX_ERRORS]]
+        content["errors"] = [{"path": path, "detail": text} for path, text in errors[:MAX_FAULTS]]
     return Response(to_json(content), status_code=status, headers=dict(headers or {}), media_type=PROBLEM_JSON)
 
 
 def _counted(faults: int) -> str:
-    shown = f"; the first {MAX_ERRORS} are listed" if faults > MAX_ERRORS else ""
-    return f"The request has {faults} {'fault' if faults == 1 else 'faults'}{shown}."
+    if faults > MAX_FAULTS:
+        return f"The request has more than {MAX_FAULTS} faults; the first {MAX_FAULTS} are listed."
+    return f"The request has {faults} {'fault' if faults == 1 else 'faults'}."
 
 
 def _method(request: Request) -> str:

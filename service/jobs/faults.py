@@ -6,6 +6,8 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
+from service.explained import MAX_FAULTS
+
 
 @dataclass(frozen=True, slots=True)
 class Fault:
@@ -26,9 +28,6 @@ class Fault:
             told["errors"] = [{"path": path, "detail": detail} for path, detail in self.errors]
         return json.dumps(told)
 
-
-MAX_ERRORS = 20
-"""Errors of one problem that are told: a batch may state ten thousand that have thousands each."""
 
 INTERNAL_ERROR = Fault(
     "/problems/internal-error",
@@ -67,12 +66,12 @@ def out_of_memory(limit_mb: int) -> Fault:
 def invalid_problem(errors: Sequence[tuple[str, str]]) -> Fault:
     """A sample of a batch states no problem; ``errors`` are pairs of the place in it and what is wrong there.
 
-    The first :data:`MAX_ERRORS` of them are told.
+    Some of them are told, as of a job that is refused.
     """
     return Fault(
         "/problems/invalid-problem",
         "Invalid problem",
         422,
         f"With these values the problem cannot be meant: {errors[0][0]}: {errors[0][1]}",
-        errors[:MAX_ERRORS],
+        errors[:MAX_FAULTS],
     )

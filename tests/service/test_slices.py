@@ -5,6 +5,7 @@ import json
 import pytest
 from sqlalchemy import select
 
+from service.explained import MAX_FAULTS
 from service.jobs import faults
 from service.jobs.batches import slices
 from service.jobs.batches.plan import Plan
@@ -226,7 +227,7 @@ def test_of_many_faults_of_a_sample_some_are_stored(bench):
     bench.run()
     [row] = bench.store.table(batch)
     told = json.loads(row.error)
-    assert [fault["path"] for fault in told["errors"]] == [f"/points/{n}/y" for n in range(faults.MAX_ERRORS)]
+    assert [fault["path"] for fault in told["errors"]] == [f"/points/{n}/y" for n in range(MAX_FAULTS)]
     assert told["detail"].endswith("/points/0/y: This field is required.")
 
 
