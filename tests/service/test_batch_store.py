@@ -283,6 +283,17 @@ def test_of_a_batch_whose_removal_breaks_off_nothing_is_seen(store, single, engi
         assert set(connection.execute(select(jobs.c.batch)).scalars()) == {again.id}
 
 
+def test_nobody_waits_for_the_removal_of_a_very_large_batch(store, single, engine, monkeypatch):
+    monkeypatch.setattr("service.jobs.batches.store.SHARES", 1)
+    monkeypatch.setattr("service.jobs.batches.store.CLEARED_S", -1.0)
+    batch = made(store, 250)
+    solved(store, single, batch, [ended(n) for n in range(250)])
+    assert store.delete(batch.id)
+    assert (store.get(batch.id), len(numbers(engine))) == (None, 250 - removal.PORTION)
+    assert store.tidy() == 0
+    assert numbers(engine) == []
+
+
 def test_what_was_lost_is_ended_without_being_looked_at(store, single, engine):
     lost, waiting, whole = (made(store, 1, tenant=tenant) for tenant in "abc")
     claims = {claim.batch: claim for claim in [take(single, f"m{n}") for n in range(3)]}

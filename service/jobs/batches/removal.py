@@ -5,6 +5,7 @@ Whatever dies in between, nobody sees a batch that lacks some of its samples; wh
 
 from __future__ import annotations
 
+import math
 import time
 
 from sqlalchemy import Engine, delete, exists, select, update
@@ -30,14 +31,17 @@ def mark(engine: Engine, batch_id: str) -> bool:
         return connection.execute(change.values(removed=True, **NO_KEY)).rowcount > 0
 
 
-def clear(engine: Engine, batch_id: str) -> None:
-    """Remove what is left of a batch that is marked."""
+def clear(engine: Engine, batch_id: str, seconds: float = math.inf) -> None:
+    """Remove what is left of a batch that is marked, or as much of it as there is time for."""
+    began = time.monotonic()
     portion = select(samples.c.number).where(samples.c.batch == batch_id).limit(PORTION)
     some = delete(samples).where(samples.c.batch == batch_id, samples.c.number.in_(portion))
     while True:
         with engine.begin() as connection:
             if connection.execute(some).rowcount < PORTION:
                 break
+        if time.monotonic() > began + seconds:
+            return
         time.sleep(_PAUSE_S)
     with engine.begin() as connection:
         connection.execute(delete(jobs).where(jobs.c.batch == batch_id))

@@ -53,6 +53,9 @@ from service.jobs.states import FINISHED, UNFINISHED, Cost, Status
 SHARES = 16
 """Shares of a batch at most: more workers than this do not make it faster."""
 
+CLEARED_S = 2.0
+"""How long whoever removes a batch waits for that, seconds; nobody sees it from the beginning."""
+
 _LOST = (
     batches.c.status.in_(UNFINISHED),
     ~exists().where(jobs.c.batch == batches.c.id, jobs.c.status.in_(UNFINISHED)),
@@ -301,10 +304,13 @@ class BatchStore:
             return running if cancelled.rowcount else None
 
     def delete(self, batch_id: str) -> bool:
-        """Remove a finished batch with all that it has; whether there was one."""
+        """Remove a finished batch with all that it has; whether there was one.
+
+        Of a very large one what takes longer than :data:`CLEARED_S` is left to :meth:`tidy`.
+        """
         if not removal.mark(self._engine, batch_id):
             return False
-        removal.clear(self._engine, batch_id)
+        removal.clear(self._engine, batch_id, CLEARED_S)
         return True
 
     def tidy(self) -> int:
