@@ -1,7 +1,8 @@
 """Extremes of quantities along a motion, refined between its positions by looking there again.
 
 Near a toggle a force can rise and fall between two positions. Wherever the bend of a quantity allows a value above the
-highest one that is known, the motion is looked at more closely, until none does.
+highest one that is known, the motion is looked at more closely: a few times, and where that is in many places, first
+where a quantity may be highest above the known.
 """
 
 from __future__ import annotations
@@ -72,15 +73,17 @@ def peaks(
 def _doubtful(places: Real, known: Samples) -> Real:
     """Places between those of ``places`` where some quantity may be above its highest value."""
     steps = np.diff(places)
-    doubtful = np.zeros(len(steps), dtype=bool)
+    above = np.zeros(len(steps))
     for values in known.values():
         slopes = np.diff(values) / steps
         bends = np.abs(np.nan_to_num(2.0 * np.diff(slopes) / (steps[1:] + steps[:-1])))
         bend = np.maximum(np.concatenate([bends[:1], bends]), np.concatenate([bends, bends[-1:]]))
         highest = np.nanmax(values)
         reached = np.maximum(values[:-1], values[1:]) + BEND * bend * steps**2 / 8.0
-        doubtful |= reached > highest + CLOSE * abs(highest)
-    chosen = np.flatnonzero(doubtful)[: MOST // (PARTS - 1)]
+        excess = np.nan_to_num(reached - highest) / (np.nanmax(np.abs(values)) or 1.0)
+        above = np.maximum(above, np.where(reached > highest + CLOSE * abs(highest), excess, 0.0))
+    highest_first = np.argsort(-above, kind="stable")[: min(MOST // (PARTS - 1), np.count_nonzero(above))]
+    chosen = np.sort(highest_first)
     shares = np.arange(1, PARTS) / PARTS
     return np.asarray((places[chosen, None] + steps[chosen, None] * shares).ravel())
 

@@ -140,6 +140,26 @@ def test_planets_roll_between_their_mates(name, monkeypatch):
             assert rolled[0] == pytest.approx(rolled[1] if internal else -rolled[1])
 
 
+def test_a_carrier_has_the_colour_of_its_part(monkeypatch):
+    """Where the arms drive or are driven they are blue or green, and what is held is dark, as on the sheet."""
+    roles = {"input": turning.INPUT, "output": turning.OUTPUT, "fixed": turning.GROUND}
+    for ratio, order in ((4, "sun carrier ring"), (0.25, "carrier sun ring"), (-3, "sun ring carrier")):
+        parts = order.split()
+        stated = dict(zip(roles, parts, strict=True))
+        problem = parse_problem({"kind": "planetary_train", "ratio": ratio, "arrangement": "simple", **stated})
+        design = solve(problem).designs[0]
+        shown = []
+        monkeypatch.setattr(turning, "animation", lambda gears, shown=shown: shown.extend(gears) or b"")
+        turning.planetary_animation(design, problem, "")
+        colours = {gear.placed.body: turning.COLOURS[gear.tone] for gear in shown}
+        colours["carrier"] = next(gear.arm for gear in shown if gear.placed.body == "planet")
+        assert {part: colours[body] for part, body in stated.items()} == roles
+        monkeypatch.undo()
+        # A carrier that is held does not turn: it has no arms.
+        arms = {stroke.colour for stroke in turning._arms([turning._drawn(gear) for gear in shown], 0.3)}
+        assert arms == ({colours["carrier"]} - {turning.GROUND})
+
+
 def test_a_gearbox_goes_through_all_its_speeds():
     """The output turns as fast as each row of the answer says, in that order."""
     design, _ = designed("gearbox")

@@ -34,6 +34,10 @@ def test_the_answer_and_its_files(client: httpx.Client, job: Any) -> None:
     sheet = ElementTree.fromstring(client.get(f"{base}.svg").raise_for_status().text)
     panels = [one.get("data-panel") for one in sheet.iter() if one.get("data-panel")]
     assert panels == ["unit 1", "unit 2"]
+    words = ["".join(one.itertext()) for one in sheet.iter() if one.tag.endswith("text")]
+    assert {"unit 1", "unit 2"} <= set(words)
+    said = "".join(one for node in sheet.iter() if node.tag.endswith("desc") for one in node.itertext())
+    assert "each unit to a scale of its own" in said
     drawing = ezdxf.read(io.StringIO(client.get(f"{base}.dxf").raise_for_status().text))
     teeth = [entity for entity in drawing.modelspace() if entity.dxf.layer.endswith("_TEETH")]
     planets = job["problem"]["units"][1]["planets"]

@@ -38,6 +38,19 @@ def test_a_narrow_peak_between_positions_is_found_beside_a_broad_one_of_higher_p
     assert found.value == pytest.approx(measure(dense, dense)["both"].max(), rel=1e-7)
 
 
+def test_of_many_doubtful_places_those_that_may_be_highest_are_looked_at():
+    """A quantity that bends everywhere and rises to its peak at the end of the turn."""
+    at = np.linspace(0.0, 2.0 * np.pi, 8001)
+
+    def measure(inputs, _speeds):
+        ripple = 0.3 * np.cos(3000.0 * inputs + 1.0)
+        return {"rippled": 1.0 + ripple + 0.3 / (1.0 + ((inputs - 6.2) / 0.001) ** 2)}
+
+    found = peaks(at, np.ones_like(at), measure(at, at), measure, closed=True)["rippled"]
+    dense = np.linspace(6.19, 6.21, 2_000_001)
+    assert found.value == pytest.approx(measure(dense, dense)["rippled"].max(), rel=1e-4)
+
+
 def test_a_peak_at_the_end_of_a_motion_that_closes_is_beyond_it():
     at = np.linspace(0.0, 2.0 * np.pi, 73)
 

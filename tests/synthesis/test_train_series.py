@@ -12,6 +12,7 @@ from benchmarks.independent.train_series import best_series, statements
 from benchmarks.train_series import same
 from kinematics.gear.planetary import speeds
 from synthesis.dispatch import solve
+from synthesis.kinds.train_series import solver
 from synthesis.kinds.train_series.design import TrainSeriesMechanism
 from synthesis.kinds.train_series.verification import joined, verify
 from synthesis.registry import examples, parse_problem
@@ -149,6 +150,17 @@ def test_demands_on_ordinary_units_are_kept(unit: dict[str, Any], check: str) ->
     for design in result.designs:
         assert check in [one.name for one in design.verification.checks]
         assert design.verification.passed
+
+
+def test_series_that_cannot_be_made_leave_room_for_those_behind_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As many designs as asked for come back, the best of those that can be made, and the answer is no proof."""
+    everyone = solved(25, SET, SET, max_designs=12).designs
+    made, first = solver._mechanism, iter(range(7))
+    monkeypatch.setattr(solver, "_mechanism", lambda *series: made(*series) if next(first, None) is None else None)
+    result = solved(25, SET, SET, max_designs=5)
+    assert result.search.rejected == {"idler": 7}
+    assert not result.search.complete
+    assert [design.mechanism for design in result.designs] == [design.mechanism for design in everyone[7:]]
 
 
 def test_a_search_over_distances_says_that_it_is_one() -> None:

@@ -12,8 +12,8 @@ from service.render.gears.planetary_layout import PlanetaryGear, placed_planetar
 from service.render.outline import entries
 from service.render.page import blocks
 from service.render.page.numbers import length
-from service.render.page.sheet import EDGE, TOP, beside, framed, sheet, stacked
-from service.render.page.svg import Box, Element, Viewport, circle, line, text
+from service.render.page.sheet import EDGE, TOP, beside, caption, framed, sheet, stacked
+from service.render.page.svg import Box, Element, Viewport, circle, line
 from service.render.page.symbols import COUPLER, CURVE, GREY, GROUND, INPUT, OUTPUT, scale_bar
 from synthesis.kinds.planetary_train.design import PlanetaryDesign, PlanetaryMechanism
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
@@ -77,7 +77,7 @@ def planetary_panel(
     panel = view.panel
     group = framed(panel, name or "main", PAPER)
     if name:
-        group.add(text(panel.left + 10.0, panel.low + 18.0, name, 11.0, fill=GREY))
+        group.add(caption(panel, name))
     for placed in sorted(gears, key=lambda p: -p.gear.pitch_radius):
         marks = {"data_gear": placed.name, "data_teeth": f"{placed.gear.teeth:g}", "data_copy": f"{placed.copy}"}
         group.add(circles(placed.gear, placed.centre, view, _colour(placed, mechanism), "pitch", 0.05, **marks))

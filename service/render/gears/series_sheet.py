@@ -1,4 +1,4 @@
-"""The sheet of trains in series: a panel for every unit, one for each of its planes, to one scale, and tables."""
+"""The sheet of trains in series: a panel for every unit, one for each of its planes, each to its scale, and tables."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from service.render.gears.train_sheet import train_panel
 from service.render.outline import entries
 from service.render.page import blocks
 from service.render.page.numbers import length
-from service.render.page.sheet import EDGE, TOP, beside, fitted, sheet, stacked
+from service.render.page.sheet import EDGE, TOP, beside, caption, fitted, sheet, stacked
 from service.render.page.svg import Box, Element, Viewport
 from synthesis.kinds.planetary_train.design import PlanetaryMechanism
 from synthesis.kinds.train_series.design import TrainSeriesDesign, UnitMechanism
@@ -37,7 +37,7 @@ def series_sheet(design: TrainSeriesDesign, problem: TrainSeriesProblem, title: 
     return sheet(
         title or "Trains in series",
         _words(design),
-        f"Pitch circles of trains in series to scale, {described}.",
+        f"Pitch circles of trains in series, each unit to a scale of its own, {described}.",
         [*parts, *tables],
         max(low, y),
     )
@@ -51,7 +51,9 @@ def _unit(unit: UnitMechanism, problem: TrainSeriesProblem, number: int, low: fl
         view = fitted(box_around(gears), beside(), HEIGHTS, MARGIN, FOOT)
         panel = Box(view.panel.left, low, view.panel.right, low + view.panel.height)
         shown = Viewport.fit(box_around(gears), panel, MARGIN, FOOT)
-        return [train_panel(gears, shown, length_unit, name)], panel.high + APART
+        drawn = train_panel(gears, shown, length_unit, name)
+        drawn.add(caption(panel, name))
+        return [drawn], panel.high + APART
     placed = placed_planetary_gears(unit)
     panels = []
     planes = sorted({plane for one in placed for plane in one.planes})

@@ -30,13 +30,16 @@ RIM = 3.0
 SPOKE, HUB = 0.8, 0.08
 """Length of the line that shows how a gear turns, and radius of its shaft, as shares of the pitch radius."""
 
-COLOURS = (INPUT, OUTPUT, COUPLER, CURVE)
-FACES = ("#e8eef6", "#e6f1ea", "#f8eee2", "#f1ecf6")
+COLOURS = (INPUT, OUTPUT, COUPLER, CURVE, GROUND)
+FACES = ("#e8eef6", "#e6f1ea", "#f8eee2", "#f1ecf6", "#eef0f2")
 """Of the units of a series, or of what the gears of one train are."""
 
 
 class Turning(NamedTuple):
-    """A gear with its speed, and that of its carrier about ``axis``, over the input's; ``tone`` is its colour."""
+    """A gear with its speed, and that of its carrier about ``axis``, over the input's; ``tone`` is its colour.
+
+    ``arm`` is the colour of its carrier.
+    """
 
     placed: PlacedGear
     speed: float
@@ -44,6 +47,7 @@ class Turning(NamedTuple):
     axis: complex
     tone: int
     toothed: bool
+    arm: str = GREY
 
 
 @dataclass(frozen=True)
@@ -61,10 +65,10 @@ class _Drawn:
 
 
 def planetary_animation(design: PlanetaryDesign, problem: PlanetaryProblem, title: str) -> bytes:
-    """Some teeth of a planetary train as GIF: the input blue, the output green, what else turns in other colours."""
+    """Some teeth of a planetary train as GIF: the input blue, the output green, a carrier too; what is held dark."""
     mechanism, speeds = design.mechanism, design.metrics.speeds
     arrangement = ARRANGEMENTS[mechanism.arrangement]
-    tones = {mechanism.input: 0, mechanism.output: 1}
+    tones = {mechanism.input: 0, mechanism.output: 1, mechanism.fixed: 4}
     return animation(
         Turning(
             placed,
@@ -73,9 +77,14 @@ def planetary_animation(design: PlanetaryDesign, problem: PlanetaryProblem, titl
             0j,
             tones.get(placed.body, 2 if placed.body in arrangement.carriers else 3),
             not arrangement.bevel,
+            _arm(tones.get(arrangement.carriers.get(placed.body, ""))),
         )
         for placed in placed_planetary_gears(mechanism)
     )
+
+
+def _arm(tone: int | None) -> str:
+    return GREY if tone is None else COLOURS[tone]
 
 
 def series_animation(design: TrainSeriesDesign, problem: TrainSeriesProblem, title: str) -> bytes:
@@ -150,7 +159,7 @@ def gear_strokes(
 def _arms(drawn: Sequence[_Drawn], turned: float) -> list[Stroke]:
     """Carriers as lines from the axis to the planets."""
     return [
-        Stroke(np.array([one.gear.axis, _centre(one.gear, turned)]), GREY, 2.2)
+        Stroke(np.array([one.gear.axis, _centre(one.gear, turned)]), one.gear.arm, 2.2)
         for one in drawn
         if abs(one.gear.placed.centre - one.gear.axis) > 0.0 and one.gear.orbit
     ]

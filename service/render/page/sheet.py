@@ -75,6 +75,11 @@ def framed(box: Box, name: str, fill: str = "#fff") -> Element:
     return element("g", element("rect", **frame, fill=fill, stroke=PALE), data_panel=name)
 
 
+def caption(panel: Box, words: str) -> Element:
+    """Words in the upper left corner of a panel."""
+    return text(panel.left + 10.0, panel.low + 18.0, words, 11.0, fill=GREY)
+
+
 def clipping(panel: Box, name: str, **marks: str) -> Element:
     """An empty panel with its frame; what is added to it and lies beyond is cut off."""
     sides = {"x": panel.left, "y": panel.low, "width": panel.width, "height": panel.height}

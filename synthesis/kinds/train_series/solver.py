@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
-from itertools import islice
 from typing import Any
 
 from synthesis.kinds.gear_train.problem import NEAR, GearTrainProblem
@@ -23,6 +23,9 @@ from synthesis.kinds.train_series.verification import verify
 from synthesis.model.gear_answer import Ratio
 from synthesis.model.kind import Progress
 from synthesis.outcome.sifting import Sifting
+
+MOST_TRIED = 1000
+"""Series that are looked at beyond those asked for, where some cannot be made."""
 
 
 def solve_train_series(problem: TrainSeriesProblem, progress: Progress) -> TrainSeriesResult:
@@ -50,13 +53,31 @@ def solve_train_series(problem: TrainSeriesProblem, progress: Progress) -> Train
     progress(0.5, f"{search.combinations:.3g} series")
     tolerance = problem.exact_tolerance
     near = NEAR if tolerance is None else tolerance
-    found = search.found(tolerance, near, problem.max_designs, problem.rank_by == "size")
-    progress(0.9, "verifying")
     sifting = Sifting[TrainSeriesDesign](problem, undriven="gears")
-    chosen = ((rows, series) for series in found.best for rows in search.rows(series))
-    for rows, one in islice(chosen, problem.max_designs):
-        mechanism = _mechanism(catalogues, rows, one)
-        sifting.add("idler" if mechanism is None else verify(problem, mechanism))
+    wanted, met = problem.max_designs, set[tuple[int, ...]]()
+
+    def untried(best: list[Series]) -> Iterator[tuple[tuple[int, ...], Series]]:
+        for series in best:
+            for rows in search.rows(series):
+                if len(met) >= MOST_TRIED + problem.max_designs:
+                    return
+                if rows not in met:
+                    met.add(rows)
+                    yield rows, series
+
+    def made(chosen: tuple[tuple[int, ...], Series]) -> TrainSeriesDesign | str | None:
+        mechanism = _mechanism(catalogues, *chosen)
+        return "idler" if mechanism is None else verify(problem, mechanism)
+
+    while True:
+        found = search.found(tolerance, near, wanted, problem.rank_by == "size")
+        progress(0.9, "verifying")
+        sifting.sift(untried(found.best), made, problem.max_designs)
+        # Those that cannot be made leave room for others behind them.
+        enough = len(sifting.passed) >= problem.max_designs
+        if enough or len(found.best) < wanted or len(met) >= MOST_TRIED:
+            break
+        wanted *= 4
     progress(1.0, "verified")
     searched = _searched(problem)
     least = None if found.nearest is None else abs(problem.target.relative_error(abs(found.nearest.ratio)))
