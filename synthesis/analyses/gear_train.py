@@ -26,7 +26,14 @@ from synthesis.model.answer import Answer, optional
 from synthesis.model.dynamics import METRES
 from synthesis.model.gear_answer import MeshGeometry, Ratio, mesh_geometries, rack_undercuts
 from synthesis.model.gear_statement import ExactRatio, PressureAngle, ShiftCoefficient, ToothNumber
-from synthesis.model.gear_strength import Loaded, PairStrength, StrengthMethod, stage_contact, told
+from synthesis.model.gear_strength import (
+    Loaded,
+    PairStrength,
+    StrengthMethod,
+    bent_both_ways,
+    stage_contact,
+    told,
+)
 from synthesis.model.statement import Number, PositiveNumber, Statement
 
 SAME_DISTANCE = 1e-6
@@ -383,7 +390,7 @@ def _strength(
     unit = 1000.0 * METRES[request.length_unit]
     contact = stage_contact(stage, place, math.radians(request.mechanism.pressure_angle), unit)
     width = request.mechanism.stages[number].face_width
-    return told(Loaded(contact, power, turning), request.strength, width, unit)
+    return told(Loaded(contact, power, turning, bent_both_ways(stage, place)), request.strength, width, unit)
 
 
 FAMILY = Family(GearTrainAnalysisRequest, GearTrainAnalysis)

@@ -35,6 +35,10 @@ ESTIMATE = (
 OF_AGMA = ("size", "load_distribution", "rim", "bending_geometry", "contact_geometry", "elastic")
 """Factors that Lewis's equation does not have."""
 
+BENT_BOTH_WAYS = 0.7
+"""Share of the allowable bending stress that teeth bear which are bent both ways in every turn, as an idler's are, by
+AGMA (Shigley, Sec. 14-4)."""
+
 WIDTHS = 400
 """Widths that are tried, in equal ratios, in search of the least that carries the load."""
 
@@ -151,6 +155,10 @@ class StressedGear(Answer):
     contact_stress: float | None
     bending_safety: float | None = Field(description="Allowable over actual bending stress.")
     contact_safety: float | None = Field(description="Allowable over actual contact stress.")
+    bent_both_ways: bool | None = optional(
+        f"True of an idler: every turn bends its teeth both ways, and they bear {BENT_BOTH_WAYS} of the allowable "
+        "bending stress; `bending_safety` counts that."
+    )
 
 
 class PairStrength(Answer):
@@ -172,11 +180,12 @@ class PairStrength(Answer):
 
 
 class Loaded(NamedTuple):
-    """A pair in millimetres and what it carries."""
+    """A pair in millimetres and what it carries; which of its gears are bent both ways."""
 
     contact: Contact
     power: float
     speed: float
+    both_ways: tuple[bool, bool] = (False, False)
 
     @property
     def working_diameters(self) -> tuple[float, float]:
@@ -199,7 +208,7 @@ class Stresses(NamedTuple):
     dynamic: float
     load_distribution: float | None
     contact_geometry: float | None
-    gears: list[dict[str, float | None]]
+    gears: list[dict[str, Any]]
 
     def keep(self, names: list[str]) -> bool:
         """Whether the safeties of these names are known of both gears, and at least 1."""
@@ -274,16 +283,20 @@ class Judge:
 
     def _row(
         self, place: int, form: float | None, size: float | None, bent: float | None, pressed: float | None
-    ) -> dict[str, float | None]:
+    ) -> dict[str, Any]:
         bending, contact = self._stated.allowable_bending, self._stated.allowable_contact
+        both_ways = self._loaded.both_ways[place]
+        share = BENT_BOTH_WAYS if both_ways else 1.0
+        told = {"bent_both_ways": True} if both_ways else {}
         return {
             "form": form,
             "size_factor": size,
             "bending_geometry": self._bending[place],
             "bending_stress": bent,
             "contact_stress": pressed,
-            "bending_safety": bending[place] / bent if bending and bent is not None else None,
+            "bending_safety": share * bending[place] / bent if bending and bent is not None else None,
             "contact_safety": contact[place] / pressed if contact and pressed is not None else None,
+            **told,
         }
 
     @cached_property
@@ -351,6 +364,11 @@ def stage_contact(stage: TrainStage, place: int, pressure_angle: float, unit: fl
     """
     gears = replace(stage, module=stage.module * unit).cut_gears(pressure_angle)
     return tool_contact(Mesh(gears[place], gears[place + 1]))
+
+
+def bent_both_ways(stage: TrainStage, place: int) -> tuple[bool, bool]:
+    """Which gears of a mesh of a stage, counted from 0, are idlers."""
+    return place > 0, place + 2 < len(stage.gears)
 
 
 def told(loaded: Loaded, stated: StrengthMethod, face_width: float | None, unit: float) -> dict[str, Any]:

@@ -169,13 +169,48 @@ def test_with_a_distance_the_demands_hold_together() -> None:
 
 
 def test_an_idler_carries_too() -> None:
-    stated: dict[str, Any] = {"ratio": "-6", "max_stages": 2, "teeth": {"min": 17, "max": 40}, "module": 4.0}
-    for design in solved(**stated, strength=POWER, max_designs=2, max_total_teeth=160).designs:
+    stated: dict[str, Any] = {"ratio": "-4", "max_stages": 2, "teeth": {"min": 17, "max": 40}, "module": 4.0}
+    designs = solved(**stated, strength=POWER, max_designs=2, max_total_teeth=160).designs
+    assert designs
+    for design in designs:
         assert design.metrics.strength is not None
         assert len(design.metrics.strength) == len(design.metrics.meshes) == 3
         for idler in design.mechanism.idlers:
             widths = [mesh.face_width for mesh in design.metrics.strength]
             assert widths[idler.stage - 1] == widths[idler.stage]
+
+
+def test_an_idler_bears_less_since_its_teeth_are_bent_both_ways() -> None:
+    """0.7 of the allowable stress on it, in search, proof and analysis; all others bear what they do in a pair."""
+    bending = {name: POWER[name] for name in ("power_kw", "speed_rpm", "allowable_bending", "max_face_width")}
+    stated: dict[str, Any] = {"ratio": "2", "direction": "same", "max_stages": 1, "teeth": {"min": 20, "max": 40}}
+    result = solved(**stated, module=4.0, strength=bending, max_designs=1)
+    mechanism, strengths = result.designs[0].mechanism, result.designs[0].metrics.strength
+    assert strengths is not None
+    idler, stage = mechanism.idlers[0].teeth, mechanism.stages[0]
+    omega = bending["speed_rpm"] * math.pi / 30.0
+    strength = {name: bending[name] for name in ("allowable_bending", "max_face_width")}
+    asked = {
+        "mechanism": mechanism.model_dump(), "motion": {"at": 0.0, "speed": omega}, "mesh_efficiency": 1.0,
+        "input_torque": 1000.0 * bending["power_kw"] / omega, "strength": strength,
+    }  # fmt: skip
+    meshes = parse_request(asked).answer()["meshes"]
+    safeties = []
+    for number, pair in enumerate([(stage.driver, idler), (idler, stage.driven)]):
+        speed = bending["speed_rpm"] * stage.driver / pair[0]
+        alone = {"mechanism": {"type": "gear_pair", "teeth": pair, "module": 4.0, "face_width": stage.face_width}}
+        lone = {"power_kw": bending["power_kw"], **strength}
+        gears = parse_request({**alone, "speed_rpm": speed, "strength": lone}).answer()["strength"]["gears"]
+        for place, gear in enumerate(gears):
+            is_idler = number + place == 1
+            safety = (0.7 if is_idler else 1.0) * bending["allowable_bending"][place] / gear["bending_stress"]
+            told = strengths[number].gears[place]
+            assert told.bending_safety == pytest.approx(safety)
+            assert meshes[number]["strength"]["gears"][place]["bending_safety"] == pytest.approx(safety)
+            assert told.bent_both_ways == (True if is_idler else None)
+            safeties.append(safety)
+    assert min(safeties) == pytest.approx(1.0)
+    assert safeties.index(min(safeties)) in (1, 2), "the idler decides"
 
 
 def test_a_face_that_is_too_narrow_is_seen() -> None:

@@ -22,7 +22,7 @@ from synthesis.kinds.gear_train.problem import NEAR, GearTrainProblem
 from synthesis.kinds.gear_train.search import Outcome, Train, order
 from synthesis.kinds.gear_train.task import Task, needs_idler
 from synthesis.model.dynamics import METRES
-from synthesis.model.gear_strength import CarriedPower, Judge, Loaded, stage_contact
+from synthesis.model.gear_strength import CarriedPower, Judge, Loaded, bent_both_ways, stage_contact
 from synthesis.outcome.exhaustive import pareto
 
 FIRST_JUDGED, MOST_JUDGED = 64, 1024
@@ -75,7 +75,7 @@ class Bearing:
     stated: CarriedPower
     tried: int = 0
     strongest: float = 0.0
-    _judges: dict[TrainStage, Judge] = field(default_factory=dict)
+    _judges: dict[_Turning, Judge] = field(default_factory=dict)
     _choices: Known = field(default_factory=dict)
 
     def carrying(self, train: Train) -> Borne | None:
@@ -172,10 +172,11 @@ class Bearing:
         kept = (judge.under(self.stated.power, turning).at(width).keep(self.stated.kept) for judge, turning in meshes)
         return width / self._unit if all(kept) else None
 
-    def _judge(self, mesh: TrainStage) -> Judge:
+    def _judge(self, mesh: _Turning) -> Judge:
         if mesh not in self._judges:
-            contact = stage_contact(mesh, 0, math.radians(self.problem.pressure_angle), self._unit)
-            self._judges[mesh] = Judge(Loaded(contact, self.stated.power, self.stated.speed), self.stated)
+            contact = stage_contact(mesh.alone, 0, math.radians(self.problem.pressure_angle), self._unit)
+            loaded = Loaded(contact, self.stated.power, self.stated.speed, mesh.both_ways)
+            self._judges[mesh] = Judge(loaded, self.stated)
         return self._judges[mesh]
 
     @property
@@ -183,12 +184,21 @@ class Bearing:
         return 1000.0 * METRES[self.problem.length_unit]
 
 
-def _meshes(stage: Stage, idlers: tuple[int, ...], speed: float) -> Iterator[tuple[TrainStage, float]]:
-    """The meshes of a stage, each as a stage of its own, and how fast its first gear turns, rad/s."""
+class _Turning(NamedTuple):
+    """A mesh as a stage of its own, and which of its two gears are bent both ways."""
+
+    alone: TrainStage
+    both_ways: tuple[bool, bool]
+
+
+def _meshes(stage: Stage, idlers: tuple[int, ...], speed: float) -> Iterator[tuple[_Turning, float]]:
+    """The meshes of a stage, and how fast the first gear of each turns, rad/s."""
     gears = (stage.driver, *idlers, stage.driven)
     shifts = (0.0, 0.0) if stage.shift is None else (stage.shift.driver, stage.shift.driven)
-    for one, other in itertools.pairwise(gears):
-        yield TrainStage(one, other, stage.module, (), shifts), speed * stage.driver / one
+    whole = TrainStage(stage.driver, stage.driven, stage.module, idlers)
+    for place, (one, other) in enumerate(itertools.pairwise(gears)):
+        mesh = _Turning(TrainStage(one, other, stage.module, (), shifts), bent_both_ways(whole, place))
+        yield mesh, speed * stage.driver / one
 
 
 def arrangements(problem: GearTrainProblem, task: Task, train: Train) -> list[Train]:

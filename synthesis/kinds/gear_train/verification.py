@@ -189,7 +189,8 @@ def _strength(
     for made, stage, speeds in zip(mechanism.stages, train.stages, train.speeds, strict=True):
         for place, speed in enumerate(speeds[:-1]):
             contact = stage_contact(stage, place, train.pressure_angle, unit)
-            loaded = Loaded(contact, stated.power, abs(float(speed)) * stated.speed)
+            idle = place > 0, place + 1 < len(stage.gears) - 1
+            loaded = Loaded(contact, stated.power, abs(float(speed)) * stated.speed, idle)
             found.append(PairStrength(**told(loaded, stated, made.face_width, unit)))
     return found
 
