@@ -76,6 +76,72 @@ def test_with_other_demands(client: httpx.Client) -> None:
     assert "carries 3 kW" in weak["summary"]
 
 
+STOCK = [18, 20, 24, 24, 30, {"teeth": 36, "count": 2}, 60, 72, 80]
+
+
+def test_from_a_stock(client: httpx.Client) -> None:
+    stated = {"teeth": None, "stock": STOCK, "tolerance": 0.02}
+    result, _ = solved(client, **stated)
+    counts = {gear["teeth"]: gear["count"] for gear in STOCK if isinstance(gear, dict)} | {24: 2}
+    assert result["designs"]
+    for design in result["designs"]:
+        gears = [stage[side] for stage in design["mechanism"]["stages"] for side in ("driver", "driven")]
+        assert all(gears.count(teeth) <= counts.get(teeth, 1) for teeth in gears)
+        assert set(gears) <= {18, 20, 24, 30, 36, 60, 72, 80}
+        assert all(stage["face_width"] for stage in design["mechanism"]["stages"])
+    assert solved(client, **stated, strength={**LOADED["strength"], "power_kw": 9.0})[0]["designs"] == []
+
+
+def test_an_idler_is_bent_both_ways(client: httpx.Client) -> None:
+    light = {"modules": None, "module": 3.0, "strength": {**LOADED["strength"], "power_kw": 1.0}}
+    result, _ = solved(client, ratio="4", direction="same", max_stages=1, **light)
+    design = result["designs"][0]
+    assert len(design["mechanism"]["idlers"]) == 1
+    both = [gear.get("bent_both_ways", False) for mesh in design["metrics"]["strength"] for gear in mesh["gears"]]
+    assert both == [False, True, True, False]
+    for train in result["pareto"]:
+        assert len(train["idlers"]) == 1
+        assert train["ratio"]["value"] > 0.0
+    turned, _ = solved(client, ratio="4", direction="opposite", max_stages=1, **light)
+    assert turned["designs"][0]["mechanism"]["idlers"] == []
+
+
+def test_shifted_teeth_at_a_distance(client: httpx.Client) -> None:
+    stated = {"reverted": True, "centre_distance": 150.0, "tolerance": 0.01}
+    wide, narrow = (
+        solved(client, **stated, shift={"min": -0.2, "max": most})[0]["designs"][0]["mechanism"]["stages"]
+        for most in (0.6, 0.2)
+    )
+    for stages, most in ((wide, 0.6), (narrow, 0.2)):
+        assert [stage["centre_distance"] for stage in stages] == pytest.approx([150.0] * 2)
+        assert max(stage["shift"][side] for stage in stages for side in ("driver", "driven")) <= most + 1e-9
+    assert wide != narrow
+
+
+@pytest.mark.parametrize("hunting", ["prefer", "require"])
+def test_teeth_that_hunt(client: httpx.Client, hunting: str) -> None:
+    """Of trains that carry as well those that hunt come first, or alone."""
+    stated = {"tolerance": 0.003, "max_designs": 30}
+    usual, _ = solved(client, **stated)
+    result, _ = solved(client, **stated, hunting_tooth=hunting)
+    told, before = ([one["metrics"]["hunting_tooth"] for one in found["designs"]] for found in (result, usual))
+    assert not before[0]
+    assert told[0]
+    assert all(told) == (hunting == "require")
+
+
+def test_the_smallest_that_carries(client: httpx.Client) -> None:
+    sizes, _ = solved(client, tolerance=0.01, rank_by="size", max_designs=4)
+    teeth = [design["metrics"]["total_teeth"] for design in sizes["designs"]]
+    assert teeth == sorted(teeth)
+    assert teeth[0] == sizes["pareto"][0]["size"]
+    errors, _ = solved(client, tolerance=0.01, max_designs=4)
+    assert errors["designs"][0]["metrics"]["total_teeth"] > teeth[0]
+    assert errors["pareto"] == sizes["pareto"] or not errors["search"]["every_judged"]
+    heavy, _ = solved(client, tolerance=0.01, rank_by="size", strength={**LOADED["strength"], "power_kw": 4.5})
+    assert heavy["designs"][0]["metrics"]["total_teeth"] > teeth[0], "the smallest does not carry this"
+
+
 def test_inches_are_inches(client: httpx.Client) -> None:
     metric, _ = solved(client, modules=[2.54], max_designs=1)
     inches, _ = solved(client, modules=[0.1], max_designs=1, length_unit="in")

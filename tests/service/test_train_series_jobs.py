@@ -15,6 +15,8 @@ from synthesis.registry import examples
 from tests.service.answers import finished
 
 STATED = examples("train_series")[2]
+SET = STATED["units"][1]
+GEARS = STATED["units"][0]
 WHEELS = {"type": "gear_train", "stages": [{"driver": 20, "driven": 30}]}
 
 
@@ -61,6 +63,34 @@ def test_the_analysis_of_a_design(client: httpx.Client, job: Any) -> None:
     assert output["torque"] * output["omega"][0] == pytest.approx(entering * told["efficiency"])
     less = client.post("/v1/analyses", json={**body, "mesh_efficiency": 0.9}).raise_for_status().json()
     assert less.get("analysis", less)["efficiency"] < told["efficiency"]
+
+
+@pytest.mark.parametrize(
+    ("demand", "check"),
+    [
+        ({"fillets": "refuse"}, "unit_2_fillet_interference"),
+        ({"max_size": 150.0}, "unit_2_size"),
+        ({"planets": 4}, None),
+    ],
+)
+def test_demands_of_a_planetary_unit(client: httpx.Client, demand: dict[str, Any], check: str | None) -> None:
+    small = {**SET, "teeth": {"min": 12, "max": 30, "ring_max": 90}}
+    stated = {**STATED, "ratio": -20, "tolerance": None, "rank_by": "error", "max_designs": 5}
+    plain = finished(client, {**stated, "units": [GEARS, small]})["result"]
+    kept = finished(client, {**stated, "units": [GEARS, {**small, **demand}]})["result"]
+    assert kept["designs"]
+    assert 0 < kept["search"]["combinations"] != plain["search"]["combinations"]
+    for design in kept["designs"]:
+        names = [one["name"] for one in design["verification"]["checks"]]
+        assert check is None or check in names
+        assert design["mechanism"]["units"][1]["planets"] == demand.get("planets", 3)
+
+
+def test_the_smallest_or_the_nearest_first(client: httpx.Client, job: Any) -> None:
+    nearest = finished(client, {**STATED, "rank_by": "error"})["result"]["designs"][0]["metrics"]
+    smallest = job["result"]["designs"][0]["metrics"]
+    assert abs(nearest["error"]) < abs(smallest["error"])
+    assert nearest["total_teeth"] > smallest["total_teeth"]
 
 
 def test_where_the_output_drives_it_brings_the_losses(client: httpx.Client, job: Any) -> None:
@@ -133,8 +163,6 @@ def test_the_ratio_of_a_mechanism_is_compared(client: httpx.Client, job: Any) ->
     assert client.post("/v1/analyses", json={"mechanism": planetary}).status_code == 200
 
 
-SET = STATED["units"][1]
-GEARS = STATED["units"][0]
 TEETH = {"type": "planetary_train", "arrangement": "simple"}
 
 
