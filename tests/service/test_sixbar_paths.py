@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from types import SimpleNamespace
 from typing import Any
@@ -137,14 +138,13 @@ def test_all_demands_are_kept_together(client):
 
 
 def test_points_are_met_exactly_in_order(client):
-    few = [40 + 30j, 32 + 42j, 20 + 45j, 8 + 40j, 2 + 30j, 6 + 20j]
-    designs = passed(answered(client, points=listed(few), method="auto", closed=False))
+    designs = passed(answered(client, points=listed(FEW), method="auto", closed=False))
     assert designs
     for design in designs:
         inputs = np.radians([target["input_angle"] for target in design["targets"]])
         assert np.all(np.diff(inputs) > 0.0) or np.all(np.diff(inputs) < 0.0)
         met = Loops(design["mechanism"]["skeleton"]).followed(inputs - inputs[0])
-        assert np.abs(met.points - few).max() < 1e-6 * SIZE
+        assert np.abs(met.points - FEW).max() < 1e-6 * SIZE
         assert met.branch > 0.0
 
 
@@ -156,6 +156,99 @@ def test_a_stroke_is_drawn_within_tolerances_from_a_given_pivot(client):
     assert designs
     assert all(design["mechanism"]["skeleton"]["joints"]["O2"] == pytest.approx([50.0, -60.0]) for design in designs)
     assert all(target["point_residual"] <= 0.5 for design in designs for target in design["targets"])
+
+
+FEW = [40 + 30j, 32 + 42j, 20 + 45j, 8 + 40j, 2 + 30j, 6 + 20j]
+POINTS = {"points": listed(FEW), "method": "auto", "closed": False, "constraints": {}}
+
+
+def ends_of(design) -> np.ndarray:
+    return np.array(list(design["mechanism"]["skeleton"]["joints"].values()))
+
+
+def test_moving_pivots_full_turns_the_order_and_those_that_failed_are_as_stated(client):
+    region = {"x": [-10.0, 50.0], "y": [-10.0, 60.0]}
+    limits = {"moving_pivot_region": region, "full_rotation": True}
+    stated = POINTS | {"constraints": limits, "include_failed": True, "rank_by": "size", "max_designs": 30}
+    designs = answered(client, **stated)["result"]["designs"]
+    kept = [design for design in designs if design["verification"]["passed"]]
+    assert len(kept) >= 5
+    assert designs[: len(kept)] == kept
+    assert len(designs) >= len(kept) + 5
+    for design in designs:
+        joints = design["mechanism"]["skeleton"]["joints"]
+        inside = all(
+            -10.0 <= x <= 50.0 and -10.0 <= y <= 60.0
+            for name, (x, y) in joints.items()
+            if name[0] != "O" and name != "P"
+        )
+        checks = {check["name"]: check["passed"] for check in design["verification"]["checks"]}
+        assert checks["moving_pivot_region"] == inside == design["verification"]["passed"]
+        assert checks["full_rotation"]
+    assert once_round(kept[0]).branch > 0.0
+    sizes = [design["metrics"]["size"] for design in kept]
+    assert sizes == sorted(sizes)
+    quality = [design["metrics"]["quality"] for design in kept]
+    assert quality != sorted(quality, reverse=True)
+
+
+class Seen(Loops):
+    """Loops that keep where all joints were."""
+
+    def __init__(self, skeleton) -> None:
+        super().__init__(skeleton)
+        self.seen: list[dict[str, complex]] = []
+
+    def _note(self, places, angles) -> None:
+        self.seen.append(places)
+        super()._note(places, angles)
+
+
+BOX = {"box": [[-2.0, -2.0], [60.0, 60.0]], "link_width": 2.0}
+OBSTACLE = {"clearance": 1.0, "obstacles": [{"polygon": [[8.0, 8.0], [12.0, 8.0], [12.0, 12.0], [8.0, 12.0]]}]}
+
+
+def kept_room(design) -> list[bool]:
+    """Whether a design keeps within the box in x, and in y, and off the obstacle, from the first point to the last."""
+    inputs = np.radians([target["input_angle"] for target in design["targets"]])
+    loops = Seen(design["mechanism"]["skeleton"])
+    assert loops.followed(inputs - inputs[0]).branch > 0.0
+    places = {name: np.array([seen[name] for seen in loops.seen]) for name in loops.joints}
+    ways = np.concatenate(list(places.values()))
+    within = [way.min() >= -1.0 - 1e-6 and way.max() <= 59.0 + 1e-6 for way in (ways.real, ways.imag)]
+    share = np.linspace(0.0, 1.0, 60)[:, None]
+    off = np.inf
+    for link, on in loops.links.items():
+        for one, other in itertools.combinations(on if link != "ground" else [], 2):
+            along = places[one] + share * (places[other] - places[one]) - (10.0 + 10.0j)
+            off = min(
+                off, np.hypot(np.maximum(abs(along.real) - 2.0, 0.0), np.maximum(abs(along.imag) - 2.0, 0.0)).min()
+            )
+    return [*within, off >= 2.0 - 1e-3]
+
+
+def test_joints_keep_within_both_sides_of_a_box_and_links_off_an_obstacle(client):
+    masses = {"links": {"density": 7.85e-6, "thickness": 4.0, "width": 6.0}, "speed_rpm": 60.0}
+    roomy = passed(answered(client, **POINTS, space=BOX | OBSTACLE, dynamics=masses, max_designs=2))
+    assert len(roomy) == 2
+    assert all(all(kept_room(design)) for design in roomy)
+    assert all(design["forces"]["drive_torque"]["max"] > 0.0 for design in roomy)
+    plain = passed(answered(client, **POINTS, max_designs=2))
+    assert not any(all(kept_room(design)[k] for design in plain) for k in range(3))
+    assert not any("forces" in design for design in plain)
+
+
+def test_planes_and_seeds_are_as_stated(client):
+    planes = {"link_width": 2.0, "pin_diameter": 1.0, "thickness": 1.0}
+    plain = passed(answered(client, **POINTS, max_designs=16))
+    designs = passed(answered(client, **POINTS, seed=7, layout=planes, rank_by="planes", max_designs=32))
+    taken = [max(design["layout"]["planes"].values()) for design in designs]
+    assert taken == sorted(taken)
+    assert taken[0] < taken[-1]
+    quality = [design["metrics"]["quality"] for design in designs]
+    assert quality != sorted(quality, reverse=True)
+    apart = [np.abs(ends_of(one) - ends_of(other)).max() for one in plain for other in designs]
+    assert min(apart) > 1e-6 * SIZE
 
 
 NINE = [40 + 30j, 32 + 42j, 20 + 45j, 8 + 40j, 2 + 30j, 6 + 20j, 12 + 14j, 24 + 12j, 30 + 20j]
