@@ -44,9 +44,7 @@ degree of 50."""
 ATTEMPTS = 6
 """Sixbars that are verified at most, for each design wanted."""
 
-DROPPED = (
-    "Stephenson's sixbar of the second kind was not looked for: it has no fourbar O2 A B O4, which grashof classifies."
-)
+DROPPED = "A Stephenson II sixbar was not looked for: it has no fourbar O2 A B O4, which grashof classifies."
 """What is said where a class is demanded."""
 
 REASONS = DEFECTS | LENGTHS | {"covers_range": "branch_defect", "dials": "reversed_link"}

@@ -18,7 +18,7 @@ SIXBARS: tuple[Sixbar, ...] = get_args(Sixbar)
 UNCLASSED: Sixbar = "stephenson_2"
 """The type whose links make no fourbar O2 A B O4."""
 
-NO_FOURBAR = "classifies the fourbar O2 A B O4, which Stephenson's sixbar of the second kind does not have"
+NO_FOURBAR = "classifies the fourbar O2 A B O4, which a Stephenson II sixbar does not have"
 
 Mechanisms = Auto | Annotated[list[Literal["fourbar", "slider_crank"] | Sixbar], Field(min_length=1, max_length=5)]
 """Types by their names, or the simplest that does."""
