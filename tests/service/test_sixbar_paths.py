@@ -227,20 +227,18 @@ def kept_room(design) -> list[bool]:
     return [*within, off >= 2.0 - 1e-3]
 
 
-def test_joints_keep_within_both_sides_of_a_box_and_links_off_an_obstacle(client):
+@pytest.mark.timeout(300)
+def test_boxes_obstacles_masses_planes_and_seeds_are_as_stated(client):
+    plain = passed(answered(client, **POINTS, max_designs=16))
     masses = {"links": {"density": 7.85e-6, "thickness": 4.0, "width": 6.0}, "speed_rpm": 60.0}
     roomy = passed(answered(client, **POINTS, space=BOX | OBSTACLE, dynamics=masses, max_designs=2))
     assert len(roomy) == 2
     assert all(all(kept_room(design)) for design in roomy)
     assert all(design["forces"]["drive_torque"]["max"] > 0.0 for design in roomy)
-    plain = passed(answered(client, **POINTS, max_designs=2))
-    assert not any(all(kept_room(design)[k] for design in plain) for k in range(3))
+    assert not any(kept_room(plain[0]))
     assert not any("forces" in design for design in plain)
 
-
-def test_planes_and_seeds_are_as_stated(client):
     planes = {"link_width": 2.0, "pin_diameter": 1.0, "thickness": 1.0}
-    plain = passed(answered(client, **POINTS, max_designs=16))
     designs = passed(answered(client, **POINTS, seed=7, layout=planes, rank_by="planes", max_designs=32))
     taken = [max(design["layout"]["planes"].values()) for design in designs]
     assert taken == sorted(taken)
