@@ -8,21 +8,27 @@ through the turn on a grid of crank angles, and those with the best scores are r
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.compiling import njit
-from kinematics.linkage.fourbar import OPEN, Fourbar, coupler_points
 from synthesis.kinds.dwell.arcs import arcs, lines
-from synthesis.kinds.dwell.outputs import CYCLE, Carrier, Kind
+from synthesis.kinds.dwell.outputs import CYCLE, Carrier, Kind, points
 from synthesis.kinds.dwell.problem import Turning
 from synthesis.kinds.dwell.scoring import ROCKER, SLIDER, SLOT, judge
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]
+
+CODES: dict[Kind, int] = {"rocker": ROCKER, "slider": SLIDER, "slot": SLOT}
+"""The kinds of output, as the compiled loops know them."""
+
+NUMBERS: dict[Kind, int] = {"rocker": 4, "slider": 3, "slot": 2}
+"""How many numbers an output has."""
 
 DRAWN = 4000
 """Fourbars that are drawn, of the symmetric and of the general ones each."""
@@ -80,18 +86,38 @@ class Outputs(NamedTuple):
     numbers: Real
 
 
+def samples_of(dwell: float) -> int:
+    """Samples of a piece of a curve as long as a dwell, radians: one more than steps."""
+    return max(FEWEST, round(dwell / math.tau * CYCLE) + 1)
+
+
+def beginning(at: Real, length: int | Integers, dwell: float | Real) -> Real:
+    """Where dwells begin whose pieces, of so many samples, begin at some angles.
+
+    A piece is a little longer or shorter than its dwell: both have one middle.
+    """
+    return np.asarray(at + 0.5 * ((length - 1) * math.tau / CYCLE - dwell))
+
+
+def promising(scores: Real, rows: Integers, most: int) -> Iterator[int]:
+    """The outputs of the least finite scores, each of another row, so many at most."""
+    used: set[int] = set()
+    for n in np.argsort(scores):
+        if len(used) == most or not np.isfinite(scores[n]):
+            return
+        if int(rows[n]) not in used:
+            used.add(int(rows[n]))
+            yield int(n)
+
+
 def starts(
     kind: Kind, dwells: int, dwell: float, way: float, transmission: float, rng: np.random.Generator, most: int
 ) -> list[Start]:
     """The most promising shapes, each of another fourbar; dwell and way in radians, the way NaN for a slider."""
     shapes = drawn(rng, transmission)
-    linkage = Fourbar.from_lengths(
-        np.ones(len(shapes)), shapes[:, 0], shapes[:, 1], shapes[:, 2], shapes[:, 3] + 1j * shapes[:, 4]
-    )
     turn = np.linspace(0.0, 2.0 * np.pi, CYCLE, endpoint=False)
-    curves = np.ascontiguousarray(coupler_points(linkage, turn, OPEN).p)
-    looked_at = dwell if dwells == 1 else max(dwell, LONG)
-    length = max(FEWEST, round(looked_at / (2.0 * np.pi) * CYCLE) + 1)
+    curves = np.ascontiguousarray(points(shapes, turn, "coupler"))
+    length = samples_of(dwell if dwells == 1 else max(dwell, LONG))
     found_on = pieces_of(curves, length, kind)
     if dwells == 1:
         tried = (of_lines if kind == "slot" else of_arcs)(curves, found_on, kind)
@@ -99,27 +125,16 @@ def starts(
         tried = (of_two_lines if kind == "slot" else of_two_arcs)(curves, (found_on, found_on), kind, way)
     if not len(tried.rows):
         return []
-    number = {"rocker": ROCKER, "slider": SLIDER, "slot": SLOT}[kind]
     scores, signs, ends = (
         np.empty(len(tried.rows)),
         np.empty(len(tried.rows), np.int64),
         np.empty((len(tried.rows), 2), np.int64),
     )
-    judge(number, curves, *tried, length, dwells, way, math.sin(transmission), scores, signs, ends)
+    judge(CODES[kind], curves, *tried, length, dwells, way, math.sin(transmission), scores, signs, ends)
     found: list[Start] = []
-    used: set[int] = set()
-    for n in np.argsort(scores):
-        row = int(tried.rows[n])
-        if len(found) == most or not np.isfinite(scores[n]):
-            break
-        if row in used:
-            continue
-        used.add(row)
-        angles = turn[[tried.first[n], tried.second[n]][:dwells]]
-        # The piece is a little longer or shorter than the dwell: both have one middle.
-        angles = angles + 0.5 * ((length - 1) * 2.0 * np.pi / CYCLE - dwell)
-        numbers = tried.numbers[n, : {"rocker": 4, "slider": 3, "slot": 2}[kind]]
-        shape = np.concatenate([shapes[row], numbers, angles])
+    for n in promising(scores, tried.rows, most):
+        angles = beginning(turn[[tried.first[n], tried.second[n]][:dwells]], length, dwell)
+        shape = np.concatenate([shapes[tried.rows[n]], tried.numbers[n, : NUMBERS[kind]], angles])
         places = tuple(1.0 if end > 0 else 0.0 for end in ends[n, :dwells])
         found.append(Start(shape, int(signs[n]), places, float(scores[n])))
     return found
@@ -211,14 +226,14 @@ def _best_pairs(pieces: tuple[Pieces, Pieces], extent: Real, way: float) -> tupl
 
 def of_lines(curves: Complex, pieces: Pieces, _kind: Kind) -> Outputs:
     """Slotted outputs along the straightest piece of each curve: their pivots lie on its line."""
-    points, angles, share, _ = pieces
+    places, angles, share, _ = pieces
     extent = _extent(curves)
     first = share.argmin(axis=1)
     best = share[np.arange(len(curves)), first]
     rows = np.argsort(best)[: 4 * PIECES]
     first = first[rows]
     away = np.concatenate([-np.geomspace(0.15, 4.0, 2 * REACHES), np.geomspace(0.15, 4.0, 2 * REACHES)])
-    pivot = points[rows, first][:, None] + (extent[rows, None] * away * np.exp(1j * angles[rows, first])[:, None])
+    pivot = places[rows, first][:, None] + (extent[rows, None] * away * np.exp(1j * angles[rows, first])[:, None])
     rows, first = np.repeat(rows, len(away)), np.repeat(first, len(away))
     pivot = pivot.ravel()
     none = np.zeros(len(pivot))
@@ -227,11 +242,11 @@ def of_lines(curves: Complex, pieces: Pieces, _kind: Kind) -> Outputs:
 
 def of_two_lines(curves: Complex, pieces: tuple[Pieces, Pieces], _kind: Kind, way: float) -> Outputs:
     """Slotted outputs whose pivots lie where two lines cross at the angle ``way``."""
-    points, angles = pieces[0].places, pieces[0].sizes
+    places, angles = pieces[0].places, pieces[0].sizes
     rows, first, second = _best_pairs(pieces, _extent(curves), way)
     one, other = np.exp(1j * angles[rows, first]), np.exp(1j * pieces[1].sizes[rows, second])
-    apart = pieces[1].places[rows, second] - points[rows, first]
-    pivot = points[rows, first] + one * (apart * other.conj()).imag / (one * other.conj()).imag
+    apart = pieces[1].places[rows, second] - places[rows, first]
+    pivot = places[rows, first] + one * (apart * other.conj()).imag / (one * other.conj()).imag
     none = np.zeros(len(pivot))
     return Outputs(rows, first, second, np.stack([pivot.real, pivot.imag, none, none], axis=1))
 

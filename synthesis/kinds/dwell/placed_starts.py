@@ -13,22 +13,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.kinds.dwell.candidates import (
+    CODES,
     DRAWN,
-    FEWEST,
     LONG,
+    NUMBERS,
     Outputs,
     Start,
+    beginning,
     drawn,
     of_arcs,
     of_lines,
     of_two_arcs,
     of_two_lines,
     pieces_of,
+    promising,
+    samples_of,
 )
 from synthesis.kinds.dwell.outputs import CYCLE, SPARE, Carrier, Kind, points
 from synthesis.kinds.dwell.problem import Turning
 from synthesis.kinds.dwell.programs import judge_program
-from synthesis.kinds.dwell.scoring import ROCKER, SLIDER, SLOT
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -38,9 +41,6 @@ EACH: dict[Carrier, int] = {"rocker": 24, "coupler": 8}
 
 UNEVEN = 0.3
 """What a start costs whose links are more uneven than is allowed, times the logarithm of by how much."""
-
-NUMBERS: dict[Kind, int] = {"rocker": 4, "slider": 3, "slot": 2}
-"""How many numbers an output has."""
 
 
 def placed_starts(
@@ -82,7 +82,7 @@ def placed_starts(
         shapes[:, 3], shapes[:, 4] = shapes[:, 1], 0.0
     turn = np.linspace(0.0, 2.0 * np.pi, CYCLE, endpoint=False)
     curves = np.ascontiguousarray(points(shapes, turn, carrier))
-    lengths = np.array([max(FEWEST, round(dwell / math.tau * CYCLE) + 1) for dwell in dwells])
+    lengths = np.array([samples_of(dwell) for dwell in dwells])
     if not len(shapes):
         return []
     tried = _drawn_outputs(kind, carrier, shapes, curves, rng)
@@ -92,26 +92,28 @@ def placed_starts(
     count, numbers = len(tried.rows), tried.numbers
     scores, signs = np.empty(count), np.empty(count, np.int64)
     begins, ends = np.zeros((count, len(dwells)), np.int64), np.zeros((count, len(dwells)))
-    number = {"rocker": ROCKER, "slider": SLIDER, "slot": SLOT}[kind]
     asked = np.array(places)
     judge_program(
-        number, curves, tried.rows, numbers, lengths, asked, way, math.sin(transmission), scores, signs, begins, ends
+        CODES[kind],
+        curves,
+        tried.rows,
+        numbers,
+        lengths,
+        asked,
+        way,
+        math.sin(transmission),
+        scores,
+        signs,
+        begins,
+        ends,
     )
     links = numbers[:, {"rocker": [0, 3], "slider": [0], "slot": []}[kind]]
     uneven = _uneven(np.concatenate([shapes[tried.rows, :3], links], axis=1)) / link_ratio
     scores += UNEVEN * np.log(np.maximum(uneven, 1.0))
     found: list[Start] = []
-    used: set[int] = set()
-    for n in np.argsort(scores):
-        row = int(tried.rows[n])
-        if len(found) == most or not np.isfinite(scores[n]):
-            break
-        if row in used:
-            continue
-        used.add(row)
-        # The stretch of the grid is a little longer or shorter than the dwell: both have one middle.
-        angles = turn[begins[n]] + 0.5 * ((lengths - 1) * math.tau / CYCLE - np.array(dwells))
-        shape = np.concatenate([shapes[row], numbers[n, : NUMBERS[kind]], angles])
+    for n in promising(scores, tried.rows, most):
+        angles = beginning(turn[begins[n]], lengths, np.array(dwells))
+        shape = np.concatenate([shapes[tried.rows[n]], numbers[n, : NUMBERS[kind]], angles])
         found.append(Start(shape, int(signs[n]), tuple(ends[n].tolist()), float(scores[n]), carrier, turning))
     return found
 
@@ -139,17 +141,13 @@ def _on_curves(
 ) -> Outputs:
     """Outputs that rest on the best arc or line of a curve, and on pairs of them."""
     longest = sorted(range(len(dwells)), key=lambda k: -dwells[k])
-
-    def pieces(dwell: float) -> int:
-        return max(FEWEST, round(dwell / math.tau * CYCLE) + 1)
-
     found = [
-        (of_lines if kind == "slot" else of_arcs)(curves, pieces_of(curves, pieces(dwells[longest[0]]), kind), kind)
+        (of_lines if kind == "slot" else of_arcs)(curves, pieces_of(curves, samples_of(dwells[longest[0]]), kind), kind)
     ]
     for other in longest[1:]:
         pair = dwells[longest[0]], dwells[other]
         looked_at = [max(dwell, LONG) if sum(pair) < math.pi else dwell for dwell in pair]
-        two = [pieces_of(curves, pieces(dwell), kind) for dwell in looked_at]
+        two = [pieces_of(curves, samples_of(dwell), kind) for dwell in looked_at]
         apart = abs(places[longest[0]] - places[other])
         rests = of_two_lines if kind == "slot" else of_two_arcs
         found.append(rests(curves, (two[0], two[1]), kind, apart * way))

@@ -12,7 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.compiling import njit
-from synthesis.kinds.dwell.scoring import ROCKER, SLIDER, _half_tangents, _level, _rocker_turn, _slider_turn, _slot_turn
+from synthesis.kinds.dwell.scoring import (
+    ROCKER,
+    SLIDER,
+    half_tangents,
+    lacking,
+    level,
+    rocker_turn,
+    slider_turn,
+    slot_turn,
+)
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -67,31 +76,25 @@ def judge_program(
         a, b, c, d = numbers[k]
         for sign in (1, -1):
             if kind == ROCKER:
-                sine = _rocker_turn(curve, a, b, c, d, sign, ux, uy)
+                sine = rocker_turn(curve, a, b, c, d, sign, ux, uy)
             elif kind == SLIDER:
-                sine = _slider_turn(curve, a, b, c, sign, out)
+                sine = slider_turn(curve, a, b, c, sign, out)
             elif sign == 1:
-                sine = _slot_turn(curve, a, b, ux, uy)
+                sine = slot_turn(curve, a, b, ux, uy)
             else:
                 break
             if not sine > 0.0:
                 break
             if kind != SLIDER:
-                _half_tangents(ux, uy, out)
-            low, high = _level(kind, out.min()), _level(kind, out.max())
+                half_tangents(ux, uy, out)
+            low, high = level(kind, out.min()), level(kind, out.max())
             span = high - low
             if not span > 0.0 or (kind != SLIDER and not abs(math.log(span / way)) < WAY_APART):
                 continue
-            score = 0.5 * max(0.0, 1.5 * least - sine)
-            if kind == SLIDER:
-                extent = 0.0
+            if kind != SLIDER:
                 for m in range(n):
-                    extent = max(extent, abs(curve[m] - curve[0]))
-                score += 0.05 * max(0.0, math.log(2.0 * extent / span))
-            else:
-                score += 0.3 * abs(math.log(span / way))
-                for m in range(n):
-                    out[m] = _level(kind, out[m])
+                    out[m] = level(kind, out[m])
+            score = lacking(0.0, kind, curve, span, way, least, sine)
             score += _rests(out, low, span, lengths, places, at, share)
             if score < scores[k]:
                 scores[k], signs[k] = score, sign

@@ -48,17 +48,17 @@ def judge(
         a, b, c, d = numbers[k]
         if kind == ROCKER:
             signs[k] = _rest_sign(curve, first[k], length, a, complex(b, c), d)
-            sine = _rocker_turn(curve, a, b, c, d, signs[k], ux, uy)
+            sine = rocker_turn(curve, a, b, c, d, signs[k], ux, uy)
         elif kind == SLIDER:
             signs[k] = _slide_sign(curve, first[k], length, a, b, c)
-            sine = _slider_turn(curve, a, b, c, signs[k], out)
+            sine = slider_turn(curve, a, b, c, signs[k], out)
         else:
-            sine = _slot_turn(curve, a, b, ux, uy)
+            sine = slot_turn(curve, a, b, ux, uy)
         if not sine > 0.0:
             continue
         if kind != SLIDER:
-            _half_tangents(ux, uy, out)
-        low, high = _level(kind, out.min()), _level(kind, out.max())
+            half_tangents(ux, uy, out)
+        low, high = level(kind, out.min()), level(kind, out.max())
         span = high - low
         if not span > 0.0:
             continue
@@ -69,26 +69,32 @@ def judge(
             for m in range(length):
                 value = out[(begin + m) % n]
                 least_out, most_out = min(least_out, value), max(most_out, value)
-                mean += _level(kind, value) / length
-            rest = max(rest, (_level(kind, most_out) - _level(kind, least_out)) / span)
+                mean += level(kind, value) / length
+            rest = max(rest, (level(kind, most_out) - level(kind, least_out)) / span)
             ends[k, dwell] = 1 if high - mean < mean - low else -1
             ending = max(ending, min(high - mean, mean - low) / span)
         if dwells == 2 and ends[k, 0] == ends[k, 1]:
             continue
-        scores[k] = rest + 0.5 * ending + 0.5 * max(0.0, 1.5 * least - sine)
-        if kind == SLIDER:
-            extent = 0.0
-            for m in range(n):
-                extent = max(extent, abs(curve[m] - curve[0]))
-            scores[k] += 0.05 * max(0.0, math.log(2.0 * extent / span))
-        else:
-            scores[k] += 0.3 * abs(math.log(span / way))
+        scores[k] = lacking(rest + 0.5 * ending, kind, curve, span, way, least, sine)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _rocker_turn(
-    curve: Complex, link: float, x: float, y: float, rocker: float, sign: int, ux: Real, uy: Real
-) -> float:
+def lacking(score: float, kind: int, curve: Complex, span: float, way: float, least: float, sine: float) -> float:
+    """A score with what an output lacks of transmission and way; of a stroke, which has any size, of the curve's size.
+
+    ``span`` is the way that it goes, ``way`` the demanded one, ``least`` and ``sine`` sines of transmission angles.
+    """
+    score += 0.5 * max(0.0, 1.5 * least - sine)
+    if kind != SLIDER:
+        return score + 0.3 * abs(math.log(span / way))
+    extent = 0.0
+    for z in curve:
+        extent = max(extent, abs(z - curve[0]))
+    return score + 0.05 * max(0.0, math.log(2.0 * extent / span))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def rocker_turn(curve: Complex, link: float, x: float, y: float, rocker: float, sign: int, ux: Real, uy: Real) -> float:
     """Direction of a rocker at every sample; the least sine of its transmission angle, 0 where it is not reached."""
     nearest, farthest = np.inf, 0.0
     for m in range(len(curve)):
@@ -107,7 +113,7 @@ def _rocker_turn(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _slider_turn(curve: Complex, link: float, offset: float, angle: float, sign: int, out: Real) -> float:
+def slider_turn(curve: Complex, link: float, offset: float, angle: float, sign: int, out: Real) -> float:
     """Place of a slider at every sample; the least sine of its transmission angle, 0 where it is not reached."""
     along_x, along_y = math.cos(angle), math.sin(angle)
     least = 1.0
@@ -123,7 +129,7 @@ def _slider_turn(curve: Complex, link: float, offset: float, angle: float, sign:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _slot_turn(curve: Complex, x: float, y: float, ux: Real, uy: Real) -> float:
+def slot_turn(curve: Complex, x: float, y: float, ux: Real, uy: Real) -> float:
     """Direction of a slotted link at every sample; 1, or 0 where P comes too near to its pivot."""
     for m in range(len(curve)):
         dx, dy = curve[m].real - x, curve[m].imag - y
@@ -135,7 +141,7 @@ def _slot_turn(curve: Complex, x: float, y: float, ux: Real, uy: Real) -> float:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _half_tangents(ux: Real, uy: Real, out: Real) -> None:
+def half_tangents(ux: Real, uy: Real, out: Real) -> None:
     """Tangents of half the angles from the mean direction: they grow with the angles, and cost no arctangent."""
     x, y = ux.sum(), uy.sum()
     size = math.sqrt(x * x + y * y)
@@ -144,7 +150,7 @@ def _half_tangents(ux: Real, uy: Real, out: Real) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _level(kind: int, value: float) -> float:
+def level(kind: int, value: float) -> float:
     """The output of a number of ``out``: an angle of its half tangent, or a slider's place."""
     return value if kind == SLIDER else 2.0 * math.atan(value)
 
