@@ -19,7 +19,6 @@ QUICK = [
     ("motion", "everything in the way"),
     ("motion", "tiny zones for all pivots"),
     ("motion", "a clearance larger than the box"),
-    ("dwell", "6000 corners in the way"),
 ]
 
 

@@ -123,6 +123,7 @@ def test_auto_takes_the_fourbar_where_one_is_precise(client):
     assert {design["mechanism"]["type"] for design in auto["designs"]} == {"fourbar"}
 
 
+@pytest.mark.campaign
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize("types", further(["auto", ["fourbar", "watt_2"]], [["fourbar", "watt_2"]]))
 def test_sixbars_are_offered_beside_a_fourbar_and_the_summary_says_so(client, types):
@@ -135,6 +136,7 @@ def test_sixbars_are_offered_beside_a_fourbar_and_the_summary_says_so(client, ty
     assert "of the best fourbar's error and are offered beside it." in result["summary"]
 
 
+@pytest.mark.campaign
 def test_a_sixbar_in_the_place_of_the_fourbar_is_not_said_to_be_beside_it(client):
     result = answered(client, mechanisms=["fourbar", "watt_2"], max_designs=1)["result"]
     assert [design["mechanism"]["type"] for design in result["designs"]] == ["watt_2"]
@@ -142,6 +144,7 @@ def test_a_sixbar_in_the_place_of_the_fourbar_is_not_said_to_be_beside_it(client
     assert "beside" not in result["summary"]
 
 
+@pytest.mark.campaign
 @pytest.mark.timeout(300)
 def test_what_is_ordered_by_forces_and_then_cut_is_not_said_to_be_offered(client):
     result = answered(
@@ -231,6 +234,7 @@ def test_demands_are_kept_together(client):
         sine_is_met(design)
 
 
+@pytest.mark.campaign
 def test_pivots_that_are_stated_are_those_of_input_and_output(client):
     """The second fourbar is turned and sized so that its pins keep their region, where it is most even or not."""
     pivots = {"input": [10.0, 5.0], "output": [90.0, 30.0]}
@@ -245,6 +249,7 @@ def test_pivots_that_are_stated_are_those_of_input_and_output(client):
     sine_is_met(design)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(("kind", "count"), further([("stephenson_3", 6), ("watt_2", 8)], [("stephenson_3", 6)]))
 def test_pairs_are_met_exactly(client, kind, count):
     task = {"kind": "function", "pairs": PAIRS[:count], "mechanisms": [kind], "max_designs": 1}
@@ -312,6 +317,7 @@ def test_what_is_refused_beside_a_list_is_taken_without_it_and_by_auto(client, m
         assert client.delete(f"/v1/jobs/{answer.json()['id']}").status_code in (200, 202, 204)
 
 
+@pytest.mark.campaign
 @pytest.mark.timeout(300)
 def test_a_type_without_a_class_is_dropped_where_one_is_demanded(client):
     mixed = answered(
@@ -331,6 +337,7 @@ def test_a_type_without_a_class_is_dropped_where_one_is_demanded(client):
     assert dropped not in plain["summary"]
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     "more",
     [

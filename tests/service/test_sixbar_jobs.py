@@ -88,6 +88,7 @@ def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
     assert client.get(f"/v1/jobs/{body['id']}/report.html").status_code == 200
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("count", further([2, 4], []))
 def test_fewer_positions_are_met_by_sixbars_too(client, count):
     positions = FIVE[:count]
@@ -122,6 +123,7 @@ def test_auto_takes_sixbars_where_no_fourbar_is_sound_and_says_so(client):
     assert "no fourbar exists" in result["summary"]
 
 
+@pytest.mark.campaign
 def test_types_that_were_not_tried_are_not_said_to_fail(client):
     result = answered(client, mechanisms=["slider_crank", "watt_1"], max_designs=1)["result"]
     assert "None of the types named was found but sixbars." in result["summary"]
@@ -201,6 +203,7 @@ def _least(design) -> float:
     return design.metrics.min_transmission_angle
 
 
+@pytest.mark.campaign
 def test_more_than_five_positions_are_fitted_by_fourbars_under_auto(client):
     stated = {"positions": SIX, "input_side": {"fixed_pivot": [40.0, -80.0]}, "include_failed": True}
     result = answered(client, mechanisms="auto", **stated)["result"]
@@ -210,6 +213,7 @@ def test_more_than_five_positions_are_fitted_by_fourbars_under_auto(client):
     assert "Sixbars meet up to five positions; they were not looked for." in result["summary"]
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     ("stated", "field"),
     [
@@ -260,6 +264,7 @@ def test_the_chain_is_kept_as_it_is_stated(client, chain):
         assert next(c for c in design["verification"]["checks"] if c["name"] == "chain")["passed"]
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     "stated",
     [
@@ -304,6 +309,7 @@ def kept(chain, pivot, knee, pin) -> bool:
     return bends and all(stated is None or abs(value - stated) < 1e-6 for value, stated in wanted)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     "constraints",
     [
@@ -338,6 +344,7 @@ def test_constraints_hold_for_every_pivot_and_link(client, constraints):
         held_against_loops(design, FIVE)
 
 
+@pytest.mark.campaign
 def test_room_planes_and_forces_hold_together(client):
     body = answered(
         client,

@@ -105,6 +105,7 @@ def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
     assert client.get(f"/v1/jobs/{body['id']}/report.html").status_code == 200
 
 
+@pytest.mark.campaign
 @pytest.mark.timeout(300)
 def test_all_demands_are_kept_together(client):
     box, region = [[-90.0, -80.0], [110.0, 120.0]], {"x": [-80.0, 60.0], "y": [-70.0, 100.0]}
@@ -166,6 +167,7 @@ def ends_of(design) -> np.ndarray:
     return np.array(list(design["mechanism"]["skeleton"]["joints"].values()))
 
 
+@pytest.mark.campaign
 def test_moving_pivots_full_turns_the_order_and_those_that_failed_are_as_stated(client):
     region = {"x": [-10.0, 50.0], "y": [-10.0, 60.0]}
     limits = {"moving_pivot_region": region, "full_rotation": True}
@@ -227,6 +229,7 @@ def kept_room(design) -> list[bool]:
     return [*within, off >= 2.0 - 1e-3]
 
 
+@pytest.mark.campaign
 @pytest.mark.timeout(300)
 def test_boxes_obstacles_masses_planes_and_seeds_are_as_stated(client):
     plain = passed(answered(client, **POINTS, max_designs=16))
@@ -252,6 +255,7 @@ def test_boxes_obstacles_masses_planes_and_seeds_are_as_stated(client):
 NINE = [40 + 30j, 32 + 42j, 20 + 45j, 8 + 40j, 2 + 30j, 6 + 20j, 12 + 14j, 24 + 12j, 30 + 20j]
 
 
+@pytest.mark.campaign
 def test_sixbars_that_meet_the_points_stand_before_a_slider_crank_that_is_fitted_to_them(client):
     mixed = {"mechanisms": ["slider_crank", "stephenson_3"], "constraints": {"min_transmission_angle": 20.0}}
     nine = {"points": listed(NINE), "method": "auto", "closed": False, "max_designs": 3}
@@ -400,6 +404,7 @@ def test_what_types_cannot_be_asked_is_refused_at_its_field_and_is_none_without_
     assert answer.status_code == 202, answer.text
 
 
+@pytest.mark.campaign
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize(
     ("stated", "field"),
