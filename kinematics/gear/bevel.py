@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 from kinematics.errors import DimensionError
-from kinematics.gear.teeth import PRESSURE_ANGLE
+from kinematics.gear.teeth import PRESSURE_ANGLE, Gear, Mesh
 
 
 def cone_angles(shaft_angle: float, ratio: float) -> tuple[float, float]:
@@ -27,6 +28,10 @@ def cone_angles(shaft_angle: float, ratio: float) -> tuple[float, float]:
         raise DimensionError("ratio", "at least 1", ratio)
     pinion = math.atan2(math.sin(shaft_angle), ratio + math.cos(shaft_angle))
     return pinion, shaft_angle - pinion
+
+
+FLATTEST = 1e-6
+"""Cosine of the pitch cone angle at which a bevel gear counts as flat, times the ratio of the teeth or less."""
 
 
 @dataclass(frozen=True)
@@ -136,3 +141,67 @@ class BevelPair:
         first, second = self.addenda
         gear = 0.5 * self.circular_pitch - (first - second) * math.tan(self.pressure_angle)
         return self.circular_pitch - gear, gear
+
+
+@dataclass(frozen=True)
+class BevelCones:
+    """The pitch cones of two external bevel gears whose shafts meet at any angle.
+
+    Teeth are compared with those of the spur gears that the developed back cones show, of z / cos γ virtual teeth and
+    full depth (Tredgold's approximation; Norton, Sec. 9.5).
+
+    Attributes
+    ----------
+    driver, driven : int
+        Tooth numbers.
+    module : float
+        At the large end.
+    shaft_angle, pressure_angle : float
+        Radians.
+
+    Raises
+    ------
+    DimensionError
+        For a shaft angle at which the larger gear would be a crown gear, or an internal one.
+    """
+
+    driver: int
+    driven: int
+    module: float
+    shaft_angle: float
+    pressure_angle: float = PRESSURE_ANGLE
+
+    def __post_init__(self) -> None:
+        small, large = sorted((self.driver, self.driven))
+        if not small + large * math.cos(self.shaft_angle) > FLATTEST * large:
+            raise DimensionError("shaft_angle", "such that both pitch cones are less than flat", self.shaft_angle)
+        _ = self.back_mesh
+
+    @property
+    def cones(self) -> tuple[float, float]:
+        """Pitch cone angles of driver and driven gear."""
+        large, small = max(self.driver, self.driven), min(self.driver, self.driven)
+        pinion, gear = cone_angles(self.shaft_angle, large / small)
+        return (pinion, gear) if self.driver <= self.driven else (gear, pinion)
+
+    @property
+    def pitch_radii(self) -> tuple[float, float]:
+        """Of driver and driven gear at the large end."""
+        return 0.5 * self.module * self.driver, 0.5 * self.module * self.driven
+
+    @property
+    def cone_distance(self) -> float:
+        """From the apex to the large end."""
+        return self.pitch_radii[0] / math.sin(self.cones[0])
+
+    @property
+    def virtual_teeth(self) -> tuple[float, float]:
+        """z / cos γ of driver and driven gear."""
+        one, two = self.cones
+        return self.driver / math.cos(one), self.driven / math.cos(two)
+
+    @cached_property
+    def back_mesh(self) -> Mesh:
+        """The spur gears of the back cones, the smaller one as the pinion."""
+        pinion, gear = (Gear(teeth, self.module, self.pressure_angle) for teeth in sorted(self.virtual_teeth))
+        return Mesh(pinion, gear)

@@ -1,20 +1,49 @@
-"""Ordinary gear trains: external spur gears on fixed shafts, in stages, with idlers.
+"""Ordinary gear trains: gears on fixed shafts, in stages, with idlers.
 
-Each mesh turns the direction round and divides the speed by the ratio of the teeth (Norton, Design of Machinery,
-Sec. 9.6–9.8); speeds are followed mesh by mesh as exact fractions of the input's. With the power P on the input shaft
-and a share η of it passed on by every mesh, the torque on a shaft is P/ω times the product of the shares so far.
+Each mesh divides the speed by the ratio of the teeth (Norton, Design of Machinery, Sec. 9.6–9.8), and an external one
+turns the direction round; speeds are followed mesh by mesh as exact fractions of the input's. With the power P on the
+input shaft and a share η of it passed on by every mesh, the torque on a shaft is P/ω times the product of the shares so
+far.
+
+The shafts of a bevel stage meet, those of a worm and its gear cross: there is no common sense of rotation. The
+speed of a shaft is counted about an axis of its own, the input's from its own end on in the direction of the power:
+parallel shafts share it; the driven shaft of a bevel stage has its axis from the apex on outwards; that of a
+worm gear is d × w, d the direction from the worm to its gear and w the axis of the worm. So a bevel stage keeps the
+sign, and so does a right-handed worm; a left-handed one turns it.
 """
 
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
+from kinematics.gear.bevel import BevelCones
 from kinematics.gear.flanks import shortened_tips
+from kinematics.gear.helical import HelicalGear
 from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, PRESSURE_ANGLE, Gear, Mesh
+from kinematics.gear.worm import WormDrive
+
+StageKind = Literal["external", "internal", "helical", "bevel", "worm"]
+"""Two spur gears; a pinion in a ring; two helical gears; two bevel gears; a worm and its gear."""
+
+CROSSING: tuple[StageKind, ...] = ("bevel", "worm")
+"""Stages whose shafts are not parallel."""
+
+USUAL_QUOTIENT = 10.0
+"""Pitch diameter of a worm in axial modules, where none is stated."""
+
+USUAL_FRICTION = 0.05
+"""Friction coefficient of lubricated teeth, where none is stated."""
+
+Axis = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -23,6 +52,11 @@ class TrainStage:
 
     ``shifts`` are the profile shifts of driver and driven gear, modules; idlers have none. The tips of a shifted pair
     are shortened so that the clearance stays.
+
+    The module of helical teeth is that of the normal plane, of bevel teeth that of the large end, of a worm the axial
+    one; ``helix_angle`` is the driver's, the driven gear has the other hand. In an internal stage the larger gear is
+    the ring; ``addenda`` are those of driver and driven gear there, modules. A worm drives, and ``driver`` are its
+    threads. Angles are radians. ``face_width`` and ``friction`` decide over nothing that a train does as a motion.
     """
 
     driver: int
@@ -30,20 +64,53 @@ class TrainStage:
     module: float = 1.0
     idlers: tuple[int, ...] = ()
     shifts: tuple[float, float] = (0.0, 0.0)
+    kind: StageKind = "external"
+    helix_angle: float = 0.0
+    shaft_angle: float = 0.5 * math.pi
+    addenda: tuple[float, float] = (FULL_DEPTH_ADDENDUM, FULL_DEPTH_ADDENDUM)
+    quotient: float = USUAL_QUOTIENT
+    left_handed: bool = False
+    face_width: float | None = None
+    friction: float = USUAL_FRICTION
 
     @property
     def gears(self) -> tuple[int, ...]:
         """Teeth of all gears in the order in which they mesh."""
         return (self.driver, *self.idlers, self.driven)
 
+    @property
+    def sense(self) -> int:
+        """Sign that a mesh gives the speed, about the axes of its shafts."""
+        if self.kind == "worm":
+            return -1 if self.left_handed else 1
+        return 1 if self.kind in ("internal", "bevel") else -1
+
+    @property
+    def is_parallel(self) -> bool:
+        """Whether its shafts are parallel."""
+        return self.kind not in CROSSING
+
+    def worm(self, pressure_angle: float) -> WormDrive:
+        """The worm and its gear."""
+        return WormDrive(self.driver, self.driven, self.module, self.quotient, pressure_angle)
+
+    def cones(self, pressure_angle: float) -> BevelCones:
+        """The pitch cones of a bevel stage, the driver's first."""
+        return BevelCones(self.driver, self.driven, self.module, self.shaft_angle, pressure_angle)
+
     def meshes(self, pressure_angle: float) -> tuple[Mesh, ...]:
         """The meshes without play, the smaller gear as the pinion, of equal ones the first.
+
+        Helical teeth are those of the plane of rotation, bevel teeth those of the back cones; of a worm and its gear
+        there are none.
 
         Raises
         ------
         DimensionError
-            For gears that do not exist, or shifts of a stage with idlers.
+            For gears that do not exist, shifts of a stage with idlers, or either in a stage that has none.
         """
+        if self.kind != "external":
+            return self._other_meshes(pressure_angle)
         pairs = itertools.pairwise(self.gears)
         if self.shifts == (0.0, 0.0):
             return tuple(Mesh.standard((min(pair), max(pair)), self.module, pressure_angle) for pair in pairs)
@@ -54,8 +121,52 @@ class TrainStage:
         addendum = FULL_DEPTH_ADDENDUM - shortened_tips(Mesh(pinion, gear))
         return (Mesh(replace(pinion, addendum=addendum), replace(gear, addendum=addendum)),)
 
+    def _other_meshes(self, pressure_angle: float) -> tuple[Mesh, ...]:
+        """The mesh of a stage that is not external."""
+        if self.idlers:
+            raise DimensionError("idlers", f"none in a stage that is {self.kind}", self.idlers)
+        if self.kind != "helical" and self.shifts != (0.0, 0.0):
+            raise DimensionError("shifts", f"none in a stage that is {self.kind}", self.shifts)
+        if self.kind == "worm":
+            _ = self.worm(pressure_angle)
+            return ()
+        if self.kind == "bevel":
+            return (self.cones(pressure_angle).back_mesh,)
+        one, two = self.cut_gears(pressure_angle)
+        return (Mesh(one, two) if self.driver <= self.driven else Mesh(two, one),)
+
+    def _in_rotation(self, pressure_angle: float) -> tuple[Gear, Gear]:
+        """Driver and driven gear of a helical stage in the plane of rotation, their tips shortened where shifted."""
+        shrunk = math.cos(self.helix_angle)
+        one, two = (
+            replace(HelicalGear(teeth, self.module, angle, pressure_angle).transverse_gear, shift=shrunk * shift)
+            for teeth, angle, shift in zip(
+                (self.driver, self.driven), (self.helix_angle, -self.helix_angle), self.shifts, strict=True
+            )
+        )
+        if self.shifts == (0.0, 0.0):
+            return one, two
+        addendum = one.addendum - shortened_tips(Mesh(one, two))
+        return replace(one, addendum=addendum), replace(two, addendum=addendum)
+
     def cut_gears(self, pressure_angle: float) -> tuple[Gear, ...]:
-        """All gears in the order in which they mesh, with their shifts and tips."""
+        """All gears in the order in which they mesh, with their shifts and tips.
+
+        In the plane of rotation: of bevel gears those of the large ends, as if they were spur gears; of a worm stage
+        the gear alone, in its middle plane.
+        """
+        if self.kind == "helical":
+            return self._in_rotation(pressure_angle)
+        if self.kind == "internal":
+            one, two = (
+                Gear(teeth, self.module, pressure_angle, addendum, internal=teeth > mate)
+                for teeth, mate, addendum in zip(
+                    (self.driver, self.driven), (self.driven, self.driver), self.addenda, strict=True
+                )
+            )
+            return one, two
+        if self.kind == "worm":
+            return (self.worm(pressure_angle).gear,)
         if self.shifts == (0.0, 0.0):
             return tuple(Gear(teeth, self.module, pressure_angle) for teeth in self.gears)
         mesh = self.meshes(pressure_angle)[0]
@@ -88,12 +199,14 @@ class OrdinaryTrain:
 
     @cached_property
     def speeds(self) -> tuple[tuple[Fraction, ...], ...]:
-        """Speeds of the gears of each stage, as fractions of the input's; a negative one turns the other way."""
+        """Speeds of the gears of each stage, as fractions of the input's; a negative one turns the other way.
+
+        Each is counted about the axis of its shaft (:attr:`axes`)."""
         speed, stages = Fraction(1), []
         for stage in self.stages:
             at = [speed]
             for driver, driven in itertools.pairwise(stage.gears):
-                at.append(-at[-1] * driver / driven)
+                at.append(stage.sense * at[-1] * driver / driven)
             stages.append(tuple(at))
             speed = at[-1]
         return tuple(stages)
@@ -104,9 +217,39 @@ class OrdinaryTrain:
         return 1 / self.speeds[-1][-1]
 
     @property
+    def is_parallel(self) -> bool:
+        """Whether all shafts are parallel."""
+        return all(stage.is_parallel for stage in self.stages)
+
+    @cached_property
+    def axes(self) -> tuple[Axis, ...]:
+        """Axes of the shafts from the input's on, unit vectors of shape (3,), the input's along z.
+
+        A bevel stage turns the axis about y, its driven shaft towards x where the shafts before it are along z; a worm
+        has its gear beside it in the direction in which a bevel gear would lead its shaft away.
+        """
+        along, aside = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
+        axes = [along]
+        for stage in self.stages:
+            if stage.kind == "bevel":
+                cosine, sine = math.cos(stage.shaft_angle), math.sin(stage.shaft_angle)
+                along, aside = sine * aside - cosine * along, -cosine * aside - sine * along
+            elif stage.kind == "worm":
+                along = np.cross(aside, along)
+            axes.append(along)
+        return tuple(axes)
+
+    @property
     def centre_distances(self) -> tuple[float, ...]:
-        """Distance of the shafts of each stage, with the idlers in line."""
-        return tuple(sum(mesh.centre_distance for mesh in stage) for stage in self.meshes)
+        """Distance of the shafts of each stage, with the idlers in line; 0 where they meet."""
+        return tuple(
+            0.0
+            if stage.kind == "bevel"
+            else stage.worm(self.pressure_angle).centre_distance
+            if stage.kind == "worm"
+            else sum(mesh.centre_distance for mesh in meshes)
+            for stage, meshes in zip(self.stages, self.meshes, strict=True)
+        )
 
     def torques(self, input_torque: float, mesh_efficiency: tuple[tuple[float, ...], ...]) -> tuple[float, ...]:
         """Torque that each shaft passes on, from the input shaft to the output shaft; idlers pass on none.

@@ -3,14 +3,24 @@
 A worm of n threads advances its gear by the lead L = n p_x a turn, p_x the axial pitch, which is the circular pitch of
 the gear: D_g = z p_x / π. The lead angle is tan λ = L / (π D_w) and equals the gear's helix angle (Norton, Design of
 Machinery, Sec. 9.4, worms; Rao, Sec. 7.6). Angles are radians.
+
+With the friction coefficient μ and the pressure angle φ_n of the normal plane the worm passes on the share
+
+    η = (cos φ_n − μ tan λ) / (cos φ_n + μ cot λ)
+
+of its power, and its gear, driving, η' = (cos φ_n − μ cot λ) / (cos φ_n + μ tan λ): it drives nothing where that is not
+positive, tan λ ≤ μ / cos φ_n (Shigley's Mechanical Engineering Design, Sec. 13-17, eq. 13-46).
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 from kinematics.errors import DimensionError
+from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, PRESSURE_ANGLE, Gear
 
 
 @dataclass(frozen=True)
@@ -66,3 +76,86 @@ class WormSet:
     def is_locking(self, friction: float) -> bool:
         """Whether the gear cannot drive the worm: tan λ ≤ μ, for square threads."""
         return math.tan(self.lead_angle) <= friction
+
+
+class WormForces(NamedTuple):
+    """Forces on the teeth at a torque of the worm, unit of torque over unit of length.
+
+    ``worm`` is tangential to the worm and axial on the gear, ``gear`` tangential to the gear and axial on the worm.
+    """
+
+    worm: float
+    gear: float
+    radial: float
+
+
+@dataclass(frozen=True)
+class WormDrive:
+    """A cylindrical worm that drives its gear; shafts at a right angle.
+
+    ``module`` is the axial one of the worm; its pitch diameter is ``quotient`` of them, so that tan λ = threads /
+    quotient. ``normal_pressure_angle`` is that of the normal plane of the worm.
+
+    Raises
+    ------
+    DimensionError
+        For numbers that are not positive.
+    """
+
+    threads: int
+    gear_teeth: int
+    module: float
+    quotient: float
+    normal_pressure_angle: float = PRESSURE_ANGLE
+
+    def __post_init__(self) -> None:
+        _ = self.dimensions
+
+    @cached_property
+    def dimensions(self) -> WormSet:
+        """The dimensions of worm and gear."""
+        return WormSet(self.threads, self.gear_teeth, math.pi * self.module, self.quotient * self.module)
+
+    @property
+    def lead_angle(self) -> float:
+        """tan λ = threads / quotient."""
+        return self.dimensions.lead_angle
+
+    @property
+    def centre_distance(self) -> float:
+        """Distance of the crossing shafts."""
+        return self.dimensions.centre_distance
+
+    @property
+    def axial_pressure_angle(self) -> float:
+        """tan φ_x = tan φ_n / cos λ: of the rack that the middle plane shows of the worm."""
+        return math.atan(math.tan(self.normal_pressure_angle) / math.cos(self.lead_angle))
+
+    @property
+    def gear(self) -> Gear:
+        """The gear in the middle plane, where the worm is a rack of full depth."""
+        return Gear(self.gear_teeth, self.module, self.axial_pressure_angle)
+
+    @property
+    def contact_ratio(self) -> float:
+        """In the middle plane, of the gear with a rack."""
+        gear, phi = self.gear, self.axial_pressure_angle
+        recess = math.sqrt(gear.tip_radius**2 - gear.base_radius**2) - gear.pitch_radius * math.sin(phi)
+        return (recess + FULL_DEPTH_ADDENDUM * self.module / math.sin(phi)) / gear.base_pitch
+
+    def efficiency(self, friction: float) -> float:
+        """Share of the worm's power that the gear passes on; 0 where friction holds the worm."""
+        cosine, slope = math.cos(self.normal_pressure_angle), math.tan(self.lead_angle)
+        return max(0.0, (cosine - friction * slope) / (cosine + friction / slope))
+
+    def is_locking(self, friction: float) -> bool:
+        """Whether the gear cannot drive the worm: tan λ ≤ μ / cos φ_n."""
+        return math.tan(self.lead_angle) * math.cos(self.normal_pressure_angle) <= friction
+
+    def forces(self, torque: float, friction: float) -> WormForces:
+        """Forces at a torque of the worm (Shigley, eq. 13-43)."""
+        phi, lead = self.normal_pressure_angle, self.lead_angle
+        worm = 2.0 * torque / self.dimensions.worm_diameter
+        normal = worm / (math.cos(phi) * math.sin(lead) + friction * math.cos(lead))
+        gear = normal * (math.cos(phi) * math.cos(lead) - friction * math.sin(lead))
+        return WormForces(worm, gear, normal * math.sin(phi))

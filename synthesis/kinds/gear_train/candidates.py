@@ -275,7 +275,7 @@ def _grouped(task: Task, k: int, stages: list[tuple[Integers, Integers, Integers
         ends = task.fit.ends[mark, a, b]
         fits = np.isfinite(ends[:, 0, 0])
         a, b, mark, stage, ends = a[fits], b[fits], mark[fits], stage[fits], ends[fits]
-    key = task.pitches[mark] * (a + b) if coaxial else np.zeros(len(a), np.int64)
+    key = task.distance_keys(mark, stage, a, b) if coaxial else np.zeros(len(a), np.int64)
     order = np.lexsort((b / a, stage, key))
     a, b, mark, stage, key = (column[order] for column in (a, b, mark, stage, key))
     distances = np.ascontiguousarray(ends[order])

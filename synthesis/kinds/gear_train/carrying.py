@@ -209,8 +209,13 @@ def arrangements(problem: GearTrainProblem, task: Task, train: Train) -> list[Tr
     k = len(train.drivers)
     numbers = [(set(task.drivers[i].tolist()), set(task.driven[i].tolist()), task.stages(k, i)) for i in range(k)]
     found = set()
-    for places in itertools.permutations(range(k)):
-        for mates in [places] if task.reverted else itertools.permutations(range(k)):
+    orders = [
+        places
+        for places in itertools.permutations(range(k))
+        if all(task.likeness[i] == task.likeness[j] for i, j in enumerate(places))
+    ]
+    for places in orders:
+        for mates in [places] if task.reverted else orders:
             meshes = [(train.drivers[i], train.driven[j]) for i, j in zip(places, mates, strict=True)]
             if all(
                 a in own and b in others and ok[a, b] for (a, b), (own, others, ok) in zip(meshes, numbers, strict=True)

@@ -6,9 +6,11 @@ from typing import Literal
 
 from pydantic import Field
 
+from kinematics.gear.train import StageKind
 from synthesis.model.answer import Answer, Result, Search, Verification, optional
 from synthesis.model.dimension import Angle, Length
 from synthesis.model.gear_answer import MeshGeometry, OfGears, Ratio
+from synthesis.model.gear_stages import Hand
 from synthesis.model.gear_strength import PairStrength
 
 
@@ -20,7 +22,14 @@ class Stage(Answer):
     module: Length = Field(description="Module in length units.")
     shift: OfGears | None = optional("Profile shift of both gears in modules, where teeth are fitted.")
     centre_distance: Length | None = optional("Distance of the shafts without play, where teeth are fitted.")
-    face_width: Length | None = optional("The least with which the stage carries a stated power.")
+    face_width: Length | None = optional("The least with which the stage carries a stated power, or as stated.")
+    type: StageKind | None = optional("Where the stages are stated by their types.")
+    helix_angle: Angle | None = optional("Of a helical driver, positive for a right-handed one.")
+    addendum: OfGears | None = optional("Of an internal pair, modules: the ring's teeth are shortened for the pinion.")
+    shaft_angle: Angle | None = optional("Of bevel gears.")
+    diameter_quotient: float | None = optional("Of a worm: its pitch diameter over its axial module.")
+    hand: Hand | None = optional("Of a worm.")
+    friction: float | None = optional("Between a worm and its gear.")
 
 
 class Idler(Answer):
@@ -31,13 +40,30 @@ class Idler(Answer):
 
 
 class GearTrainMechanism(Answer):
-    """An ordinary train of external spur gears on fixed shafts."""
+    """An ordinary train on fixed shafts, of external spur gears where its stages have no types."""
 
     type: Literal["gear_train"] = "gear_train"
     stages: list[Stage]
     idlers: list[Idler] = Field(default=[])
     ratio: Ratio
     pressure_angle: Angle = Field(default=20.0, description="Degrees.")
+
+
+class TurningShaft(Answer):
+    """A shaft from the input's on, and how it turns.
+
+    Where shafts are not parallel the sign is that of the rotation about ``axis``, which points the way of the power; a
+    bevel stage leads it away from the apex, and the axis of a worm gear is d × w, d the direction from the worm to the
+    gear and w the axis of the worm. Another side of a bevel or worm gear turns the axis round, and with it the sign.
+    """
+
+    speed: Ratio = Field(description="Over the input's; negative: against it.")
+    turns: Literal["same", "opposite"] | None = Field(
+        description="As the input turns, or the other way; null where the shaft is not parallel with the input's."
+    )
+    axis: tuple[float, float, float] | None = optional(
+        "About which the speed is counted, the input's along z; left out where all shafts are parallel."
+    )
 
 
 class GearTrainMetrics(Answer):
@@ -52,6 +78,7 @@ class GearTrainMetrics(Answer):
     centre_distances: list[Length] = Field(description="Of the shafts of each stage, idlers in line.")
     meshes: list[MeshGeometry]
     strength: list[PairStrength] | None = optional("Stresses of every mesh, in their order, under a stated power.")
+    shafts: list[TurningShaft] | None = optional("Where the stages are stated by their types.")
 
 
 class GearTrainDesign(Answer):

@@ -213,7 +213,7 @@ def _sound_between(asked: bytes, n: int, low: float, high: float, ends: bool, de
 
 def _stages_apart(problem: GearTrainProblem) -> int:
     """How many stages have meshes of their own: one stands for all where they are alike."""
-    return problem.max_stages if isinstance(problem.centre_distance, list) or problem.has_own_modules else 1
+    return problem.most_stages if isinstance(problem.centre_distance, list) or problem.has_own_modules else 1
 
 
 def _choices(problem: GearTrainProblem, stage: int, modules: tuple[float, ...]) -> list[int]:

@@ -6,12 +6,17 @@ import math
 from collections import Counter
 from collections.abc import Iterator
 
+from kinematics.gear.train import USUAL_FRICTION, USUAL_QUOTIENT
 from synthesis.kinds.gear_train.design import GearTrainMechanism, Idler, Stage
-from synthesis.kinds.gear_train.fitting import Fit, FittedStage
+from synthesis.kinds.gear_train.fitting import FittedStage
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.search import Train
 from synthesis.kinds.gear_train.task import Task, needs_idler
 from synthesis.model.gear_answer import OfGears, Ratio
+from synthesis.model.gear_stages import OF_TYPES, RIGHT_ANGLE, ring_addenda
+
+TOLD = ("type", *OF_TYPES)
+"""What a stage of a design takes from its statement."""
 
 Known = dict[tuple[int, tuple[int, int]], list[Stage]]
 """By the row of a stage and its teeth: the stage with every module that fits it."""
@@ -20,12 +25,33 @@ Known = dict[tuple[int, tuple[int, int]], list[Stage]]
 def stages_of(problem: GearTrainProblem, task: Task, train: Train) -> list[Stage]:
     """The meshes with their modules, and with their shifts where teeth are fitted."""
     if task.fit is not None:
-        return [_fitted(task.fit, mesh, made) for mesh, made in zip(train.meshes, task.fit.fitted(*train), strict=True)]
+        fitted = task.fit.fitted(*train)
+        return [
+            _fitted(problem, task, number, mesh, made)
+            for number, (mesh, made) in enumerate(zip(train.meshes, fitted, strict=True))
+        ]
     stages = []
     for number, ((driver, driven), mark) in enumerate(zip(train.meshes, train.marks, strict=True)):
         place = mark if problem.reverted else min(number, len(task.modules) - 1)
-        stages.append(Stage(driver=driver, driven=driven, module=float(task.modules[place])))
+        plain = Stage(driver=driver, driven=driven, module=float(task.modules[place]))
+        stages.append(_typed(problem, task, number, plain))
     return stages
+
+
+def _typed(problem: GearTrainProblem, task: Task, number: int, stage: Stage) -> Stage:
+    """A stage, counted from 0, with what its statement tells of it, where stages are stated one by one."""
+    if not task.stated:
+        return stage
+    stated = task.stated[number]
+    told = {name: getattr(stated, name) for name in TOLD if getattr(stated, name) is not None}
+    if stated.type == "bevel":
+        told.setdefault("shaft_angle", RIGHT_ANGLE)
+    if stated.type == "worm":
+        told = {"diameter_quotient": USUAL_QUOTIENT, "hand": "right", "friction": USUAL_FRICTION} | told
+    if stated.type == "internal":
+        one, two = ring_addenda(stage.driver, stage.driven, math.radians(problem.pressure_angle))
+        told["addendum"] = OfGears(driver=one, driven=two)
+    return stage.model_copy(update=told)
 
 
 def choices_of(problem: GearTrainProblem, task: Task, train: Train, known: Known) -> list[list[Stage]]:
@@ -40,19 +66,22 @@ def choices_of(problem: GearTrainProblem, task: Task, train: Train, known: Known
     for number, mesh in enumerate(train.meshes):
         key = fit.stage(number), mesh
         if key not in known:
-            known[key] = [_fitted(fit, mesh, fit.made(number, *mesh, place)) for place in fit.places(number, *mesh)]
+            made = (fit.made(number, *mesh, place) for place in fit.places(number, *mesh))
+            known[key] = [_fitted(problem, task, number, mesh, one) for one in made]
         choices.append(known[key])
     return choices
 
 
-def _fitted(fit: Fit, mesh: tuple[int, int], made: FittedStage) -> Stage:
-    return Stage(
+def _fitted(problem: GearTrainProblem, task: Task, number: int, mesh: tuple[int, int], made: FittedStage) -> Stage:
+    assert task.fit is not None
+    stage = Stage(
         driver=mesh[0],
         driven=mesh[1],
-        module=fit.modules[made.module],
+        module=task.fit.modules[made.module],
         shift=OfGears(driver=made.shifts[0], driven=made.shifts[1]),
         centre_distance=made.distance,
     )
+    return _typed(problem, task, number, stage)
 
 
 def mechanism_of(problem: GearTrainProblem, task: Task, train: Train) -> GearTrainMechanism | None:
@@ -66,9 +95,20 @@ def assembled(problem: GearTrainProblem, train: Train, stages: list[Stage], idle
     return GearTrainMechanism(
         stages=stages,
         idlers=idlers,
-        ratio=Ratio.of(train.ratio * (-1) ** (len(stages) + len(idlers))),
+        ratio=Ratio.of(train.ratio * sign_of(problem, len(stages) + len(idlers))),
         pressure_angle=problem.pressure_angle,
     )
+
+
+def sign_of(problem: GearTrainProblem, meshes: int) -> int:
+    """Sign of the ratio of a train of so many meshes, or of the stages that are stated.
+
+    Where shafts are not parallel it is that of rotations about their axes, as a mechanism tells them.
+    """
+    if problem.stages is None:
+        return int((-1) ** meshes)
+    opposite = sum(stage.sense < 0 or stage.hand == "left" for stage in problem.stages)
+    return int((-1) ** opposite)
 
 
 def idler_choices(problem: GearTrainProblem, task: Task, train: Train) -> Iterator[list[Idler]]:

@@ -25,7 +25,8 @@ class Rule(NamedTuple):
     stage, of the pairs ``idled``, an idler stands between the gears, and has to mesh soundly (``sound``) with both; of
     a stock it takes one more gear. ``most_total`` bounds the sum of all teeth. ``ordered``: stages have ranges of their
     own, of the place i of a train's teeth from ``least[i]`` to ``most[i]``. ``by_size``: the smallest trains first,
-    else the nearest. ``largest``: the size of a train is its largest gear, else the sum of all teeth.
+    else the nearest. ``largest``: the size of a train is its largest gear, else the sum of all teeth. Gears change
+    places only between stages of one ``likeness``.
     """
 
     target: float
@@ -46,6 +47,7 @@ class Rule(NamedTuple):
     by_stock: bool
     stock: Integers
     most_total: int
+    likeness: Integers
 
 
 @njit(cache=True, nogil=True)
@@ -147,6 +149,17 @@ def in_ranges(teeth: Integers, start: int, k: int, rule: Rule) -> bool:
 
 
 @njit(cache=True, nogil=True)
+def among_alike(k: int, order: int, likeness: Integers, moved: Integers) -> bool:
+    """Whether an order moves things between stages that are alike only; ``moved`` is written to."""
+    moved[:k] = likeness[:k]
+    rearrange(likeness, 0, k, order, moved)
+    alike = True
+    for i in range(k):
+        alike = alike and moved[i] == likeness[i]
+    return alike
+
+
+@njit(cache=True, nogil=True)
 def foremost(teeth: Integers, k: int, rule: Rule, coaxial: bool) -> bool:
     """Whether a train stands for all that have its gears in other places (``coaxial``: its meshes).
 
@@ -155,14 +168,16 @@ def foremost(teeth: Integers, k: int, rule: Rule, coaxial: bool) -> bool:
     if not may_be(teeth, k, rule):
         return False
     own, count = widest(teeth, k), orders(k)
-    other = np.zeros(3 * MOST_STAGES, np.int64)
+    other, alike = np.zeros(3 * MOST_STAGES, np.int64), np.zeros(MOST_STAGES, np.int64)
     for order in range(count):
         rearrange(teeth, 0, k, order, other)
-        if not in_ranges(other, 0, k, rule):
+        if not among_alike(k, order, rule.likeness, alike) or not in_ranges(other, 0, k, rule):
             continue
         rearrange(teeth, 2 * MOST_STAGES, k, order, other)
         for mates in range(order if coaxial else 0, order + 1 if coaxial else count):
             rearrange(teeth, MOST_STAGES, k, mates, other)
+            if not among_alike(k, mates, rule.likeness, alike):
+                continue
             if not in_ranges(other, MOST_STAGES, k, rule) or not may_be(other, k, rule):
                 continue
             ratio = widest(other, k)

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
+from synthesis.kinds.gear_train.stated_stages import StatedStage, sense_of
 from synthesis.model.dimension import INVERSE_LENGTH
 from synthesis.model.gear_statement import (
     MOST_TEETH,
@@ -43,6 +44,9 @@ among which the smallest are sought. Of all trains whatever their error the smal
 
 DEFAULT_MOST_TEETH = 100
 
+FITTED_TYPES, CARRYING_TYPES = ("external", "helical"), ("external", "internal")
+"""Types of stages whose teeth can be fitted, and those whose strength is estimated."""
+
 USUAL_SHIFT = (-0.5, 1.0)
 """Profile shifts, in modules, that a stated centre distance may call for where no limits are stated."""
 
@@ -73,7 +77,8 @@ class GearTrainProblem(StatedProblem):
     """An ordinary gear train of one to four stages for a speed ratio, proven to be the best.
 
     Every train within the ranges, or of the gears in stock, is covered in exact arithmetic. The answer is the trains in
-    the order of the ranking, the number of ties, and the Pareto set of error against size.
+    the order of the ranking, the number of ties, and the Pareto set of error against size. Stages are of external spur
+    gears, or stated one by one: external, internal, helical, bevel, worm.
     """
 
     model_config = ConfigDict(
@@ -122,6 +127,31 @@ class GearTrainProblem(StatedProblem):
                     },
                     "max_designs": 3,
                 },
+                {
+                    "kind": "gear_train",
+                    "ratio": "-47",
+                    "stages": [
+                        {"type": "helical", "helix_angle": 15.0, "face_width": 40.0},
+                        {"type": "internal"},
+                        {"type": "external"},
+                    ],
+                    "direction": "any",
+                    "teeth": {"min": 18, "max": 90},
+                    "module": 2.0,
+                    "max_designs": 3,
+                },
+                {
+                    "kind": "gear_train",
+                    "ratio": "100",
+                    "stages": [
+                        {"type": "bevel", "driver": 20, "driven": 30},
+                        {"type": "worm", "driver": 2, "driven": {"min": 30, "max": 60}, "friction": 0.04},
+                        {"type": "external"},
+                    ],
+                    "teeth": {"min": 18, "max": 60},
+                    "module": [3.0, 4.0, 2.5],
+                    "max_designs": 3,
+                },
             ]
         },
     )
@@ -138,6 +168,15 @@ class GearTrainProblem(StatedProblem):
         "two meshes with it keep the demands on meshes, and driver and driven gear the limit of the stage ratio.",
     )
     max_stages: Annotated[Count, Field(ge=1, le=4)] = 3
+    stages: list[StatedStage] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=4,
+        description="The stages from the input on, each with its type, in place of `max_stages`: a train has all of "
+        "them, "
+        "in this order, and no idlers. Only trains of parallel shafts have a direction. Where `teeth` has no `min`, "
+        "helical gears have the fewest that no rack undercuts in their normal plane.",
+    )
     teeth: TeethRange | Annotated[list[TeethRange], Field(min_length=2, max_length=8)] | None = Field(
         default=None,
         description="Range of tooth numbers; or one range for each position: driver and driven gear of stage 1, 2, ... "
@@ -250,10 +289,27 @@ class GearTrainProblem(StatedProblem):
         """The ranges of tooth numbers: one for each position, or one for all of them."""
         return self.teeth if isinstance(self.teeth, list) else [self.teeth or TeethRange()]
 
+    @property
+    def most_stages(self) -> int:
+        """Stages of a train at most; exactly so many where they are stated one by one."""
+        return self.max_stages if self.stages is None else len(self.stages)
+
+    @property
+    def are_parallel(self) -> bool:
+        """Whether all shafts are parallel."""
+        return all(stage.is_parallel for stage in self.stages or [])
+
     def position_ranges(self) -> list[tuple[int, int]]:
-        """Fewest and most teeth of driver and driven gear of each stage up to ``max_stages``."""
-        stated = self.ranges if isinstance(self.teeth, list) else self.ranges * (2 * self.max_stages)
-        return [(self.fewest_teeth if r.min is None else r.min, r.max) for r in stated]
+        """Fewest and most teeth of driver and driven gear of each stage up to ``most_stages``."""
+        stated = self.ranges if isinstance(self.teeth, list) else self.ranges * (2 * self.most_stages)
+        if self.stages is None:
+            return [(self.fewest_teeth if r.min is None else r.min, r.max) for r in stated]
+        limits = []
+        for stage, (one, two) in zip(self.stages, zip(stated[0::2], stated[1::2], strict=True), strict=True):
+            fewest = stage.fewest_teeth(self.pressure_angle, ROUNDING)
+            usual = [(fewest if r.min is None else r.min, r.max) for r in (one, two)]
+            limits += [stage.limits("driver") or usual[0], stage.limits("driven") or usual[1]]
+        return limits
 
     def stocked(self) -> dict[int, int]:
         """How many gears of each tooth number are in stock."""
@@ -264,10 +320,15 @@ class GearTrainProblem(StatedProblem):
         return counts
 
     @property
+    def _fitting_fields(self) -> list[str]:
+        """The fields that are stated of those with which teeth are fitted."""
+        names = "modules", "centre_distance", "shift", "min_contact_ratio", "min_tip_thickness"
+        return [name for name in names if getattr(self, name) is not None]
+
+    @property
     def is_fitted(self) -> bool:
         """Whether the teeth of every mesh are fitted to a distance, or have to be sound without."""
-        stated = self.modules, self.centre_distance, self.shift, self.min_contact_ratio, self.min_tip_thickness
-        return any(field is not None for field in stated)
+        return bool(self._fitting_fields)
 
     @property
     def shift_limits(self) -> tuple[float, float]:
@@ -340,6 +401,7 @@ class GearTrainProblem(StatedProblem):
         """Faults that no single field shows."""
         wrong = [] if self.strength is None else self.strength.faults()
         return [
+            *self._wrong_stages(),
             *self._contradicting_fields(),
             *self._wrong_lists(),
             *self._wrong_fit(),
@@ -361,26 +423,69 @@ class GearTrainProblem(StatedProblem):
             contradictions.append(
                 Contradiction("/stock", "the stock already states the tooth numbers; drop teeth or stock")
             )
-        if self.reverted and self.max_stages < 2:
+        if self.reverted and self.most_stages < 2:
             contradictions.append(
                 Contradiction("/reverted", "a reverted train has at least two stages; raise max_stages")
             )
         return contradictions
 
+    def _wrong_stages(self) -> list[Contradiction]:
+        """Faults of stages that are stated one by one, and of what is asked of them together."""
+        if self.stages is None:
+            return []
+        faults = [
+            Contradiction(f"/stages/{number}{path}", detail)
+            for number, stage in enumerate(self.stages)
+            for path, detail in stage.faults()
+        ]
+        if self.max_stages not in (type(self).model_fields["max_stages"].default, len(self.stages)):
+            detail = f"{len(self.stages)} stages are stated one by one; leave max_stages out"
+            faults.append(Contradiction("/max_stages", detail))
+        if self.stock is not None:
+            detail = "a stock does not tell of which type its gears are; state driver and driven of the stages"
+            faults.append(Contradiction("/stock", detail))
+        faults += self._wrong_direction(self.stages)
+        for number, stage in enumerate(self.stages):
+            path = f"/stages/{number}/type"
+            if self.reverted and not stage.is_parallel:
+                faults.append(Contradiction(path, f"a {stage.type} stage has no parallel shafts; drop reverted"))
+            if self.is_fitted and stage.type not in FITTED_TYPES:
+                detail = f"teeth of a stage that is {stage.type} are not fitted; drop {', '.join(self._fitting_fields)}"
+                faults.append(Contradiction(path, detail))
+            if self.strength is not None and stage.type not in CARRYING_TYPES:
+                detail = f"the strength of a stage that is {stage.type} is not estimated; drop strength"
+                faults.append(Contradiction(path, detail))
+        if self.strength is not None and any(stage.type == "internal" for stage in self.stages):
+            wrong = self.strength.faults_of_ring()
+            faults += [Contradiction(f"/strength{path}", detail) for path, detail in wrong]
+        return faults
+
+    def _wrong_direction(self, stages: list[StatedStage]) -> list[Contradiction]:
+        wanted, sense = self.demanded_sign, sense_of(stages)
+        if not wanted or wanted == sense:
+            return []
+        field = "/ratio" if self.direction == "any" else "/direction"
+        if not sense:
+            detail = "has no meaning where shafts meet or cross: it depends on the side on which the gears stand"
+            return [Contradiction(field, f"a direction {detail}; state the size of the ratio only")]
+        turning = "alike" if sense > 0 else "in opposite directions"
+        detail = f"these stages turn input and output {turning}; make one more of them internal, or one less"
+        return [Contradiction(field, detail)]
+
     def _wrong_lists(self) -> list[Contradiction]:
         contradictions = []
-        if isinstance(self.teeth, list) and len(self.teeth) != 2 * self.max_stages:
+        if isinstance(self.teeth, list) and len(self.teeth) != 2 * self.most_stages:
             contradictions.append(
                 Contradiction(
                     "/teeth",
-                    f"expected {2 * self.max_stages} ranges, driver and driven gear of {self.max_stages} stages, "
+                    f"expected {2 * self.most_stages} ranges, driver and driven gear of {self.most_stages} stages, "
                     f"got {len(self.teeth)}",
                 )
             )
         for place, one in enumerate(self.ranges):
-            if one.min is None and self.fewest_teeth > one.max:
+            if one.min is None and self._fewest_at(place) > one.max:
                 path = f"/teeth/{place}/max" if isinstance(self.teeth, list) else "/teeth/max"
-                detail = f"below the least sound tooth number {self.fewest_teeth}; state min as well"
+                detail = f"below the least sound tooth number {self._fewest_at(place)}; state min as well"
                 contradictions.append(Contradiction(path, detail))
         if isinstance(self.module, list):
             if len(set(self.module)) < len(self.module) and self.reverted:
@@ -389,13 +494,21 @@ class GearTrainProblem(StatedProblem):
                 )
             elif max(self.pitches()) > FINEST_PITCHES:
                 contradictions.append(Contradiction("/module", "the modules have no common measure; round them"))
-            elif not self.reverted and len(self.module) != self.max_stages:
+            elif not self.reverted and len(self.module) != self.most_stages:
                 contradictions.append(
                     Contradiction(
-                        "/module", f"expected the modules of {self.max_stages} stages, got {len(self.module)}"
+                        "/module", f"expected the modules of {self.most_stages} stages, got {len(self.module)}"
                     )
                 )
         return contradictions
+
+    def _fewest_at(self, place: int) -> int:
+        """Fewest teeth that are not undercut, of a place in the list of ranges or of all."""
+        if self.stages is None:
+            return self.fewest_teeth
+        rows = self.stages[place // 2 : place // 2 + 1] if isinstance(self.teeth, list) else self.stages
+        free = [stage for stage in rows if stage.driver is None or stage.driven is None]
+        return max((stage.fewest_teeth(self.pressure_angle, ROUNDING) for stage in free), default=0)
 
     def _wrong_fit(self) -> list[Contradiction]:
         contradictions = []
@@ -412,15 +525,15 @@ class GearTrainProblem(StatedProblem):
                         "/centre_distance", "a reverted train has one distance for all stages; state a number"
                     )
                 )
-            elif len(self.centre_distance) != self.max_stages:
-                expected = f"expected the distances of {self.max_stages} stages, got {len(self.centre_distance)}"
+            elif len(self.centre_distance) != self.most_stages:
+                expected = f"expected the distances of {self.most_stages} stages, got {len(self.centre_distance)}"
                 contradictions.append(Contradiction("/centre_distance", expected))
         return contradictions
 
     def _too_much(self) -> list[Contradiction]:
         if self._wrong_lists() or self._wrong_fit():
             return []
-        k = self.max_stages
+        k = self.most_stages
         field = "/teeth"
         if self.stock is not None:
             widths, field = [len(self.stocked())] * (2 * k), "/stock"

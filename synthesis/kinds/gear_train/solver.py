@@ -11,7 +11,7 @@ from synthesis.kinds.gear_train.design import (
     ParetoTrain,
     Stage,
 )
-from synthesis.kinds.gear_train.making import mechanism_of, stages_of
+from synthesis.kinds.gear_train.making import mechanism_of, sign_of, stages_of
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.search import Outcome, Train, order, search
 from synthesis.kinds.gear_train.task import Task, gear_train_task
@@ -59,7 +59,9 @@ def solve_gear_train(problem: GearTrainProblem, progress: Progress) -> GearTrain
 
 def _front(problem: GearTrainProblem, task: Task, outcome: Outcome) -> list[ParetoTrain]:
     return [
-        _pareto_train(task, train, stages_of(problem, task, train), Ratio.of(train.ratio * (-1) ** len(train.drivers)))
+        _pareto_train(
+            task, train, stages_of(problem, task, train), Ratio.of(train.ratio * sign_of(problem, len(train.drivers)))
+        )
         for train in outcome.pareto
     ]
 
@@ -99,9 +101,10 @@ def _ranked(problem: GearTrainProblem, task: Task, wanted: int, progress: Progre
 
 def _gears(task: Task, train: Train) -> tuple[object, ...]:
     """What tells a train from others: its meshes where the pairing is part of it, else its drivers and driven gears."""
+    alike = task.likeness[: len(train.drivers)]
     if task.reverted:
-        return tuple(sorted(zip(*train, strict=True)))
-    return tuple(sorted(train.drivers)), tuple(sorted(train.driven))
+        return tuple(sorted(zip(*train, alike, strict=True)))
+    return tuple(tuple(sorted(zip(alike, gears, strict=True))) for gears in (train.drivers, train.driven))
 
 
 def _least_error(task: Task, outcome: Outcome) -> float | None:
@@ -168,7 +171,7 @@ def _scope(problem: GearTrainProblem, number: str) -> str:
 def _why_none(problem: GearTrainProblem, task: Task, outcome: Outcome) -> str:
     """The reason why the search is empty, as the end of a sentence."""
     if not task.stage_counts:
-        if problem.reverted and problem.demanded_sign < 0 and problem.max_stages < 3:
+        if problem.reverted and problem.demanded_sign < 0 and problem.most_stages < 3:
             return "a reverted train of two stages turns input and output alike; allow three stages"
         if problem.stock is not None:
             return f"a stock of {sum(problem.stocked().values())} gears is too small for a train of the kind asked"

@@ -13,6 +13,8 @@ from kinematics.gear.teeth import largest_gear
 from synthesis.kinds.gear_train.fitting import Fit, fit_meshes
 from synthesis.kinds.gear_train.pairing import MOST_STAGES, Integers, Rule
 from synthesis.kinds.gear_train.problem import FINEST_PITCHES, GearTrainProblem
+from synthesis.kinds.gear_train.stage_meshes import distance_keys, sound_meshes
+from synthesis.kinds.gear_train.stated_stages import StatedStage
 from synthesis.model.gear_statement import MOST_TEETH
 from synthesis.model.ratio_target import Target, decimal
 
@@ -27,6 +29,9 @@ class Task:
     ``drivers[i]``, ``driven[i]`` are the tooth numbers of stage i, rising; where stages are ``ordered`` they have their
     own, else the same. ``stock[t]`` is empty without a stock. ``pitches`` are the modules
     in a unit in which all are whole numbers. ``fit`` tells of meshes whose teeth are fitted to their distances.
+
+    Of stages that are ``stated`` one by one, ``own[i]`` tells which gears may mesh in stage i, unless all are alike,
+    and gears change places only between stages of one ``likeness``.
 
     Trains of ``idler_counts`` stages need one of the ``idlers`` in a stage. Its driver and driven gear do not mesh with
     one another, only with the idler: ``sound[a, b]`` tells which gears may mesh, ``idled[a, b]`` between which an idler
@@ -52,6 +57,9 @@ class Task:
     by_size: bool
     largest: bool
     fit: Fit | None
+    stated: tuple[StatedStage, ...]
+    own: tuple[NDArray[np.bool_], ...]
+    likeness: tuple[int, ...]
 
     @property
     def most_teeth(self) -> int:
@@ -60,9 +68,14 @@ class Task:
 
     def meshes(self, stage: int) -> NDArray[np.bool_]:
         """Which gears may mesh in a stage, counted from 0."""
-        if self.fit is None:
-            return self.allowed
-        return np.asarray(self.allowed & (self.fit.module[self.fit.stage(stage)] >= 0))
+        sound = self.own[stage] if self.own else self.allowed
+        return sound if self.fit is None else np.asarray(sound & (self.fit.module[self.fit.stage(stage)] >= 0))
+
+    def distance_keys(self, mark: Integers, stage: Integers, a: Integers, b: Integers) -> Integers:
+        """Whole numbers that are equal for meshes a:b of equal distance; ``mark``: the place of the module of each."""
+        if not self.stated:
+            return np.asarray(self.pitches[mark] * (a + b))
+        return distance_keys(self.stated, self.pitches[mark], stage, a, b)
 
     def stages(self, k: int, stage: int) -> NDArray[np.bool_]:
         """Driver and driven gear that a stage, counted from 0, of a train of k stages may have."""
@@ -72,7 +85,7 @@ class Task:
         """The task for the compiled loops over trains of k stages."""
         head, rest = self.target.parts()
         stocked = len(self.stock) > 0
-        by_stage = self.fit is not None and self.fit.by_stage
+        by_stage = (self.fit is not None and self.fit.by_stage) or bool(self.own)
         of_stage = [self.meshes(stage) for stage in range(len(self.drivers))] if by_stage else [np.zeros((1, 1), bool)]
         return Rule(
             target=head,
@@ -93,6 +106,7 @@ class Task:
             by_stock=stocked,
             stock=self.stock if stocked else np.zeros(1, np.int64),
             most_total=2 * len(self.drivers) * self.most_teeth if self.most_total is None else self.most_total,
+            likeness=np.array(self.likeness, np.int64),
         )
 
 
@@ -109,7 +123,7 @@ def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
     counts = problem.stocked()
     if counts:
         numbers = np.array(sorted(counts), np.int64)
-        positions = [numbers] * (2 * problem.max_stages)
+        positions = [numbers] * (2 * problem.most_stages)
     else:
         positions = [np.arange(low, high + 1, dtype=np.int64) for low, high in problem.position_ranges()]
     most = int(max(values[-1] for values in positions))
@@ -119,7 +133,7 @@ def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
     drivers, driven = tuple(positions[0::2]), tuple(positions[1::2])
     fit = fit_meshes(problem, np.unique(np.concatenate(positions))) if problem.is_fitted else None
     demanding = problem.max_stage_ratio is not None or problem.interference == "refuse"
-    by_mesh = coprime or demanding or fit is not None
+    by_mesh = coprime or demanding or fit is not None or problem.stages is not None
     sound = _sound_meshes(problem, most, coprime)
     if fit is not None:
         sound &= fit.allowed
@@ -132,14 +146,20 @@ def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
         # Counted in floats, which the matrix product of whole numbers is not made for.
         before, after = sound[:, idlers].astype(np.float32), sound[idlers].astype(np.float32)
         idled = (before @ after > 0.0) & limited
-    stages = allowed | idled
+    own = _own_meshes(problem, most, sound, limited)
+    stages = [allowed | idled] * len(drivers)
+    if own:
+        allowed = np.asarray(np.logical_or.reduce(own))
+        stages = list(own)
     modules = tuple(problem.exact_modules())
     apart = any(not np.array_equal(v, positions[k % 2]) for k, v in enumerate(positions))
+    if not apart and not any(_likeness(problem)):
+        own = ()
     return Task(
         target=problem.target,
-        drivers=tuple(_usable(values, stages.T, mates) for values, mates in zip(drivers, driven, strict=True)),
-        driven=tuple(_usable(values, stages, mates) for values, mates in zip(driven, drivers, strict=True)),
-        ordered=apart or (fit is not None and fit.by_stage),
+        drivers=tuple(_usable(values, ok.T, mates) for values, ok, mates in zip(drivers, stages, driven, strict=True)),
+        driven=tuple(_usable(values, ok, mates) for values, ok, mates in zip(driven, stages, drivers, strict=True)),
+        ordered=apart or (fit is not None and fit.by_stage) or bool(own),
         allowed=allowed,
         by_mesh=by_mesh,
         sound=sound,
@@ -156,7 +176,30 @@ def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
         by_size=problem.rank_by == "size",
         largest=problem.size == "largest_gear",
         fit=fit,
+        stated=tuple(problem.stages or ()),
+        own=own,
+        likeness=_likeness(problem),
     )
+
+
+def _own_meshes(
+    problem: GearTrainProblem, most: int, sound: NDArray[np.bool_], limited: NDArray[np.bool_]
+) -> tuple[NDArray[np.bool_], ...]:
+    """Which gears may mesh in each of the stages that are stated one by one; ``sound`` as spur gears are."""
+    rows: dict[StatedStage, NDArray[np.bool_]] = {}
+    for stage in problem.stages or []:
+        if stage not in rows:
+            meshing = sound & sound_meshes(problem, stage, most)
+            # The threads of a worm are not the teeth of a gear.
+            rows[stage] = meshing if stage.type == "worm" else meshing & limited
+    return tuple(rows[stage] for stage in problem.stages or [])
+
+
+def _likeness(problem: GearTrainProblem) -> tuple[int, ...]:
+    """A number for each stage, equal for those whose gears may change places."""
+    known = [stage.likeness for stage in problem.stages or []]
+    numbers = [known.index(one) for one in known]
+    return (*numbers, *([0] * (MOST_STAGES - len(numbers))))
 
 
 def _stands_on_pitch_circles(problem: GearTrainProblem) -> bool:
@@ -167,14 +210,15 @@ def _stands_on_pitch_circles(problem: GearTrainProblem) -> bool:
 
 
 def needs_idler(problem: GearTrainProblem, stages: int) -> bool:
-    """Whether a train of so many external stages turns the wrong way without an idler."""
-    return problem.demanded_sign == (1 if stages % 2 else -1)
+    """Whether a train of so many external stages turns the wrong way without an idler; stated stages never do."""
+    return problem.stages is None and problem.demanded_sign == (1 if stages % 2 else -1)
 
 
 def _stage_counts(problem: GearTrainProblem, stocked: int | None) -> tuple[int, ...]:
     """Numbers of stages that the direction and the stock permit."""
     counts = []
-    for k in range(2 if problem.reverted else 1, problem.max_stages + 1):
+    fewest = 2 if problem.reverted else 1
+    for k in range(fewest if problem.stages is None else problem.most_stages, problem.most_stages + 1):
         idler = needs_idler(problem, k)
         # An idler in one stage of a reverted train would spread its shafts, and stages with a distance have no room.
         if (idler and (problem.reverted or problem.is_fitted)) or (stocked is not None and stocked < 2 * k + idler):
@@ -189,7 +233,7 @@ def _sound_meshes(problem: GearTrainProblem, most: int, coprime: bool) -> NDArra
     sound = np.minimum(a, b) > 0
     if coprime:
         sound &= np.gcd(a, b) == 1
-    if problem.interference == "refuse" and not problem.is_fitted:
+    if problem.interference == "refuse" and not problem.is_fitted and problem.stages is None:
         largest = [largest_gear(n, math.radians(problem.pressure_angle)) if n else 0 for n in range(most + 1)]
         bound = np.array([most if n is None else n for n in largest])
         sound &= np.maximum(a, b) <= bound[np.minimum(a, b)]

@@ -11,13 +11,15 @@ from collections import Counter
 from fractions import Fraction
 
 from kinematics.errors import DimensionError
-from kinematics.gear.train import OrdinaryTrain, TrainStage
-from synthesis.kinds.gear_train.design import GearTrainDesign, GearTrainMechanism, GearTrainMetrics
+from kinematics.gear.train import OrdinaryTrain
+from synthesis.kinds.gear_train.design import GearTrainDesign, GearTrainMechanism, GearTrainMetrics, Stage, TurningShaft
 from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.kinds.gear_train.stated_stages import StatedStage
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
 from synthesis.model.dynamics import METRES
-from synthesis.model.gear_answer import mesh_geometries
+from synthesis.model.gear_answer import Ratio, mesh_geometries
+from synthesis.model.gear_stages import OF_TYPES, train_stage
 from synthesis.model.gear_strength import Loaded, PairStrength, stage_contact, told
 from synthesis.model.ratio_target import decimal
 from synthesis.proof.checks import tolerated
@@ -28,6 +30,12 @@ DISTANCE_TOLERANCE = 1e-12
 FITTED = 1e-9
 """Share of a module, or of a contact ratio, by which a fitted mesh may miss a demand in rounding."""
 
+PARALLEL = 1e-12
+"""By how much the cosine of the angle between parallel axes may differ from 1 in rounding."""
+
+AXIS_DIGITS = 15
+"""Decimals to which axes are told: right angles are right."""
+
 ENCLOSURE_BITS = 256
 """Width of the target's enclosure; errors of trains are told to some sixty digits."""
 
@@ -37,19 +45,11 @@ def driven_train(mechanism: GearTrainMechanism) -> OrdinaryTrain:
     idlers: dict[int, list[int]] = {}
     for idler in mechanism.idlers:
         idlers.setdefault(idler.stage, []).append(idler.teeth)
-    return OrdinaryTrain(
-        tuple(
-            TrainStage(
-                stage.driver,
-                stage.driven,
-                stage.module,
-                tuple(idlers.get(number, ())),
-                (0.0, 0.0) if stage.shift is None else (stage.shift.driver, stage.shift.driven),
-            )
-            for number, stage in enumerate(mechanism.stages, 1)
-        ),
-        math.radians(mechanism.pressure_angle),
+    angle = math.radians(mechanism.pressure_angle)
+    stages = (
+        train_stage(stage, angle, tuple(idlers.get(number, ()))) for number, stage in enumerate(mechanism.stages, 1)
     )
+    return OrdinaryTrain(tuple(stages), angle)
 
 
 def verify(problem: GearTrainProblem, mechanism: GearTrainMechanism) -> GearTrainDesign | None:
@@ -67,15 +67,19 @@ def verify(problem: GearTrainProblem, mechanism: GearTrainMechanism) -> GearTrai
         relative_error=float(errors[0]),
         total_teeth=sum(gears),
         largest_gear=max(gears),
-        largest_stage_ratio=max(max(s.driver, s.driven) / min(s.driver, s.driven) for s in train.stages),
+        largest_stage_ratio=max(
+            (max(s.driver, s.driven) / min(s.driver, s.driven) for s in train.stages if s.kind != "worm"), default=1.0
+        ),
         hunting_tooth=all(math.gcd(*pair) == 1 for pair in pairs),
         centre_distances=list(train.centre_distances),
         meshes=meshes,
         strength=_strength(problem, mechanism, train),
+        shafts=None if problem.stages is None else _shafts(train),
     )
     checks = [
         *_ratio_checks(problem, mechanism, train, errors),
         *_gear_checks(problem, mechanism, train, metrics),
+        *_type_checks(problem, mechanism, train, metrics),
         *_mesh_checks(problem, metrics),
         *(_fit_checks(problem, mechanism, metrics) if problem.is_fitted else []),
         *_strength_checks(problem, mechanism, metrics),
@@ -118,11 +122,11 @@ def _gear_checks(
 ) -> list[Check]:
     """Numbers of stages and teeth, the stock, and the largest stage ratio."""
     count = len(train.stages)
-    checks = [tolerated("stages", count, problem.max_stages)]
+    checks = [tolerated("stages", count, problem.most_stages)]
     if problem.stock is not None:
         used, stocked = Counter(n for stage in train.stages for n in stage.gears), problem.stocked()
         checks.append(Check(name="stock", passed=all(stocked.get(n, 0) >= many for n, many in used.items())))
-    elif count <= problem.max_stages:
+    elif count <= problem.most_stages:
         ranges = problem.position_ranges()
         gears = [n for stage in train.stages for n in (stage.driver, stage.driven)]
         inside = all(low <= n <= high for n, (low, high) in zip(gears, ranges, strict=False))
@@ -130,13 +134,55 @@ def _gear_checks(
     if problem.max_stage_ratio is not None:
         limit = decimal(problem.max_stage_ratio)
         kept = all(
-            Fraction(s.driven, s.driver) <= limit and Fraction(s.driver, s.driven) <= limit for s in train.stages
+            Fraction(s.driven, s.driver) <= limit and Fraction(s.driver, s.driven) <= limit
+            for s in train.stages
+            if s.kind != "worm"
         )
         value = metrics.largest_stage_ratio
         checks.append(Check(name="stage_ratio", passed=kept, value=value, limit=problem.max_stage_ratio))
     if problem.max_total_teeth is not None:
         checks.append(tolerated("total_teeth", metrics.total_teeth, problem.max_total_teeth))
     return checks
+
+
+def _type_checks(
+    problem: GearTrainProblem, mechanism: GearTrainMechanism, train: OrdinaryTrain, metrics: GearTrainMetrics
+) -> list[Check]:
+    """Stages of the types that are stated, with what belongs to them, and rings in which their pinions run."""
+    if problem.stages is None:
+        return []
+    stated = len(problem.stages) == len(mechanism.stages) and all(
+        _as_stated(one, made) for one, made in zip(problem.stages, mechanism.stages, strict=True)
+    )
+    checks = [Check(name="stage_types", passed=stated)]
+    rings = [mesh for mesh in metrics.meshes if mesh.type == "internal"]
+    if rings:
+        runs = not any(mesh.interferes or mesh.contact_ratio < 1.0 for mesh in rings)
+        checks.append(Check(name="rings", passed=runs))
+    return checks
+
+
+def _as_stated(stated: StatedStage, made: Stage) -> bool:
+    """Whether a stage has everything that its statement says, and its ring in the stated place."""
+    said = {name: getattr(stated, name) for name in ("type", *OF_TYPES)}
+    ring = made.driver if stated.ring == "driver" else made.driven
+    return all(value is None or getattr(made, name) == value for name, value in said.items()) and (
+        stated.type != "internal" or ring == max(made.driver, made.driven)
+    )
+
+
+def _shafts(train: OrdinaryTrain) -> list[TurningShaft]:
+    """The shafts from the input's on, from the speeds that were followed, about the axes that they have."""
+    speeds = [Fraction(1), *(stage[-1] for stage in train.speeds)]
+    first, shafts = train.axes[0], []
+    for speed, axis in zip(speeds, train.axes, strict=True):
+        along = float(axis @ first)
+        turns = None
+        if abs(along) > 1.0 - PARALLEL:
+            turns = "same" if along * speed > 0 else "opposite"
+        told = None if train.is_parallel else tuple(float(round(part, AXIS_DIGITS)) + 0.0 for part in axis)
+        shafts.append(TurningShaft(speed=Ratio.of(speed), turns=turns, axis=told))
+    return shafts
 
 
 def _mesh_checks(problem: GearTrainProblem, metrics: GearTrainMetrics) -> list[Check]:

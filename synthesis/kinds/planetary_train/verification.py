@@ -14,7 +14,6 @@ from fractions import Fraction
 from kinematics.errors import DimensionError
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from kinematics.gear.assembly import Gap, fits_at, gaps, is_coaxial, pin_distances
-from kinematics.gear.flanks import ShapedRing
 from kinematics.gear.planetary import speed_ratio, speeds
 from kinematics.gear.power import power_flow
 from kinematics.gear.teeth import Gear, Mesh
@@ -22,8 +21,7 @@ from synthesis.kinds.planetary_train.design import MeshContact, PlanetaryMechani
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
-from synthesis.model.gear_answer import ON_LIMIT, tool_contact
-from synthesis.model.mesh_limits import usual_cutter
+from synthesis.model.gear_answer import reaches_fillet
 from synthesis.model.ratio_target import decimal
 from synthesis.outcome.exhaustive import within_tolerance
 from synthesis.proof.checks import at_least, at_most
@@ -98,7 +96,7 @@ def measure(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Planeta
                 gears=pair,
                 contact_ratio=mesh.contact_ratio,
                 centre_distance=_apart(arrangement, pair, mesh),
-                fillet_interference=None if problem.fillets == "ignore" else _in_fillet(problem, mesh),
+                fillet_interference=None if problem.fillets == "ignore" else reaches_fillet(mesh),
             )
             for pair, mesh in _toothed(mechanism, arrangement).items()
         ],
@@ -213,12 +211,6 @@ def _meshes(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangemen
         at_least("contact_ratio", least, problem.min_contact_ratio),
     ]
     if problem.fillets == "refuse":
-        reached = any(_in_fillet(problem, mesh) for mesh in meshes.values())
+        reached = any(reaches_fillet(mesh) for mesh in meshes.values())
         checks.append(Check(name="fillet_interference", passed=not reached))
     return checks
-
-
-def _in_fillet(problem: PlanetaryProblem, mesh: Mesh) -> bool:
-    """Whether contact goes below an involute: of gears as a rack cuts them, of a ring as the usual cutter shapes it."""
-    ring = ShapedRing(mesh.gear, int(usual_cutter(mesh.gear.teeth))) if mesh.gear.internal else None
-    return min(tool_contact(mesh, ring).margins) < -ON_LIMIT * mesh.centre_distance

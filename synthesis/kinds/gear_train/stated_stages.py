@@ -1,0 +1,106 @@
+"""Stages that are stated one by one: of which type each is, and which of its gears are given."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from kinematics.gear.train import CROSSING, StageKind
+from synthesis.model.gear_stages import StageForm
+from synthesis.model.gear_statement import FEWEST_TEETH, MOST_TEETH
+from synthesis.model.statement import Count, Range
+
+MOST_THREADS = 6
+"""Threads of a worm."""
+
+KEPT_APART = ("driver", "driven")
+"""Fields that do not make stages unlike: gears of stages that are alike but for these may change places."""
+
+StageTeeth = Annotated[Count, Field(ge=1, le=MOST_TEETH)]
+"""Teeth of a gear, or the threads of a worm."""
+
+
+class StageTeethRange(Range):
+    """Fewest and most teeth of a gear of a stage, or threads of its worm."""
+
+    min: StageTeeth
+    max: StageTeeth
+
+
+class StatedStage(StageForm):
+    """One stage of a train: its type, what belongs to that, and the gears that are given."""
+
+    type: StageKind = Field(description=StageForm.model_fields["type"].description)
+    ring: Literal["driver", "driven"] | None = Field(
+        default=None, description="Which gear of an internal stage is the ring; the driven one where left out."
+    )
+    driver: StageTeeth | StageTeethRange | None = Field(
+        default=None,
+        description="Teeth of the driving gear, or a range of them, in place of `teeth`; of a worm its threads, 1 to "
+        f"{MOST_THREADS}. Bevel and worm stages need it.",
+    )
+    driven: StageTeeth | StageTeethRange | None = Field(
+        default=None, description="Teeth of the driven gear, likewise. Bevel and worm stages need it."
+    )
+
+    @property
+    def is_parallel(self) -> bool:
+        """Whether its shafts are parallel."""
+        return self.type not in CROSSING
+
+    @property
+    def sense(self) -> int:
+        """How its shafts turn: +1 alike, −1 opposite ways; 0 where they are not parallel."""
+        if not self.is_parallel:
+            return 0
+        return 1 if self.type == "internal" else -1
+
+    @property
+    def likeness(self) -> tuple[Any, ...]:
+        """What stages have in common whose gears may change places."""
+        return tuple(
+            getattr(self, name) for name in type(self).model_fields if name not in KEPT_APART and name != "face_width"
+        )
+
+    def limits(self, name: Literal["driver", "driven"]) -> tuple[int, int] | None:
+        """Fewest and most teeth of a gear, where they are stated here."""
+        stated = getattr(self, name)
+        if stated is None:
+            return None
+        return (stated.min, stated.max) if isinstance(stated, StageTeethRange) else (stated, stated)
+
+    def fewest_teeth(self, pressure_angle: float, rounding: float) -> int:
+        """Fewest teeth that a rack does not undercut, 2 cos β / sin² φ_t rounded up; ``pressure_angle`` in degrees."""
+        beta = math.radians(self.helix_angle or 0.0)
+        transverse = math.atan(math.tan(math.radians(pressure_angle)) / math.cos(beta))
+        return math.ceil(2.0 * math.cos(beta) / math.sin(transverse) ** 2 * (1.0 - rounding))
+
+    def faults(self) -> list[tuple[str, str]]:
+        """What contradicts itself, by the path below the stage."""
+        faults = self.faults_of_type()
+        if self.ring is not None and self.type != "internal":
+            faults.append(("/ring", "only an internal stage has a ring; leave it out"))
+        for name, least, most in self._bounds():
+            limits = self.limits(name)
+            if limits is None:
+                if not self.is_parallel:
+                    faults.append((f"/{name}", f"state it; a stage that is {self.type} is given"))
+                continue
+            if limits[0] < least or limits[1] > most:
+                of = "threads" if most == MOST_THREADS else "teeth"
+                faults.append((f"/{name}", f"expected {least} to {most} {of}"))
+        return faults
+
+    def _bounds(self) -> list[tuple[Literal["driver", "driven"], int, int]]:
+        worm = self.type == "worm"
+        return [
+            ("driver", 1 if worm else FEWEST_TEETH, MOST_THREADS if worm else MOST_TEETH),
+            ("driven", FEWEST_TEETH, MOST_TEETH),
+        ]
+
+
+def sense_of(stages: list[StatedStage]) -> int:
+    """How input and output of stages turn: +1 alike, −1 opposite ways; 0 where the shafts are not all parallel."""
+    return math.prod(stage.sense for stage in stages)
