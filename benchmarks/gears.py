@@ -1,11 +1,12 @@
 """Gears that are cut and turned against what the analysis says of them, and fitted trains against a brute force.
 
-    python -m benchmarks.gears [--pairs 500] [--trains 100] [--seed 0]
+    python -m benchmarks.gears [--pairs 500] [--trains 100] [--typed 100] [--seed 0]
 
 Pairs, external and internal, are drawn at random and stated to the analysis `gear_pair`. The same gears are cut by a
 rack, and rings by a cutter, point by point, and turned (`benchmarks.independent.cut_gears`): undercut, contact in
 fillets, and of pairs without such faults play, contact ratio and tip thickness. Trains with centre distances and
-profile shifts are searched by the solver and by a loop over all gears (`benchmarks.independent.fitted_trains`).
+profile shifts are searched by the solver and by a loop over all gears (`benchmarks.independent.fitted_trains`); so are
+trains of typed stages (`benchmarks.independent.typed_trains`).
 """
 
 from __future__ import annotations
@@ -18,11 +19,13 @@ from dataclasses import dataclass, field
 from random import Random
 from typing import Any
 
+from benchmarks.independent import typed_trains
 from benchmarks.independent.cut_gears import Run, external, involute_radius, is_undercut, rack, ring, run
-from benchmarks.independent.fitted_trains import Best, best_train, same_answer, statements
+from benchmarks.independent.fitted_trains import best_train, same_answer, statements
 from synthesis.analyses import parse_request
 from synthesis.dispatch import solve
 from synthesis.kinds.gear_train.design import GearTrainResult
+from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.mechanisms.base import MechanismError
 from synthesis.registry import parse_problem
 
@@ -148,21 +151,50 @@ def compare_numbers(pair: dict[str, Any], said: dict[str, Any], turned: Run, fou
         found.differ("tip_thickness", gear["tip_thickness"] - thickness, pair)
 
 
-def compare_trains(number: int, seed: int) -> tuple[int, int, list[str], float]:
-    """Solve as many random tasks and look through them by brute force: with an answer, without, faults, CPU seconds."""
-    some, none, spent, faults = 0, 0, 0.0, []
-    for statement in statements(number, seed):
+@dataclass
+class Solved:
+    """Tasks that were solved and looked through by brute force: with an answer, without, faults, CPU seconds."""
+
+    some: int = 0
+    none: int = 0
+    spent: float = 0.0
+    faults: list[str] = field(default_factory=list)
+
+    def solve(self, statement: dict[str, Any]) -> tuple[GearTrainResult, bool]:
+        """The solver's answer, and whether it has to be complete."""
         problem = parse_problem(statement)
+        assert isinstance(problem, GearTrainProblem)
         started = time.process_time()
         result = solve(problem, lambda fraction, message: None)
-        spent += time.process_time() - started
+        self.spent += time.process_time() - started
         assert isinstance(result, GearTrainResult)
-        best: Best | None = best_train(statement)
-        some, none = (some + 1, none) if best else (some, none + 1)
-        fault = same_answer(result.model_dump(), best, not problem.searches_distances)
+        return result, not problem.searches_distances
+
+    def note(self, statement: dict[str, Any], answered: bool, fault: str | None) -> None:
+        """Take note of a comparison."""
+        self.some, self.none = (self.some + 1, self.none) if answered else (self.some, self.none + 1)
         if fault is not None:
-            faults.append(f"{fault}: {statement}")
-    return some, none, faults, spent
+            self.faults.append(f"{fault}: {statement}")
+
+
+def compare_trains(number: int, seed: int) -> Solved:
+    """Solve as many random tasks with distances and shifts."""
+    found = Solved()
+    for statement in statements(number, seed):
+        result, decided = found.solve(statement)
+        best = best_train(statement)
+        found.note(statement, best is not None, same_answer(result.model_dump(), best, decided))
+    return found
+
+
+def compare_typed(number: int, seed: int) -> Solved:
+    """Solve as many random tasks of typed stages."""
+    found = Solved()
+    for statement in typed_trains.statements(number, seed):
+        result, _ = found.solve(statement)
+        best = typed_trains.nearest(statement)
+        found.note(statement, best is not None, typed_trains.same_answer(result.model_dump(), best))
+    return found
 
 
 def main() -> None:
@@ -170,6 +202,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--pairs", type=int, default=500)
     parser.add_argument("--trains", type=int, default=100)
+    parser.add_argument("--typed", type=int, default=100)
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args()
     found = compare_pairs(options.pairs, options.seed)
@@ -177,9 +210,16 @@ def main() -> None:
           f"{found.undercut} gears undercut, {found.in_fillet} pairs with contact in a fillet")  # fmt: skip
     for name, by in found.largest.items():
         print(f"  {name}: they differ by {by:.1e} at most")
-    some, none, faults, spent = compare_trains(options.trains, options.seed)
-    print(f"{some + none} trains by brute force: {some} with an answer, {none} without; solved in {spent:.1f} s of CPU")
-    for fault in found.faults + faults:
+    faults = list(found.faults)
+    for name, of, compared in (
+        ("fitted", options.trains, compare_trains),
+        ("typed", options.typed, compare_typed),
+    ):
+        told = compared(of, options.seed)
+        print(f"{told.some + told.none} {name} trains by brute force: {told.some} with an answer, {told.none} without; "
+              f"solved in {told.spent:.1f} s of CPU")  # fmt: skip
+        faults += told.faults
+    for fault in faults:
         print("  FAULT", fault)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
     print(f"peak memory {peak:.0f} MiB")

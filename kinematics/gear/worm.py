@@ -137,16 +137,30 @@ class WormDrive:
         return Gear(self.gear_teeth, self.module, self.axial_pressure_angle)
 
     @property
+    def approach(self) -> float:
+        """Part of the path of contact that the tip circle of the gear cuts off, in the middle plane."""
+        gear = self.gear
+        return math.sqrt(gear.tip_radius**2 - gear.base_radius**2) - gear.pitch_radius * math.sin(gear.pressure_angle)
+
+    @property
+    def recess(self) -> float:
+        """Part of the path of contact that the tips of the worm, there a rack, cut off."""
+        return FULL_DEPTH_ADDENDUM * self.module / math.sin(self.axial_pressure_angle)
+
+    @property
     def contact_ratio(self) -> float:
         """In the middle plane, of the gear with a rack."""
-        gear, phi = self.gear, self.axial_pressure_angle
-        recess = math.sqrt(gear.tip_radius**2 - gear.base_radius**2) - gear.pitch_radius * math.sin(phi)
-        return (recess + FULL_DEPTH_ADDENDUM * self.module / math.sin(phi)) / gear.base_pitch
+        return (self.approach + self.recess) / self.gear.base_pitch
 
     def efficiency(self, friction: float) -> float:
         """Share of the worm's power that the gear passes on; 0 where friction holds the worm."""
         cosine, slope = math.cos(self.normal_pressure_angle), math.tan(self.lead_angle)
         return max(0.0, (cosine - friction * slope) / (cosine + friction / slope))
+
+    def driven_back(self, friction: float) -> float:
+        """Share of the gear's power that the worm takes up where the gear drives; 0 where it cannot."""
+        cosine, slope = math.cos(self.normal_pressure_angle), math.tan(self.lead_angle)
+        return max(0.0, (cosine - friction / slope) / (cosine + friction * slope))
 
     def is_locking(self, friction: float) -> bool:
         """Whether the gear cannot drive the worm: tan λ ≤ μ / cos φ_n."""

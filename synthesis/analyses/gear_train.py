@@ -10,7 +10,6 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import replace
-from fractions import Fraction
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -18,14 +17,24 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, Field
 
 from kinematics.errors import DimensionError
-from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, Mesh
-from kinematics.gear.train import OrdinaryTrain, TrainStage
+from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, FULL_DEPTH_DEDENDUM, Gear, Mesh
+from kinematics.gear.train import USUAL_FRICTION, Axis, OrdinaryTrain, StageKind, TrainStage
+from kinematics.gear.worm import WormDrive
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
 from synthesis.analyses.drift import WANTED, Drift, drifting
 from synthesis.model.answer import Answer, optional
 from synthesis.model.dynamics import METRES
-from synthesis.model.gear_answer import MeshGeometry, Ratio, mesh_geometries, rack_undercuts
-from synthesis.model.gear_statement import ExactRatio, PressureAngle, ShiftCoefficient, ToothNumber
+from synthesis.model.gear_answer import Helix, MeshGeometry, OfGears, Ratio, mesh_geometries, rack_undercuts
+from synthesis.model.gear_stages import MOST_THREADS, StageForm, train_stage
+from synthesis.model.gear_statement import (
+    FEWEST_TEETH,
+    MOST_TEETH,
+    Addendum,
+    ExactRatio,
+    PressureAngle,
+    ShiftCoefficient,
+    ToothNumber,
+)
 from synthesis.model.gear_strength import (
     Loaded,
     PairStrength,
@@ -42,9 +51,6 @@ SAME_DISTANCE = 1e-6
 SAME_RATIO = 1e-9
 """Share by which the number that is stated beside a ratio's numerator and denominator may differ from them."""
 
-FRICTION = 0.05
-"""Friction coefficient of lubricated steel teeth, where none is stated."""
-
 
 class GivenShifts(Statement):
     """Profile shifts of a stage, modules, positive outwards; the tips are shortened so that the clearance stays."""
@@ -53,23 +59,58 @@ class GivenShifts(Statement):
     driven: ShiftCoefficient
 
 
-class GivenStage(Statement):
+class GivenAddenda(Statement):
+    """Addenda of driver and driven gear of an internal stage, modules."""
+
+    driver: Addendum
+    driven: Addendum
+
+
+class GivenStage(StageForm):
     """Two gears that mesh; the driven gear sits on the shaft of the next stage's driver."""
 
-    driver: ToothNumber
+    driver: Annotated[int, Field(strict=True, ge=1, le=MOST_TEETH)] = Field(
+        description=f"Teeth of the driving gear, at least {FEWEST_TEETH}; of a worm its threads."
+    )
     driven: ToothNumber
-    module: PositiveNumber = Field(default=1.0, description="Module in length units.")
+    module: PositiveNumber = Field(
+        default=1.0,
+        description="Module in length units: of helical teeth in the normal plane, of bevel teeth at the large end, "
+        "of a worm the axial one.",
+    )
     shift: GivenShifts | None = None
     centre_distance: PositiveNumber | None = Field(
         default=None, description="As in a design: it has to be that of the teeth without play."
     )
+    face_width: PositiveNumber | None = Field(
+        default=None,
+        description="For `strength`; of helical gears for the overlap, of bevel gears for the forces, which then "
+        "stand in the middle of the face.",
+    )
+    addendum: GivenAddenda | None = Field(
+        default=None,
+        description="Of an internal stage; left out: the ring's is as long as the pinion's flank lets it be.",
+    )
 
-    face_width: PositiveNumber | None = Field(default=None, description="For `strength`.")
+    def faults_of_type(self) -> list[tuple[str, str]]:
+        """Fields that another type has, gears that this type does not take, by their path below the stage."""
+        faults = super().faults_of_type()
+        if self.type != "worm" and self.driver < FEWEST_TEETH:
+            faults.append(("/driver", f"a gear has at least {FEWEST_TEETH} teeth"))
+        if self.type == "worm" and self.driver > MOST_THREADS:
+            faults.append(("/driver", f"a worm has 1 to {MOST_THREADS} threads"))
+        if self.type not in ("external", "helical") and self.shift is not None:
+            faults.append(("/shift", f"a stage that is {self.type} has no shift"))
+        if self.type != "internal" and self.addendum is not None:
+            faults.append(("/addendum", "only an internal stage has other addenda than a module"))
+        if self.type == "internal" and self.driver == self.driven:
+            faults.append(("/driven", "a ring has more teeth than its pinion"))
+        return faults
 
-    @property
-    def shifts(self) -> tuple[float, float]:
-        """Profile shifts of driver and driven gear."""
-        return (0.0, 0.0) if self.shift is None else (self.shift.driver, self.shift.driven)
+    @classmethod
+    def types_with(cls, name: str) -> tuple[StageKind, ...]:
+        """Which types of stages have a field; a face width is asked of all that carry a force."""
+        return ("external", "internal", "helical", "bevel") if name == "face_width" else super().types_with(name)
 
 
 class GivenIdler(Statement):
@@ -106,10 +147,8 @@ class GivenGearTrain(Statement):
     def train(self) -> OrdinaryTrain:
         """The train for the analysis core."""
         idlers = {k: tuple(i.teeth for i in self.idlers if i.stage == k) for k in range(1, len(self.stages) + 1)}
-        stages = tuple(
-            TrainStage(s.driver, s.driven, s.module, idlers[k], s.shifts) for k, s in enumerate(self.stages, 1)
-        )
-        return OrdinaryTrain(stages, math.radians(self.pressure_angle))
+        angle = math.radians(self.pressure_angle)
+        return OrdinaryTrain(tuple(train_stage(s, angle, idlers[k]) for k, s in enumerate(self.stages, 1)), angle)
 
 
 class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
@@ -144,7 +183,7 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         default=None, description="Share of the power that every mesh passes on; from the friction where left out."
     )
     friction: Annotated[float, Field(strict=True, ge=0.0, le=1.0)] = Field(
-        default=FRICTION, description="Friction coefficient between the teeth."
+        default=USUAL_FRICTION, description="Friction coefficient between the teeth; of a worm it is the stage's own."
     )
     wanted_ratio: ExactRatio | None = Field(default=None, description=WANTED)
     strength: StrengthMethod | None = Field(
@@ -160,6 +199,9 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
             if idler.stage > len(self.mechanism.stages):
                 faults.append((f"/mechanism/idlers/{number}/stage", "there is no such stage"))
         for number, stage in enumerate(self.mechanism.stages):
+            faults += [(f"/mechanism/stages/{number}{path}", detail) for path, detail in stage.faults_of_type()]
+            if stage.type != "external" and any(idler.stage == number + 1 for idler in self.mechanism.idlers):
+                faults.append((f"/mechanism/stages/{number}/type", "only an external stage has idlers"))
             if stage.shift is not None and any(idler.stage == number + 1 for idler in self.mechanism.idlers):
                 faults.append((f"/mechanism/stages/{number}/shift", "a stage with an idler has no shift"))
         faults += self._wrong_strength()
@@ -180,7 +222,15 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         stated = self.strength
         if stated is None:
             return []
-        faults = [(f"/strength{path}", detail) for path, detail in stated.faults()]
+        wrong = stated.faults()
+        if any(stage.type == "internal" for stage in self.mechanism.stages):
+            wrong += stated.faults_of_ring()
+        faults = [(f"/strength{path}", detail) for path, detail in wrong]
+        faults += [
+            (f"/mechanism/stages/{number}/type", f"the strength of a stage that is {stage.type} is not estimated")
+            for number, stage in enumerate(self.mechanism.stages)
+            if stage.type not in ("external", "internal")
+        ]
         if self.input_torque == 0.0 or float(self.motion.inputs()[1][0]) == 0.0:
             faults.append(("/strength", "state a torque and a speed; no power is carried without"))
         if stated.allowable_bending is None and stated.allowable_contact is None:
@@ -217,7 +267,7 @@ class TurningGear(TurningPart):
     pitch_diameter: float
     outside_diameter: float
     root_diameter: float
-    base_diameter: float
+    base_diameter: float | None = Field(description="Null of bevel gears and of a worm.")
     tooth_thickness: float = Field(description="On the pitch circle.")
     undercut: bool = Field(description="By a rack that cuts it.")
 
@@ -230,9 +280,16 @@ class LoadedMesh(MeshGeometry):
     recess: float
     clearance: float
     efficiency: float | None = Field(description="Null where fewer than one pair of teeth is in contact.")
-    pitch_line_velocity: float = Field(description="At the first position, length units per second.")
-    tangential_force: float = Field(description="N")
-    radial_force: float = Field(description="N")
+    pitch_line_velocity: float = Field(
+        description="At the first position, length units per second; of a worm that of its own threads."
+    )
+    tangential_force: float = Field(description="N; of a worm that on the gear, which is axial on the worm.")
+    radial_force: float = Field(description="N; of bevel gears on the driver.")
+    axial_force: OfGears | None = optional(
+        "N, of helical, bevel and worm gears: on the driver and on the driven gear. Of helical gears positive where "
+        "it points the way in which a right-handed screw goes with the input's rotation, of bevel gears away from the "
+        "apex; of a worm its size."
+    )
     strength: PairStrength | None = optional("Stresses, where a method is stated.")
 
 
@@ -241,6 +298,9 @@ class Shaft(Answer):
 
     speed_ratio: float
     torque: float = Field(description="N m, with the losses between the input and it.")
+    axis: tuple[float, float, float] | None = optional(
+        "About which the speed is counted, the input's along z; left out where all shafts are parallel."
+    )
 
 
 class GearTrainAnalysis(DrivenAnalysis):
@@ -272,7 +332,10 @@ def _analysis(request: GearTrainAnalysisRequest) -> dict[str, Any]:
         "valid": [True] * len(at),
         "ratio": Ratio.of(train.ratio).model_dump(),
         "efficiency": math.prod(share for stage in passed for share in stage) if known else None,
-        "shafts": [{"speed_ratio": w, "torque": t} for w, t in zip(speeds, torques, strict=True)],
+        "shafts": [
+            {"speed_ratio": w, "torque": t, **({} if train.is_parallel else {"axis": _told(axis)})}
+            for w, t, axis in zip(speeds, torques, train.axes, strict=True)
+        ],
         "gears": _gears(request, train, at, speed),
         "meshes": _meshes(request, train, shares, torques, float(speed[0])),
         "centre_distances": list(train.centre_distances),
@@ -280,9 +343,28 @@ def _analysis(request: GearTrainAnalysisRequest) -> dict[str, Any]:
     }
 
 
+def _told(axis: Axis) -> tuple[float, ...]:
+    """An axis without what is left of a right angle in rounding."""
+    return tuple(round(float(part), 15) + 0.0 for part in axis)
+
+
 def shares_of(request: GearTrainAnalysisRequest) -> tuple[tuple[float | None, ...], ...]:
-    """Share of the power that each mesh of each stage passes on."""
-    return tuple(tuple(_share(request, mesh) for mesh in stage) for stage in request.mechanism.train().meshes)
+    """Share of the power that each mesh of each stage passes on; None of one that cannot run."""
+    train = request.mechanism.train()
+    return tuple(
+        (_worm_share(request, stage, train),)
+        if stage.kind == "worm"
+        else tuple(_share(request, mesh) for mesh in meshes)
+        for stage, meshes in zip(train.stages, train.meshes, strict=True)
+    )
+
+
+def _worm_share(request: GearTrainAnalysisRequest, stage: TrainStage, train: OrdinaryTrain) -> float:
+    """Share of the power that a worm passes on, or its gear where that drives; 0 where friction holds it."""
+    if request.mesh_efficiency is not None:
+        return request.mesh_efficiency
+    worm = stage.worm(train.pressure_angle)
+    return worm.driven_back(stage.friction) if request.flows_back else worm.efficiency(stage.friction)
 
 
 def _share(request: GearTrainAnalysisRequest, mesh: Mesh) -> float | None:
@@ -299,33 +381,67 @@ def _gears(
 ) -> list[dict[str, Any]]:
     """Every gear with its dimensions and its motion, from the input to the output."""
     gears = []
-    for number, (stage, meshes, speeds) in enumerate(zip(train.stages, train.meshes, train.speeds, strict=True), 1):
+    for number, (stage, speeds) in enumerate(zip(train.stages, train.speeds, strict=True), 1):
         roles = ["driver", *("idler" for _ in stage.idlers), "driven"]
-        cut = stage.cut_gears(train.pressure_angle)
-        if stage.shifts == (0.0, 0.0):
-            undercut = [replace(gear, addendum=FULL_DEPTH_ADDENDUM).is_undercut for gear in cut]
-        else:
-            # As the mesh tells it: a shifted stage has one.
-            undercut = list(rack_undercuts(meshes[0]))[:: 1 if stage.driver <= stage.driven else -1]
-        for role, teeth, gear, share, taken in zip(roles, stage.gears, cut, speeds, undercut, strict=True):
+        for role, teeth, gear, share in zip(roles, stage.gears, _cut(stage, train), speeds, strict=True):
             turns = float(share)
-            gears.append(
-                {
-                    "stage": number,
-                    "role": role,
-                    "teeth": teeth,
-                    "module": gear.module,
-                    "pitch_diameter": 2.0 * gear.pitch_radius,
-                    "outside_diameter": 2.0 * gear.tip_radius,
-                    "root_diameter": 2.0 * gear.root_radius,
-                    "base_diameter": 2.0 * gear.base_radius,
-                    "tooth_thickness": gear.tooth_thickness,
-                    "undercut": taken,
-                    "speed_ratio": turns,
-                    **request.motion.geared(turns, at, speed),
-                }
-            )
+            placed = {"stage": number, "role": role, "teeth": teeth}
+            gears.append(placed | gear | {"speed_ratio": turns, **request.motion.geared(turns, at, speed)})
     return gears
+
+
+def _cut(stage: TrainStage, train: OrdinaryTrain) -> list[dict[str, Any]]:
+    """Dimensions of the gears of a stage, in the order in which they mesh."""
+    cut, meshes = stage.cut_gears(train.pressure_angle), stage.meshes(train.pressure_angle)
+    if stage.kind == "worm":
+        return _worm_and_gear(stage.worm(train.pressure_angle))
+    if stage.kind == "bevel":
+        pair = stage.cones(train.pressure_angle)
+        virtual = sorted((meshes[0].pinion, meshes[0].gear), key=lambda gear: gear.teeth)
+        ordered = virtual if stage.driver <= stage.driven else virtual[::-1]
+        return [
+            _dimensions(gear, back.is_undercut, math.cos(cone)) | {"base_diameter": None}
+            for gear, back, cone in zip(cut, ordered, pair.cones, strict=True)
+        ]
+    if stage.shifts != (0.0, 0.0):
+        # As the mesh tells it: a shifted stage has one.
+        helix = Helix(train.pressure_angle, stage.helix_angle) if stage.kind == "helical" else None
+        undercut = list(rack_undercuts(meshes[0], helix))[:: 1 if stage.driver <= stage.driven else -1]
+    elif stage.kind == "helical":
+        undercut = [gear.is_undercut for gear in cut]
+    else:
+        undercut = [replace(gear, addendum=FULL_DEPTH_ADDENDUM).is_undercut for gear in cut]
+    return [_dimensions(gear, taken) for gear, taken in zip(cut, undercut, strict=True)]
+
+
+def _dimensions(gear: Gear, undercut: bool, slope: float = 1.0) -> dict[str, Any]:
+    """Of a gear; the teeth of bevel gears rise from the axis by ``slope``, the cosine of the cone, of their height."""
+    radii = gear.pitch_radius, gear.tip_radius, gear.root_radius
+    tip, root = (radii[0] + slope * (radius - radii[0]) for radius in radii[1:])
+    return {
+        "module": gear.module,
+        "pitch_diameter": 2.0 * gear.pitch_radius,
+        "outside_diameter": 2.0 * (gear.tip_radius if slope == 1.0 else tip),
+        "root_diameter": 2.0 * (gear.root_radius if slope == 1.0 else root),
+        "base_diameter": 2.0 * gear.base_radius,
+        "tooth_thickness": gear.tooth_thickness,
+        "undercut": undercut,
+    }
+
+
+def _worm_and_gear(worm: WormDrive) -> list[dict[str, Any]]:
+    """The worm, as thick along its axis, and its gear in the middle plane."""
+    diameter, module = worm.dimensions.worm_diameter, worm.module
+    threads = {
+        "module": module,
+        "pitch_diameter": diameter,
+        "outside_diameter": diameter + 2.0 * FULL_DEPTH_ADDENDUM * module,
+        "root_diameter": diameter - 2.0 * FULL_DEPTH_DEDENDUM * module,
+        "base_diameter": None,
+        "tooth_thickness": 0.5 * math.pi * module,
+        "undercut": False,
+    }
+    return [threads, _dimensions(worm.gear, worm.gear.is_undercut)]
 
 
 def _meshes(
@@ -342,9 +458,13 @@ def _meshes(
         zip(train.stages, train.meshes, shares, train.speeds, torques[:-1], strict=True)
     ):
         begin = len(loaded)
+        if stage.kind == "worm":
+            told = _worm_loaded(request, stage, train, torque, float(turns[0]) * speed)
+            loaded.append({**next(geometries).model_dump(), **told, "efficiency": efficiencies[0]})
+            continue
         # The tangential force passes through an idler; each mesh takes its losses from it. It is that of the gear that
         # drives: where the output does, a mesh has lost its share before its force reaches the driver.
-        radius = 0.5 * stage.module * stage.driver
+        radius = _radius(stage, train)
         if stage.shifts != (0.0, 0.0):
             radius *= meshes[0].centre_distance / meshes[0].standard_distance
         force = abs(torque) / (radius * METRES[request.length_unit])
@@ -365,9 +485,14 @@ def _meshes(
                     "clearance": mesh.clearance,
                     "efficiency": share,
                     "pitch_line_velocity": abs(float(turn) * speed)
-                    * (radius if stage.shifts != (0.0, 0.0) else 0.5 * stage.module * driver),
+                    * (
+                        radius
+                        if stage.shifts != (0.0, 0.0) or stage.kind != "external"
+                        else 0.5 * stage.module * driver
+                    ),
                     "tangential_force": force,
                     "radial_force": force * math.tan(mesh.pressure_angle),
+                    **_sideways(stage, train, force, 1.0 if (turn > 0) != request.flows_back else -1.0),
                 }
             )
             if request.strength is not None:
@@ -380,6 +505,50 @@ def _meshes(
             if not request.flows_back:
                 force *= passed
     return loaded
+
+
+def _radius(stage: TrainStage, train: OrdinaryTrain) -> float:
+    """Radius of the driver at which the force of an unshifted stage stands."""
+    if stage.kind == "helical":
+        return 0.5 * stage.module * stage.driver / math.cos(stage.helix_angle)
+    radius = 0.5 * stage.module * stage.driver
+    if stage.kind == "bevel" and stage.face_width is not None:
+        radius -= 0.5 * stage.face_width * math.sin(stage.cones(train.pressure_angle).cones[0])
+    return radius
+
+
+def _sideways(stage: TrainStage, train: OrdinaryTrain, force: float, way: float) -> dict[str, Any]:
+    """Axial forces of helical and bevel gears, and the radial one of the latter, at a tangential force."""
+    if stage.kind == "helical":
+        axial = force * math.tan(stage.helix_angle) * way
+        return {"axial_force": {"driver": axial, "driven": -axial}}
+    if stage.kind == "bevel":
+        apart, (one, two) = force * math.tan(train.pressure_angle), stage.cones(train.pressure_angle).cones
+        return {
+            "radial_force": apart * math.cos(one),
+            "axial_force": {"driver": apart * math.sin(one), "driven": apart * math.sin(two)},
+        }
+    return {}
+
+
+def _worm_loaded(
+    request: GearTrainAnalysisRequest, stage: TrainStage, train: OrdinaryTrain, torque: float, turning: float
+) -> dict[str, Any]:
+    """Contact in the middle plane and forces of a worm and its gear."""
+    worm, friction = stage.worm(train.pressure_angle), stage.friction
+    # Where the gear drives, friction is against its way.
+    sign = -1.0 if request.flows_back else 1.0
+    forces = worm.forces(abs(torque) / METRES[request.length_unit], sign * friction)
+    return {
+        "path_of_contact": worm.approach + worm.recess,
+        "approach": worm.approach,
+        "recess": worm.recess,
+        "clearance": (FULL_DEPTH_DEDENDUM - FULL_DEPTH_ADDENDUM) * worm.module,
+        "pitch_line_velocity": abs(turning) * 0.5 * worm.dimensions.worm_diameter,
+        "tangential_force": forces.gear,
+        "radial_force": forces.radial,
+        "axial_force": {"driver": forces.gear, "driven": forces.worm},
+    }
 
 
 def _strength(

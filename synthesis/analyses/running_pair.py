@@ -25,12 +25,10 @@ from synthesis.analyses.gear_pair import MILLIMETRE, RPM
 from synthesis.mechanisms.base import MechanismError
 from synthesis.model.answer import Answer, optional
 from synthesis.model.gear_answer import ON_LIMIT, tool_contact
-from synthesis.model.gear_statement import PressureAngle, ShiftCoefficient, ToothNumber
+from synthesis.model.gear_statement import Addendum, PressureAngle, ShiftCoefficient, ToothNumber
 from synthesis.model.gear_strength import Loaded, PairStrength, StatedStrength, told
 from synthesis.model.mesh_limits import USUAL_CUTTER, usual_cutter
 from synthesis.model.statement import Flag, Number, PositiveNumber, Statement
-
-Addendum = Annotated[float, Field(strict=True, ge=0.3, le=1.25)]
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,9 @@ from synthesis.model.statement import PositiveLength, Statement
 
 RIGHT_ANGLE = 90.0
 
+MOST_THREADS = 6
+"""Threads of a worm."""
+
 ROUND = 6
 """Digits to which a shortened addendum is written; whole multiples of :data:`mesh_limits.ADDENDUM_STEP`."""
 
@@ -72,12 +75,17 @@ class StageForm(Statement):
         "and whether the gear can drive the worm.",
     )
 
+    @classmethod
+    def types_with(cls, name: str) -> tuple[StageKind, ...]:
+        """Which types of stages have a field."""
+        return OF_TYPES[name]
+
     def faults_of_type(self) -> list[tuple[str, str]]:
         """Fields that another type has, and those that are missing, by their path below the stage."""
         faults = [
             (f"/{name}", f"a stage that is {self.type} has none; leave it out")
-            for name, types in OF_TYPES.items()
-            if self.type not in types and getattr(self, name) is not None
+            for name in OF_TYPES
+            if self.type not in self.types_with(name) and getattr(self, name) is not None
         ]
         if self.type == "helical" and not self.helix_angle:
             faults.append(("/helix_angle", "state the helix angle of the driver, other than 0"))

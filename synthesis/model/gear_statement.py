@@ -58,6 +58,10 @@ TipThickness = Annotated[float, Field(strict=True, ge=0.0, le=1.5)]
 """Least thickness of a tooth at its tip, in modules."""
 
 
+Addendum = Annotated[float, Field(strict=True, ge=0.3, le=1.25)]
+"""Height of a tooth beyond its pitch circle, in modules."""
+
+
 class ShiftRange(Range):
     """Least and greatest profile shift of a gear, in modules; equal to fix it."""
 

@@ -60,10 +60,10 @@ def test_a_brute_force_finds_the_same(number: int) -> None:
 @pytest.mark.campaign
 @pytest.mark.timeout(1800)
 def test_a_brute_force_finds_the_same_in_100_tasks() -> None:
-    some, none, faults, _ = compare_trains(100, 0)
-    assert faults == []
-    assert some > 30
-    assert none > 20
+    found = compare_trains(100, 0)
+    assert found.faults == []
+    assert found.some > 30
+    assert found.none > 20
 
 
 def test_each_stage_has_its_own_distance() -> None:

@@ -8,12 +8,9 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from kinematics.gear.train import CROSSING, StageKind
-from synthesis.model.gear_stages import StageForm
+from synthesis.model.gear_stages import MOST_THREADS, StageForm
 from synthesis.model.gear_statement import FEWEST_TEETH, MOST_TEETH
 from synthesis.model.statement import Count, Range
-
-MOST_THREADS = 6
-"""Threads of a worm."""
 
 KEPT_APART = ("driver", "driven")
 """Fields that do not make stages unlike: gears of stages that are alike but for these may change places."""

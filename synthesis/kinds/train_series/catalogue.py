@@ -18,6 +18,7 @@ from synthesis.kinds.gear_train.making import mechanism_of as ordinary_mechanism
 from synthesis.kinds.gear_train.pairing import MOST_STAGES
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.search import Train
+from synthesis.kinds.gear_train.stated_stages import sense_of
 from synthesis.kinds.gear_train.task import gear_train_task
 from synthesis.kinds.planetary_train.every import SoundTrains
 from synthesis.kinds.planetary_train.every import every_train as every_planetary
@@ -127,5 +128,7 @@ def _ordinary(problem: GearTrainProblem) -> Iterator[Batch]:
 
     # A stage turns the direction round; with an idler, which a stated direction may need, it does not.
     count = np.count_nonzero(every.rows[:, :MOST_STAGES], axis=1)
-    sign = np.where(count % 2, -1, 1) if problem.demanded_sign == 0 else np.full(len(count), problem.demanded_sign)
+    # Stages that are stated one by one turn as they do.
+    wanted = problem.demanded_sign if problem.stages is None else sense_of(problem.stages)
+    sign = np.where(count % 2, -1, 1) if wanted == 0 else np.full(len(count), wanted)
     yield Batch(sign * every.over, every.under, every.total, made)

@@ -79,6 +79,9 @@ def problem_of(unit: Any, ratio: Fraction, length_unit: str) -> Any:
     """
     asked = abs(ratio) if unit.type == "gear_train" else ratio
     stated = {field: getattr(unit, field) for field in type(unit).model_fields if field != "type"}
+    if stated.get("stages") is not None and stated["max_stages"] == USUAL_STAGES:
+        # What a unit has where nothing is said, which its kind says otherwise.
+        del stated["max_stages"]
     return PROBLEMS[unit.type].model_validate(
         {**stated, "kind": unit.type, "ratio": str(asked), "tolerance": 0.0, "length_unit": length_unit}
     )
@@ -90,6 +93,12 @@ def contradictions_of(unit: Any, length_unit: str) -> list[Contradiction]:
     if unit.type == "gear_train" and unit.hunting_tooth == "prefer":
         detail = "a series has no trains of equal error to choose from in a unit; state any or require"
         faults.append(Contradiction("/hunting_tooth", detail))
+    if unit.type == "gear_train":
+        faults += [
+            Contradiction(f"/stages/{number}/type", f"a series has parallel shafts; a {stage.type} stage has not")
+            for number, stage in enumerate(unit.stages or [])
+            if not stage.is_parallel
+        ]
     return faults
 
 
@@ -112,7 +121,7 @@ def trains_of(unit: Any, length_unit: str) -> int:
 def _ordinary_trains(problem: GearTrainProblem) -> int:
     """Choices of drivers times choices of driven gears; of coaxial trains those of the meshes of equal distance."""
     total = 0
-    for k in range(1, problem.max_stages + 1):
+    for k in range(1 if problem.stages is None else problem.most_stages, problem.most_stages + 1):
         if problem.stock is not None:
             n = len(problem.stocked())
             widths = [n] * (2 * k)
@@ -120,8 +129,9 @@ def _ordinary_trains(problem: GearTrainProblem) -> int:
             widths = [high - low + 1 for low, high in problem.position_ranges()[: 2 * k]]
         if problem.reverted:
             # Of the meshes of one distance there are as many as tooth numbers, of every module.
-            total += widths[0] ** (k + 1) * len(problem.exact_modules()) ** k if k > 1 else 0
-        elif isinstance(problem.teeth, list):
+            one = widths[0] if problem.stages is None else max(widths)
+            total += one ** (k + 1) * len(problem.exact_modules()) ** k if k > 1 else 0
+        elif isinstance(problem.teeth, list) or problem.stages is not None:
             total += math.prod(widths)
         else:
             total += math.comb(widths[0] + k - 1, k) ** 2

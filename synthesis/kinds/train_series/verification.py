@@ -56,7 +56,7 @@ def _ordinary(unit: GearTrainMechanism, number: int, driving: str, driven: str) 
         for (one, other), (a, b) in zip(
             itertools.pairwise([*bodies, shaft]), itertools.pairwise(stage.gears), strict=True
         ):
-            meshes.append(Mesh(one, other, GROUND, a, b))
+            meshes.append(Mesh(one, other, GROUND, a, b, stage.sense))
     return meshes
 
 

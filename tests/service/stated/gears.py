@@ -39,6 +39,23 @@ FACTORS: dict[str, Any] = {
     "contact_geometry": 0.1,
     "elastic": 160.0,
 }
+STAGES: dict[str, Any] = {
+    "max_stages": 3,
+    "ratio": "60",
+    "stages": [
+        {"type": "external"},
+        {"type": "helical", "helix_angle": 15.0, "face_width": 20.0},
+        {"type": "internal", "ring": "driven", "driver": {"min": 15, "max": 25}, "driven": {"min": 30, "max": 60}},
+    ],
+}
+CROSSING: dict[str, Any] = {
+    "max_stages": 3,
+    "ratio": "60",
+    "stages": [
+        {"type": "worm", "driver": 2, "driven": 40, "hand": "right", "friction": 0.05, "diameter_quotient": 10.0},
+        {"type": "bevel", "shaft_angle": 80.0, "driver": 20, "driven": {"min": 20, "max": 40}},
+    ],
+}
 STOCK = {"teeth": None, "stock": [{"teeth": 20, "count": 1}, 20, 25, 30, 50, 51, 60]}
 
 TRAIN_ROWS: dict[str, Any] = {
@@ -48,6 +65,23 @@ TRAIN_ROWS: dict[str, Any] = {
     "ratio": "128/50",
     "direction": "opposite",
     "max_stages": 1,
+    "stages": Row([{"type": "external"}, {"type": "internal"}], {"max_stages": 3}),
+    "stages[].type": Row("internal", STAGES),
+    "stages[].helix_angle": Row(-15.0, STAGES, at="stages[1].helix_angle"),
+    "stages[].face_width": Row(25.0, STAGES, at="stages[1].face_width"),
+    "stages[].ring": Row(
+        "driver", {"stages": [{"type": "internal", "ring": "driven"}], "max_stages": 3, "ratio": "127/50"}
+    ),
+    "stages[].shaft_angle": Row(70.0, CROSSING, at="stages[1].shaft_angle"),
+    "stages[].diameter_quotient": Row(12.0, CROSSING),
+    "stages[].hand": Row("left", CROSSING),
+    "stages[].friction": Row(0.2, CROSSING),
+    "stages[].driver": Row(20, STAGES),
+    "stages[].driver.min": Row(24, STAGES, at="stages[2].driver.min"),
+    "stages[].driver.max": Row(15, STAGES, at="stages[2].driver.max"),
+    "stages[].driven": Row(30, STAGES),
+    "stages[].driven.min": Row(60, STAGES, at="stages[2].driven.min"),
+    "stages[].driven.max": Row(35, STAGES, at="stages[2].driven.max"),
     "teeth": {"min": 15, "max": 39},
     "teeth.min": 20,
     "teeth.max": 30,
