@@ -10,11 +10,12 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import replace
+from fractions import Fraction
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ConfigDict, Field
+from pydantic import ConfigDict, Field, ValidationInfo, field_validator
 
 from kinematics.errors import DimensionError
 from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, FULL_DEPTH_DEDENDUM, Gear, Mesh
@@ -92,13 +93,19 @@ class GivenStage(StageForm):
         description="Of an internal stage; left out: the ring's is as long as the pinion's flank lets it be.",
     )
 
+    @field_validator("driver")
+    @classmethod
+    def _teeth_or_threads(cls, driver: int, info: ValidationInfo) -> int:
+        worm = info.data.get("type") == "worm"
+        if not (1 <= driver <= MOST_THREADS if worm else driver >= FEWEST_TEETH):
+            raise ValueError(
+                f"expected 1 to {MOST_THREADS} threads" if worm else f"expected at least {FEWEST_TEETH} teeth"
+            )
+        return driver
+
     def faults_of_type(self) -> list[tuple[str, str]]:
         """Fields that another type has, gears that this type does not take, by their path below the stage."""
         faults = super().faults_of_type()
-        if self.type != "worm" and self.driver < FEWEST_TEETH:
-            faults.append(("/driver", f"a gear has at least {FEWEST_TEETH} teeth"))
-        if self.type == "worm" and self.driver > MOST_THREADS:
-            faults.append(("/driver", f"a worm has 1 to {MOST_THREADS} threads"))
         if self.type not in ("external", "helical") and self.shift is not None:
             faults.append(("/shift", f"a stage that is {self.type} has no shift"))
         if self.type != "internal" and self.addendum is not None:
@@ -210,7 +217,15 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         if not faults and self.mechanism.ratio is not None:
             faults += self.mechanism.ratio.faults(self.mechanism.train().ratio)
         if not faults and self.flows_back and any(0.0 in stage for stage in shares_of(self)):
-            faults.append(("/friction", "with so much of it a mesh loses all power, so that the output drives nothing"))
+            worms = [
+                k for k, stage in enumerate(self.mechanism.stages) if stage.type == "worm" and 0.0 in shares_of(self)[k]
+            ]
+            faults += [
+                (f"/mechanism/stages/{k}/friction", "with so much of it the gear cannot drive the worm") for k in worms
+            ]
+            if not worms:
+                detail = "with so much of it a mesh loses all power, so that the output drives nothing"
+                faults.append(("/friction", detail))
         return faults
 
     @property

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 from kinematics.gear.teeth import Gear
 from service.render.gears.planetary_layout import placed_planetary_gears
 from service.render.gears.series_layout import series_layout
-from service.render.gears.train_layout import placed_gears
+from service.render.gears.train_layout import TrainGear, placed_gears
 from service.render.page.table import Cell, table
 from synthesis.kinds.gear_train.design import GearTrainDesign
 from synthesis.kinds.gear_train.problem import GearTrainProblem
@@ -22,20 +24,37 @@ from synthesis.kinds.train_series.problem import TrainSeriesProblem
 def gear_train_table(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
     """Stage, role, teeth, module, circles, shaft centre and speed of every gear; of fitted ones the profile shift."""
     fitted = ["profile_shift"] if problem.is_fitted else []
+    typed = ["type", "helix_angle_deg"] if problem.stages is not None else []
     return table(
-        ["stage", "role", "teeth", *_lengths("outside", problem.length_unit), "speed_over_input", *fitted],
+        ["stage", "role", "teeth", *_lengths("outside", problem.length_unit), "speed_over_input", *fitted, *typed],
         (
             [
                 placed.stage,
                 placed.role,
-                placed.gear.teeth,
-                *_sizes(placed.gear, placed.centre),
+                placed.count,
+                *_train_sizes(placed, design),
                 f"{placed.speed.numerator}/{placed.speed.denominator}",
-                *([placed.gear.shift] if fitted else []),
+                *([placed.gear.shift / math.cos(placed.helix_angle)] if fitted else []),
+                *(_type_cells(placed, design) if typed else []),
             ]
             for placed in placed_gears(design.mechanism, problem.reverted)
         ),
     )
+
+
+def _train_sizes(placed: TrainGear, design: GearTrainDesign) -> list[Cell]:
+    """As :func:`_sizes`; the module as it is stated, and no base circle of what is cut along its axis."""
+    module, *diameters, x, y = _sizes(placed.gear, placed.centre)
+    if placed.section is not None:
+        return [module, *diameters[:-1], "", x, y]
+    return [design.mechanism.stages[placed.stage - 1].module, *diameters, x, y]
+
+
+def _type_cells(placed: TrainGear, design: GearTrainDesign) -> list[Cell]:
+    """Type of the stage, and the helix angle of the gear, positive for a right-handed one."""
+    stage = design.mechanism.stages[placed.stage - 1]
+    angle = 0.0 if stage.helix_angle is None else stage.helix_angle
+    return [stage.type or "", angle if placed.role == "driver" else 0.0 - angle]
 
 
 def planetary_table(design: PlanetaryDesign, problem: PlanetaryProblem, title: str) -> str:

@@ -5,29 +5,34 @@ layer                  what is on it (n: number of the stage; PLANE_n of a plane
 =====================  ==============================================================
 STAGE_n_PITCH          pitch circles; layers of trains in series begin with UNIT_n_
 STAGE_n_TEETH          closed outlines of all teeth: involutes, fillets, tips, roots
-CENTRES                crosses at the shafts; points at the axes of a planetary train
+CENTRES                crosses at the shafts, axes of shafts that lie in the plane of the drawing; points at the axes
+                       of a planetary train
 TEXT                   tooth numbers, modules and profile shifts, of ordinary trains
 =====================  ==============================================================
 
 Stages lie one above the other in the plane as their shafts do; the input shaft is at the origin, and so is the axis of
-a planetary train. Trains in series stand side by side. Bevel gears have pitch circles only. Lengths are in the unit of
-the problem, which the header names.
+a planetary train. Trains in series stand side by side, and so do the views of trains whose shafts are not parallel,
+with a line of text of what each shows. Bevel gears have pitch circles only. Lengths are in the unit of the problem,
+which the header names.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 from ezdxf.layouts.layout import Modelspace
 
 from kinematics.gear.arrangements import ARRANGEMENTS
+from service.render.gears.crossing import Section
 from service.render.gears.placed import PlacedGear, box_around
 from service.render.gears.planetary_layout import placed_planetary_gears
 from service.render.gears.series_layout import series_layout
-from service.render.gears.train_layout import placed_gears
+from service.render.gears.train_layout import TrainGear, placed_gears, view_words
 from service.render.page import dxf
 from synthesis.kinds.gear_train.design import GearTrainDesign
 from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.kinds.gear_train.verification import driven_train
 from synthesis.kinds.planetary_train.design import PlanetaryDesign
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.kinds.train_series.design import TrainSeriesDesign
@@ -66,14 +71,42 @@ def gear_train_drawing(design: GearTrainDesign, problem: GearTrainProblem, title
     document = dxf.new_drawing(title or "Gear train", problem.length_unit, layers)
     space, size = document.modelspace(), box_around(gears).diagonal
     for placed in gears:
-        at, gear, height = placed.centre, placed.gear, LETTERS * size
-        add_gear(space, placed, [f"STAGE_{placed.stage}"])
-        dxf.add_cross(space, at, CROSS * size, "CENTRES")
+        at, height = placed.centre, LETTERS * size
+        if placed.section is None:
+            add_gear(space, placed, [f"STAGE_{placed.stage}"])
+            dxf.add_cross(space, at, CROSS * size, "CENTRES")
+        else:
+            add_section(space, placed.section, at, f"STAGE_{placed.stage}")
         # Gears on one shaft are written below one another.
         below = at - 1j * height * (1.5 + LINE_STEP * (2 * placed.stage + (placed.role == "driven")))
-        words = f"stage {placed.stage} {placed.role}: z={gear.teeth} m={gear.module:.6g}"
-        dxf.add_words(space, below, f"{words} x={gear.shift:.6g}" if problem.is_fitted else words, height)
+        module = design.mechanism.stages[placed.stage - 1].module
+        words = f"stage {placed.stage} {placed.role}: z={placed.count} m={module:.6g}{_kind_words(design, placed)}"
+        dxf.add_words(space, below, f"{words} x={_normal_shift(placed):.6g}" if problem.is_fitted else words, height)
+    for box, caption in view_words(gears, driven_train(design.mechanism).stages):
+        dxf.add_words(space, complex(0.5 * (box.left + box.right), box.high + LETTERS * size), caption, LETTERS * size)
     return dxf.written(document)
+
+
+def _normal_shift(placed: TrainGear) -> float:
+    """Profile shift in modules as they are stated, of helical teeth those of the normal plane."""
+    return placed.gear.shift / math.cos(placed.helix_angle)
+
+
+def _kind_words(design: GearTrainDesign, placed: TrainGear) -> str:
+    """What tells the teeth of a typed stage from those of a spur gear."""
+    stage = design.mechanism.stages[placed.stage - 1]
+    if stage.type == "helical" and stage.helix_angle is not None:
+        hand = "right" if (stage.helix_angle > 0) == (placed.role == "driver") else "left"
+        return f" helical {abs(stage.helix_angle):.6g} deg {hand}"
+    return f" {stage.type}" if stage.type not in (None, "external") else ""
+
+
+def add_section(space: Modelspace, section: Section, at: complex, name: str) -> None:
+    """A gear that is cut along its axis: its body with the teeth, its pitch lines, its axis."""
+    dxf.add_outline(space, at + section.outline, f"{name}_TEETH")
+    for start, end in section.pitch_lines:
+        dxf.add_line(space, at + start, at + end, f"{name}_PITCH")
+    dxf.add_line(space, at + section.axis[0], at + section.axis[1], "CENTRES")
 
 
 def planetary_drawing(design: PlanetaryDesign, problem: PlanetaryProblem, title: str) -> str:

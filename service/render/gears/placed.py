@@ -28,6 +28,15 @@ class PlacedGear:
         """Radius of the pitch circle."""
         return self.gear.pitch_radius
 
+    @property
+    def reach(self) -> float:
+        """Radius of all that a drawing has to hold of it."""
+        return self.gear.tip_radius
+
+    def corners(self) -> Points:
+        """Corners of a box around the gear."""
+        return np.array([self.centre + side * self.reach for side in (-1 - 1j, 1 + 1j)])
+
     def teeth(self) -> Points | None:
         """Outline of all teeth about the centre; None for teeth whose cutter would come to a point, which have none."""
         try:
@@ -37,8 +46,8 @@ class PlacedGear:
 
 
 def box_around(gears: Iterable[PlacedGear]) -> Box:
-    """The box around all tip circles."""
-    return Box.around(np.array([g.centre + side * g.gear.tip_radius for g in gears for side in (-1 - 1j, 1 + 1j)]))
+    """The box around all tip circles, or what else a drawing shows of them."""
+    return Box.around(np.concatenate([gear.corners() for gear in gears]))
 
 
 def facing(gear: Gear, tooth_at: float, mate: Gear, ahead: float) -> float:

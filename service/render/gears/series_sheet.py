@@ -51,7 +51,8 @@ def _unit(unit: UnitMechanism, problem: TrainSeriesProblem, number: int, low: fl
         view = fitted(box_around(gears), beside(), HEIGHTS, MARGIN, FOOT)
         panel = Box(view.panel.left, low, view.panel.right, low + view.panel.height)
         shown = Viewport.fit(box_around(gears), panel, MARGIN, FOOT)
-        drawn = train_panel(gears, shown, length_unit, name)
+        typed = problem.units[number].stages is not None
+        drawn = train_panel(gears, shown, length_unit, name, typed)
         drawn.add(caption(panel, name))
         return [drawn], panel.high + APART
     placed = placed_planetary_gears(unit)
@@ -94,13 +95,14 @@ def _tables(design: TrainSeriesDesign, problem: TrainSeriesProblem) -> list[bloc
             left_out = {"speeds", "error", "self_locking"}
         else:
             for number, stage in enumerate(made.stages, 1):
-                words = f"{stage.driver} drives {stage.driven}, module {length(stage.module)} {unit}"
+                kind = f"{stage.type}, " if stage.type else ""
+                words = f"{kind}{stage.driver} drives {stage.driven}, module {length(stage.module)} {unit}"
                 rows.append((f"stage {number}", words))
                 if stage.shift is not None:
                     shifts = f"{stage.shift.driver:.5f}, {stage.shift.driven:.5f}".replace("-", "−")
                     rows.append((f"stage {number} shifts", shifts))
             rows += [(f"idler of stage {idler.stage}", f"{idler.teeth} teeth") for idler in made.idlers]
-            left_out = {"error", "relative_error", "hunting_tooth"}
+            left_out = {"error", "relative_error", "hunting_tooth", "shafts"}
         tables.append(blocks.rows(f"Unit {k}", [*rows, *entries(measured, problem, left_out)]))
     tables.append(checks(design.verification, problem))
     tables.append(blocks.rows("Metrics", entries(design.metrics, problem, {"units"}, {"error": "relative error"})))

@@ -7,12 +7,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from service.render.gears.train_layout import TrainGear, placed_gears
+from service.render.gears.train_layout import TrainGear, moved_section, placed_gears
 from service.render.page.animation import FRAMES, Stroke, animated, ring
 from service.render.page.svg import Box, Points
 from service.render.page.symbols import COUPLER, GROUND, INPUT, OUTPUT
 from synthesis.kinds.gear_train.design import GearTrainDesign
 from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.kinds.gear_train.verification import driven_train
 
 COLOURS = (INPUT, OUTPUT, COUPLER)
 """Of the stages."""
@@ -29,8 +30,13 @@ PITCHES = 6
 def gear_train_animation(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> bytes:
     """Some teeth of a gear train's input as GIF."""
     gears = placed_gears(design.mechanism, problem.reverted)
+    # Rings lie behind what runs in them.
+    gears.sort(key=lambda gear: not gear.gear.internal)
     outlines = [_outline(gear) for gear in gears]
-    turn = math.tau * PITCHES / gears[0].gear.teeth
+    first = design.mechanism.stages[0]
+    # A worm that drives takes a tooth of its gear along with every thread.
+    turn = math.tau * (1 if first.type == "worm" else PITCHES) / first.driver
+    train = driven_train(design.mechanism)
 
     def frames() -> Iterator[list[Stroke]]:
         for k in range(FRAMES):
@@ -38,14 +44,36 @@ def gear_train_animation(design: GearTrainDesign, problem: GearTrainProblem, tit
             for gear, points in zip(gears, outlines, strict=True):
                 turned = complex(np.exp(1j * turn * k / FRAMES * float(gear.speed)))
                 colour, face = COLOURS[(gear.stage - 1) % 3], FACES[(gear.stage - 1) % 3]
+                if gear.section is not None:
+                    stage = train.stages[gear.stage - 1]
+                    moved = moved_section(gear, stage, train.pressure_angle, turn * k / FRAMES)
+                    strokes.append(Stroke(gear.centre + moved, colour, 1.4, closed=True, fill=face))
+                    strokes.append(Stroke(gear.centre + gear.section.axis, GROUND, 1.4))
+                    continue
+                if gear.gear.internal:
+                    strokes += _ring_strokes(gear, points, turned, colour, face)
+                    continue
                 strokes.append(Stroke(gear.centre + points * turned, colour, 1.4, closed=True, fill=face))
                 spoke = np.array([gear.centre, gear.centre + SPOKE * gear.pitch_radius * turned])
                 strokes.append(Stroke(spoke, colour, 1.6))
                 strokes.append(Stroke(ring(gear.centre, HUB * gear.pitch_radius), GROUND, 1.4, True, "#ffffff"))
             yield strokes
 
-    reached = [ring(gear.centre, float(np.abs(points).max())) for gear, points in zip(gears, outlines, strict=True)]
+    reached = [
+        gear.corners() if gear.section is not None or gear.gear.internal else ring(gear.centre, np.abs(points).max())
+        for gear, points in zip(gears, outlines, strict=True)
+    ]
     return animated(frames(), Box.around(np.concatenate(reached)))
+
+
+def _ring_strokes(gear: TrainGear, points: Points, turned: complex, colour: str, face: str) -> list[Stroke]:
+    """A ring as its rim, its teeth within, and a line that shows how it turns."""
+    inner = gear.gear.root_radius
+    return [
+        Stroke(ring(gear.centre, gear.reach), colour, 1.4, closed=True, fill=face),
+        Stroke(gear.centre + points * turned, colour, 1.4, closed=True, fill="#ffffff"),
+        Stroke(np.array([gear.centre + inner * turned, gear.centre + gear.reach * turned]), colour, 1.6),
+    ]
 
 
 def _outline(placed: TrainGear) -> Points:

@@ -1,58 +1,177 @@
 """Where the gears of an ordinary train stand: shaft centres in the plane, and the turn of each gear so that teeth mesh.
 
 The shafts stand in one line; those of a reverted train go back and forth between two places, or round a triangle for
-three stages, so that the output shaft comes to stand on the input's axis.
+three stages, so that the output shaft comes to stand on the input's axis. A ring stands so that its pinion is towards
+the shaft before.
+
+Shafts that meet or cross have no plane in common: a train with bevel or worm stages has several *views*, side by side.
+Stages of parallel shafts are seen against their axes, bevel stages cut by the plane of their shafts, worm stages by
+the middle plane of the gear.
 """
 
 from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
+import numpy as np
+
 from kinematics.gear.teeth import Gear
-from service.render.gears.placed import PlacedGear, facing
+from kinematics.gear.train import OrdinaryTrain, TrainStage
+from service.render.gears.crossing import Section, bevel_sections, worm_section
+from service.render.gears.placed import PlacedGear, box_around, facing
+from service.render.page.svg import Box, Points
 from synthesis.kinds.gear_train.design import GearTrainMechanism
 from synthesis.kinds.gear_train.verification import driven_train
 
 SAME_DISTANCE = 1e-9
 """Share of a centre distance by which those of a reverted train may differ in rounding."""
 
+APART = 0.15
+"""Room between two views, as a share of the wider one."""
+
+RIM = 1.0
+"""Width of a ring beyond its roots, modules."""
+
 
 @dataclass(frozen=True)
 class TrainGear(PlacedGear):
-    """A gear of an ordinary train; ``speed`` is its share of the input's."""
+    """A gear of an ordinary train; ``speed`` is its share of the input's, ``count`` are its teeth or threads.
+
+    ``section`` is what is drawn of a gear that is cut along its axis, ``view`` the number of the view that it stands
+    in.
+    """
 
     stage: int
     role: str
     speed: Fraction
+    count: int = 0
+    view: int = 0
+    section: Section | None = field(default=None, compare=False)
+
+    @property
+    def reach(self) -> float:
+        """Radius of all that is drawn of it about its centre, but of a section."""
+        return self.gear.root_radius + RIM * self.gear.module if self.gear.internal else self.gear.tip_radius
+
+    def teeth(self) -> Points | None:
+        """Outline about the centre: all teeth, or what a section shows."""
+        return super().teeth() if self.section is None else self.section.outline
+
+    def corners(self) -> Points:
+        """Corners of a box around the gear."""
+        if self.section is None:
+            return super().corners()
+        return self.centre + np.concatenate([self.section.outline, self.section.axis])
 
 
 def placed_gears(mechanism: GearTrainMechanism, reverted: bool) -> list[TrainGear]:
-    """All gears in the order of the power, the input shaft at 0."""
+    """All gears in the order of the power, the input shaft, or the apex of its gears, at 0."""
     train = driven_train(mechanism)
     distances = train.centre_distances
     coaxial = reverted and max(distances) - min(distances) <= SAME_DISTANCE * max(distances)
     placed: list[TrainGear] = []
-    shaft = 0j
-    for number, (stage, speeds) in enumerate(zip(train.stages, train.speeds, strict=True)):
+    shaft, view, before = 0j, 0, True
+    for number, stage in enumerate(train.stages):
+        if number and not (before and stage.is_parallel):
+            shaft, view = 0j, view + 1
+        before = stage.is_parallel
+        if not stage.is_parallel:
+            placed += _crossing(train, number, view)
+            continue
         ahead = _direction(number, len(train.stages), coaxial)
-        roles = ["driver", *("idler" for _ in stage.idlers), "driven"]
-        centre, tooth_at = shaft, cmath.phase(ahead)
-        previous: Gear | None = None
-        # Shifted gears stand apart by more, or by less, than their pitch circles.
-        wide = 1.0
-        if stage.shifts != (0.0, 0.0):
-            wide = distances[number] / sum(mesh.standard_distance for mesh in train.meshes[number])
-        for role, gear, speed in zip(roles, stage.cut_gears(train.pressure_angle), speeds, strict=True):
-            if previous is not None:
-                centre += ahead * (previous.pitch_radius + gear.pitch_radius) * wide
-                tooth_at = facing(previous, tooth_at, gear, cmath.phase(ahead))
-            placed.append(TrainGear(gear, centre, tooth_at, number + 1, role, speed))
-            previous = gear
-        shaft = centre
+        placed += (replace(gear, view=view) for gear in _in_line(train, number, shaft, ahead))
+        shaft = placed[-1].centre
+    return _side_by_side(placed)
+
+
+def _in_line(train: OrdinaryTrain, number: int, shaft: complex, ahead: complex) -> Iterator[TrainGear]:
+    """The gears of a stage of parallel shafts, from the driver's shaft on ahead."""
+    stage, speeds, distance = train.stages[number], train.speeds[number], train.centre_distances[number]
+    roles = ["driver", *("idler" for _ in stage.idlers), "driven"]
+    # A pinion meshes with the ring around it on the side that is away from the ring's axis.
+    contact = -ahead if stage.kind == "internal" and stage.driver < stage.driven else ahead
+    centre, tooth_at = shaft, cmath.phase(contact)
+    previous: Gear | None = None
+    # Shifted gears stand apart by more, or by less, than their pitch circles.
+    wide = 1.0
+    if stage.shifts != (0.0, 0.0):
+        wide = distance / sum(mesh.standard_distance for mesh in train.meshes[number])
+    for role, gear, speed, count in zip(roles, stage.cut_gears(train.pressure_angle), speeds, stage.gears, strict=True):
+        if previous is not None:
+            apart = previous.pitch_radius + gear.pitch_radius
+            if stage.kind == "internal":
+                apart = abs(previous.pitch_radius - gear.pitch_radius)
+            centre += ahead * apart * wide
+            tooth_at = facing(previous, tooth_at, gear, cmath.phase(contact))
+        yield TrainGear(gear, centre, tooth_at, number + 1, role, speed, count, helix_angle=stage.helix_angle)
+        previous = gear
+
+
+def _crossing(train: OrdinaryTrain, number: int, view: int) -> list[TrainGear]:
+    """A bevel or worm stage in a view of its own."""
+    stage, (first, last) = train.stages[number], train.speeds[number]
+    driver, driven = stage.driver, stage.driven
+    if stage.kind == "bevel":
+        pair = stage.cones(train.pressure_angle)
+        one, two = (
+            Gear(teeth, stage.module, train.pressure_angle, math.cos(cone), 1.25 * math.cos(cone))
+            for teeth, cone in zip((driver, driven), pair.cones, strict=True)
+        )
+        sections = bevel_sections(pair)
+        return [
+            TrainGear(one, 0j, 0.0, number + 1, "driver", first, driver, view, sections[0]),
+            TrainGear(two, 0j, 0.0, number + 1, "driven", last, driven, view, sections[1]),
+        ]
+    worm = stage.worm(train.pressure_angle)
+    threads = Gear(stage.quotient, stage.module, train.pressure_angle)
+    facing_worm = 0.5 * math.pi + math.pi / driven
+    return [
+        TrainGear(
+            threads, 1j * worm.centre_distance, 0.0, number + 1, "driver", first, driver, view, worm_section(worm)
+        ),
+        TrainGear(worm.gear, 0j, facing_worm, number + 1, "driven", last, driven, view),
+    ]
+
+
+def _side_by_side(gears: list[TrainGear]) -> list[TrainGear]:
+    """The views of a train beside one another, the first where it is."""
+    placed: list[TrainGear] = []
+    right = 0.0
+    for view in range(gears[-1].view + 1):
+        own = [gear for gear in gears if gear.view == view]
+        box = box_around(own)
+        aside = 0j if not placed else complex(right + APART * max(box.width, box.height) - box.left)
+        right = box.right + aside.real
+        placed += (replace(gear, centre=gear.centre + aside) for gear in own)
     return placed
+
+
+def view_words(gears: Sequence[TrainGear], stages: Sequence[TrainStage]) -> list[tuple[Box, str]]:
+    """What each view shows, with the box around it; empty for a train in one plane."""
+    words = []
+    for view in range(gears[-1].view + 1):
+        own = [gear for gear in gears if gear.view == view]
+        numbers = sorted({gear.stage for gear in own})
+        kind = stages[numbers[0] - 1].kind
+        named = f"stage {numbers[0]}" if len(numbers) == 1 else f"stages {numbers[0]} to {numbers[-1]}"
+        shown = {"bevel": "bevel, in the plane of its shafts", "worm": "worm, in its gear's middle plane"}
+        words.append((box_around(own), f"{named}: {shown.get(kind, 'along the shafts')}"))
+    return words if any(not stage.is_parallel for stage in stages) else []
+
+
+def moved_section(gear: TrainGear, stage: TrainStage, pressure_angle: float, turned: float) -> Points:
+    """The outline of a section when the input has turned so far, radians: a worm's threads go along its axis."""
+    assert gear.section is not None
+    if stage.kind != "worm":
+        return gear.section.outline
+    worm = stage.worm(pressure_angle)
+    # The gear below turns counter-clockwise where its speed is positive, and takes the threads to the left.
+    along = -float(gear.speed) * turned * worm.dimensions.lead / math.tau * stage.sense
+    return np.asarray(worm_section(worm, along).outline)
 
 
 def _direction(number: int, stages: int, coaxial: bool) -> complex:

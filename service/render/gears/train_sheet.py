@@ -7,23 +7,29 @@ import math
 import numpy as np
 
 from service.render.checks import checks, verdict
+from service.render.gears.crossing import Section
 from service.render.gears.marks import COLOURS, PAPER, circles, label, label_box, shifted_teeth
 from service.render.gears.placed import box_around
-from service.render.gears.train_layout import TrainGear, placed_gears
+from service.render.gears.train_layout import TrainGear, placed_gears, view_words
 from service.render.outline import entries
 from service.render.page import blocks
 from service.render.page.numbers import length
 from service.render.page.sheet import beside, fitted, framed, sheet, stacked
-from service.render.page.svg import Box, Element, Viewport, circle, line, path, text
+from service.render.page.svg import Box, Element, Viewport, circle, element, line, path, polygon, text, text_width
 from service.render.page.symbols import GREY, GROUND, arrow, scale_bar
-from synthesis.kinds.gear_train.design import GearTrainDesign
+from synthesis.kinds.gear_train.design import GearTrainDesign, Stage
 from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.kinds.gear_train.verification import driven_train
+from synthesis.model.gear_answer import MeshGeometry
 
 HEIGHTS = (420.0, 860.0)
 """Least and greatest height of the drawing, pixels."""
 
 MARGIN, FOOT = 20.0, 26.0
 """Room in the panel around what is shown, and more of it below for the scale bar, pixels."""
+
+CAPTION = 14.0
+"""Depth of a caption below what it tells of, pixels."""
 
 TURN_RADII, TURN = (14.0, 30.0), 140.0
 """Least and greatest radius, pixels, and angle, degrees, of the arrow that shows how a shaft turns."""
@@ -40,7 +46,11 @@ def gear_train_sheet(design: GearTrainDesign, problem: GearTrainProblem, title: 
     gears = placed_gears(design.mechanism, problem.reverted)
     view = fitted(box_around(gears), beside(), HEIGHTS, MARGIN, FOOT)
     tables, y = stacked(_tables(design, problem, gears))
-    drawn = train_panel(gears, view, problem.length_unit)
+    drawn = train_panel(gears, view, problem.length_unit, typed=problem.stages is not None)
+    for box, words in view_words(gears, driven_train(design.mechanism).stages):
+        at = view.point(complex(box.left, box.low))
+        x = max(view.panel.left + 6.0, min(at.real, view.panel.right - 6.0 - text_width(words, 10.5)))
+        drawn.add(text(x, at.imag + CAPTION, words, 10.5, fill=GROUND))
     bottom = max(view.panel.high, y)
     words = _words(design, problem)
     return sheet(title or "Gear train", words, _description(design, problem), [drawn, *tables], bottom)
@@ -58,39 +68,65 @@ def _words(design: GearTrainDesign, problem: GearTrainProblem) -> str:
 
 def _description(design: GearTrainDesign, problem: GearTrainProblem) -> str:
     listed = "; ".join(
-        f"stage {number}: {stage.driver} drives {stage.driven} teeth, module {stage.module:.6g} {problem.length_unit}"
+        f"stage {number}{f', {stage.type}' if stage.type else ''}: {stage.driver} drives {stage.driven} teeth, "
+        f"module {stage.module:.6g} {problem.length_unit}"
         for number, stage in enumerate(design.mechanism.stages, 1)
     )
     idlers = "".join(f"; idler of {idler.teeth} teeth in stage {idler.stage}" for idler in design.mechanism.idlers)
     return f"Pitch circles of a gear train to scale: {listed}{idlers}."
 
 
-def train_panel(gears: list[TrainGear], view: Viewport, unit: str, name: str = "main") -> Element:
-    """All gears with their shafts and directions in a panel."""
+def train_panel(gears: list[TrainGear], view: Viewport, unit: str, name: str = "main", typed: bool = False) -> Element:
+    """All gears with their shafts and directions in a panel; of stages with types with all their teeth."""
     group = framed(view.panel, name, PAPER)
-    for placed in gears:
-        marks = {"data_stage": f"{placed.stage}", "data_gear": placed.role, "data_teeth": f"{placed.gear.teeth}"}
-        group.add(circles(placed.gear, placed.centre, view, COLOURS[placed.stage - 1], "tip", 0.06, **marks))
-        if placed.gear.shift:
-            group.add(*shifted_teeth(placed, view, COLOURS[placed.stage - 1]))
+    # Rings lie behind what runs in them.
+    for placed in sorted(gears, key=lambda gear: not gear.gear.internal):
+        marks = {"data_stage": f"{placed.stage}", "data_gear": placed.role, "data_teeth": f"{placed.count}"}
+        colour = COLOURS[placed.stage - 1]
+        if placed.section is not None:
+            group.add(_section(placed, placed.section, view, colour, marks))
+            continue
+        group.add(circles(placed.gear, placed.centre, view, colour, "tip", 0.06, **marks))
+        if placed.gear.internal:
+            rim = view.scale * placed.reach
+            group.add(circle(view.point(placed.centre), rim, fill="none", stroke=colour, stroke_width=0.9))
+        if placed.gear.shift or typed:
+            group.add(*shifted_teeth(placed, view, colour))
     shafts: list[complex] = []
     for placed in gears:
+        if placed.section is not None:
+            continue
         at = view.point(placed.centre)
         if all(abs(at - shaft) > 0.5 for shaft in shafts):
             shafts.append(at)
             group.add(*_shaft(at))
+    last = {placed.view: placed for placed in gears}
     for placed in gears:
-        if placed.role != "driven":
+        if placed.section is None and (
+            placed.role != "driven" or (placed is not gears[-1] and placed is last[placed.view])
+        ):
             group.add(*_turn(placed, view, TURN_OF_DRIVERS))
-    group.add(*_turn(gears[-1], view, TURN_OF_OUTPUT))
+    if gears[-1].section is None:
+        group.add(*_turn(gears[-1], view, TURN_OF_OUTPUT))
     for placed, words, below in ((gears[0], "in", 1.0), (gears[-1], "out", -1.0)):
-        at = view.point(placed.centre) + below * 11j
+        at = view.point(placed.centre if placed.section is None else placed.centre + placed.section.axis[-1])
+        at += below * 11j
         group.add(text(at.real + 5.0, at.imag + 4.0, words, 10.5, fill=GROUND))
     taken: list[Box] = []
     for placed in gears:
         group.add(_label(placed, view, taken))
     group.add(scale_bar(view, unit)[0])
     return group
+
+
+def _section(placed: TrainGear, section: Section, view: Viewport, colour: str, marks: dict[str, str]) -> Element:
+    """A gear that is cut along its axis, with its pitch lines and the axis."""
+    body = view.points(placed.centre + section.outline).tolist()
+    drawn: list[Element | None] = [polygon(body, stroke=colour, stroke_width=0.9, fill=colour, fill_opacity=0.06)]
+    dashed: dict[str, str | float] = {"stroke": colour, "stroke_width": 1.4, "stroke_dasharray": "9 3 2 3"}
+    drawn += [path([view.points(placed.centre + row)], **dashed) for row in section.pitch_lines]
+    drawn.append(path([view.points(placed.centre + section.axis)], stroke=GROUND, stroke_width=1.0))
+    return element("g", *(one for one in drawn if one is not None), **marks)
 
 
 def _shaft(at: complex) -> list[Element]:
@@ -118,9 +154,11 @@ def _unit(vector: complex) -> complex:
 
 def _label(placed: TrainGear, view: Viewport, taken: list[Box]) -> Element:
     """Tooth number at the pitch circle, at the first place where it covers no other label."""
-    words = f"{placed.gear.teeth}"
+    words = f"{placed.count}"
     panel = view.panel.grown(-3.0)
     boxes = []
+    if placed.section is not None:
+        boxes.append(label_box(view.point(placed.centre + placed.section.words), words))
     for degrees in PLACES:
         radius = view.scale * placed.pitch_radius
         at = view.point(placed.centre) + radius * np.exp(-1j * math.radians(degrees))
@@ -134,33 +172,78 @@ def _label(placed: TrainGear, view: Viewport, taken: list[Box]) -> Element:
     return label(box, words, COLOURS[placed.stage - 1], words)
 
 
+def _named(placed: TrainGear, stage: Stage, unit: str) -> str:
+    """Teeth and pitch diameter of a gear."""
+    what = "threads" if stage.type == "worm" and placed.role == "driver" else "teeth"
+    ring = ", ring" if placed.gear.internal else ""
+    return f"{placed.count} {what}{ring}, ⌀ {length(2.0 * placed.pitch_radius)} {unit}"
+
+
+def _of_type(stage: Stage, mesh: MeshGeometry, unit: str) -> list[tuple[str, str]]:
+    """What belongs to the type of a stage."""
+    rows = []
+    if stage.type == "internal" and mesh.addendum is not None:
+        short = min(mesh.addendum.driver, mesh.addendum.driven)
+        rows.append(("addendum of the ring", f"{short:.6g} modules"))
+    if mesh.helix_angle is not None and mesh.transverse_module is not None:
+        hand = "right-handed driver" if mesh.helix_angle.driver > 0 else "left-handed driver"
+        rows.append(("helix angle", f"{abs(mesh.helix_angle.driver):.6g}°, {hand}"))
+        rows.append(("transverse module", f"{length(mesh.transverse_module)} {unit}"))
+    if mesh.overlap_ratio is not None:
+        rows.append(("overlap ratio", f"{mesh.overlap_ratio:.3f}"))
+    if mesh.cone_angle is not None and mesh.cone_distance is not None:
+        rows.append(("shaft angle", f"{stage.shaft_angle:.6g}°"))
+        rows.append(("cone angles", f"{mesh.cone_angle.driver:.4f}°, {mesh.cone_angle.driven:.4f}°"))
+        rows.append(("cone distance", f"{length(mesh.cone_distance)} {unit}"))
+        rows.append(("face, as drawn", "a third of the cone distance"))
+    if mesh.lead_angle is not None and mesh.efficiency is not None:
+        rows.append(("lead angle", f"{mesh.lead_angle:.4f}°, {stage.hand}-handed"))
+        locked = "self-locking" if mesh.self_locking else "not self-locking"
+        rows.append(("efficiency", f"{mesh.efficiency:.3f} with friction {stage.friction:.3g}, {locked}"))
+    return rows
+
+
+def _shafts(design: GearTrainDesign) -> list[blocks.Block]:
+    """How every shaft turns, of stages with types."""
+    if design.metrics.shafts is None:
+        return []
+    rows = []
+    for number, shaft in enumerate(design.metrics.shafts):
+        name = "input" if number == 0 else "output" if number == len(design.metrics.shafts) - 1 else f"shaft {number}"
+        ratio = f"{shaft.speed.numerator}/{shaft.speed.denominator}".replace("-", "−")
+        way = {"same": "as the input", "opposite": "against the input", None: "not parallel with the input"}
+        rows.append((name, f"{ratio} × input, {way[shaft.turns]}"))
+    return [blocks.rows("Shafts", rows)]
+
+
 def _tables(design: GearTrainDesign, problem: GearTrainProblem, gears: list[TrainGear]) -> list[blocks.Block]:
     unit, metrics = problem.length_unit, design.metrics
     tables = []
     for number, stage in enumerate(design.mechanism.stages, 1):
-        rows = [
-            (placed.role, f"{placed.gear.teeth} teeth, ⌀ {length(2.0 * placed.pitch_radius)} {unit}")
-            for placed in gears
-            if placed.stage == number
-        ]
+        own = [placed for placed in gears if placed.stage == number]
         meshes = [mesh for mesh in metrics.meshes if mesh.stage == number]
+        rows: list[tuple[str, str]] = [("type", stage.type)] if stage.type else []
+        rows += [(placed.role, _named(placed, stage, unit)) for placed in own]
+        rows += _of_type(stage, meshes[0], unit)
         rows += [
             ("module", f"{length(stage.module)} {unit}"),
             ("shaft distance", f"{length(metrics.centre_distances[number - 1])} {unit}"),
             ("contact ratio", ", ".join(f"{mesh.contact_ratio:.3f}" for mesh in meshes)),
         ]
         if problem.is_fitted:
-            cut = [placed.gear for placed in gears if placed.stage == number]
+            cut = [placed.gear for placed in own]
             rows += [
                 ("profile shifts", ", ".join(f"{gear.shift:.5f}".replace("-", "−") for gear in cut)),
                 ("tip circles", ", ".join(f"⌀ {length(2.0 * gear.tip_radius)} {unit}" for gear in cut)),
                 ("working pressure angle", ", ".join(f"{mesh.working_pressure_angle:.4f}°" for mesh in meshes)),
             ]
         if stage.face_width is not None:
-            rows.append(("face width, a first estimate", f"{length(stage.face_width)} {unit}"))
+            estimate = ", a first estimate" if problem.strength is not None else ""
+            rows.append((f"face width{estimate}", f"{length(stage.face_width)} {unit}"))
         if any(mesh.interferes for mesh in meshes):
             rows.append(("interference", "yes; see suggested shift"))
         tables.append(blocks.rows(f"Stage {number}", rows))
+    tables += _shafts(design)
     tables.append(checks(design.verification, problem))
-    tables.append(blocks.rows("Metrics", entries(metrics, problem, {"error", "centre_distances"})))
+    tables.append(blocks.rows("Metrics", entries(metrics, problem, {"error", "centre_distances", "shafts"})))
     return tables

@@ -1,0 +1,83 @@
+"""Stages whose shafts are not parallel, as they are drawn: bevel gears and a worm with its gear, in section.
+
+A bevel stage is cut by the plane of its shafts: the apex at the origin, the driver's shaft to the left. Its gears are
+the bodies between two cone distances, with the taper of full-depth teeth, seen from the side. A worm is cut by the
+middle plane of its gear, which stands at the origin with the worm above: there the worm is a rack, whose other side is
+half a lead further on.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from kinematics.gear.bevel import BevelCones
+from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, FULL_DEPTH_DEDENDUM
+from kinematics.gear.worm import WormDrive
+from service.render.page.svg import Points
+
+USUAL_FACE = 1.0 / 3.0
+"""Face of a bevel gear as a share of the cone distance, as it is drawn."""
+
+WORM_PITCHES = 7
+"""Axial pitches that a worm is drawn long."""
+
+SHAFT = 1.25
+"""Length of a shaft from the apex on, in cone distances."""
+
+
+class Section(NamedTuple):
+    """A closed outline, the pitch lines in it, and the axis from end to end; where words may stand."""
+
+    outline: Points
+    pitch_lines: tuple[Points, ...]
+    axis: Points
+    words: complex
+
+
+def bevel_sections(pair: BevelCones) -> tuple[Section, Section]:
+    """Driver and driven gear about the apex."""
+    away = -1.0 + 0j, -complex(np.exp(-1j * pair.shaft_angle))
+    one, two = (_bevel(pair, cone, way) for cone, way in zip(pair.cones, away, strict=True))
+    return one, two
+
+
+def _bevel(pair: BevelCones, cone: float, away: complex) -> Section:
+    far, near = pair.cone_distance, (1.0 - USUAL_FACE) * pair.cone_distance
+    along, up = complex(math.cos(cone), math.sin(cone)), complex(-math.sin(cone), math.cos(cone))
+    tip, root = FULL_DEPTH_ADDENDUM * pair.module, -FULL_DEPTH_DEDENDUM * pair.module
+    # All lines of the teeth run towards the apex.
+    upper = [near * along + near / far * tip * up, far * along + tip * up, far * along + root * up]
+    half = np.array(upper, np.complex128)
+    outline = np.concatenate([half, half[::-1].conj()]) * away
+    lines = tuple(np.array([0.0, far * side]) * away for side in (along, along.conjugate()))
+    return Section(outline, lines, np.array([0.0, SHAFT * far]) * away, far * math.cos(cone) * away)
+
+
+def worm_section(worm: WormDrive, moved: float = 0.0) -> Section:
+    """The worm about its own middle, its axis along x, its gear below; ``moved`` so far along the axis."""
+    pitch, phi = math.pi * worm.module, worm.axial_pressure_angle
+    radius, half = 0.5 * worm.dimensions.worm_diameter, 0.5 * WORM_PITCHES * pitch
+    below = _rack(worm.module, pitch, phi, half, moved)
+    other = _rack(worm.module, pitch, phi, half, moved + 0.5 * worm.dimensions.lead)
+    outline = np.concatenate([below - 1j * radius, (other.conj() + 1j * radius)[::-1]])
+    lines = tuple(np.array([-half, half]) + side * 1j * radius for side in (-1.0, 1.0))
+    return Section(outline, lines, np.array([-half - pitch, half + pitch], np.complex128), 0j)
+
+
+def _rack(module: float, pitch: float, phi: float, half: float, moved: float) -> Points:
+    """A rack from −half to half, its teeth downwards, one of them about ``moved``."""
+    tip, root = FULL_DEPTH_ADDENDUM * module, FULL_DEPTH_DEDENDUM * module
+    thin, wide = 0.25 * pitch - tip * math.tan(phi), 0.25 * pitch + root * math.tan(phi)
+    first = math.floor((-half - moved) / pitch) - 1
+    corners = [
+        complex(moved + k * pitch + x, y)
+        for k in range(first, first + WORM_PITCHES + 4)
+        for x, y in ((-wide, root), (-thin, -tip), (thin, -tip), (wide, root))
+    ]
+    x, y = np.real(corners), np.imag(corners)
+    inside = np.abs(x) < half
+    ends = np.interp([-half, half], x, y)
+    return np.concatenate([[complex(-half, ends[0])], np.array(corners)[inside], [complex(half, ends[1])]])
