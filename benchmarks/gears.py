@@ -15,6 +15,7 @@ import argparse
 import math
 import resource
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from random import Random
 from typing import Any
@@ -187,10 +188,10 @@ def compare_trains(number: int, seed: int) -> Solved:
     return found
 
 
-def compare_typed(number: int, seed: int) -> Solved:
-    """Solve as many random tasks of typed stages."""
+def compare_typed(tasks: Iterable[dict[str, Any]]) -> Solved:
+    """Solve tasks of typed stages."""
     found = Solved()
-    for statement in typed_trains.statements(number, seed):
+    for statement in tasks:
         result, _ = found.solve(statement)
         best = typed_trains.nearest(statement)
         found.note(statement, best is not None, typed_trains.same_answer(result.model_dump(), best))
@@ -211,11 +212,10 @@ def main() -> None:
     for name, by in found.largest.items():
         print(f"  {name}: they differ by {by:.1e} at most")
     faults = list(found.faults)
-    for name, of, compared in (
-        ("fitted", options.trains, compare_trains),
-        ("typed", options.typed, compare_typed),
+    for name, told in (
+        ("fitted", compare_trains(options.trains, options.seed)),
+        ("typed", compare_typed(typed_trains.statements(options.typed, options.seed))),
     ):
-        told = compared(of, options.seed)
         print(f"{told.some + told.none} {name} trains by brute force: {told.some} with an answer, {told.none} without; "
               f"solved in {told.spent:.1f} s of CPU")  # fmt: skip
         faults += told.faults

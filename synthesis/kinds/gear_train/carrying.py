@@ -11,7 +11,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cmp_to_key
 from typing import Any, NamedTuple
 
@@ -197,8 +197,10 @@ def _meshes(stage: Stage, idlers: tuple[int, ...], speed: float) -> Iterator[tup
     shifts = (0.0, 0.0) if stage.shift is None else (stage.shift.driver, stage.shift.driven)
     whole = TrainStage(stage.driver, stage.driven, stage.module, idlers)
     for place, (one, other) in enumerate(itertools.pairwise(gears)):
-        mesh = _Turning(TrainStage(one, other, stage.module, (), shifts), bent_both_ways(whole, place))
-        yield mesh, speed * stage.driver / one
+        alone = TrainStage(one, other, stage.module, (), shifts)
+        if stage.type == "internal" and stage.addendum is not None:
+            alone = replace(alone, kind="internal", addenda=(stage.addendum.driver, stage.addendum.driven))
+        yield _Turning(alone, bent_both_ways(whole, place)), speed * stage.driver / one
 
 
 def arrangements(problem: GearTrainProblem, task: Task, train: Train) -> list[Train]:
