@@ -75,8 +75,11 @@ function circles(mechanism, metrics) {
       const idle = (mechanism.idlers ?? []).filter((/** @type {any} */ one) => one.stage === n + 1).reduce((/** @type {number} */ sum, /** @type {any} */ one) => sum + one.teeth, 0);
       const size = stage.module ?? module;
       const from = at;
-      at += size * ((pairs[0].driver + pairs[0].driven) / 2 + idle);
-      return row(pairs.map((/** @type {any} */ pair) => [from, at, (size * pair.driver) / 2, (size * pair.driven) / 2]));
+      // Of a ring and its pinion the axes are as far apart as the radii differ; a worm is as thick as it is, whatever its threads.
+      const first = stage.type === "worm" ? stage.diameter_quotient : pairs[0].driver;
+      const wide = stage.type === "helical" ? 1 / Math.cos((stage.helix_angle * Math.PI) / 180) : 1;
+      at += size * wide * ((stage.type === "internal" ? Math.abs(pairs[0].driven - first) : first + pairs[0].driven) / 2 + idle);
+      return row(pairs.map((/** @type {any} */ pair) => [from, at, (size * wide * (stage.type === "worm" ? first : pair.driver)) / 2, (size * wide * pair.driven) / 2]));
     });
   }
   if (mechanism.units) {

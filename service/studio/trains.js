@@ -52,16 +52,23 @@ function ordinary(motion, problem) {
     /** @type {Wheel | null} */
     let before = null;
     const gears = motion.gears.filter((/** @type {any} */ one) => one.stage === stage);
+    const kind = motion.meshes.find((/** @type {any} */ mesh) => mesh.stage === stage).type;
+    const inside = kind === "internal";
+    // A pinion that drives a ring meshes with it on the side away from the ring's axis.
+    const contact = inside && gears[0].teeth < gears[1].teeth ? ahead + Math.PI : ahead;
     // Shifted gears are shown by their working pitch circles, which touch; an idler's stage has none.
-    const apart = gears.length === 2 ? distances[stage - 1] / (0.5 * gears[0].module * (gears[0].teeth + gears[1].teeth)) : 1;
+    // Bevel gears are shown as if spread out in one plane, a worm as the circle that it is from its end.
+    const apart = gears.length === 2 && !inside && kind !== "bevel" && kind !== "worm" ? distances[stage - 1] / (0.5 * gears[0].module * (gears[0].teeth + gears[1].teeth)) : 1;
     const wide = Math.abs(apart - 1) > 1e-9 ? apart : 1;
     for (const gear of gears) {
       /** @type {Wheel} */
-      const wheel = { name: `Stage ${stage} ${gear.role}`, teeth: gear.teeth, module: gear.module * wide, centre: shaft, tooth: ahead, speed: gear.speed_ratio, tone: stage - 1 };
+      const wheel = { name: `Stage ${stage} ${gear.role}`, teeth: gear.teeth, module: gear.module * wide, centre: shaft, tooth: contact, speed: gear.speed_ratio, tone: stage - 1,
+        ...(inside ? { internal: gear.teeth === Math.max(...gears.map((/** @type {any} */ one) => one.teeth)) } : {}),
+        ...(kind === "worm" && gear.role === "driver" ? { module: gear.pitch_diameter / gear.teeth, idle: true } : {}) };
       if (before) {
-        const far = radius(before) + radius(wheel);
+        const far = inside ? Math.abs(radius(before) - radius(wheel)) : radius(before) + radius(wheel);
         wheel.centre = [before.centre[0] + far * Math.cos(ahead), before.centre[1] + far * Math.sin(ahead)];
-        wheel.tooth = facing(before, wheel, ahead);
+        wheel.tooth = facing(before, wheel, contact);
       }
       found.push(wheel);
       before = wheel;
