@@ -110,7 +110,7 @@ PURE = {
     "LayshaftProblem": {"ratios", "reverse", "tolerance"},
     "LinkageMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
     "MeshContact": {"contact_ratio"},
-    "MeshGeometry": {"contact_ratio"},
+    "MeshGeometry": {"contact_ratio", "efficiency", "overlap_ratio", "total_contact_ratio"},
     "Optimality": {"value", "bound", "gap"},  # of its criterion
     "OfGears": {"driver", "driven"},
     "OutputDial": {"at"},
@@ -146,8 +146,10 @@ PURE = {
     "SecondMetrics": {"curvature_ratio"},
     "SpringChoice": {"gap"},
     "SpringMetrics": {"value", "bound", "gap", "energy_variation"},  # shares of what was before
+    "Stage": {"diameter_quotient", "friction"},
     "StageRatio": {"min", "max"},
     "StatedSpring": {"damping"},  # by the sort of spring
+    "StatedStage": {"diameter_quotient", "friction"},
     "StatedTorque": {"table"},  # columns of two units
     "SteeringMetrics": {"link_ratio"},
     "StraightLineMetrics": {"link_ratio", "reach", "quality"},
@@ -162,6 +164,7 @@ PURE = {
     "Target": {"residual"},
     "TorqueCourse": {"table"},  # columns of several units
     "TrainVibration": {"frequency_ratio", "period_ratio"},
+    "TurningShaft": {"axis"},  # a direction
     "VectorHarmonic": {"backward", "forward", "major", "minor"},
     "Yield": {"value", "low", "high"},
 }

@@ -129,13 +129,12 @@ class GearTrainProblem(StatedProblem):
                 },
                 {
                     "kind": "gear_train",
-                    "ratio": "-47",
+                    "ratio": "47",
                     "stages": [
                         {"type": "helical", "helix_angle": 15.0, "face_width": 40.0},
                         {"type": "internal"},
                         {"type": "external"},
                     ],
-                    "direction": "any",
                     "teeth": {"min": 18, "max": 90},
                     "module": 2.0,
                     "max_designs": 3,
