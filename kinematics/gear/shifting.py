@@ -53,7 +53,8 @@ HALVINGS = 28
 class Demands(NamedTuple):
     """What a pair has to keep; shifts, depth and thickness in modules, the angle in radians.
 
-    ``depth``: how far below its reference line the straight flank of the cutting rack reaches.
+    ``depth``: how far below its reference line the straight flank of the cutting rack reaches. Of helical teeth all are
+    those of the plane of rotation, where the ``addendum`` is less than a module.
     """
 
     pressure_angle: float
@@ -62,6 +63,7 @@ class Demands(NamedTuple):
     most_shift: float
     contact_ratio: float
     tip_thickness: float
+    addendum: float = 1.0
 
 
 class Working(NamedTuple):
@@ -128,7 +130,7 @@ def _margin(teeth: int, mate: int, working: Working, shift: float, demands: Dema
     other = working.total - shift
     sine, cosine = rack.sine, rack.cosine
     base, mate_base = 0.5 * teeth * cosine, 0.5 * mate * cosine
-    heads = 1.0 + shift - working.shortening, 1.0 + other - working.shortening
+    heads = demands.addendum + shift - working.shortening, demands.addendum + other - working.shortening
     tip, mate_tip = 0.5 * teeth + heads[0], 0.5 * mate + heads[1]
     least = min(heads[0], heads[1])
     if not least >= -KEPT:
@@ -151,7 +153,7 @@ def _margin(teeth: int, mate: int, working: Working, shift: float, demands: Dema
 @njit(cache=True, nogil=True)
 def _span(working: Working, demands: Demands) -> tuple[float, float]:
     """The shifts of the first gear at which both are within the limits and keep an addendum; nan: none are."""
-    total, head = working.total, working.shortening - 1.0
+    total, head = working.total, working.shortening - demands.addendum
     low = max(demands.least_shift, total - demands.most_shift, head)
     high = min(demands.most_shift, total - demands.least_shift, total - head)
     if not low <= high + 2.0 * KEPT:
@@ -198,11 +200,12 @@ def suits(teeth: int, mate: int, working: Working, demands: Demands) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def _excess(teeth: int, mate: int, working: Working, shift: float, cosine: float) -> float:
+def _excess(teeth: int, mate: int, working: Working, shift: float, demands: Demands) -> float:
     """By how much the first flank's greatest specific sliding is larger; it falls with the shift of the first gear."""
+    cosine = math.cos(demands.pressure_angle)
     base, mate_base = 0.5 * teeth * cosine, 0.5 * mate * cosine
-    tip = 0.5 * teeth + 1.0 + shift - working.shortening
-    mate_tip = 0.5 * mate + 1.0 + working.total - shift - working.shortening
+    tip = 0.5 * teeth + demands.addendum + shift - working.shortening
+    mate_tip = 0.5 * mate + demands.addendum + working.total - shift - working.shortening
     reach = math.sqrt(max(tip * tip - base * base, 0.0))
     mate_reach = math.sqrt(max(mate_tip * mate_tip - mate_base * mate_base, 0.0))
     # u₂ z₁ / (u₁ z₂) against u₁ z₂ / (u₂ z₁), multiplied out: beyond the tangent points it goes on in the same sense.
@@ -223,15 +226,14 @@ def balanced_split(teeth: int, mate: int, working: Working, demands: Demands) ->
     if not most >= -KEPT:
         return math.nan
     low, high = _span(working, demands)
-    cosine = math.cos(demands.pressure_angle)
-    if _excess(teeth, mate, working, low, cosine) <= 0.0:
+    if _excess(teeth, mate, working, low, demands) <= 0.0:
         wanted = low
-    elif _excess(teeth, mate, working, high, cosine) >= 0.0:
+    elif _excess(teeth, mate, working, high, demands) >= 0.0:
         wanted = high
     else:
         for _ in range(60):
             middle = 0.5 * (low + high)
-            if _excess(teeth, mate, working, middle, cosine) > 0.0:
+            if _excess(teeth, mate, working, middle, demands) > 0.0:
                 low = middle
             else:
                 high = middle

@@ -18,7 +18,7 @@ from tests.service.answers import finished
 Statement = dict[str, Any]
 
 PARALLEL: Statement = {
-    "kind": "gear_train", "ratio": "12", "max_designs": 1, "teeth": {"min": 18, "max": 60}, "module": 2.0,
+    "kind": "gear_train", "ratio": "10", "max_designs": 1, "teeth": {"min": 18, "max": 60}, "module": 2.0,
     "stages": [{"type": "helical", "helix_angle": 15.0}, {"type": "internal"}],
 }  # fmt: skip
 CROSSING: Statement = {

@@ -342,6 +342,86 @@ def test_what_does_not_go_together_is_refused_where_it_stands(stages: Any, field
     assert path in faults(*stages, **fields)
 
 
+def best_pair(teeth: tuple[int, int], demands: Statement, distance: float) -> bool:
+    """Whether some split of the shifts is sound as a `gear_pair` tells it, on a grid."""
+    plain: Statement = {"type": "gear_pair", "teeth": list(teeth), "module": 1.5, "helix_angle": demands["angle"]}
+    # The sum of shifts that leaves no play at the distance, by bisection of the play.
+    low, high = -0.9, 1.2
+
+    def told(first: float, total: float) -> Any:
+        shift = {"shift": [first, total - first], "centre_distance": distance}
+        return parse_request({"mechanism": plain | shift}).answer()
+
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if told(0.5 * middle, middle)["backlash"] > 0.0 else (low, middle)
+    least, most = demands["shift"]
+    for first in np.linspace(max(least, low - most), min(most, low - least), 41):
+        if max(least, low - most) > min(most, low - least):
+            return False
+        pair = told(float(first), low)
+        thick = [gear["tip_thickness"] for gear in pair["gears"]]
+        # Sound teeth on a limit of play; the rest as it is demanded.
+        cut = any(gear["undercut"] or gear["fillet_interference"] for gear in pair["gears"])
+        if not cut and None not in thick and min(thick) >= 1.5 * demands["tip"] and pair["contact_ratio"] >= 1.2:
+            return True
+    return False
+
+
+def test_helical_stages_are_fitted_to_a_distance() -> None:
+    """Of all pairs at a distance the search has those of which a `gear_pair` with some split of shifts is sound."""
+    demands: Statement = {"angle": 22.0, "shift": (-0.3, 0.4), "tip": 0.5}
+    stage, distance = HELICAL | {"helix_angle": 22.0}, 33.0
+    fields: Statement = {
+        "modules": [1.5],
+        "centre_distance": distance,
+        "shift": {"min": -0.3, "max": 0.4},
+        "min_tip_thickness": 0.5,
+        "teeth": {"min": 16, "max": 26},
+    }
+    for a, b in itertools.combinations_with_replacement(range(16, 27), 2):
+        if not 38 <= a + b <= 43:
+            continue
+        one = stage | {"driver": a, "driven": b}
+        result = solved(one, ratio=f"{b}/{a}", **fields)
+        assert bool(result.designs) == best_pair((a, b), demands, distance), (a, b)
+    best = solved(stage, ratio="1.3", **fields).designs[0]
+    made, mesh = best.mechanism.stages[0], best.metrics.meshes[0]
+    assert made.shift is not None
+    pair = {
+        "type": "gear_pair",
+        "teeth": [made.driver, made.driven],
+        "module": 1.5,
+        "helix_angle": 22.0,
+        "shift": [made.shift.driver, made.shift.driven],
+    }
+    told = parse_request({"mechanism": pair}).answer()
+    assert told["centre_distance"] == pytest.approx(distance, rel=1e-9)
+    assert mesh.tip_thickness is not None
+    assert told["contact_ratio"] == pytest.approx(mesh.contact_ratio, rel=1e-9)
+    assert [gear["tip_thickness"] for gear in told["gears"]] == pytest.approx(
+        [mesh.tip_thickness.driver, mesh.tip_thickness.driven], rel=1e-9
+    )
+
+
+def test_helical_and_spur_stages_agree_on_a_distance() -> None:
+    """Coaxial stages of different angles, which pitch circles never make so, by their shifts."""
+    result = solved(
+        HELICAL, {"type": "external"}, ratio="4", reverted=True, modules=[1.0, 1.5], centre_distance=48.0,
+        teeth={"min": 17, "max": 60}, max_designs=3,
+    )  # fmt: skip
+    assert result.search.complete
+    for design in result.designs:
+        assert design.metrics.centre_distances == pytest.approx([48.0, 48.0], rel=1e-12)
+        assert [mesh.backlash for mesh in design.metrics.meshes] == pytest.approx([0.0, 0.0], abs=1e-12)
+    open_distance = solved(
+        HELICAL, {"type": "external"}, ratio="4", reverted=True, modules=[1.0], shift={"min": -0.2, "max": 0.5},
+        teeth={"min": 17, "max": 40},
+    )  # fmt: skip
+    one, two = open_distance.designs[0].metrics.centre_distances
+    assert one == pytest.approx(two, rel=1e-12)
+
+
 def test_a_ring_carries_a_power() -> None:
     result = solved(INTERNAL, ratio="3", module=2.0, strength=STRENGTH)
     assert result.designs[0].metrics.strength is not None

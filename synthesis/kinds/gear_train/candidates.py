@@ -272,7 +272,7 @@ def _grouped(task: Task, k: int, stages: list[tuple[Integers, Integers, Integers
     stage = np.repeat(np.arange(len(listed)), [len(one[0]) for one in listed])
     ends: Floats = np.tile(np.array([[0.0, np.inf]]), (len(a), 1, 1))
     if coaxial and task.fit is not None and task.fit.shares_distance:
-        ends = task.fit.ends[mark, a, b]
+        ends = task.fit.ends[np.minimum(stage, len(task.fit.ends) - 1), mark, a, b]
         fits = np.isfinite(ends[:, 0, 0])
         a, b, mark, stage, ends = a[fits], b[fits], mark[fits], stage[fits], ends[fits]
     key = task.distance_keys(mark, stage, a, b) if coaxial else np.zeros(len(a), np.int64)

@@ -23,6 +23,7 @@ from kinematics.gear.teeth import FULL_DEPTH_DEDENDUM
 from synthesis.kinds.gear_train.kernels import AGREED
 from synthesis.kinds.gear_train.pairing import Integers
 from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.kinds.gear_train.stated_stages import StatedStage
 
 
 class FittedStage(NamedTuple):
@@ -38,12 +39,15 @@ class Fit:
     """The meshes that can be fitted.
 
     ``module[s, a, b]`` is the place of the module that a pair has in stage s (one row for all stages where they are
-    alike), −1 where none fits. ``ends[m, a, b]`` are the intervals of distances of a pair with module m,
+    alike), −1 where none fits. ``ends[s, m, a, b]`` are the intervals of distances of a pair with module m in stage s,
     least and greatest, filled with nan, where stages have to agree on one; empty otherwise. ``fits[s, m, a, b]`` tells
     of stages with a distance of their own which modules fit a pair. ``modules`` are lengths.
+    ``demands[s]`` are those of a stage in the plane of rotation, in whose modules all is reckoned; ``stretch[s]`` times
+    that of the normal plane they are as long.
     """
 
-    demands: Demands
+    demands: tuple[Demands, ...]
+    stretch: tuple[float, ...]
     modules: tuple[float, ...]
     limits: tuple[tuple[float, float], ...]
     module: NDArray[np.int8]
@@ -76,56 +80,62 @@ class Fit:
         """
         meshes = list(zip(drivers, driven, strict=True))
         if self.shares_distance:
-            wanted = sum(0.5 * self.modules[m] * (a + b) for (a, b), m in zip(meshes, marks, strict=True)) / len(meshes)
-            shared = _nearest(
-                _common([self.ends[mark, a, b] for (a, b), mark in zip(meshes, marks, strict=True)]), wanted
-            )
-            return [self._fitted(a, b, mark, shared) for (a, b), mark in zip(meshes, marks, strict=True)]
+            rows = [self.stage(number) for number in range(len(meshes))]
+            listed = list(zip(rows, meshes, marks, strict=True))
+            wanted = sum(0.5 * self._module(row, m) * (a + b) for row, (a, b), m in listed) / len(meshes)
+            shared = _nearest(_common([self.ends[row, mark, a, b] for row, (a, b), mark in listed]), wanted)
+            return [self._fitted(row, a, b, mark, shared) for row, (a, b), mark in listed]
         return [
             self.made(number, a, b, int(self.module[self.stage(number), a, b])) for number, (a, b) in enumerate(meshes)
         ]
 
     def made(self, number: int, a: int, b: int, place: int) -> FittedStage:
         """A mesh in a stage, counted from 0, that has a distance of its own, with one of the modules that fit it."""
-        return self._fitted(a, b, place, self._own_distance(a, b, place, self.limits[self.stage(number)]))
+        row = self.stage(number)
+        return self._fitted(row, a, b, place, self._own_distance(row, a, b, place))
 
     def places(self, number: int, a: int, b: int) -> list[int]:
         """Places of the modules that fit a mesh in such a stage, the smallest module first."""
         fits = np.flatnonzero(self.fits[self.stage(number), :, a, b])
         return sorted((int(place) for place in fits), key=self.modules.__getitem__)
 
-    def _own_distance(self, a: int, b: int, place: int, limits: tuple[float, float]) -> float:
+    def _module(self, row: int, place: int) -> float:
+        """A module in the plane of rotation."""
+        return self.modules[place] * self.stretch[row]
+
+    def _own_distance(self, row: int, a: int, b: int, place: int) -> float:
+        limits, demands = self.limits[row], self.demands[row]
         if limits[0] == limits[1]:
             return limits[0]
-        module = self.modules[place]
+        module = self._module(row, place)
         pair, standard = (min(a, b), max(a, b)), 0.5 * (a + b)
-        low = max(2.0 * self.demands.least_shift, self._sum_at(pair, limits[0] / module, -math.inf))
-        high = min(2.0 * self.demands.most_shift, self._sum_at(pair, limits[1] / module, math.inf))
-        sums = shifting.sums_that_suit(*pair, low, high, self.demands)
+        low = max(2.0 * demands.least_shift, self._sum_at(row, pair, limits[0] / module, -math.inf))
+        high = min(2.0 * demands.most_shift, self._sum_at(row, pair, limits[1] / module, math.inf))
+        sums = shifting.sums_that_suit(*pair, low, high, demands)
         if any(least <= 0.0 <= most for least, most in sums):
             return module * standard
-        spans = [
-            [module * float(shifting.with_sum(*pair, total, self.demands).distance) for total in span] for span in sums
-        ]
+        spans = [[module * float(shifting.with_sum(*pair, total, demands).distance) for total in span] for span in sums]
         distance = _nearest([(least, most) for least, most in spans], module * standard)
         return min(max(distance, limits[0]), limits[1])
 
-    def _sum_at(self, pair: tuple[int, int], distance: float, beyond: float) -> float:
+    def _sum_at(self, row: int, pair: tuple[int, int], distance: float, beyond: float) -> float:
         """The sum of shifts at a distance in modules, ``beyond`` where there is none."""
-        total = float(shifting.at_distance(*pair, distance, self.demands).total) if math.isfinite(distance) else beyond
+        if not math.isfinite(distance):
+            return beyond
+        total = float(shifting.at_distance(*pair, distance, self.demands[row]).total)
         return total if math.isfinite(total) else beyond
 
-    def _fitted(self, a: int, b: int, place: int, distance: float) -> FittedStage:
+    def _fitted(self, row: int, a: int, b: int, place: int, distance: float) -> FittedStage:
         """A mesh at its distance; the smaller gear is looked at first, whichever drives."""
-        small, large = min(a, b), max(a, b)
-        working = shifting.at_distance(small, large, distance / self.modules[place], self.demands)
-        shift = float(shifting.balanced_split(small, large, working, self.demands))
-        shifts = self._within(shift), self._within(float(working.total) - shift)
-        return FittedStage(place, shifts if a <= b else shifts[::-1], distance)
-
-    def _within(self, shift: float) -> float:
-        """A shift without what rounding took it beyond its limits."""
-        return min(max(shift, self.demands.least_shift), self.demands.most_shift)
+        small, large, demands = min(a, b), max(a, b), self.demands[row]
+        working = shifting.at_distance(small, large, distance / self._module(row, place), demands)
+        first = float(shifting.balanced_split(small, large, working, demands))
+        # Without what rounding takes a shift beyond its limits.
+        one, two = (
+            min(max(shift, demands.least_shift), demands.most_shift) * self.stretch[row]
+            for shift in (first, float(working.total) - first)
+        )
+        return FittedStage(place, (one, two) if a <= b else (two, one), distance)
 
 
 def _common(meshes: list[NDArray[np.float64]]) -> list[tuple[float, float]]:
@@ -149,51 +159,80 @@ def _nearest(spans: list[tuple[float, float]], wanted: float) -> float:
 
 def fit_meshes(problem: GearTrainProblem, numbers: Integers) -> Fit:
     """The meshes of a problem whose teeth are fitted; ``numbers`` are the tooth numbers that there are."""
-    demands = demands_of(problem)
+    rows = _stages_apart(problem)
+    stages: list[StatedStage | None] = [None] * rows if problem.stages is None else [*problem.stages[:rows]]
+    demands = tuple(demands_of(problem, stage) for stage in stages)
+    stretch = tuple(1.0 / math.cos(math.radians(_angle(stage))) for stage in stages)
     modules = tuple(float(module) for module in problem.exact_modules())
     n = int(numbers.max()) + 1
     present = np.zeros(n, np.bool_)
     present[numbers] = True
-    asked = present[:, None] & present[None, :]
-    # Gears that a rack undercuts at every shift are not asked for.
-    least = [least_shift_of_rack(z, demands.pressure_angle, demands.depth) for z in range(n)]
-    makeable = np.array(least) <= demands.most_shift + shifting.KEPT
-    asked &= makeable[:, None] & makeable[None, :]
+    asked = [_makeable(one, present) for one in demands]
     standard = 0.5 * np.add.outer(np.arange(n), np.arange(n))
-    if problem.shares_distance:
-        low, high = problem.distance_limits(0)
-        if math.isfinite(high):
-            spans = [_between(asked, low / m, high / m, True, demands) for m in modules]
-        else:
-            spans = [_between(asked, 0.0, math.inf, True, demands)] * len(modules)
-        ends = np.full((len(modules), n, n, max(span.shape[2] for span in spans), 2), math.nan)
-        for place, (module, span) in enumerate(zip(modules, spans, strict=True)):
-            ends[place, :, :, : span.shape[2]] = module * span
-        found = np.isfinite(ends[..., 0, 0])
-        chosen = np.where(found.any(axis=0), found.argmax(axis=0), -1).astype(np.int8)
-        return Fit(demands, modules, ((low, high),), chosen[None], ends, np.zeros((1, 0, n, n), np.bool_))
-    rows = _stages_apart(problem)
     limits = tuple(problem.distance_limits(stage) for stage in range(rows))
+    if problem.shares_distance:
+        spans = [
+            [module * wide * _between(pairs, *_in_modules(limits[0], module * wide), True, one) for module in modules]
+            for pairs, wide, one in zip(asked, stretch, demands, strict=True)
+        ]
+        most = max(span.shape[2] for row in spans for span in row)
+        ends = np.full((rows, len(modules), n, n, most, 2), math.nan)
+        for row, own in enumerate(spans):
+            for place, span in enumerate(own):
+                ends[row, place, :, :, : span.shape[2]] = span
+        found = np.isfinite(ends[..., 0, 0])
+        chosen = np.where(found.any(axis=1), found.argmax(axis=1), -1).astype(np.int8)
+        return Fit(demands, stretch, modules, limits, chosen, ends, np.zeros((rows, 0, n, n), np.bool_))
     chosen = np.full((rows, n, n), -1, np.int8)
     every = np.zeros((rows, len(modules), n, n), np.bool_)
     for row, (low, high) in enumerate(limits):
         nearest = np.full((n, n), math.inf)
         # Of equally near modules the smallest: they are tried in rising order.
         for place in sorted(_choices(problem, row, modules), key=modules.__getitem__):
-            module = modules[place]
-            fits = np.isfinite(_between(asked, low / module, high / module, False, demands)[..., 0, 0])
+            module = modules[place] * stretch[row]
+            fits = np.isfinite(_between(asked[row], low / module, high / module, False, demands[row])[..., 0, 0])
             every[row, place] = fits
             apart = np.maximum(0.0, np.maximum(low - module * standard, module * standard - high))
             better = fits & (apart < nearest)
             chosen[row][better], nearest[better] = place, apart[better]
-    return Fit(demands, modules, limits, chosen, np.zeros((0, 0, 0, 0, 2)), every)
+    return Fit(demands, stretch, modules, limits, chosen, np.zeros((0, 0, 0, 0, 0, 2)), every)
 
 
-def demands_of(problem: GearTrainProblem) -> Demands:
-    """What every mesh of a problem has to keep."""
-    phi = math.radians(problem.pressure_angle)
+def _in_modules(limits: tuple[float, float], module: float) -> tuple[float, float]:
+    """Limits of a distance in modules; none where there is no greatest."""
+    low, high = limits
+    return (low / module, high / module) if math.isfinite(high) else (0.0, math.inf)
+
+
+def _makeable(demands: Demands, present: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Pairs of gears that there are, but for those that a rack undercuts at every shift."""
+    least = [least_shift_of_rack(z, demands.pressure_angle, demands.depth) for z in range(len(present))]
+    made = present & (np.array(least) <= demands.most_shift + shifting.KEPT)
+    return np.asarray(made[:, None] & made[None, :])
+
+
+def _angle(stage: StatedStage | None) -> float:
+    """Helix angle, degrees."""
+    return 0.0 if stage is None else abs(stage.helix_angle or 0.0)
+
+
+def demands_of(problem: GearTrainProblem, stage: StatedStage | None = None) -> Demands:
+    """What every mesh of a stage has to keep, in modules of the plane of rotation."""
+    phi, beta = math.radians(problem.pressure_angle), math.radians(_angle(stage))
     depth = straight_depth(phi, FULL_DEPTH_DEDENDUM)
-    return Demands(phi, depth, *problem.shift_limits, problem.least_contact_ratio, problem.least_tip_thickness)
+    least, most = problem.shift_limits
+    plain = Demands(phi, depth, least, most, problem.least_contact_ratio, problem.least_tip_thickness)
+    if not beta:
+        return plain
+    shrunk = math.cos(beta)
+    return plain._replace(
+        pressure_angle=math.atan(math.tan(phi) / shrunk),
+        depth=shrunk * depth,
+        least_shift=shrunk * least,
+        most_shift=shrunk * most,
+        tip_thickness=shrunk * problem.least_tip_thickness,
+        addendum=shrunk,
+    )
 
 
 def _between(asked: NDArray[np.bool_], low: float, high: float, ends: bool, demands: Demands) -> NDArray[np.float64]:
@@ -213,7 +252,9 @@ def _sound_between(asked: bytes, n: int, low: float, high: float, ends: bool, de
 
 def _stages_apart(problem: GearTrainProblem) -> int:
     """How many stages have meshes of their own: one stands for all where they are alike."""
-    return problem.most_stages if isinstance(problem.centre_distance, list) or problem.has_own_modules else 1
+    helical = any(_angle(stage) for stage in problem.stages or [])
+    apart = isinstance(problem.centre_distance, list) or problem.has_own_modules or helical
+    return problem.most_stages if apart else 1
 
 
 def _choices(problem: GearTrainProblem, stage: int, modules: tuple[float, ...]) -> list[int]:

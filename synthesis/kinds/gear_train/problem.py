@@ -44,7 +44,7 @@ among which the smallest are sought. Of all trains whatever their error the smal
 
 DEFAULT_MOST_TEETH = 100
 
-FITTED_TYPES, CARRYING_TYPES = ("external",), ("external", "internal")
+FITTED_TYPES, CARRYING_TYPES = ("external", "helical"), ("external", "internal")
 """Types of stages whose teeth can be fitted, and those whose strength is estimated."""
 
 USUAL_SHIFT = (-0.5, 1.0)
