@@ -10,12 +10,15 @@ import re
 from collections.abc import Callable
 from functools import cache
 from hashlib import sha256
+from inspect import isfunction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numba
 import numba.core.config
 from numba.core.caching import InTreeCacheLocator, UserProvidedCacheLocator, UserWideCacheLocator
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.registry import CPUDispatcher
 
 _OURS = rb"(?:kinematics|synthesis)[\w.]*"
 _IMPORT = re.compile(rb"^ *(?:from (%b) import (\([^)]*\)|.*)|import (%b))" % (_OURS, _OURS), re.MULTILINE)
@@ -87,18 +90,64 @@ class OfUser(_BySources, UserWideCacheLocator):
 _LOCATORS = ",".join(f"{__name__}.{locator.__name__}" for locator in (InStatedFolder, BesideSources, OfUser))
 
 
+_Dispatcher: Any = CPUDispatcher
+
+
+class _Declared(_Dispatcher):  # type: ignore[misc]  # of a class without types
+    """A kernel of one declared signature, which is compiled when the kernel is first used, not when it is imported."""
+
+    declared: Any = None
+    """The signature as long as it has not been compiled."""
+
+    def _settle(self) -> None:
+        if self.declared is not None:
+            with global_compiler_lock:
+                if self.declared is not None:
+                    super().compile(self.declared)
+                    self.disable_compile()
+                    self.declared = None
+
+    def _compile_for_args(self, *args: Any, **named: Any) -> Any:
+        # The dispatcher, which is C, asks here for what to call where it has found no compiled signature.
+        if self.declared is None:
+            return super()._compile_for_args(*args, **named)
+        self._settle()
+        return self
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        self._settle()
+        return super().get_call_template(args, kws)
+
+    def get_function_type(self) -> Any:
+        self._settle()
+        return super().get_function_type()
+
+    def get_compile_result(self, sig: Any) -> Any:
+        self._settle()
+        return super().get_compile_result(sig)
+
+    def _reduce_states(self) -> Any:
+        self._settle()
+        return super()._reduce_states()
+
+
 def _njit(*signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """`numba.njit`, its cache held against all sources of the kernel."""
-    compile_kernel = numba.njit(*signature, **options)
+    declared = None if not signature or isfunction(signature[0]) else signature[0]
+    compile_kernel = numba.njit(*(signature if declared is None else ()), **options)
 
     def decorate(function: Callable[..., Any]) -> Any:
         config: Any = numba.core.config
         before = config.CACHE_LOCATOR_CLASSES
         config.CACHE_LOCATOR_CLASSES = _LOCATORS
         try:
-            return compile_kernel(function)
+            kernel = compile_kernel(function)
         finally:
             config.CACHE_LOCATOR_CLASSES = before
+        if declared is not None:
+            kernel.__class__ = _Declared
+            kernel.declared = declared
+        return kernel
 
     return decorate
 

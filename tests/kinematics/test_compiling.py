@@ -5,7 +5,11 @@ import subprocess
 import sys
 from pathlib import Path
 
-from kinematics.compiling import digest, sources
+import numpy as np
+import pytest
+from numba import types
+
+from kinematics.compiling import digest, njit, sources
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -77,3 +81,49 @@ def test_every_kernel_of_the_project_is_compiled_so() -> None:
     files = [file for package in ("kinematics", "synthesis") for file in (ROOT / package).rglob("*.py")]
     direct = {file.relative_to(ROOT) for file in files if "from numba import njit" in file.read_text()}
     assert direct == {Path("kinematics/compiling.py")}
+
+
+VECTOR = types.Array(types.float64, 1, "C")
+HALF = types.float64(types.float64)
+SUM = types.float64(VECTOR)
+
+
+def test_a_declared_kernel_is_compiled_when_it_is_first_used_and_as_declared() -> None:
+    half = njit(HALF)(lambda x: x / 2)
+    assert half.signatures == []
+    assert half(3) == 1.5
+    assert half.signatures == [HALF.args]
+    with pytest.raises(TypeError, match="No matching definition"):
+        half(1j)
+    assert half.signatures == [HALF.args]
+
+
+def test_a_declared_kernel_is_used_by_kernels_as_a_function_and_as_an_argument() -> None:
+    total, unused = njit(SUM)(lambda x: x.sum()), njit(SUM)(lambda x: x.max())
+    calls = njit(lambda x: total(x) + 1.0)
+    twice = njit(types.float64(types.FunctionType(SUM), VECTOR))(lambda f, x: 2.0 * f(x))
+    assert calls(np.ones(3)) == 4.0
+    assert twice(total, np.ones(4)) == 8.0
+    passed_first = njit(SUM)(lambda x: x.min())
+    assert twice(passed_first, np.ones(4)) == 2.0
+    assert total.signatures == passed_first.signatures == [SUM.args]
+    assert unused.signatures == []
+
+
+def test_no_kernel_is_compiled_by_importing_solvers(tmp_path: Path) -> None:
+    """Whoever solves one kind of problem does not wait for the kernels of what the solver does not call."""
+    program = (
+        "from numba.core import event\n"
+        "from synthesis.registry import KINDS\n"
+        "import importlib, pkgutil, kinematics, synthesis\n"
+        "class Compiled(event.Listener):\n"
+        "    def on_start(self, started): raise SystemExit(f'compiled: {started.data[\"dispatcher\"]}')\n"
+        "    def on_end(self, ended): pass\n"
+        "event.register('numba:compile', Compiled())\n"
+        "for package in (kinematics, synthesis):\n"
+        "    for module in pkgutil.walk_packages(package.__path__, f'{package.__name__}.'):\n"
+        "        importlib.import_module(module.name)\n"
+    )
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": str(ROOT)}
+    ended = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stderr
