@@ -15,6 +15,8 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
+SERVING := $(VENV)/.serving
+INSTALLER := $(VENV)/installer
 UV     := $(BIN)/uv
 PIP    := $(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check
 NODE   := tests/node/node_modules/.installed
@@ -28,10 +30,10 @@ export PYTHONDONTWRITEBYTECODE :=
 .PHONY: serve test fuzz test-cluster engines test-faults test-browser chromium campaign demo check quick bench openapi lock \
     clean suite cluster-rabbitmq cluster-redis
 
-serve: $(STAMP)
+serve: $(SERVING)
 	@exec $(BIN)/mechsynth serve
 
-demo: $(STAMP)
+demo: $(SERVING)
 	@$(BIN)/mechsynth demo --output var/demo.svg
 
 test: $(STAMP)
@@ -122,25 +124,43 @@ bench: $(STAMP)
 openapi: $(STAMP)
 	$(BIN)/python -m service.cli openapi docs/openapi.json
 
-# The virtual environment is made without ensurepip, which some systems leave out; the system's pip puts uv into it, which
-# installs the rest in a tenth of the time. Where uv finds no package, pip may: its settings can name another index.
-# Compiling the kernels here keeps that out of the first job.
-$(UV):
+# The virtual environment is made without ensurepip, which some systems leave out. The system's pip puts uv and setuptools
+# beside it, which those who only serve do not keep: uv installs the rest in a tenth of pip's time. Where there is no uv,
+# or it finds no package, pip may: its settings can name another index. Bytecode is compiled on all processors.
+define install
 	@test -x $(BIN)/python || $(PYTHON) -m venv --without-pip $(VENV)
-	@sed -n '/^uv==/,/# via/p' requirements.lock > $(VENV)/uv.lock
-	@$(PIP) --require-hashes -r $(VENV)/uv.lock
+	@for tool in setuptools uv; do \
+	    sed -n "/^$$tool==/,/# via/p" requirements-dev.lock > $(VENV)/$$tool.lock; \
+	    $(PIP) --no-compile --upgrade --target $(INSTALLER) --require-hashes -r $(VENV)/$$tool.lock \
+	    || test $$tool = uv || exit 1; done
+	@export PYTHONPATH=$(INSTALLER) UV_NO_PROGRESS=1; uv="$(INSTALLER)/bin/uv pip install --python $(BIN)/python --quiet"; \
+	    { $$uv --require-hashes -r $(1) || $(PIP) --no-compile --require-hashes -r $(1); } \
+	    && { $$uv --no-deps --no-build-isolation -e . || $(PIP) --no-deps --no-build-isolation -e .; }
+	@rm -rf $(INSTALLER)
+	@$(BIN)/python -m compileall -q -j 0 -x '/tests?/' $(VENV)/lib
+endef
 
-$(STAMP): requirements.lock pyproject.toml | $(UV)
-	@echo "installing the locked packages (once; a minute)"
-	@$(UV) pip install --python $(BIN)/python --quiet --require-hashes -r requirements.lock \
-	    || $(PIP) --require-hashes -r requirements.lock
-	@$(PIP) --no-deps --no-build-isolation -e .
-	@$(BIN)/mechsynth warm
+# What serving needs. The kernels of the most usual problems are compiled at the first start, the rest beside it.
+$(SERVING): requirements.lock pyproject.toml
+	@echo "installing the locked packages (once; half a minute)"
+	$(call install,requirements.lock)
 	@touch $@
 
-lock: $(UV)
-	$(UV) pip compile pyproject.toml --all-extras --python-version 3.11 --universal \
-	    --generate-hashes --no-emit-index-url --no-header --quiet -o requirements.lock
+# What developing needs, and all kernels compiled.
+$(STAMP): requirements-dev.lock requirements.lock pyproject.toml
+	@echo "installing the locked packages for development and compiling all kernels (once; minutes)"
+	$(call install,requirements-dev.lock)
+	@$(BIN)/mechsynth warm
+	@touch $(SERVING) $@
+
+# The same versions for all: developers' packages first, and users' are among them.
+RESOLVE = $(UV) pip compile pyproject.toml --python-version 3.11 --universal --generate-hashes --no-emit-index-url \
+    --no-header --quiet
+
+lock: $(STAMP)
+	$(RESOLVE) --all-extras -o requirements-dev.lock
+	$(RESOLVE) -c requirements-dev.lock -o requirements.lock
+	$(RESOLVE) --extra cluster --extra telemetry -c requirements-dev.lock -o requirements-cluster.lock
 
 # What the tests need of node, from the lock beside it.
 $(NODE): tests/node/package.json tests/node/package-lock.json

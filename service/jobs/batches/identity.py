@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from synthesis.model.statement import StatedProblem
 
-LIBRARIES = ("numpy", "scipy", "numba", "cvxpy", "clarabel", "highspy", "pydantic")
+LIBRARIES = ("numpy", "scipy", "numba", "cvxpy-base", "clarabel", "highspy", "pydantic")
 """What the solvers compute with: another version of it may end at other last digits."""
 
 SOURCES = (".py", ".npz")
