@@ -87,7 +87,10 @@ class OfUser(_BySources, UserWideCacheLocator):
     """Kernels in the user's cache folder."""
 
 
-_LOCATORS = ",".join(f"{__name__}.{locator.__name__}" for locator in (InStatedFolder, BesideSources, OfUser))
+LOCATORS = (InStatedFolder, BesideSources, OfUser)
+"""Where kernels may be kept, in the order in which places are tried."""
+
+_LOCATORS = ",".join(f"{__name__}.{locator.__name__}" for locator in LOCATORS)
 
 
 _Dispatcher: Any = CPUDispatcher

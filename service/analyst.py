@@ -2,7 +2,8 @@
 
 Jobs are computed in worker processes, which can be killed; an analysis takes milliseconds, and a thread will do. Its
 library takes a second to import and its kernels some more to load, so that is done in the background when the service
-has started, and whoever asks before it is done waits.
+has started, and whoever asks before it is done waits. To compile kernels here would hold up all requests: other
+processes do that (:mod:`service.warming`).
 """
 
 from __future__ import annotations
@@ -27,11 +28,8 @@ THREADS = 2
 MAX_ANALYSIS_S = 20.0
 """How long a client is kept waiting for an analysis."""
 
-MAX_START_DELAY_S = 10.0
-"""The core is loaded after the first worker has started, so that the service is ready soon, but not later than this."""
-
 _PERIOD_S = 0.02
-"""Period at which it looks whether that worker has started, which tells nobody."""
+"""Period at which it looks whether the core may be loaded, which tells nobody."""
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -59,10 +57,15 @@ class Analyst:
         self._loaded = threading.Event()
 
     def start(self, after: Callable[[], bool]) -> None:
-        """Load the core once ``after`` says so, at the latest :data:`MAX_START_DELAY_S` from now; returns at once."""
+        """Load the core once ``after`` says so, when its kernels have been compiled; returns at once."""
         for n in range(THREADS):
             loading = after if n == 0 else None
             threading.Thread(target=self._serve, args=(loading,), name=f"analyst-{n}", daemon=True).start()
+
+    @property
+    def loaded(self) -> bool:
+        """Whether analyses are begun at once."""
+        return self._loaded.is_set()
 
     async def call(self, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
         """Call a function in a thread; what it raises is raised here.
@@ -82,8 +85,7 @@ class Analyst:
 
     def _serve(self, loading: Callable[[], bool] | None) -> None:
         if loading is not None:
-            latest = time.monotonic() + MAX_START_DELAY_S
-            while not loading() and time.monotonic() < latest:
+            while not loading():
                 time.sleep(_PERIOD_S)
             self._load()
         self._loaded.wait()

@@ -42,6 +42,7 @@ from service.jobs.notifier import ChangeNotifier
 from service.jobs.poller import JobPoller
 from service.jobs.retention import keep_tidy
 from service.jobs.store import JobStore
+from service.kernels import ANALYSIS, KernelsState
 from service.metrics import Metrics
 from service.settings import Settings
 
@@ -56,7 +57,7 @@ Angles are degrees, counter-clockwise from +x; lengths are plain numbers in the 
 are refused. Errors are `application/problem+json` (RFC 9457); validation errors name each field by its JSON pointer."""
 
 
-def create_app(settings: Settings, executor: Executor, measured: Metrics) -> FastAPI:
+def create_app(settings: Settings, executor: Executor, measured: Metrics, kernels: KernelsState) -> FastAPI:
     """The service as an ASGI application. Its start upgrades the store and takes unfinished jobs up again."""
 
     @asynccontextmanager
@@ -65,7 +66,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics) -> Fas
         store = JobStore(engine)
         notifier = ChangeNotifier(asyncio.get_running_loop())
         app.state.analyst = Analyst()
-        app.state.analyst.start(after=lambda: executor.ready() > 0)
+        app.state.analyst.start(after=lambda: kernels.settled(ANALYSIS))
         app.state.drawings = Drawings()
         try:
             executor.subscribe(notifier.publish)
@@ -95,6 +96,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics) -> Fas
     app = application(lifespan)
     app.state.settings = settings
     app.state.metrics = measured
+    app.state.kernels = kernels
     return app
 
 

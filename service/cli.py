@@ -56,9 +56,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     if command.name == "keys":
         return _keys(command)
-    from service.warming import warm
+    from service.warming import WarmingFailure, warm
 
-    warm()
+    try:
+        warm()
+    except WarmingFailure as failure:
+        print(f"mechsynth warm: {failure}", file=sys.stderr)
+        return EXIT_FAILURE
     return 0
 
 
@@ -116,9 +120,11 @@ def _worker() -> int:
     from sqlalchemy.exc import SQLAlchemyError
 
     from service.jobs.host import HostError, run_host
+    from service.warming import Compilation, every_part, nothing
 
+    wanted = every_part if settings.compile_ahead else nothing
     try:
-        run_host(settings)
+        run_host(settings, Compilation(wanted, settings.log_level, settings.log_format))
     except HostError as error:
         print(f"mechsynth worker: {error}", file=sys.stderr)
         return EXIT_FAILURE

@@ -99,6 +99,7 @@ def _service() -> Iterator[str]:
             "MECHSYNTH_PORT": "0",
             "MECHSYNTH_DATA_DIR": folder,
             "MECHSYNTH_LOG_LEVEL": "warning",
+            "MECHSYNTH_COMPILE_AHEAD": "false",  # it solves one problem and ends
         }
         environment.pop("MECHSYNTH_DATABASE_URL", None)
         announced = Path(folder) / "announced"

@@ -21,6 +21,7 @@ from service.jobs.executor import Executor
 from service.jobs.local import LocalExecutor
 from service.metrics import Metrics
 from service.settings import Settings
+from service.warming import Compilation, analysis_alone, every_part, nothing
 
 log = structlog.get_logger(__name__)
 
@@ -43,18 +44,21 @@ def serve(settings: Settings) -> None:
     with _data_folder(settings), _store(settings), _listener(settings, _open(settings)) as listener:
         metrics = Metrics()
         executor = _executor(settings, metrics)
+        compilation = _compilation(settings)
         try:
             # A worker takes as long to start as the web framework to import: side by side, the service is ready in
             # half the time. The tables are made in between, long before any worker is given a job.
             executor.start()
             from service.web import WebServer
 
-            WebServer(settings, executor, metrics).run(sockets=[listener])
+            compilation.start(after=lambda: executor.ready() > 0)
+            WebServer(settings, executor, metrics, compilation.state).run(sockets=[listener])
         except _Ended:
             pass
         except SystemExit:  # uvicorn's way to say that the application did not start
             raise ServeError("the service could not start; the log above has the reason") from None
         finally:
+            compilation.stop()
             executor.stop()
 
 
@@ -78,6 +82,12 @@ def _executor(settings: Settings, metrics: Metrics) -> Executor:
         return LocalExecutor(settings, metrics)
     except (SQLAlchemyError, ImportError, OSError) as error:
         raise _no_database(error) from None
+
+
+def _compilation(settings: Settings) -> Compilation:
+    """What the server compiles beside its start: all kernels, or its own where worker hosts run the jobs."""
+    wanted = every_part if settings.executor == "local" else analysis_alone
+    return Compilation(wanted if settings.compile_ahead else nothing, settings.log_level, settings.log_format)
 
 
 def _no_database(error: Exception) -> ServeError:

@@ -51,6 +51,9 @@ class Settings(BaseSettings):
         Annotated[int, Field(ge=1, le=65535, description="Port of the metrics of a worker host; none when left out.")]
         | None
     ) = None
+    compile_ahead: bool = Field(
+        default=True, description="Compile kernels that are missing beside the jobs, not when a job first needs them."
+    )
     max_body_bytes: Annotated[int, Field(ge=1024, le=1 << 30, description="Largest request body, bytes.")] = 1 << 20
     job_timeout_s: Annotated[float, Field(gt=0, le=86_400, description="Longest computation of a job, seconds.")] = (
         600.0

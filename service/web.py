@@ -16,6 +16,7 @@ from service.app import create_app
 from service.connections import IDLE_S, ImpatientProtocol, raise_file_limit
 from service.head import HeadAsGet
 from service.jobs.executor import Executor
+from service.kernels import KernelsState
 from service.metrics import Metrics
 from service.settings import Settings
 from service.telemetry import Telemetry
@@ -34,10 +35,10 @@ stops, and a collector that is not there must not hold that up for the usual ten
 class WebServer(uvicorn.Server):
     """Serves the application on a bound socket until SIGINT or SIGTERM."""
 
-    def __init__(self, settings: Settings, executor: Executor, metrics: Metrics) -> None:
+    def __init__(self, settings: Settings, executor: Executor, metrics: Metrics, kernels: KernelsState) -> None:
         for name, value in _OPENTELEMETRY.items():
             os.environ.setdefault(name, value)
-        self._app = create_app(settings, executor, metrics)
+        self._app = create_app(settings, executor, metrics, kernels)
         self._executor = executor
         self._announcement: asyncio.Task[None] | None = None
         ImpatientProtocol.most = raise_file_limit()

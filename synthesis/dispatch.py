@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
+from kinematics.compiled import LINKAGES, is_compiled
 from kinematics.linkage import warm
 from synthesis.model.answer import Reachable, Result
 from synthesis.model.kind import Kind, Progress, part_of
@@ -19,7 +21,18 @@ from synthesis.outcome.usable import usable_first
 from synthesis.registry import KINDS
 from synthesis.relaxation import Relaxation, relaxation
 
-__all__ = ["Progress", "compile_demands", "compile_kind", "solve", "warm_up", "warm_up_rest"]
+__all__ = [
+    "Progress",
+    "compile_demands",
+    "compile_kind",
+    "load_linkages",
+    "solve",
+    "warm_up",
+    "warm_up_rest",
+]
+
+LOOK_PERIOD_S = 1.0
+"""Period at which it looks whether the kernels of a kind have been compiled: a mark on disk, which tells nobody."""
 
 SEARCH_SHARE = 0.9
 """Share of the progress that the search counts for; the rest is that for the nearest miss where nothing passed."""
@@ -120,10 +133,22 @@ def warm_up() -> None:
 
 
 def warm_up_rest() -> None:
-    """Load everything else that the first jobs may need: the analysis core, and the solvers of all kinds."""
+    """Load everything else that the first jobs may need: the analysis core, and the solvers of all kinds.
+
+    Each is loaded when its kernels have been compiled, by whomever: to compile them here would hold up the jobs.
+    """
+    waiting = [LINKAGES, *KINDS]
+    while waiting:
+        for part in [part for part in waiting if is_compiled(part)]:
+            load_linkages() if part == LINKAGES else _load(part)
+            waiting.remove(part)
+        if waiting:
+            time.sleep(LOOK_PERIOD_S)
+
+
+def load_linkages() -> None:
+    """Compile the kernels of the analysis of linkages, or load them from their cache."""
     warm.warm_up()
-    for name in KINDS:
-        _load(name)
 
 
 def compile_kind(name: str) -> None:

@@ -13,7 +13,7 @@ from pydantic_core import to_json
 from service.analyst import MAX_ANALYSIS_S, Analyst, Busy, TooLong
 from service.api import errors
 from service.api.body import JsonRoute
-from service.api.errors import busy, invalid_mechanism, invalid_request
+from service.api.errors import busy, compiling, invalid_mechanism, invalid_request
 from service.api.state import Core
 from service.explained import sentence
 from service.telemetry import span
@@ -76,7 +76,7 @@ async def answered(analyst: Analyst, work: Callable[P, bytes], *args: P.args, **
         fault = ("/mechanism", f"The analysis was given up after {MAX_ANALYSIS_S:g} seconds; are all lengths meant so?")
         raise invalid_mechanism([fault]) from None
     except Busy:
-        raise busy("analyses") from None
+        raise (busy("analyses") if analyst.loaded else compiling()) from None
 
 
 def invalid_body(error: ValidationError, body: Any) -> RequestValidationError:

@@ -139,6 +139,15 @@ def busy(with_what: str) -> Refusal:
     )
 
 
+def compiling() -> Refusal:
+    """The first start after an installation is not at its end."""
+    return Refusal(
+        503, "busy", "Busy",
+        "What analyses call is being compiled, once after an installation; `/readyz` says how far that is.",
+        headers={"Retry-After": "5"},
+    )  # fmt: skip
+
+
 def responses(**described: str) -> dict[int | str, dict[str, Any]]:
     """The error responses of an endpoint for OpenAPI: ``responses(e404="There is no such job.")``."""
     content = {PROBLEM_JSON: {"schema": {"$ref": "#/components/schemas/ProblemDetails"}}}

@@ -6,7 +6,7 @@ from fastapi import APIRouter, Request
 
 from service.api import errors
 from service.api.errors import Refusal
-from service.api.schemas import Health
+from service.api.schemas import Health, Kernels, Readiness
 
 TAG = {"name": "health", "description": "For those who watch over the service."}
 
@@ -25,9 +25,14 @@ async def healthz() -> Health:
     summary="Does it take jobs?",
     responses=errors.responses(e503="The store does not answer, or no worker has started yet."),
 )
-async def readyz(request: Request) -> Health:
-    """The store answers and at least one worker is ready."""
+async def readyz(request: Request) -> Readiness:
+    """The store answers and at least one worker is ready.
+
+    After an installation the numeric kernels are compiled beside the first jobs; `kernels` says how far that is.
+    """
     missing = await request.app.state.desk.ready()
     if missing is not None:
         raise Refusal(503, "not-ready", "Not ready", missing, headers={"Retry-After": "1"})
-    return Health(status="ok")
+    progress = request.app.state.kernels.progress
+    kernels = None if progress is None else Kernels(compiled=progress.compiled, total=progress.total)
+    return Readiness(status="ok", kernels=kernels)

@@ -125,6 +125,22 @@ class Health(BaseModel):
     status: str = Field(examples=["ok"])
 
 
+class Kernels(BaseModel):
+    """How far the compilation of numeric kernels is, which each kind of problem has some of.
+
+    A job that comes before its kernels are compiled compiles them itself, and takes seconds longer.
+    """
+
+    compiled: int = Field(ge=0, description="Parts that are compiled.")
+    total: int = Field(ge=0, description="All parts that are compiled ahead; 0 where that is switched off.")
+
+
+class Readiness(Health):
+    """What the service is ready for."""
+
+    kernels: Kernels | None = Field(description="Null as long as it is not known, a second after the start.")
+
+
 def list_item(job: JobSummary) -> dict[str, Any]:
     """A job as :class:`JobListItem`."""
     return {

@@ -29,6 +29,7 @@ from service.jobs.leases import LeaseStore
 from service.jobs.listener import WORK, StoreListener
 from service.jobs.local import LocalExecutor
 from service.jobs.recovery import Recovery
+from service.kernels import Compiling
 from service.metrics import HostMetrics
 from service.settings import Settings
 
@@ -45,9 +46,10 @@ class HostError(Exception):
 class Host:
     """The lanes of a host, and what tells them of work."""
 
-    def __init__(self, settings: Settings, metrics: HostMetrics) -> None:
+    def __init__(self, settings: Settings, metrics: HostMetrics, compilation: Compiling) -> None:
         self.id = str(ULID())
         self.lanes = LocalExecutor(settings, metrics)
+        self._compilation = compilation
         self._engine = connect(settings.store_url, durable=False)
         self._leases = LeaseStore(self._engine)
         self._publisher = Publisher(settings)
@@ -62,6 +64,7 @@ class Host:
         upgrade(self._engine)
         self.lanes.start()
         self.lanes.open()
+        self._compilation.start(after=lambda: self.lanes.ready() > 0)
         self._beating.start()
         self._recovery.start()
         self._listener.start()
@@ -75,6 +78,7 @@ class Host:
         if self._stopping.is_set():
             return
         self._stopping.set()
+        self._compilation.stop()
         self._recovery.stop()
         self._listener.stop()
         self.lanes.stop()
@@ -97,7 +101,7 @@ class Host:
                 log.exception("the leases could not be renewed")
 
 
-def run_host(settings: Settings) -> None:
+def run_host(settings: Settings, compilation: Compiling) -> None:
     """Run a worker host until SIGINT or SIGTERM.
 
     Raises
@@ -109,7 +113,7 @@ def run_host(settings: Settings) -> None:
     """
     logs.configure(settings.log_level, settings.log_format)
     metrics = HostMetrics()
-    host = Host(settings, metrics)
+    host = Host(settings, metrics, compilation)
     show(metrics, settings)
     signal.signal(signal.SIGTERM, _end)
     signal.signal(signal.SIGINT, _end)

@@ -29,6 +29,7 @@ class Solving:
         self._since = RawValue("d", 0.0)
         self._stop = RawValue("b", 0)
         self._sample = RawValue("q", _NONE)
+        self._paused_after = 0.0
 
     @contextmanager
     def at_work(self, sample: int | None = None) -> Iterator[None]:
@@ -39,6 +40,14 @@ class Solving:
             yield
         finally:
             self._since.value = 0.0
+
+    def pause(self) -> None:
+        """What follows is none of the solver's work, such as the compilation of what it calls. For the worker."""
+        self._paused_after, self._since.value = self.seconds, 0.0
+
+    def go_on(self) -> None:
+        """The solver is at work again. For the worker."""
+        self._since.value = time.monotonic() - self._paused_after
 
     def stoppable(self, progress: Callable[[float, str], None]) -> Callable[[float, str], None]:
         """A progress callback that raises :class:`Stopped` when the solver is to stop. For the worker."""

@@ -14,7 +14,7 @@ import sys
 import threading
 import time
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import structlog
 
@@ -29,6 +29,9 @@ from service.jobs.progress import ProgressWriter
 from service.jobs.schema import Claim
 from service.jobs.solving import Solving, Stopped
 from service.jobs.store import JobStore
+
+if TYPE_CHECKING:
+    from service.jobs.first_use import FirstUse
 
 Outcome = Literal["succeeded", "failed", "out of memory", "superseded", "stopped", "slice"]
 """What became of a job as its worker knows it; ``superseded``: it has its answer, and was cancelled or given to another
@@ -70,6 +73,7 @@ class _Post:
     settings: WorkerSettings
     solving: Solving
     slices: Slices
+    first_use: FirstUse
 
 
 _post: _Post | None = None
@@ -93,8 +97,9 @@ def start(settings: WorkerSettings, solving: Solving) -> None:
     store = JobStore(engine)
     progress = ProgressWriter(store)
     _limit_memory(settings.memory_mb + LIBRARIES_MB)
+    first_use: FirstUse = importlib.import_module("service.jobs.first_use").FirstUse(solving)
     slices = Slices(BatchStore(engine), solving, faults.out_of_memory(settings.memory_mb))
-    _post = _Post(store, progress, settings, solving, slices)
+    _post = _Post(store, progress, settings, solving, slices, first_use)
     store.ping()
     # Beside the first jobs: they find what is not loaded yet a little slower, but the service is ready seconds sooner.
     threading.Thread(target=dispatch.warm_up_rest, name="warm-up", daemon=True).start()
@@ -125,7 +130,8 @@ def run(job: Claim) -> Ran:
 
 def _run_slice(post: _Post, share: Claim, batch_id: str) -> Ran:
     began = time.perf_counter()
-    outcome = post.slices.run(share, batch_id)
+    with post.first_use.told(lambda fraction, message: None):
+        outcome = post.slices.run(share, batch_id)
     seconds = time.perf_counter() - began
     log.debug(f"batch {outcome}", batch=batch_id, share=share.job_id, seconds=round(seconds, 4))
     return Ran(outcome, share.kind, seconds)
@@ -154,8 +160,8 @@ def _solve(post: _Post, job: Claim) -> tuple[str, str]:
     from synthesis import dispatch
 
     problem = read(job.kind, job.problem)
-    with post.progress.attempt(job.job_id, job.attempt) as progress:
-        result = dispatch.solve(problem, post.solving.stoppable(progress)).model_dump_json()
+    with post.progress.attempt(job.job_id, job.attempt) as progress, post.first_use.told(progress) as told:
+        result = dispatch.solve(problem, post.solving.stoppable(told)).model_dump_json()
     return result, digest(problem)
 
 

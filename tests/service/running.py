@@ -42,6 +42,7 @@ def until(condition, seconds=10.0, what="the condition"):
 def environment(folder: Path, **settings) -> dict[str, str]:
     clean = {key: value for key, value in os.environ.items() if not key.startswith("MECHSYNTH_")}
     settings = {**CHOSEN.settings(folder), **settings}
+    settings = {"compile_ahead": "false", **settings}  # what no test calls
     ours = {"MECHSYNTH_PORT": "0", "MECHSYNTH_DATA_DIR": str(folder / "data"), "SCRIPTED_FOLDER": str(folder)}
     return {**clean, "PYTHONPATH": str(ROOT), **ours, **{f"MECHSYNTH_{k.upper()}": str(v) for k, v in settings.items()}}
 

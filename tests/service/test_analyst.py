@@ -57,8 +57,13 @@ def test_a_core_that_cannot_be_warmed_up_holds_nobody_up(ready, monkeypatch):
     assert asyncio.run(other.call(divmod, 7, 2)) == (3, 1)
 
 
-def test_the_core_is_loaded_even_if_no_worker_ever_starts(ready, monkeypatch):
-    monkeypatch.setattr(analyst, "MAX_START_DELAY_S", 0.05)
+def test_the_core_is_loaded_once_its_kernels_are_compiled(ready, monkeypatch):
+    compiled, loaded = threading.Event(), threading.Event()
+    monkeypatch.setattr(analyst, "warm_up", loaded.set)
     other = Analyst()
-    other.start(after=lambda: False)
+    other.start(after=compiled.is_set)
+    assert not loaded.wait(0.1)
+    assert not other.loaded
+    compiled.set()
     assert asyncio.run(other.call(divmod, 7, 2)) == (3, 1)
+    assert other.loaded
