@@ -8,6 +8,7 @@
 #              multibody program is installed for them)
 # make fuzz    hundreds of requests of each operation, and of absurd problems of each kind; half an hour
 # make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
+# make package  a wheel, in dist/
 # make openapi  rewrite docs/openapi.json after a change of the API or of a kind of problem
 # make lock    resolve the dependencies of pyproject.toml anew
 
@@ -27,7 +28,7 @@ SPREAD := -n 2 --dist loadfile
 
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: serve test fuzz test-cluster engines test-faults test-browser chromium campaign demo check quick bench openapi lock \
+.PHONY: serve test fuzz test-cluster engines test-faults test-browser chromium campaign demo check quick bench openapi lock package \
     clean suite cluster-rabbitmq cluster-redis
 
 serve: $(SERVING)
@@ -124,6 +125,14 @@ bench: $(STAMP)
 openapi: $(STAMP)
 	$(BIN)/python -m service.cli openapi docs/openapi.json
 
+# All that runs outside of a checkout: pip install dist/*.whl && mechsynth serve
+package: $(STAMP)
+	@rm -rf build dist
+	@$(PYTHON) -m pip --python $(BIN)/python wheel --quiet --disable-pip-version-check --no-deps --no-build-isolation \
+	    --wheel-dir dist .
+	@rm -rf build
+	@ls dist/*.whl
+
 # The virtual environment is made without ensurepip, which some systems leave out. The system's pip puts uv and setuptools
 # beside it, which those who only serve do not keep: uv installs the rest in a tenth of pip's time. Where there is no uv,
 # or it finds no package, pip may: its settings can name another index. Bytecode is compiled on all processors.
@@ -176,4 +185,4 @@ $(MULTIBODY): tests/oracles/multibody.lock | $(STAMP)
 	@touch $@
 
 clean:
-	rm -rf $(VENV) var tests/node/node_modules
+	rm -rf $(VENV) var dist tests/node/node_modules

@@ -1,6 +1,6 @@
 """Compilation of kernels, and when a compiled kernel on disk is still the one of the sources.
 
-`numba` keeps compiled kernels beside their sources and compiles again when the file of the kernel changes. A kernel
+`numba` keeps compiled kernels on disk and compiles again when the file of the kernel changes. A kernel
 also contains the code of the kernels that it calls and the constants that it reads, which may stand in other files:
 after an upgrade in place it would go on with their old code. Here a kernel's sources are its own file and every file
 of the project that it imports, directly or through others. Kernels take `njit` from this module.
@@ -64,6 +64,11 @@ def digest(root: Path, source: Path) -> str:
     return sha256(b"".join(sha256(_text(file)).digest() for file in sources(root, source))).hexdigest()
 
 
+def _root(source: Path) -> Path:
+    """The folder of the top-level package of a source."""
+    return next(folder for folder in source.parents if not (folder / "__init__.py").exists())
+
+
 class _BySources:
     """What a locator of `numba`'s cache says of a kernel's sources."""
 
@@ -71,8 +76,7 @@ class _BySources:
 
     def get_source_stamp(self) -> str:
         source = Path(self._py_file).resolve()
-        root = next(folder for folder in source.parents if not (folder / "__init__.py").exists())
-        return digest(root, source)
+        return digest(_root(source), source)
 
 
 class InStatedFolder(_BySources, UserProvidedCacheLocator):
@@ -83,11 +87,21 @@ class BesideSources(_BySources, InTreeCacheLocator):
     """Kernels in the `__pycache__` beside their sources, where that can be written."""
 
 
+class InCheckout(BesideSources):
+    """The same where the sources are a checkout of the project; what is installed is left as it was."""
+
+    @classmethod
+    def from_function(cls, py_func: Any, py_file: str) -> Any:
+        """As numba asks; None where this is no place for the kernel."""
+        in_checkout = (_root(Path(py_file).resolve()) / "pyproject.toml").exists()
+        return super().from_function(py_func, py_file) if in_checkout else None  # type: ignore[no-untyped-call]
+
+
 class OfUser(_BySources, UserWideCacheLocator):
-    """Kernels in the user's cache folder."""
+    """Kernels in the user's cache folder, where there is one."""
 
 
-LOCATORS = (InStatedFolder, BesideSources, OfUser)
+LOCATORS = (InStatedFolder, InCheckout, OfUser, BesideSources)
 """Where kernels may be kept, in the order in which places are tried."""
 
 _LOCATORS = ",".join(f"{__name__}.{locator.__name__}" for locator in LOCATORS)

@@ -36,6 +36,7 @@ def _run(folder: Path, compiler: str, constant: int) -> list[int]:
     """What the kernel gives where the file that it inlines has `constant`, and whether it came from the disk."""
     package = folder / "synthesis"
     package.mkdir(parents=True, exist_ok=True)
+    (folder / "pyproject.toml").touch()
     for name, text in {"__init__": "", "inner": INNER, "middle": MIDDLE, "outer": OUTER}.items():
         (package / f"{name}.py").write_text(text.format(compiler=compiler, constant=constant))
     paths = os.pathsep.join([str(folder), str(ROOT)])
@@ -81,6 +82,19 @@ def test_every_kernel_of_the_project_is_compiled_so() -> None:
     files = [file for package in ("kinematics", "synthesis") for file in (ROOT / package).rglob("*.py")]
     direct = {file.relative_to(ROOT) for file in files if "from numba import njit" in file.read_text()}
     assert direct == {Path("kinematics/compiling.py")}
+
+
+def test_what_is_installed_keeps_its_kernels_in_the_users_cache_folder(tmp_path: Path) -> None:
+    installed, home = tmp_path / "site-packages", tmp_path / "home"
+    package = installed / "synthesis"
+    package.mkdir(parents=True)
+    for name, text in {"__init__": "", "inner": INNER, "middle": MIDDLE, "outer": OUTER}.items():
+        (package / f"{name}.py").write_text(text.format(compiler="kinematics.compiling", constant=1))
+    environment = {key: value for key, value in os.environ.items() if key not in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME")}
+    environment |= {"HOME": str(home), "PYTHONPATH": os.pathsep.join([str(installed), str(ROOT)])}
+    subprocess.run([sys.executable, "-c", RUN], env=environment, cwd=tmp_path, capture_output=True, check=True)
+    assert not [*installed.rglob("*.nbi")]
+    assert [file.name.split("-")[0] for file in home.rglob("outer*.nbi")] == ["outer.whole"]
 
 
 VECTOR = types.Array(types.float64, 1, "C")
