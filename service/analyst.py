@@ -57,10 +57,15 @@ class Analyst:
         self._loaded = threading.Event()
 
     def start(self, after: Callable[[], bool]) -> None:
-        """Load the core once ``after`` says so, when its kernels have been compiled; returns at once."""
+        """Load the core once ``after`` says so, when its kernels have been compiled or must be; returns at once."""
         for n in range(THREADS):
             loading = after if n == 0 else None
             threading.Thread(target=self._serve, args=(loading,), name=f"analyst-{n}", daemon=True).start()
+
+    @property
+    def asked(self) -> bool:
+        """Whether somebody waits for an analysis."""
+        return not self._calls.empty()
 
     @property
     def loaded(self) -> bool:

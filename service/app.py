@@ -65,8 +65,8 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
         engine = connect(settings.store_url, durable=True)
         store = JobStore(engine)
         notifier = ChangeNotifier(asyncio.get_running_loop())
-        app.state.analyst = Analyst()
-        app.state.analyst.start(after=lambda: kernels.settled(ANALYSIS))
+        app.state.analyst = analyst = Analyst()
+        analyst.start(after=lambda: kernels.has(ANALYSIS) or (kernels.ended and analyst.asked))
         app.state.drawings = Drawings()
         try:
             executor.subscribe(notifier.publish)

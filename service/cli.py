@@ -120,11 +120,11 @@ def _worker() -> int:
     from sqlalchemy.exc import SQLAlchemyError
 
     from service.jobs.host import HostError, run_host
-    from service.warming import Compilation, every_part, nothing
+    from service.warming import Compilation, every_part
 
-    wanted = every_part if settings.compile_ahead else nothing
+    compilation = Compilation(every_part, settings.log_level, settings.log_format, ahead=settings.compile_ahead)
     try:
-        run_host(settings, Compilation(wanted, settings.log_level, settings.log_format))
+        run_host(settings, compilation)
     except HostError as error:
         print(f"mechsynth worker: {error}", file=sys.stderr)
         return EXIT_FAILURE

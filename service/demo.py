@@ -99,7 +99,10 @@ def _service() -> Iterator[str]:
             "MECHSYNTH_PORT": "0",
             "MECHSYNTH_DATA_DIR": folder,
             "MECHSYNTH_LOG_LEVEL": "warning",
-            "MECHSYNTH_COMPILE_AHEAD": "false",  # it solves one problem and ends
+            # It solves one problem and ends.
+            "MECHSYNTH_WORKERS": "1",
+            "MECHSYNTH_RESERVE": "0",
+            "MECHSYNTH_COMPILE_AHEAD": "false",
         }
         environment.pop("MECHSYNTH_DATABASE_URL", None)
         announced = Path(folder) / "announced"

@@ -37,7 +37,7 @@ class KernelsState:
 
     waiting: tuple[str, ...] = ()
     _total: int | None = None
-    _settled: threading.Event = field(default_factory=threading.Event)
+    _ended: threading.Event = field(default_factory=threading.Event)
 
     def look(self, total: int, missing: Sequence[str]) -> None:
         """Note how much there is to be and what is missing."""
@@ -49,13 +49,18 @@ class KernelsState:
 
     def end(self) -> None:
         """Note that nobody compiles any more, for whatever reason."""
-        self._settled.set()
+        self._ended.set()
 
     @property
     def progress(self) -> Progress | None:
         """How far it is; None as long as nobody has looked."""
         return None if self._total is None else Progress(self._total - len(self.waiting), self._total)
 
-    def settled(self, part: str) -> bool:
-        """Whether there is nothing to wait for: the part is compiled, or nobody compiles it any more."""
-        return self._settled.is_set() or (self._total is not None and part not in self.waiting)
+    @property
+    def ended(self) -> bool:
+        """Whether nobody compiles any more, so that what is missing is compiled by whoever needs it."""
+        return self._ended.is_set()
+
+    def has(self, part: str) -> bool:
+        """Whether it is known that the part is compiled."""
+        return self._total is not None and part not in self.waiting

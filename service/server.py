@@ -21,7 +21,7 @@ from service.jobs.executor import Executor
 from service.jobs.local import LocalExecutor
 from service.metrics import Metrics
 from service.settings import Settings
-from service.warming import Compilation, analysis_alone, every_part, nothing
+from service.warming import Compilation, analysis_alone, every_part
 
 log = structlog.get_logger(__name__)
 
@@ -87,7 +87,7 @@ def _executor(settings: Settings, metrics: Metrics) -> Executor:
 def _compilation(settings: Settings) -> Compilation:
     """What the server compiles beside its start: all kernels, or its own where worker hosts run the jobs."""
     wanted = every_part if settings.executor == "local" else analysis_alone
-    return Compilation(wanted if settings.compile_ahead else nothing, settings.log_level, settings.log_format)
+    return Compilation(wanted, settings.log_level, settings.log_format, ahead=settings.compile_ahead)
 
 
 def _no_database(error: Exception) -> ServeError:

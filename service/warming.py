@@ -58,11 +58,6 @@ def analysis_alone() -> list[str]:
     return [ANALYSIS]
 
 
-def nothing() -> list[str]:
-    """No part, where kernels are compiled when a job first needs them."""
-    return []
-
-
 def warm() -> None:
     """Compile all kernels that have not been compiled; returns when they are there.
 
@@ -74,7 +69,7 @@ def warm() -> None:
     from synthesis import dispatch
 
     logs.configure("warning", "text")
-    compilation = Compilation(every_part, "warning", "text", priority=0)
+    compilation = Compilation(every_part, "warning", "text", priority=0, ahead=True)
     if not compilation.missing:
         return
     dispatch.warm_up()  # what most parts need is compiled once, before it is needed everywhere
@@ -84,15 +79,19 @@ def warm() -> None:
 
 
 class Compilation:
-    """Compiles parts of the kernels in processes, and knows how far that is."""
+    """Compiles parts of the kernels in processes, and knows how far that is.
+
+    Where it is not to compile ``ahead`` it only knows: then whoever needs kernels compiles them.
+    """
 
     def __init__(
-        self, wanted: Callable[[], list[str]], level: str, form: logs.Format, priority: int = PRIORITY
+        self, wanted: Callable[[], list[str]], level: str, form: logs.Format, priority: int = PRIORITY, *, ahead: bool
     ) -> None:
         self.state = KernelsState()
         self._wanted = wanted
         self._level, self._form = level, form
         self._priority = priority
+        self._ahead = ahead
         self._stopping = threading.Event()
         self._thread: threading.Thread | None = None
 
@@ -118,7 +117,7 @@ class Compilation:
         """Compile what is missing; returns when that is done, cannot be done, or is to stop."""
         missing = self.missing
         self.state.look(len(self._wanted()), missing)
-        if not missing:
+        if not missing or not self._ahead:
             return
         log.info("compiling kernels in the background; jobs compile their own meanwhile", parts=missing)
         began = time.monotonic()

@@ -132,7 +132,7 @@ class Kernels(BaseModel):
     """
 
     compiled: int = Field(ge=0, description="Parts that are compiled.")
-    total: int = Field(ge=0, description="All parts that are compiled ahead; 0 where that is switched off.")
+    total: int = Field(ge=0, description="All parts that there are.")
 
 
 class Readiness(Health):

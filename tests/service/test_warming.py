@@ -9,9 +9,11 @@ import time
 import pytest
 from numba import njit
 
+from kinematics.compiled import is_compiled
 from service.jobs.first_use import SAID, FirstUse
 from service.jobs.solving import Solving
 from service.kernels import KernelsState, Progress
+from service.warming import every_part
 from synthesis.registry import KINDS
 from tests.service.running import ROOT, RunningServer, alive, until, workers_of
 
@@ -19,9 +21,9 @@ PROGRAM = """
 from service.warming import Compilation
 
 if __name__ == "__main__":
-    compilation = Compilation(lambda: ["gearbox", "no such part"], "warning", "text")
+    compilation = Compilation(lambda: ["gearbox", "no such part"], "warning", "text", ahead=True)
     compilation.run()
-    print(compilation.missing, compilation.state.progress, compilation.state.settled("gearbox"))
+    print(compilation.missing, compilation.state.progress, compilation.state.has("gearbox"))
 """
 
 
@@ -76,21 +78,22 @@ def test_compilation_is_not_the_solvers_time():
     assert before <= after < before + compiling
 
 
-def test_whoever_waits_for_a_part_is_told_when_there_is_nothing_to_wait_for():
+def test_what_is_compiled_is_known_once_somebody_has_looked():
     state = KernelsState()
     assert state.progress is None
-    assert not state.settled("analysis")
+    assert not state.has("analysis")
     state.look(3, ["analysis", "path"])
     assert state.progress == Progress(compiled=1, total=3)
-    assert state.settled("dwell")
-    assert not state.settled("analysis")
+    assert state.has("dwell")
+    assert not state.has("analysis")
     state.compiled("analysis")
     assert state.progress == Progress(compiled=2, total=3)
-    assert state.settled("analysis")
-    assert not state.settled("path")
+    assert state.has("analysis")
+    assert not state.has("path")
+    assert not state.ended
     state.end()
-    assert state.settled("path")
-    assert state.progress == Progress(compiled=2, total=3)
+    assert state.ended
+    assert not state.has("path")
 
 
 def test_what_cannot_be_compiled_keeps_nothing_else_from_it(tmp_path):
@@ -102,8 +105,10 @@ def test_what_cannot_be_compiled_keeps_nothing_else_from_it(tmp_path):
     assert "KeyError: 'no such part'" in ended.stdout + ended.stderr
 
 
-def test_a_server_that_compiles_nothing_ahead_says_so(server):
-    assert server.client.get("/readyz").json() == {"status": "ok", "kernels": {"compiled": 0, "total": 0}}
+def test_a_server_says_how_many_parts_are_compiled(server):
+    kernels = until(lambda: server.client.get("/readyz").json()["kernels"], 30.0)
+    assert kernels["total"] == len(KINDS) + 3
+    assert kernels["compiled"] == sum(is_compiled(part) for part in every_part())
 
 
 @pytest.mark.campaign
