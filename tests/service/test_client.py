@@ -1,5 +1,6 @@
 """The Python client and ``mechsynth solve``, against real servers."""
 
+import asyncio
 import io
 import json
 import signal
@@ -10,7 +11,7 @@ import time
 
 import pytest
 
-from service.client import Client, JobFailed, JobSummary, Progress, Refused, Unreachable
+from service.client import AsyncClient, Client, JobFailed, JobSummary, Progress, Refused, Unreachable
 from synthesis.registry import KINDS, example
 from tests.service.running import PROBLEM, REAL, SCRIPTED, RunningServer, environment, until
 from tests.service.scripted_server import BROKEN, GATED, INSTANT, NATIVE, STEPS
@@ -98,6 +99,75 @@ def test_a_failed_or_cancelled_job_is_told_as_such(ours):
     cancelling.start()
     assert ours.wait(job.id).status == "cancelled"
     cancelling.join()  # the wait may end before the answer to the request does
+
+
+def test_a_wait_is_given_up_from_another_thread(ours, scripted):
+    cancel = threading.Event()
+    with pytest.raises(JobFailed) as failed:
+        ours.solve(stated(STEPS), progress=lambda heard: heard.fraction and cancel.set(), cancel=cancel)
+    assert failed.value.job.status == "cancelled"
+    assert scripted.job(failed.value.job.id)["status"] == "cancelled"
+
+
+def test_who_is_told_how_far_a_job_is_may_give_it_up(ours, scripted):
+    class GivenUp(Exception):
+        pass
+
+    def told(progress):
+        if progress.fraction:
+            raise GivenUp
+
+    with pytest.raises(GivenUp):
+        ours.solve(stated(STEPS), label="given up", progress=told)
+    job = scripted.client.get("/v1/jobs?limit=1").json()["jobs"][0]
+    assert job["label"] == "given up"
+    scripted.reaches(job["id"], "cancelled")
+
+
+def test_many_jobs_are_waited_for_on_one_loop(ours, scripted):
+    async def program():
+        async with AsyncClient(scripted.url) as client:
+            heard = []
+            solving = [client.solve(stated(INSTANT), label=str(n)) for n in range(5)]
+            jobs = await asyncio.gather(*solving, client.solve(stated(STEPS), progress=heard_and_opened(heard)))
+            with pytest.raises(JobFailed):
+                await client.solve(stated(BROKEN))
+            with pytest.raises(Refused) as refused:
+                await client.submit({**PROBLEM, "postions": []})
+            assert list(refused.value.errors) == ["/problem/postions"]
+            return jobs, heard
+
+    def heard_and_opened(heard):
+        def told(progress):
+            heard.append(progress)
+            if progress.fraction:
+                (scripted.folder / "open").touch()
+
+        return told
+
+    jobs, heard = asyncio.run(program())
+    assert [job.label for job in jobs] == [*"01234", None]
+    assert {job.status for job in jobs} == {"succeeded"}
+    assert Progress(0.25, "a quarter") in heard
+    assert [ours.job(job.id) for job in jobs] == jobs
+
+
+def test_a_task_that_is_cancelled_cancels_its_job(ours, scripted):
+    async def program():
+        async with AsyncClient(scripted.url) as client:
+            running = asyncio.Event()
+            solving = asyncio.create_task(
+                client.solve(stated(STEPS), label="left", progress=lambda heard: heard.fraction and running.set())
+            )
+            await running.wait()
+            solving.cancel()
+            with pytest.raises(asyncio.CancelledError):
+                await solving
+
+    asyncio.run(program())
+    job = scripted.client.get("/v1/jobs?limit=1").json()["jobs"][0]
+    assert job["label"] == "left"
+    scripted.reaches(job["id"], "cancelled")
 
 
 def test_lists_are_read_page_by_page(ours):

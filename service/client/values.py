@@ -1,0 +1,105 @@
+"""What clients give their callers: jobs and progress as values, and what did not work out as exceptions.
+
+ClientError
++-- Unreachable     no answer, after several attempts
++-- Refused         the service has said no: a problem with type, status and details
++-- JobFailed       the job has ended without a result
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any, Literal
+
+Json = dict[str, Any]
+Status = Literal["queued", "running", "succeeded", "failed", "cancelled"]
+
+
+class ClientError(Exception):
+    """Something did not work out; see the tree above."""
+
+
+class Unreachable(ClientError):
+    """The service does not answer at this URL."""
+
+
+class Refused(ClientError):
+    """The service has answered with a problem (RFC 9457)."""
+
+    def __init__(self, status: int, problem: Mapping[str, Any]) -> None:
+        self.status = status
+        self.type = str(problem.get("type", "about:blank"))
+        self.detail = str(problem.get("detail", ""))
+        self.errors = {str(fault["path"]): str(fault["detail"]) for fault in problem.get("errors") or ()}
+        lines = [f"{status}: {self.detail}", *(f"  {path or '/'}: {detail}" for path, detail in self.errors.items())]
+        super().__init__("\n".join(lines))
+
+
+class JobFailed(ClientError):
+    """The job has ended without a result."""
+
+    def __init__(self, job: Job) -> None:
+        self.job = job
+        super().__init__(f"the job is {job.status}: {(job.error or {}).get('detail', 'it was cancelled')}")
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far a job is: the share that is done, and what is being done."""
+
+    fraction: float
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class JobSummary:
+    """A job as it is listed."""
+
+    id: str
+    kind: str
+    label: str | None
+    status: Status
+    created_at: str
+    started_at: str | None
+    finished_at: str | None
+    progress: Progress
+
+    @property
+    def finished(self) -> bool:
+        """Whether the job will not change any more."""
+        return self.status not in ("queued", "running")
+
+
+@dataclass(frozen=True, slots=True)
+class Job(JobSummary):
+    """A job with its problem and, once it has one, its answer."""
+
+    problem: Json
+    result: Json | None
+    error: Json | None
+
+    def with_result(self) -> Job:
+        """The job itself; raises :class:`JobFailed` where it has ended without a result."""
+        if self.result is None:
+            raise JobFailed(self)
+        return self
+
+
+def job_of(shown: Mapping[str, Any]) -> Job:
+    """The job that an answer shows."""
+    return Job(**_values(shown, _JOB))
+
+
+def summary_of(listed: Mapping[str, Any]) -> JobSummary:
+    """The job that a list or an event shows."""
+    return JobSummary(**_values(listed, _SUMMARY))
+
+
+_JOB = [field.name for field in fields(Job)]
+_SUMMARY = [field.name for field in fields(JobSummary)]
+
+
+def _values(listed: Mapping[str, Any], names: Sequence[str]) -> Json:
+    # Fields that a newer service has besides are passed over.
+    return {**{name: listed[name] for name in names}, "progress": Progress(**listed["progress"])}
