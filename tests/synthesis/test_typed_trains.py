@@ -313,6 +313,7 @@ def test_forces_of_a_worm_keep_power_and_balance(friction: float) -> None:
         ({"type": "bevel", "driver": 2, "driven": 30}, ["/stages/0/driver"]),
         ({"type": "worm", "driver": 7, "driven": 30}, ["/stages/0/driver"]),
         ({"type": "worm", "driver": 1, "driven": 2}, ["/stages/0/driven"]),
+        ({"type": "bevel", "driver": {"min": 3, "max": 200}, "driven": {"min": 3, "max": 200}}, ["/stages/0/driven"]),
         (WORM | {"shaft_angle": 90.0}, ["/stages/0/shaft_angle"]),
         (BEVEL | {"hand": "left", "friction": 0.1}, ["/stages/0/hand", "/stages/0/friction"]),
     ],

@@ -12,6 +12,9 @@ from synthesis.model.gear_stages import MOST_THREADS, StageForm
 from synthesis.model.gear_statement import FEWEST_TEETH, MOST_TEETH
 from synthesis.model.statement import Count, Range
 
+MOST_GIVEN = 12_000
+"""Pairs of gears of a bevel or worm stage, of which each is made, at most."""
+
 KEPT_APART = ("driver", "driven")
 """Fields that do not make stages unlike: gears of stages that are alike but for these may change places."""
 
@@ -88,7 +91,16 @@ class StatedStage(StageForm):
             if limits[0] < least or limits[1] > most:
                 of = "threads" if most == MOST_THREADS else "teeth"
                 faults.append((f"/{name}", f"expected {least} to {most} {of}"))
+        if not self.is_parallel and self._pairs() > MOST_GIVEN:
+            faults.append(
+                ("/driven", f"more than {MOST_GIVEN} pairs of a stage that is {self.type}; narrow the ranges")
+            )
         return faults
+
+    def _pairs(self) -> int:
+        """How many pairs the ranges that are stated here leave."""
+        limits = self.limits("driver"), self.limits("driven")
+        return math.prod(high - low + 1 for low, high in (one for one in limits if one is not None))
 
     def _bounds(self) -> list[tuple[Literal["driver", "driven"], int, int]]:
         worm = self.type == "worm"

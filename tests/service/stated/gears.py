@@ -41,21 +41,24 @@ FACTORS: dict[str, Any] = {
 }
 STAGES: dict[str, Any] = {
     "max_stages": 3,
-    "ratio": "60",
+    "ratio": "10",
     "stages": [
         {"type": "external"},
-        {"type": "helical", "helix_angle": 15.0, "face_width": 20.0},
+        {"type": "helical", "helix_angle": 15.0, "face_width": 20.0, "driver": 18, "driven": 30},
         {"type": "internal", "ring": "driven", "driver": {"min": 15, "max": 25}, "driven": {"min": 30, "max": 60}},
     ],
 }
 CROSSING: dict[str, Any] = {
     "max_stages": 3,
-    "ratio": "60",
+    "ratio": "30",
     "stages": [
         {"type": "worm", "driver": 2, "driven": 40, "hand": "right", "friction": 0.05, "diameter_quotient": 10.0},
         {"type": "bevel", "shaft_angle": 80.0, "driver": 20, "driven": {"min": 20, "max": 40}},
     ],
 }
+OF_CROSSING = ("shaft_angle", "diameter_quotient", "hand", "friction")
+"""Fields of stages that a unit of a series cannot have: there they are refused."""
+
 STOCK = {"teeth": None, "stock": [{"teeth": 20, "count": 1}, 20, 25, 30, 50, 51, 60]}
 
 TRAIN_ROWS: dict[str, Any] = {
@@ -174,6 +177,8 @@ def unit_rows(model: str) -> dict[str, Any]:
     for name, stated in rows.items():
         if name.split(".")[0] not in OF_THE_SERIES:
             row = stated if isinstance(stated, Row) else Row(stated)
+            if name.removeprefix("stages[].") in OF_CROSSING:
+                row = Row(row.value, {"max_stages": 3, "stages": [{"type": "external"}]})
             base = {f"units[{place}].{field}": value for field, value in row.base.items() if field not in OF_THE_SERIES}
             found[f"units[]<{model}>.{name}"] = Row(row.value, base, at=f"units[{place}].{row.at or name}")
     return found
