@@ -129,9 +129,8 @@ def _file(job: JobRow, result: str, number: str, form: Form) -> str | bytes:
     designs = kind.result.model_validate_json(result).designs
     n = design_index(number, len(designs))
     problem = read(job.kind, job.problem)
-    title = f"{job.label or problem.model_config.get('title') or job.kind}, design {n}"
     try:
-        return render.exported(designs[n], problem, title, form)
+        return render.exported(designs[n], problem, render.heading(problem, job.label, n), form)
     except render.NoSuchExport:
         raise not_found(f"There is no .{form} file of this type of mechanism.") from None
     except render.NotBuilt:

@@ -8,7 +8,7 @@ from typing import Any, Literal, get_args
 from service.loading import IMPORTS
 from service.render.page.svg import clean
 
-__all__ = ["Form", "NoSuchExport", "NotBuilt", "exported", "forms"]
+__all__ = ["Form", "NoSuchExport", "NotBuilt", "exported", "forms", "heading"]
 
 Form = Literal["svg", "gif", "dxf", "csv"]
 
@@ -169,6 +169,11 @@ _MAKERS: dict[Form, Callable[[], dict[str, Maker]]] = {
     "csv": _tables,
 }
 """The makers of each form, by type of mechanism or by kind of problem."""
+
+
+def heading(problem: Any, label: str | None, number: int) -> str:
+    """What stands above the drawings of a design: the label of its job, or the name of its kind, and its number."""
+    return f"{label or problem.model_config.get('title') or problem.kind}, design {number}"
 
 
 def forms(mechanism: str) -> list[Form]:
