@@ -15,7 +15,7 @@ from synthesis.model.sixbars import IN_WORDS
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
-PLACES = "kinematics|synthesis|service|tests|benchmarks|docs|tools"
+PLACES = "kinematics|synthesis|service|mechsynth|tests|benchmarks|docs|tools"
 
 PATH = re.compile(rf"`(?:(?:python -m )?((?:{PLACES})(?:[./][\w<>*-]+)+/?))[^`]*`")
 """A file, folder or module in backticks, from the root of the repository."""

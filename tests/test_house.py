@@ -22,11 +22,11 @@ from synthesis.registry import KINDS
 ROOT = Path(__file__).parents[1]
 FOLDERS = sorted(folder for folder in (ROOT / "synthesis" / "kinds").iterdir() if (folder / "__init__.py").exists())
 
-MOST_EDITED = 4
+MOST_EDITED = 5
 """Files outside its own folder that a new kind may take, documentation apart."""
 
 
-OURS = {"benchmarks", "kinematics", "service", "synthesis", "tests", "tools"}
+OURS = {"benchmarks", "kinematics", "mechsynth", "service", "synthesis", "tests", "tools"}
 HEAVY = {"numba", "scipy", "cvxpy", "highspy", "ezdxf", "PIL"}
 
 
@@ -93,7 +93,7 @@ def test_kinds_are_known_by_name_where_they_are_listed_and_drawn_only() -> None:
     assert knowing == set()
 
 
-def test_the_page_names_no_more_than_four_files_that_a_kind_edits() -> None:
+def test_the_page_names_no_more_files_that_a_kind_edits_than_it_may_take() -> None:
     page = (ROOT / "docs" / "adding-a-kind.md").read_text("utf-8")
     table = page.split("## What is edited elsewhere")[1].split("\n\n")[1]
     rows = re.findall(r"^\| `([^`]+)` \|[^|]*\|([^|]*)\|([^|]*)\|$", table, re.MULTILINE)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("kinematics", "synthesis", "service")
+PACKAGES = ("kinematics", "synthesis", "service", "mechsynth")
 MOST = 12
 """Lines of code that may stand in two places."""
 

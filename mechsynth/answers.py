@@ -1,0 +1,218 @@
+"""Answers and their designs, as a person at a prompt wants them: drawn, moved, saved."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from html import escape
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from mechsynth.cycle import Cycle
+from service.render import Form, exported, forms, heading
+from synthesis.model.answer import NearestMiss, Search, Verification
+from synthesis.model.answer import Result as Answered
+from synthesis.model.statement import StatedProblem
+from synthesis.registry import KINDS
+
+Place = str | PathLike[str]
+
+COLUMNS = 7
+"""Metrics beside each other in a notebook."""
+
+
+class Design:
+    """A design of an answer.
+
+    Attributes
+    ----------
+    model : pydantic model
+        Everything that the API says of it, frozen.
+    number : int
+        Its place in the answer, from 0.
+    title : str
+        The heading of its drawings.
+    """
+
+    def __init__(self, model: Any, problem: StatedProblem, label: str | None, number: int) -> None:
+        self.model, self.problem, self.number = model, problem, number
+        self.title = heading(problem, label, number)
+
+    def __repr__(self) -> str:
+        verdict = "passed" if self.passed else "FAILED"
+        return f"<Design {self.number}: {self.mechanism.type}, {len(self.verification.checks)} checks {verdict}>"
+
+    @property
+    def mechanism(self) -> Any:
+        """Its dimensions, under the names of the API."""
+        return self.model.mechanism
+
+    @property
+    def metrics(self) -> Any:
+        """What it is ranked by."""
+        return self.model.metrics
+
+    @property
+    def verification(self) -> Verification:
+        """What was measured when it was driven."""
+        verification: Verification = self.model.verification
+        return verification
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check passed."""
+        return self.verification.passed
+
+    @property
+    def forms(self) -> list[Form]:
+        """The forms of files that its type of mechanism has: ``svg``, ``gif``, ``dxf``, ``csv``."""
+        return forms(self.mechanism.type)
+
+    def draw(self) -> str:
+        """The labelled drawing, SVG: the same as the service's."""
+        return str(self.file("svg"))
+
+    def file(self, form: Form) -> str | bytes:
+        """A file as the service makes it: text, or bytes of an animation.
+
+        Raises
+        ------
+        NoSuchExport
+            Where its type of mechanism has no such file.
+        NotBuilt
+            Where its lengths are at the limits of what a statement may hold.
+        """
+        return exported(self.model, self.problem, self.title, form)
+
+    def to_svg(self, path: Place) -> Path:
+        """Write the drawing; returns the path. Raises as :meth:`file`, and OSError."""
+        return self._written("svg", path)
+
+    def to_dxf(self, path: Place) -> Path:
+        """Write the CAD file, in true dimensions; as :meth:`to_svg`."""
+        return self._written("dxf", path)
+
+    def to_csv(self, path: Place) -> Path:
+        """Write the table; as :meth:`to_svg`."""
+        return self._written("csv", path)
+
+    def to_gif(self, path: Place) -> Path:
+        """Write the animation; as :meth:`to_svg`."""
+        return self._written("gif", path)
+
+    def _written(self, form: Form, path: Place) -> Path:
+        content, written = self.file(form), Path(path)
+        written.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return written
+
+    def motion(self, steps: int = 360) -> Cycle:
+        """The design over its cycle, in so many equal steps of its input, both ends included.
+
+        A crank turns from the input angle of the first target through a full turn, or as many as its gears need to come
+        back; any other input goes from toggle to toggle of the branch that the targets lie on. The input moves at
+        1 rad/s, or 1 length unit/s.
+
+        Raises
+        ------
+        ValueError
+            For no step, and for a mechanism at the limits of what can be analysed.
+        """
+        if steps < 1:
+            raise ValueError(f"a cycle has one step at least, not {steps}")
+        from synthesis.analyses import family  # the analysis core is for who moves something
+
+        mechanism = self.mechanism.model_dump(mode="json")
+        return Cycle.of(family(mechanism).request.over_the_cycle(mechanism, steps))
+
+    def _repr_svg_(self) -> str:
+        return self.draw()
+
+    def _repr_html_(self) -> str:
+        rows = (
+            (check.name, "passed" if check.passed else "FAILED", _shown(check.value), _shown(check.limit))
+            for check in self.verification.checks
+        )
+        table = _table(("check", "", "value", "limit"), rows)
+        return f"<div>{self.draw()}{table}</div>"
+
+
+class Result:
+    """The answer to a problem: its designs, best first, and how they were found.
+
+    Attributes
+    ----------
+    model : pydantic model
+        Everything that the API says in ``result``, frozen.
+    problem : StatedProblem
+        What was asked.
+    designs : list of Design
+    """
+
+    def __init__(self, model: Answered[Any], problem: StatedProblem, label: str | None = None) -> None:
+        self.model, self.problem, self.label = model, problem, label
+        self.designs = [Design(design, problem, label, n) for n, design in enumerate(model.designs)]
+
+    @classmethod
+    def of_json(cls, problem: Mapping[str, Any], result: Mapping[str, Any], label: str | None = None) -> Result:
+        """The same of a job as a service shows it.
+
+        Raises
+        ------
+        pydantic.ValidationError
+            Where the service has answered in the words of another version.
+        """
+        kind = KINDS[problem["kind"]]
+        model = kind.result.model_validate_json(json.dumps(result))
+        return cls(model, kind.problem.model_validate_json(json.dumps(problem)), label)
+
+    def __repr__(self) -> str:
+        return f"<Result: {self.summary}>"
+
+    @property
+    def search(self) -> Search:
+        """How the answer was found and how complete it is: ``complete`` is a promise."""
+        search: Search = self.model.search
+        return search
+
+    @property
+    def summary(self) -> str:
+        """The answer in a sentence."""
+        return self.model.summary
+
+    @property
+    def nearest_miss(self) -> NearestMiss[Any] | None:
+        """Where no design passed: what comes nearest."""
+        return self.model.nearest_miss
+
+    def to_json(self) -> str:
+        """The answer as the service would send it, every number in full."""
+        return self.model.model_dump_json()
+
+    def _repr_html_(self) -> str:
+        names = [name for name, value in _metrics(self.designs) if isinstance(value, int | float | str)][:COLUMNS]
+        rows = (
+            (str(d.number), str(d.mechanism.type), *(_shown(getattr(d.metrics, name, None)) for name in names))
+            for d in self.designs
+        )
+        table = _table(("", "mechanism", *(name.replace("_", " ") for name in names)), rows) if self.designs else ""
+        best = self.designs[0].draw() if self.designs else ""
+        return f"<div><p>{escape(self.summary)}</p>{table}{best}</div>"
+
+
+def _metrics(designs: Sequence[Design]) -> Iterator[tuple[str, Any]]:
+    """The metrics of the best design."""
+    for design in designs[:1]:
+        yield from ((name, getattr(design.metrics, name)) for name in type(design.metrics).model_fields)
+
+
+def _table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    head = "".join(f"<th>{escape(cell)}</th>" for cell in heads)
+    body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def _shown(value: Any) -> str:
+    if value is None:
+        return ""
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,77 @@
+"""A design over its cycle, as arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Cycle:
+    """A design over its cycle: n = steps + 1 positions of its input.
+
+    Attributes
+    ----------
+    input_angle : (n,) array
+        Degrees; of a slider that drives, its places along its line, length units.
+    valid : (n,) array of bool
+        Whether the mechanism can be assembled there; everything else is NaN where it cannot.
+    joints : mapping of (n, 2) arrays
+        x and y of each joint by its name, P being the coupler point, in length units. Empty for what has no joints.
+    velocities, accelerations : mapping of (n, 2) arrays
+        Their derivatives, the input moving at 1 rad/s (or 1 length unit/s).
+    links : mapping of (n,) arrays
+        The angle of each link by its name, ``coupler`` for one, in degrees.
+    slides : mapping of (n,) arrays
+        The place of each slide along its line, length units.
+    answer : mapping
+        All that ``GET /v1/jobs/{id}/designs/{n}/motion`` answers, under its names; lists of numbers are arrays, and
+        null is NaN in them.
+    """
+
+    input_angle: Real
+    valid: NDArray[np.bool_]
+    joints: Mapping[str, Real]
+    velocities: Mapping[str, Real]
+    accelerations: Mapping[str, Real]
+    links: Mapping[str, Real]
+    slides: Mapping[str, Real]
+    answer: Mapping[str, Any]
+
+    @classmethod
+    def of(cls, listed: Mapping[str, Any]) -> Self:
+        """The same of an answer in plain lists."""
+        answer = {name: _arrays(value) for name, value in listed.items()}
+        at = answer["input_angle"]
+        tracks, links, slides = (answer.get(name, {}) for name in ("joints", "links", "slides"))
+        return cls(
+            input_angle=at,
+            valid=answer.get("valid", np.ones(len(at), dtype=bool)),
+            joints={name: np.stack((track["x"], track["y"]), axis=-1) for name, track in tracks.items()},
+            velocities={name: np.stack((track["vx"], track["vy"]), axis=-1) for name, track in tracks.items()},
+            accelerations={name: np.stack((track["ax"], track["ay"]), axis=-1) for name, track in tracks.items()},
+            links={name: link["angle"] for name, link in links.items()},
+            slides={name: slide["position"] for name, slide in slides.items()},
+            answer=answer,
+        )
+
+    def __len__(self) -> int:
+        return len(self.input_angle)
+
+
+def _arrays(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _arrays(inner) for name, inner in value.items()}
+    if not isinstance(value, list) or not value:
+        return value
+    if all(isinstance(inner, bool) for inner in value):
+        return np.array(value, dtype=bool)
+    if all(inner is None or isinstance(inner, int | float) for inner in value):
+        return np.array(value, dtype=float)
+    return [_arrays(inner) for inner in value]

@@ -1,0 +1,58 @@
+"""Problems as their statements: what is checked here, and what goes to a service."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any, cast
+
+from service.stated import Faults, consistent, well_formed
+from synthesis.model.statement import StatedProblem
+from synthesis.registry import KINDS
+
+Problem = StatedProblem | Mapping[str, Any]
+"""A problem: one of the classes of :mod:`mechsynth.kinds`, or the JSON object that a client would post."""
+
+
+class InvalidProblem(ValueError):
+    """A problem that is ill-formed or contradicts itself.
+
+    ``errors`` says what is wrong with which field, by its JSON pointer below the problem: ``/positions/1/x``.
+    """
+
+    def __init__(self, errors: Mapping[str, str]) -> None:
+        self.errors = dict(errors)
+        super().__init__("\n".join(f"{path or '/'}: {detail}" for path, detail in self.errors.items()))
+
+
+def statement_of(problem: Problem) -> dict[str, Any]:
+    """A problem as the JSON object that states it."""
+    if isinstance(problem, StatedProblem):
+        return {**json.loads(problem.model_dump_json(exclude_unset=True)), "kind": problem.kind}
+    return dict(problem)
+
+
+def checked(problem: Problem) -> StatedProblem:
+    """A problem that can be solved.
+
+    Raises
+    ------
+    InvalidProblem
+        With what a service would say of it.
+    """
+    statement = statement_of(problem)
+    kind = statement.get("kind")
+    if kind not in KINDS:
+        raise InvalidProblem({"/kind": f"Kind must be given and be one of: {', '.join(KINDS)}."})
+    read, faults = well_formed(kind, statement)
+    faults = faults or consistent(read)
+    if faults:
+        raise InvalidProblem(_by_path(faults))
+    return cast(StatedProblem, read)
+
+
+def _by_path(faults: Faults) -> dict[str, str]:
+    errors: dict[str, str] = {}
+    for path, detail in faults:
+        errors[path] = f"{errors[path]} {detail}" if path in errors else detail
+    return errors
