@@ -98,7 +98,7 @@ class AsyncClient:
         except ClientError:
             raise
         except BaseException:
-            with suppress(ClientError):
+            with suppress(ClientError, RuntimeError):  # the latter of connections that are closed already
                 await self.delete(job.id)
             raise
         return job.with_result()

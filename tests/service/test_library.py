@@ -1,6 +1,7 @@
 """The library against a running service: the same objects, the same answers, and no solver in the client's process."""
 
 import asyncio
+import doctest
 import subprocess
 import sys
 import threading
@@ -114,3 +115,10 @@ def test_who_asks_a_service_loads_no_solver(server, tmp_path):
     command = [sys.executable, "-W", "ignore", "-c", program]
     run = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, env=environment(tmp_path))
     assert (run.returncode, run.stdout.split(), run.stderr) == (0, [], "")
+
+
+def test_the_examples_of_the_page_run(server):
+    page = ROOT / "docs" / "library.md"
+    outcome = doctest.testfile(str(page), module_relative=False, globs={"url": server.url})
+    assert outcome.attempted > 25
+    assert outcome.failed == 0
