@@ -12,9 +12,12 @@ from tests.service.answers import finished
 
 
 def test_health(client):
-    for path in ("/healthz", "/readyz"):
-        answer = client.get(path)
-        assert (answer.status_code, answer.json()) == (200, {"status": "ok"})
+    answer = client.get("/healthz")
+    assert (answer.status_code, answer.json()) == (200, {"status": "ok"})
+    answer = client.get("/readyz")
+    assert answer.status_code == 200
+    assert answer.json().keys() == {"status", "kernels"}
+    assert answer.json()["status"] == "ok"
 
 
 @pytest.mark.parametrize(

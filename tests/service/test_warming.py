@@ -121,7 +121,7 @@ def test_a_first_start_takes_jobs_while_it_compiles_and_stops_in_good_order(tmp_
         client = running.client
         kernels = until(lambda: client.get("/readyz").json()["kernels"], 60.0)
         assert kernels["compiled"] < kernels["total"] == len(KINDS) + 3
-        stated = next(kind for kind in client.get("/v1/problems").json()["problems"] if kind["kind"] == "steering")
+        stated = next(kind for kind in client.get("/v1/problems").json()["problems"] if kind["kind"] == "gear_train")
         job = client.post("/v1/jobs", json={"problem": stated["example"]}).json()
         messages = set()
 
