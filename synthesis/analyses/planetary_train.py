@@ -17,6 +17,7 @@ from kinematics.gear.power import PowerFlow, power_flow
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.analyses.drift import WANTED, Drift, drifting
 from synthesis.analyses.gear_train import GivenRatio
+from synthesis.analyses.planet_strength import mesh_strengths, strength_faults
 from synthesis.analyses.shift_table import (
     MOST_STATES,
     GivenElement,
@@ -28,8 +29,10 @@ from synthesis.analyses.shift_table import (
 )
 from synthesis.model.answer import Answer, optional
 from synthesis.model.gear_statement import ExactRatio
+from synthesis.model.gear_strength import PairStrength
+from synthesis.model.planet_strength import PAIRS, PlanetStrength
 from synthesis.model.ratio_target import decimal
-from synthesis.model.statement import Flag, Number, Statement
+from synthesis.model.statement import Flag, Number, PositiveNumber, Statement
 
 MAX_MESHES = 8
 """The directions of power are tried mesh by mesh, 2^8 ways at worst: half a second."""
@@ -67,6 +70,9 @@ class GivenPlanetaryTrain(Statement):
     module: Any = None
     pressure_angle: Any = None
     addendum: Any = None
+    face_widths: list[PositiveNumber | None] | None = Field(
+        default=None, max_length=8, description="As in a design: of each plane, for `strength`."
+    )
     ratio: GivenRatio | None = Field(
         default=None, description="As in a design: compared with the teeth where all three members are stated."
     )
@@ -171,6 +177,13 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
         "shaft on a member.",
     )
     wanted_ratio: ExactRatio | None = Field(default=None, description=WANTED)
+    length_unit: Literal["mm", "cm", "m", "in"] = Field(default="mm", description="Of the module, for `strength`.")
+    strength: PlanetStrength | None = Field(
+        default=None,
+        description="Stresses of every mesh of an arrangement with its `module` and `planets`, under the `torques` "
+        "stated, N m, and the speed of the motion at its first position; over `face_widths` or over the least that "
+        f"keeps the allowable stresses. {PAIRS}",
+    )
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
@@ -198,7 +211,22 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
         ]
         if self.speeds is None and self.mechanism.input is None and not self.include:
             faults.append(("/speeds", "state known speeds, or the mechanism's input and fixed member"))
-        return faults or [*self._wrong_table(), *self._wrong_ratio()]
+        return faults or [*self._wrong_table(), *self._wrong_ratio(), *self._wrong_strength()]
+
+    def _wrong_strength(self) -> list[tuple[str, str]]:
+        """What is missing where the strength is asked for."""
+        if self.strength is None:
+            return []
+        faults = strength_faults(self.mechanism, self.strength)
+        if self.mechanism.input is None:
+            faults.append(("/mechanism/input", "state it; it turns with the speed of the motion"))
+        if self.speeds is not None:
+            faults.append(("/speeds", "strength needs the speed of the motion; state input and fixed member instead"))
+        if self.locked:
+            faults.append(("/locked", "no mesh tells what a clutch carries; strength is not known with one"))
+        if not any((self.torques or {}).values()) or float(self.motion.inputs()[1][0]) == 0.0:
+            faults.append(("/strength", "state a torque and a speed; no power is carried without"))
+        return faults
 
     def _wrong_ratio(self) -> list[tuple[str, str]]:
         stated, ratio = self.mechanism.ratio, self.mechanism.driven_ratio()
@@ -271,6 +299,9 @@ class LoadedPlanetaryMesh(Answer):
     second_torque: float | None
     rolling_power: float | None
     loss: float | None
+    strength: PairStrength | None = optional(
+        "Stresses of one copy of the mesh, where a method is stated; left out of a mesh that carries nothing."
+    )
 
 
 class PlanetaryAnalysis(DrivenAnalysis):
@@ -329,6 +360,10 @@ def _analysis(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
             }
         )
     asked: dict[str, Any] = {"shift_table": request.table()} if request.include else {}
+    strong: list[dict[str, Any] | None] = [None] * len(train.meshes)
+    if request.strength is not None and flow is not None:
+        drive = request.mechanism, request.strength, train, solution.values, flow, float(speed[0])
+        strong = mesh_strengths(*drive, request.length_unit)
     return {
         "input_angle": at.tolist(),
         "time": None if time is None else time.tolist(),
@@ -353,6 +388,7 @@ def _analysis(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
                 "second_torque": None if flow is None else float(flow.meshes[k].second_torque),
                 "rolling_power": None if flow is None else float(flow.meshes[k].rolling_power) * unit,
                 "loss": None if flow is None else float(flow.meshes[k].loss) * unit,
+                **({} if strong[k] is None else {"strength": strong[k]}),
             }
             for k, mesh in enumerate(train.meshes)
         ],

@@ -39,6 +39,9 @@ BENT_BOTH_WAYS = 0.7
 """Share of the allowable bending stress that teeth bear which are bent both ways in every turn, as an idler's are, by
 AGMA (Shigley, Sec. 14-4)."""
 
+EQUAL = 1e-12
+"""Share by which a mesh may fall short of the power in rounding."""
+
 WIDTHS = 400
 """Widths that are tried, in equal ratios, in search of the least that carries the load."""
 
@@ -156,8 +159,12 @@ class StressedGear(Answer):
     bending_safety: float | None = Field(description="Allowable over actual bending stress.")
     contact_safety: float | None = Field(description="Allowable over actual contact stress.")
     bent_both_ways: bool | None = optional(
-        f"True of an idler: every turn bends its teeth both ways, and they bear {BENT_BOTH_WAYS} of the allowable "
-        "bending stress; `bending_safety` counts that."
+        f"True of an idler, and of a planet gear that meshes on both flanks: every turn bends its teeth both ways, and "
+        f"they bear {BENT_BOTH_WAYS} of the allowable bending stress; `bending_safety` counts that."
+    )
+    bending_judged: bool | None = optional(
+        "False of a ring of a planetary train whose geometry factor is not stated: its bending is not known, and no "
+        "part of what is judged."
     )
 
 
@@ -176,16 +183,24 @@ class PairStrength(Answer):
         "The least that keeps all stated allowable stresses; left out where none are stated, where no width up to "
         "`max_face_width` keeps them, or where one of the stresses is not known."
     )
+    load_sharing: float | None = optional(
+        "Of planetary trains: the force on the most loaded planet over an equal share of it; the force and all "
+        "stresses have it."
+    )
     gears: list[StressedGear]
 
 
 class Loaded(NamedTuple):
-    """A pair in millimetres and what it carries; which of its gears are bent both ways."""
+    """A pair in millimetres and what it carries; which of its gears are bent both ways.
+
+    ``spares_rings``: the bending of a ring is no part of what is judged, where it is not known.
+    """
 
     contact: Contact
     power: float
     speed: float
     both_ways: tuple[bool, bool] = (False, False)
+    spares_rings: bool = False
 
     @property
     def working_diameters(self) -> tuple[float, float]:
@@ -210,10 +225,14 @@ class Stresses(NamedTuple):
     contact_geometry: float | None
     gears: list[dict[str, Any]]
 
+    def safeties(self, names: list[str]) -> list[tuple[str, float | None]]:
+        """The safeties of these names of both gears, by name, but for those that are not judged."""
+        judged = [(row, name) for row in self.gears for name in names]
+        return [(name, row[name]) for row, name in judged if name != "bending_safety" or "bending_judged" not in row]
+
     def keep(self, names: list[str]) -> bool:
         """Whether the safeties of these names are known of both gears, and at least 1."""
-        safeties = [row[name] for row in self.gears for name in names]
-        return all(safety is not None and safety >= 1.0 for safety in safeties)
+        return all(safety is not None and safety >= 1.0 for _, safety in self.safeties(names))
 
 
 class Judge:
@@ -288,6 +307,9 @@ class Judge:
         both_ways = self._loaded.both_ways[place]
         share = BENT_BOTH_WAYS if both_ways else 1.0
         told = {"bent_both_ways": True} if both_ways else {}
+        gear = (self._loaded.contact.mesh.pinion, self._loaded.contact.mesh.gear)[place]
+        if bent is None and gear.internal and self._loaded.spares_rings:
+            told["bending_judged"] = False
         return {
             "form": form,
             "size_factor": size,
@@ -308,8 +330,8 @@ class Judge:
         stresses is not known.
         """
         names, found = self._stated.kept, self.at(self._widths()[-1])
-        shares = [(row[name], name) for row in found.gears for name in names]
-        known = [0.0 if s is None else s * s if name == "contact_safety" else s for s, name in shares]
+        shares = found.safeties(names)
+        known = [0.0 if s is None else s * s if name == "contact_safety" else s for name, s in shares]
         return min(known, default=0.0) * found.load.force * found.dynamic
 
     def carried_power(self, turning: float) -> float:
@@ -350,6 +372,31 @@ class Judge:
                 return width
             before = width
         return None
+
+
+def common_width(judges: list[Judge], names: list[str]) -> float | None:
+    """The least width, millimetres, over which all pairs keep the safeties of these names; None: there is none."""
+    least = [judge.least_width() for judge in judges]
+    known = [width for width in least if width is not None]
+    if len(known) < len(least):
+        return None
+    width = max(known)
+    return width if all(judge.at(width).keep(names) for judge in judges) else None
+
+
+def carrying_words(failed: int) -> str:
+    """That the power decided, and how many trains it ruled out."""
+    before = f"{failed} trains do not" if failed > 1 else "one does not" if failed else "all do"
+    return f"It carries the power, by a first estimate; of those judged {before}."
+
+
+def too_weak_words(stated: CarriedPower, failed: int, every: bool, strongest: float) -> str:
+    """That no train carries the power, and what the strongest does, W; 0 where that is not known."""
+    which = f"the {failed} trains there are" if every else f"the first {failed} trains"
+    told = f"None of {which} carries {stated.power_kw:.6g} kW with a face of {stated.max_face_width:g} modules."
+    if strongest:
+        told += f" The strongest carries {strongest / 1000.0:.3g} kW, by a first estimate."
+    return told if every else f"{told} Others were not judged."
 
 
 def stage_contact(stage: TrainStage, place: int, pressure_angle: float, unit: float) -> Contact:

@@ -105,6 +105,11 @@ def _label(placed: PlanetaryGear, view: Viewport, colour: str) -> Element:
     return label(label_box(at, words), words, colour, placed.name)
 
 
+def _of_plane(plane: int, widths: list[float | None] | None) -> str:
+    """Which plane is meant, where there are several."""
+    return f" in plane {plane}" if widths is not None and len(widths) > 1 else ""
+
+
 def _tables(design: PlanetaryDesign, problem: PlanetaryProblem) -> list[blocks.Block]:
     mechanism, metrics, unit = design.mechanism, design.metrics, problem.length_unit
     gears = [
@@ -125,6 +130,14 @@ def _tables(design: PlanetaryDesign, problem: PlanetaryProblem) -> list[blocks.B
                 ("planets", f"{mechanism.planets}"),
                 ("module", f"{length(mechanism.module)} {unit}"),
                 *shortened_rings,
+                *(
+                    (
+                        f"face width{_of_plane(plane, mechanism.face_widths)}, a first estimate",
+                        f"{length(width)} {unit}",
+                    )
+                    for plane, width in enumerate(mechanism.face_widths or [], 1)
+                    if width is not None
+                ),
             ],
         ),
         blocks.rows("Speeds over the input's", speeds),

@@ -22,7 +22,15 @@ from synthesis.kinds.gear_train.problem import NEAR, GearTrainProblem
 from synthesis.kinds.gear_train.search import Outcome, Train, order
 from synthesis.kinds.gear_train.task import Task, needs_idler
 from synthesis.model.dynamics import METRES
-from synthesis.model.gear_strength import CarriedPower, Judge, Loaded, bent_both_ways, stage_contact
+from synthesis.model.gear_strength import (
+    EQUAL,
+    CarriedPower,
+    Judge,
+    Loaded,
+    bent_both_ways,
+    common_width,
+    stage_contact,
+)
 from synthesis.outcome.exhaustive import pareto
 
 FIRST_JUDGED, MOST_JUDGED = 64, 1024
@@ -30,9 +38,6 @@ FIRST_JUDGED, MOST_JUDGED = 64, 1024
 
 MOST_TRIED = 10_000
 """Orders of stages, pairings and idlers of all trains together after which no further train is judged."""
-
-EQUAL = 1e-12
-"""Share by which a mesh may fall short of the power in rounding."""
 
 
 class Borne(NamedTuple):
@@ -163,14 +168,10 @@ class Bearing:
 
     def _width(self, stage: Stage, idlers: tuple[int, ...], speed: float) -> float | None:
         """The least face, in the problem's unit, over which all meshes of a stage carry the power."""
-        meshes = [(self._judge(mesh), turning) for mesh, turning in _meshes(stage, idlers, speed)]
-        least = [judge.under(self.stated.power, turning).least_width() for judge, turning in meshes]
-        known = [width for width in least if width is not None]
-        if len(known) < len(least):
-            return None
-        width = max(known)
-        kept = (judge.under(self.stated.power, turning).at(width).keep(self.stated.kept) for judge, turning in meshes)
-        return width / self._unit if all(kept) else None
+        meshes = _meshes(stage, idlers, speed)
+        loaded = [self._judge(mesh).under(self.stated.power, turning) for mesh, turning in meshes]
+        width = common_width(loaded, self.stated.kept)
+        return None if width is None else width / self._unit
 
     def _judge(self, mesh: _Turning) -> Judge:
         if mesh not in self._judges:

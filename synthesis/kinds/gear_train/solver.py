@@ -17,6 +17,7 @@ from synthesis.kinds.gear_train.search import Outcome, Train, order, search
 from synthesis.kinds.gear_train.task import Task, gear_train_task
 from synthesis.kinds.gear_train.verification import verify
 from synthesis.model.gear_answer import Ratio
+from synthesis.model.gear_strength import carrying_words, too_weak_words
 from synthesis.model.kind import Progress
 from synthesis.outcome.sifting import Sifting
 
@@ -124,41 +125,24 @@ def _summary(
         how = "exactly the ratio" if error == 0.0 else f"a relative error of {error:.3g}"
         tied = "no other train is as near" if outcome.ties == 1 else f"{outcome.ties} trains are as near"
         if borne is not None:
-            return f"{stages} has {how}. {_carrying(borne)} {_scope(problem, number)}"
+            return f"{stages} has {how}. {carrying_words(borne.failed)} {_scope(problem, number)}"
         return f"{stages} has {how}; {tied}. {_scope(problem, number)}"
     if accepted:
         best = accepted[0]
         stages = ", ".join(f"{s.driver}:{s.driven}" for s in best.mechanism.stages)
         within = 100.0 * float(problem.exact_tolerance or 0)
-        carrying = "" if borne is None else f" {_carrying(borne)}"
+        carrying = "" if borne is None else f" {carrying_words(borne.failed)}"
         return (
             f"{stages} is the smallest train within {within:.3g} %, with a relative error of "
             f"{best.metrics.relative_error:.3g}.{carrying} {_scope(problem, number)}"
         )
     if outcome.trains:
         return "No train passed the verification."
-    if borne is not None and borne.failed:
-        return _too_weak(problem, borne)
+    if borne is not None and borne.failed and problem.strength is not None:
+        return too_weak_words(problem.strength, borne.failed, borne.every, borne.strongest)
     if problem.searches_distances:
         return f"No such train was found: {_why_none(problem, task, outcome)}. {SEARCHED}"
     return f"There is no such train: {_why_none(problem, task, outcome)}."
-
-
-def _carrying(borne: Judged) -> str:
-    """That the power decided, and how many trains it ruled out."""
-    before = f"{borne.failed} trains do not" if borne.failed > 1 else "one does not" if borne.failed else "all do"
-    return f"It carries the power, by a first estimate; of those judged {before}."
-
-
-def _too_weak(problem: GearTrainProblem, borne: Judged) -> str:
-    """That no train carries the power, and what the strongest does."""
-    assert problem.strength is not None
-    which = f"the {borne.failed} trains there are" if borne.every else f"the first {borne.failed} trains"
-    most = f"with a face of {problem.strength.max_face_width:g} modules"
-    told = f"None of {which} carries {problem.strength.power_kw:.6g} kW {most}."
-    if borne.strongest:
-        told += f" The strongest carries {borne.strongest / 1000.0:.3g} kW, by a first estimate."
-    return told if borne.every else f"{told} Others were not judged."
 
 
 def _scope(problem: GearTrainProblem, number: str) -> str:

@@ -6,9 +6,10 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Result, Verification, optional
+from synthesis.model.answer import Answer, Result, Search, Verification, optional
 from synthesis.model.dimension import Angle, Length
 from synthesis.model.gear_answer import Ratio
+from synthesis.model.gear_strength import PairStrength
 
 
 class PlanetPlaces(Answer):
@@ -35,6 +36,9 @@ class PlanetaryMechanism(Answer):
     output: str
     fixed: str
     ratio: Ratio
+    face_widths: list[Length | None] | None = optional(
+        "The least with which the gears of each plane carry a stated power; null of a plane that carries nothing."
+    )
 
 
 class MeshContact(Answer):
@@ -44,6 +48,9 @@ class MeshContact(Answer):
     contact_ratio: float
     centre_distance: Length
     fillet_interference: bool | None = optional("Whether a tip reaches below the mate's involute, where that is asked.")
+    strength: PairStrength | None = optional(
+        "Stresses of one copy under a stated power; left out of a mesh that carries nothing."
+    )
 
 
 class PlanetaryMetrics(Answer):
@@ -82,13 +89,30 @@ class ParetoPlanetaryTrain(Answer):
     ratio: Ratio
     error: float = Field(description="Relative error of the ratio, with its sign.")
     size: Length
+    module: Length | None = optional("With `strength`: that with which it carries the power.")
+    face_widths: list[Length | None] | None = optional("With `strength`: of each plane.")
+
+
+class PlanetarySearch(Search):
+    """The search of a finite set of trains; with `strength` `complete` is false where better trains may be unjudged."""
+
+    judged: int | None = optional("With `strength`: how many trains were judged, the first of the ranking.")
+    every_judged: bool | None = optional(
+        "Whether the search has no others within the tolerance: `ties` and `pareto` are then those of all trains that "
+        "carry the power, otherwise of the judged that do."
+    )
 
 
 class PlanetaryResult(Result[PlanetaryDesign]):
     """Planetary trains, best first.
 
-    ``ties`` counts the trains that have the least error of all, whatever their size.
+    ``ties`` counts the trains that have the least error of all, whatever their size; with `strength` of the judged that
+    carry the power.
     """
 
+    search: PlanetarySearch
     ties: int
-    pareto: list[ParetoPlanetaryTrain] = Field(description="The Pareto set of error against size, smallest first.")
+    pareto: list[ParetoPlanetaryTrain] = Field(
+        description="The Pareto set of error against size, smallest first; with `strength` of the trains judged that "
+        "carry the power."
+    )

@@ -9,10 +9,10 @@ from fractions import Fraction
 import numpy as np
 
 from kinematics.gear.arrangements import Arrangement
+from synthesis.kinds.planetary_train.making import demands_of
 from synthesis.kinds.planetary_train.nearest import Candidate, Coupling, Roles, SetTable, train_value
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.kinds.planetary_train.ratio_form import arrangement_form, evaluated
-from synthesis.kinds.planetary_train.solver import demands_of
 from synthesis.kinds.planetary_train.tooth_numbers import ToothNumbers, Whole
 
 

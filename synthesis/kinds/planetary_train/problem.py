@@ -10,6 +10,7 @@ from pydantic import ConfigDict, Field
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from synthesis.model.dimension import LENGTH
 from synthesis.model.gear_statement import CommonPressureAngle, ExactRatio, Module, RangedTeeth, ToothRange
+from synthesis.model.planet_strength import PAIRS, PlanetPower
 from synthesis.model.ratio_target import parse_target
 from synthesis.model.statement import Contradiction, Count, PositiveLength, StatedProblem, Statement
 
@@ -64,7 +65,25 @@ class PlanetaryProblem(StatedProblem):
                     "teeth": {"min": 17, "max": 60, "ring_max": 130},
                     "module": 1.5,
                     "max_designs": 5,
-                }
+                },
+                {
+                    "kind": "planetary_train",
+                    "ratio": 5.5,
+                    "arrangement": "simple",
+                    "input": "sun",
+                    "output": "carrier",
+                    "fixed": "ring",
+                    "teeth": {"min": 17, "max": 60, "ring_max": 130},
+                    "modules": [1.0, 1.5, 2.0, 2.5],
+                    "tolerance": 0.01,
+                    "strength": {
+                        "power_kw": 5.0,
+                        "speed_rpm": 1450.0,
+                        "allowable_bending": [200.0, 200.0],
+                        "allowable_contact": [800.0, 800.0],
+                        "max_face_width": 12.0,
+                    },
+                },
             ]
         },
     )
@@ -101,6 +120,12 @@ class PlanetaryProblem(StatedProblem):
     fixed: str | None = Field(default=None, description="The member held; null tries all.")
     teeth: PlanetaryTeeth = PlanetaryTeeth()
     module: Module = Field(default=1.0, description="Module of all gears, in the length unit.")
+    modules: list[Module] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=20,
+        description="In place of `module`, with `strength`: a train has the least of them with which it carries.",
+    )
     pressure_angle: CommonPressureAngle = Field(default=20.0, description="Degrees.")
     tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(
         default=None, description="Largest relative error of the ratio; null takes the best there is."
@@ -119,6 +144,12 @@ class PlanetaryProblem(StatedProblem):
         description="Contact in the fillets that a rack (ISO 53, profile A) leaves on external gears, and the usual "
         "cutter of 20 teeth on rings. report: told of every mesh. refuse: the teeth of rings are shortened until they "
         "do not reach into the fillets of their planets, and trains with contact in another fillet are no answer.",
+    )
+    strength: PlanetPower | None = Field(
+        default=None,
+        description="A power that every mesh carries, by a first estimate: a train has the least of its modules with "
+        "which a face of at most `max_face_width` modules does, and of each plane the least such face; trains that do "
+        f"not carry it are no answer. Losses are not counted. Spur gears only. {PAIRS}",
     )
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.5, le=1.0)] = Field(
         default=0.99, description="Efficiency of one mesh on fixed axes, for the efficiency of the train."
@@ -141,12 +172,20 @@ class PlanetaryProblem(StatedProblem):
         if self.arrangement != "auto":
             return [ARRANGEMENTS[self.arrangement]]
         stated = {member for member in (self.input, self.output, self.fixed) if member is not None}
-        return [row for row in ARRANGEMENTS.values() if stated <= set(row.members)]
+        return [row for row in self._every_arrangement() if stated <= set(row.members)]
+
+    def _every_arrangement(self) -> list[Arrangement]:
+        """Those that `auto` stands for: with a power those of spur gears."""
+        return [row for row in ARRANGEMENTS.values() if self.strength is None or not row.bevel]
 
     @property
-    def least_room(self) -> float:
-        """Least room between gears that do not mesh, in modules."""
-        return max(self.min_clearance / self.module - TOUCH, TOUCH)
+    def listed_modules(self) -> list[float]:
+        """The modules that there are, the least first."""
+        return [self.module] if self.modules is None else sorted(self.modules)
+
+    def least_room(self, module: float) -> float:
+        """Least room between gears of a module that do not mesh, in modules."""
+        return max(self.min_clearance / module - TOUCH, TOUCH)
 
     def roles(self, arrangement: Arrangement) -> list[tuple[str, str, str]]:
         """Every choice of input, output and fixed member that the statement leaves."""
@@ -163,7 +202,26 @@ class PlanetaryProblem(StatedProblem):
 
     def contradictions(self) -> list[Contradiction]:
         """Unknown members and gears, one member in two parts, limits the wrong way round."""
-        return [*self._members(), *self._limits(), *self._extent()]
+        return [*self._members(), *self._limits(), *self._extent(), *self._power()]
+
+    def _power(self) -> list[Contradiction]:
+        """A power that is stated wrongly, and modules that nothing decides between."""
+        contradictions = []
+        if self.modules is not None:
+            if self.strength is None:
+                detail = "only a power decides between modules; state strength, or one module"
+                contradictions.append(Contradiction("/modules", detail))
+            if self.module != 1.0:
+                contradictions.append(Contradiction("/modules", "drop module, or state it alone"))
+            if len(set(self.modules)) < len(self.modules):
+                contradictions.append(Contradiction("/modules", "lists a module twice; each is a choice"))
+        if self.strength is None:
+            return contradictions
+        wrong = [*self.strength.faults(), *self.strength.faults_of_planets(self.planets)]
+        contradictions += [Contradiction(f"/strength{path}", detail) for path, detail in wrong]
+        if self.arrangement == "bevel_differential":
+            contradictions.append(Contradiction("/strength", "only spur teeth are judged, not those of bevel gears"))
+        return contradictions
 
     def _members(self) -> list[Contradiction]:
         contradictions = []

@@ -11,22 +11,21 @@ from collections import Counter
 from fractions import Fraction
 from functools import partial
 
-import numpy as np
-
-from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
+from synthesis.kinds.planetary_train.carrying import Borne, Judged, Listing, judged
 from synthesis.kinds.planetary_train.design import (
     ParetoPlanetaryTrain,
     PlanetaryDesign,
     PlanetaryMechanism,
     PlanetaryResult,
-    PlanetPlaces,
+    PlanetarySearch,
 )
+from synthesis.kinds.planetary_train.making import demands_of, mechanism_of
 from synthesis.kinds.planetary_train.nearest import Candidate, Nearest, SetTable, nearest, train_value
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
-from synthesis.kinds.planetary_train.tooth_numbers import Demands, ToothNumbers, divisions
-from synthesis.kinds.planetary_train.verification import SIZE_SLACK, measure, verify
-from synthesis.model import mesh_limits
+from synthesis.kinds.planetary_train.tooth_numbers import ToothNumbers
+from synthesis.kinds.planetary_train.verification import measure, verify
 from synthesis.model.gear_answer import Ratio
+from synthesis.model.gear_strength import carrying_words, too_weak_words
 from synthesis.model.kind import Progress
 from synthesis.outcome.exhaustive import first_within, pareto
 from synthesis.outcome.sifting import Sifting
@@ -47,7 +46,7 @@ def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> Plan
     PlanetaryResult
         Always complete: every combination of tooth numbers within the limits was covered.
     """
-    ranking = _Ranking(problem)
+    ranking, listing = _Ranking(problem), Listing(problem)
     rows = problem.arrangements
     for k, arrangement in enumerate(rows):
         progress(k / len(rows), f"{arrangement.name}: tooth numbers")
@@ -63,22 +62,12 @@ def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> Plan
         for j, members in enumerate(roles):
             progress((k + j / len(roles)) / len(rows), f"{arrangement.name}: {' to '.join(members[:2])}")
             ranking.take(numbers, nearest(arrangement, tables, members, problem.target, problem.max_designs))
+            listing.add(arrangement, tables, members)
+    if problem.strength is not None:
+        progress(1.0, "judging what the trains carry")
+        return ranking.result_of(judged(problem, problem.strength, listing))
     progress(1.0, "done")
     return ranking.result()
-
-
-def demands_of(problem: PlanetaryProblem, arrangement: Arrangement) -> Demands:
-    """The demands on tooth numbers of one arrangement, lengths in half modules."""
-    return Demands(
-        {gear.name: problem.teeth.limits(gear.name, gear.internal) for gear in arrangement.gears},
-        problem.planets,
-        problem.spacing == "equal",
-        math.radians(problem.pressure_angle),
-        problem.min_contact_ratio,
-        problem.least_room,
-        math.inf if problem.max_size is None else problem.max_size / problem.module * (1.0 + SIZE_SLACK),
-        problem.fillets == "refuse",
-    )
 
 
 class _Ranking:
@@ -123,23 +112,51 @@ class _Ranking:
         ranked = self._best if problem.rank_by == "error" else by_size
         sifting = self._sifting
         best = first_within(ranked, problem.tolerance, problem.max_designs)
-        sifting.sift_best(best, self._sound, partial(_design, problem))
+        sifting.sift_best([_made(problem, one) for one in best], self._sound, partial(_design, problem))
         front = pareto(by_size, lambda candidate: candidate.error)
         return PlanetaryResult(
             designs=sifting.designs(list),
-            search=sifting.search("exhaustive", complete=not sifting.failed),
-            summary=self._summary(),
+            search=PlanetarySearch(**dict(sifting.search("exhaustive", complete=not sifting.failed))),
+            summary=self._summary(self._ties[self._best[0].error] if self._best else 0),
             ties=self._ties[self._best[0].error] if self._best else 0,
-            pareto=[_pareto(problem, candidate) for candidate in front if _holds(problem, candidate)],
+            pareto=[
+                _pareto(problem, candidate, candidate.size * problem.module)
+                for candidate in front
+                if _holds(problem, _made(problem, candidate))
+            ],
         )
 
-    def _summary(self) -> str:
+    def result_of(self, borne: Judged) -> PlanetaryResult:
+        """The verified answer where a power decides: the best of the trains that carry it."""
+        problem, sifting = self._problem, self._sifting
+        sifting.reject("strength", borne.failed)
+        made = [one.mechanism for one in borne.best]
+        sifting.sift_best(made, self._sound - borne.failed, partial(_design, problem))
+        search = sifting.search("exhaustive", complete=borne.proven and not sifting.failed)
+        told = ""
+        if sifting.passed:
+            told = f" {carrying_words(borne.failed)}"
+        return PlanetaryResult(
+            designs=sifting.designs(list),
+            search=PlanetarySearch(**dict(search), judged=borne.judged, every_judged=borne.every),
+            summary=self._too_weak(borne) or f"{self._summary(borne.ties)}{told}",
+            ties=borne.ties,
+            pareto=[_borne_pareto(problem, one) for one in borne.front if _holds(problem, one.mechanism)],
+        )
+
+    def _too_weak(self, borne: Judged) -> str:
+        """That trains are near enough and none carries the power; empty where that is not so."""
+        stated = self._problem.strength
+        if borne.best or not borne.failed or stated is None:
+            return ""
+        return too_weak_words(stated, borne.failed, borne.every, borne.strongest)
+
+    def _summary(self, ties: int) -> str:
         """What the search covered and what is best, in one sentence."""
         problem, sifting = self._problem, self._sifting
         covered = f"{sifting.candidates:,} combinations of tooth numbers and members covered"
         if sifting.passed:
             first = sifting.passed[0]
-            ties = self._ties[self._best[0].error]
             exact = "exactly" if first.metrics.error == 0 else f"with an error of {100.0 * first.metrics.error:.4g} %"
             alike = f"; {ties:,} trains have the least error" if problem.rank_by == "error" and ties > 1 else ""
             return f"{first.mechanism.arrangement} reaches {problem.ratio} {exact}; {covered}{alike}."
@@ -162,20 +179,29 @@ class _Ranking:
         )
 
 
-def _design(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryDesign:
-    mechanism = mechanism_of(problem, candidate)
+def _made(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryMechanism:
+    return mechanism_of(problem, candidate, problem.module)
+
+
+def _design(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> PlanetaryDesign:
     return PlanetaryDesign(
         mechanism=mechanism, verification=verify(problem, mechanism), metrics=measure(problem, mechanism)
     )
 
 
-def _holds(problem: PlanetaryProblem, candidate: Candidate) -> bool:
+def _holds(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> bool:
     """Whether a train passes its checks, the tolerance apart: a smaller train may be less exact than was asked."""
-    verification = verify(problem.model_copy(update={"tolerance": None}), mechanism_of(problem, candidate))
+    verification = verify(problem.model_copy(update={"tolerance": None}), mechanism)
     return verification.passed
 
 
-def _pareto(problem: PlanetaryProblem, candidate: Candidate) -> ParetoPlanetaryTrain:
+def _borne_pareto(problem: PlanetaryProblem, borne: Borne) -> ParetoPlanetaryTrain:
+    """A train of the Pareto set as it carries the power."""
+    made = {"module": borne.mechanism.module, "face_widths": borne.mechanism.face_widths}
+    return _pareto(problem, borne.candidate, borne.candidate.size * borne.mechanism.module).model_copy(update=made)
+
+
+def _pareto(problem: PlanetaryProblem, candidate: Candidate, size: float) -> ParetoPlanetaryTrain:
     """A train of the Pareto set as the answer has it."""
     driving, driven, fixed = candidate.roles
     return ParetoPlanetaryTrain(
@@ -186,50 +212,5 @@ def _pareto(problem: PlanetaryProblem, candidate: Candidate) -> ParetoPlanetaryT
         teeth=dict(candidate.teeth),
         ratio=Ratio.of(candidate.ratio),
         error=float(candidate.ratio / problem.target - 1),
-        size=candidate.size * problem.module,
+        size=size,
     )
-
-
-def mechanism_of(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryMechanism:
-    """The dimensions of a train."""
-    arrangement = ARRANGEMENTS[candidate.arrangement]
-    known = dict(candidate.teeth)
-    teeth = {gear: known[gear] for gear in arrangement.gear_names}
-    driving, driven, fixed = candidate.roles
-    return PlanetaryMechanism(
-        arrangement=arrangement.name,
-        teeth=teeth,
-        planets=problem.planets,
-        places=_places(problem, arrangement, teeth),
-        module=problem.module,
-        pressure_angle=problem.pressure_angle,
-        addendum={gear: _addendum(problem, arrangement, teeth, gear) for gear in teeth},
-        input=driving,
-        output=driven,
-        fixed=fixed,
-        ratio=Ratio.of(candidate.ratio),
-    )
-
-
-def _places(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[str, int]) -> dict[str, PlanetPlaces]:
-    """Equal angles, or the places where planets can be put in that are nearest to equal angles."""
-    count = problem.planets
-    places = {}
-    for planets in arrangement.planet_sets:
-        whole = count
-        if problem.spacing == "nearest":
-            whole = int(divisions(arrangement, planets, {gear: np.array([z]) for gear, z in teeth.items()})[0]) or count
-        steps = [(2 * k * whole + count) // (2 * count) for k in range(count)]
-        places.update({planet: PlanetPlaces(divisions=whole, steps=steps) for planet in planets})
-    return places
-
-
-def _addendum(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[str, int], gear: str) -> float:
-    """A module, or what is left of it where a ring's teeth are shortened for the smallest of its planets."""
-    if not arrangement.places[gear].internal:
-        return 1.0
-    mates = [np.array([float(teeth[mate])]) for mate in arrangement.meshing(gear)]
-    ring = np.array([float(teeth[gear])])
-    angle = math.radians(problem.pressure_angle)
-    fillets = problem.fillets == "refuse"
-    return min(round(float(mesh_limits.ring_addendum(mate, ring, angle, fillets)[0]), 6) for mate in mates)

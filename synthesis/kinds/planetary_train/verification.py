@@ -21,13 +21,20 @@ from synthesis.kinds.planetary_train.design import MeshContact, PlanetaryMechani
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
+from synthesis.model.dynamics import METRES
 from synthesis.model.gear_answer import reaches_fillet
+from synthesis.model.gear_strength import PairStrength
+from synthesis.model.planet_strength import MeshLoad, strengths
 from synthesis.model.ratio_target import decimal
 from synthesis.outcome.exhaustive import within_tolerance
-from synthesis.proof.checks import at_least, at_most
+from synthesis.proof.checks import at_least, at_most, tolerated
 
 SIZE_SLACK = 1e-12
 """Relative slack of the size, which is a whole number of half modules but for the rounding of one product."""
+
+
+ROUNDED = 1e-9
+"""Share by which a safety or a face may miss its limit in rounding."""
 
 
 def verify(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Verification:
@@ -37,12 +44,57 @@ def verify(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Verifica
     checks = [_ratio(problem, mechanism, arrangement), _limits(problem, mechanism, arrangement)]
     checks.append(Check(name="coaxial", passed=coaxial))
     if coaxial:
+        checks += _strength_checks(problem, mechanism)
         checks += [_assembly(mechanism, arrangement), _clearance(problem, mechanism, arrangement)]
         checks += _meshes(problem, mechanism, arrangement)
         if problem.max_size is not None:
             size = size_of(mechanism) * mechanism.module
             checks.append(at_most("size", size, problem.max_size, LENGTH, SIZE_SLACK))
     return Verification.of(checks)
+
+
+def _strengths(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> list[PairStrength | None]:
+    """Stresses of every mesh over the faces, from its torques and speeds without losses in exact fractions."""
+    arrangement, stated = ARRANGEMENTS[mechanism.arrangement], problem.strength
+    train = arrangement.train(mechanism.teeth)
+    members = mechanism.input, mechanism.output, mechanism.fixed
+    turning = {body: w or Fraction(0) for body, w in speeds(train, {members[2]: 0, members[0]: 1}).values.items()}
+    flow = power_flow(train, turning, members, {members[0]: 1})
+    if stated is None or flow is None:
+        return [None] * len(train.meshes)
+    torque = stated.power / stated.speed
+    loads = [
+        MeshLoad(
+            (float(load.first_torque) * torque, float(load.second_torque) * torque),
+            float(turning[mesh.first] - turning[mesh.carrier]) * stated.speed,
+        )
+        for mesh, load in zip(train.meshes, flow.meshes, strict=True)
+    ]
+    gears = {name: _gear(mechanism, arrangement, name) for name in mechanism.teeth}
+    unit = 1000.0 * METRES[problem.length_unit]
+    told = strengths(arrangement, gears, loads, mechanism.planets, stated, mechanism.face_widths, unit)
+    return [None if one is None else PairStrength(**one) for one in told]
+
+
+def _strength_checks(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> list[Check]:
+    """Safeties of all gears that are judged, and faces as wide as they may be."""
+    stated = problem.strength
+    if stated is None:
+        return []
+    meshes = [mesh for mesh in _strengths(problem, mechanism) if mesh is not None]
+    safeties = [
+        getattr(gear, name)
+        for mesh in meshes
+        for gear in mesh.gears
+        for name in stated.kept
+        if name != "bending_safety" or gear.bending_judged is None
+    ]
+    least = min(0.0 if safety is None else safety for safety in safeties)
+    widest = max((mesh.face_width or math.inf) / mechanism.module for mesh in meshes)
+    return [
+        Check(name="strength", passed=least >= 1.0 - ROUNDED, value=least, limit=1.0),
+        tolerated("relative_face_width", widest, stated.max_face_width * (1.0 + ROUNDED)),
+    ]
 
 
 def exact_ratio_of(mechanism: PlanetaryMechanism) -> Fraction | None:
@@ -80,6 +132,7 @@ def measure(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Planeta
     ratio = exact_ratio_of(mechanism)
     assert ratio is not None
     rooms = _gaps(mechanism, arrangement)
+    toothed = _toothed(mechanism, arrangement)
     return PlanetaryMetrics(
         error=float(ratio / problem.target - 1),
         size=size_of(mechanism) * mechanism.module,
@@ -97,8 +150,9 @@ def measure(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Planeta
                 contact_ratio=mesh.contact_ratio,
                 centre_distance=_apart(arrangement, pair, mesh),
                 fillet_interference=None if problem.fillets == "ignore" else reaches_fillet(mesh),
+                strength=strength,
             )
-            for pair, mesh in _toothed(mechanism, arrangement).items()
+            for (pair, mesh), strength in zip(toothed.items(), _strengths(problem, mechanism), strict=True)
         ],
         undercut=[
             gear.name
@@ -128,7 +182,7 @@ def _limits(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangemen
         for gear in arrangement.gears
         for low, high in [problem.teeth.limits(gear.name, gear.internal)]
     )
-    as_asked = mechanism.planets == problem.planets and mechanism.module == problem.module
+    as_asked = mechanism.planets == problem.planets and mechanism.module in problem.listed_modules
     return Check(name="tooth_limits", passed=within and as_asked)
 
 
@@ -161,7 +215,7 @@ def _clearance(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrange
     least = min((gap.room for gap in rooms), default=math.inf)
     return Check(
         name="clearance",
-        passed=least >= problem.least_room,
+        passed=least >= problem.least_room(mechanism.module),
         value=least * mechanism.module if rooms else None,
         limit=problem.min_clearance,
         dimension=LENGTH,

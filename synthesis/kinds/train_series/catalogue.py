@@ -22,8 +22,8 @@ from synthesis.kinds.gear_train.stated_stages import sense_of
 from synthesis.kinds.gear_train.task import gear_train_task
 from synthesis.kinds.planetary_train.every import SoundTrains
 from synthesis.kinds.planetary_train.every import every_train as every_planetary
+from synthesis.kinds.planetary_train.making import mechanism_of as planetary_mechanism
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
-from synthesis.kinds.planetary_train.solver import mechanism_of as planetary_mechanism
 from synthesis.kinds.train_series.stated_units import problem_of
 
 Whole = NDArray[np.int64]
@@ -111,7 +111,7 @@ def _planetary(problem: PlanetaryProblem) -> Iterator[Batch]:
     for sound in every_planetary(problem):
 
         def made(row: int, sound: SoundTrains = sound) -> Any:
-            return planetary_mechanism(problem, sound.candidate(row))
+            return planetary_mechanism(problem, sound.candidate(row), problem.module)
 
         yield Batch(sound.over, sound.under, sound.total, made)
 

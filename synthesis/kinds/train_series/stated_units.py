@@ -21,6 +21,9 @@ OF_THE_SERIES = {*StatedProblem.model_fields, "ratio", "tolerance", "rank_by", "
 """Fields of a problem that no unit has: what the series is asked, how its answers are ordered, and a power, as it
 reaches a unit through those before it."""
 
+OF_A_POWER = {"planetary_train": {"modules"}}
+"""Fields of a kind that no unit of it has, as only a power decides what they leave open."""
+
 USUAL_STAGES = 1
 """Stages of a unit of ordinary gears, where they are not stated: more of them are more units."""
 
@@ -34,7 +37,7 @@ def _unit(name: str, kind: str, words: str) -> Any:
     """The statement of a unit: the fields of the problem of its kind that are its own."""
     fields: dict[str, Any] = {"type": (Literal[kind], ...)}
     for field, info in PROBLEMS[kind].model_fields.items():
-        if field not in OF_THE_SERIES:
+        if field not in OF_THE_SERIES | OF_A_POWER.get(kind, set()):
             info = copy.copy(info)
             if field == "max_stages":
                 info.default = USUAL_STAGES

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from synthesis.kinds.train_series.stated_units import OF_THE_SERIES
+from synthesis.kinds.train_series.stated_units import OF_A_POWER, OF_THE_SERIES
 from tests.service.stated.row import Row
 
 TRAIN: dict[str, Any] = {
@@ -135,6 +135,10 @@ PLANETARY: dict[str, Any] = {
     "teeth": {"min": 17, "max": 60, "ring_max": 130},
     "max_designs": 3,
 }
+PLANETS_CARRY: dict[str, Any] = {
+    "module": 2.0,
+    "strength": {**CARRY["strength"], "power_kw": 5.0, "allowable_bending": [200.0, 190.0]},
+}
 PLANETARY_ROWS: dict[str, Any] = {
     "length_unit": Row("in", file="csv"),
     "seed": 7,
@@ -157,6 +161,20 @@ PLANETARY_ROWS: dict[str, Any] = {
     "teeth.gears{}.min": Row(26, {"teeth.gears": {"sun": {"min": 20, "max": 30}}}),
     "teeth.gears{}.max": Row(21, {"teeth.gears": {"sun": {"min": 20, "max": 30}}}),
     "module": 2.0,
+    "modules": Row([2.0, 3.0], {**PLANETS_CARRY, "module": 1.0, "modules": [2.5, 3.0]}),
+    "strength": Row({**PLANETS_CARRY["strength"], "power_kw": 50.0}, PLANETS_CARRY),
+    "strength.method": Row(
+        "lewis", {"module": 2.0, "strength": {**PLANETS_CARRY["strength"], "allowable_contact": None}}
+    ),
+    "strength.quality": Row(9.0, PLANETS_CARRY),
+    "strength.factors": Row({"overload": 1.5}, PLANETS_CARRY),
+    **{f"strength.factors.{name}": Row(value, PLANETS_CARRY) for name, value in FACTORS.items()},
+    "strength.allowable_bending": Row([60.0, 60.0], PLANETS_CARRY),
+    "strength.allowable_contact": Row([700.0, 700.0], PLANETS_CARRY),
+    "strength.max_face_width": Row(2.0, PLANETS_CARRY),
+    "strength.power_kw": Row(5.5, PLANETS_CARRY),
+    "strength.speed_rpm": Row(900.0, PLANETS_CARRY),
+    "strength.load_sharing": Row(1.1, PLANETS_CARRY),
     "pressure_angle": 25.0,
     "tolerance": 0.5,
     "max_size": 1e6,
@@ -167,6 +185,7 @@ PLANETARY_ROWS: dict[str, Any] = {
     "rank_by": Row("size", {"tolerance": 0.1}),
 }
 
+UNIT_KINDS = {"PlanetaryUnit": "planetary_train", "GearTrainUnit": "gear_train"}
 UNITS: dict[str, tuple[int, dict[str, Any]]] = {"PlanetaryUnit": (0, PLANETARY_ROWS), "GearTrainUnit": (1, TRAIN_ROWS)}
 
 
@@ -175,7 +194,7 @@ def unit_rows(model: str) -> dict[str, Any]:
     place, rows = UNITS[model]
     found: dict[str, Any] = {f"units[]<{model}>.type": Row("wheel", at=f"units[{place}].type")}
     for name, stated in rows.items():
-        if name.split(".")[0] not in OF_THE_SERIES:
+        if name.split(".")[0] not in OF_THE_SERIES | OF_A_POWER.get(UNIT_KINDS[model], set()):
             row = stated if isinstance(stated, Row) else Row(stated)
             if name.removeprefix("stages[].") in OF_CROSSING:
                 row = Row(row.value, {"max_stages": 3, "stages": [{"type": "external"}]})

@@ -1,0 +1,98 @@
+"""The strength of a given planetary train: what of the design it needs, and the load of every mesh as it turns."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import Field, ValidationError
+
+from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
+from kinematics.gear.assembly import is_coaxial
+from kinematics.gear.planetary import Train
+from kinematics.gear.power import PowerFlow
+from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, Gear
+from synthesis.model.dynamics import METRES
+from synthesis.model.gear_statement import CommonPressureAngle, Module
+from synthesis.model.planet_strength import MeshLoad, PlanetStrength, planes_of, strengths
+from synthesis.model.statement import Count, Statement
+
+Share = Annotated[float, Field(strict=True, gt=0.0, le=1.5)]
+
+
+class MadeTrain(Statement):
+    """What strength needs of a design besides its teeth."""
+
+    planets: Annotated[Count, Field(ge=1, le=12)]
+    module: Module
+    pressure_angle: CommonPressureAngle = 20.0
+    addendum: dict[str, Share] = Field(default={})
+
+    def gears(self, arrangement: Arrangement, teeth: dict[str, int]) -> dict[str, Gear]:
+        """The gears by name, in the module's unit."""
+        return {
+            name: Gear(
+                count,
+                self.module,
+                math.radians(self.pressure_angle),
+                self.addendum.get(name, FULL_DEPTH_ADDENDUM),
+                internal=arrangement.places[name].internal,
+            )
+            for name, count in teeth.items()
+        }
+
+
+def made(mechanism: Any) -> MadeTrain:
+    """What strength needs of the mechanism of a request; raises pydantic's ValidationError where it lacks some."""
+    stated = {name: getattr(mechanism, name) for name in MadeTrain.model_fields}
+    return MadeTrain.model_validate({name: value for name, value in stated.items() if value is not None})
+
+
+def strength_faults(mechanism: Any, stated: PlanetStrength) -> list[tuple[str, str]]:
+    """What is wrong with a mechanism, itself without faults, whose strength is asked for."""
+    faults = [(f"/strength{path}", detail) for path, detail in stated.faults()]
+    arrangement = ARRANGEMENTS.get(mechanism.arrangement)
+    if arrangement is None:
+        return [*faults, ("/strength", "state an arrangement; of meshes alone the gears are not known")]
+    if arrangement.bevel:
+        return [*faults, ("/strength", "only spur teeth are judged, not those of a bevel differential")]
+    if not is_coaxial(arrangement, mechanism.teeth):
+        faults.append(("/mechanism/teeth", "unshifted gears with these teeth are not coaxial; no other is judged"))
+    faces, planes = mechanism.face_widths, planes_of(arrangement)
+    if faces is not None and len(faces) != planes:
+        faults.append(("/mechanism/face_widths", f"expected {planes}, one for each plane"))
+    if faces is None and not stated.kept:
+        faults.append(("/mechanism/face_widths", "state it, or the allowable stresses that it follows from"))
+    try:
+        whole = made(mechanism)
+    except ValidationError as error:
+        wrong = [("/".join(["/mechanism", *map(str, one["loc"])]), one["msg"]) for one in error.errors()]
+        return [*faults, *wrong]
+    unknown = [name for name in whole.addendum if name not in arrangement.places]
+    faults += [(f"/mechanism/addendum/{name}", f"expected one of {', '.join(arrangement.places)}") for name in unknown]
+    return [*faults, *((f"/strength{path}", detail) for path, detail in stated.faults_of_planets(whole.planets))]
+
+
+def mesh_strengths(
+    mechanism: Any,
+    stated: PlanetStrength,
+    train: Train,
+    rates: dict[str, Fraction | None],
+    flow: PowerFlow,
+    speed: float,
+    length_unit: str,
+) -> list[dict[str, Any] | None]:
+    """The strength of every mesh in the shape of ``PairStrength``; None of one that carries nothing.
+
+    ``rates`` are speeds over the input's, ``speed`` is the input's, rad/s.
+    """
+    arrangement = ARRANGEMENTS[mechanism.arrangement]
+    loads = []
+    for mesh, load in zip(train.meshes, flow.meshes, strict=True):
+        past = (rates[mesh.first] or Fraction(0)) - (rates[mesh.carrier] or Fraction(0))
+        loads.append(MeshLoad((float(load.first_torque), float(load.second_torque)), float(past) * abs(speed)))
+    whole = made(mechanism)
+    gears = whole.gears(arrangement, mechanism.teeth)
+    unit = 1000.0 * METRES[length_unit]
+    return strengths(arrangement, gears, loads, whole.planets, stated, mechanism.face_widths, unit)

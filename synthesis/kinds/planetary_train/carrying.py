@@ -1,0 +1,277 @@
+"""Which planetary trains carry a stated power: with which module and over which faces.
+
+The search orders trains by error or size whatever they carry. They are judged in that order, so that the first that
+carry the power are the best that do, and where all trains of the search were judged there is no other.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import NamedTuple
+
+import numpy as np
+
+from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
+from kinematics.gear.teeth import Gear
+from synthesis.kinds.planetary_train.design import PlanetaryMechanism
+from synthesis.kinds.planetary_train.making import demands_of, mechanism_of
+from synthesis.kinds.planetary_train.nearest import Candidate, Roles, SetTable, nearest
+from synthesis.kinds.planetary_train.problem import PlanetaryProblem
+from synthesis.kinds.planetary_train.tooth_numbers import ToothNumbers
+from synthesis.model.dynamics import METRES
+from synthesis.model.gear_strength import EQUAL, Judge, Loaded, common_width
+from synthesis.model.planet_strength import (
+    MeshLoad,
+    PlanetPower,
+    both_ways,
+    plane_of,
+    planes_of,
+    planetary_contact,
+    powers,
+)
+from synthesis.model.ratio_target import decimal
+from synthesis.outcome.exhaustive import first_within, pareto
+
+MOST_JUDGED = 1024
+"""Trains that are judged at most."""
+
+
+class Borne(NamedTuple):
+    """A train that carries the power with its module; ``size`` in the problem's unit, exact."""
+
+    candidate: Candidate
+    mechanism: PlanetaryMechanism
+    size: Fraction
+
+    @property
+    def error(self) -> Fraction:
+        """Of the ratio."""
+        return self.candidate.error
+
+
+class Judged(NamedTuple):
+    """What became of the trains of a search.
+
+    ``best`` are the best that carry the power, ``front`` the Pareto set of all judged that do, of which ``ties`` have
+    the least error. ``failed`` of those that rank before the last of the best do not; the ``strongest`` of all carries
+    so many W. ``every``: the search has no trains but the ``judged``; ``proven``: no train is better than the best.
+    """
+
+    best: list[Borne]
+    front: list[Borne]
+    ties: int
+    failed: int
+    strongest: float
+    judged: int
+    every: bool
+    proven: bool
+
+
+@dataclass
+class Listing:
+    """The trains of a problem: tables of tooth numbers with the members that input, output and fixed are."""
+
+    problem: PlanetaryProblem
+    _searches: list[tuple[Arrangement, list[SetTable], Roles]] = field(default_factory=list)
+
+    def add(self, arrangement: Arrangement, tables: list[SetTable], roles: Roles) -> None:
+        """Note the trains of one choice of members."""
+        self._searches.append((arrangement, tables, roles))
+
+    def nearest(self, largest: int | None = None) -> list[Candidate]:
+        """The first :data:`MOST_JUDGED` within the tolerance, nearest first; of those up to a size, in half modules."""
+        found: list[Candidate] = []
+        for arrangement, tables, roles in self._searches:
+            kept = tables if largest is None else [_up_to(table, largest) for table in tables]
+            some = nearest(arrangement, kept, roles, self.problem.target, MOST_JUDGED)
+            found += [] if some is None else some.best
+        return first_within(sorted(found), self.problem.tolerance, MOST_JUDGED)
+
+    def smallest(self) -> tuple[list[Candidate], int]:
+        """As many of the smallest within the tolerance, all up to the size told, and that size."""
+        sizes = sorted({int(size) for _, tables, _ in self._searches for table in tables for size in table.size})
+        low, high, found = 0, len(sizes), list[Candidate]()
+        while low < high:
+            middle = (low + high) // 2
+            some = self.nearest(sizes[middle])
+            if len(some) < MOST_JUDGED:
+                low, found = middle + 1, some
+            else:
+                high = middle
+        return sorted(found, key=lambda candidate: (candidate.size, candidate)), sizes[low - 1] if low else 0
+
+
+def _up_to(table: SetTable, largest: int) -> SetTable:
+    kept = table.size <= largest
+    return SetTable({gear: array[kept] for gear, array in table.teeth.items()}, table.size[kept], table.value)
+
+
+def mesh_loads(arrangement: Arrangement, candidate: Candidate, torque: float, speed: float) -> list[MeshLoad]:
+    """Loads of all meshes without losses, N m and rad/s, under a torque on the input that turns so fast.
+
+    With A the coefficients of the speed equations, A ω = 0, forces f of the meshes turn the bodies by Aᵀ f.
+    """
+    train = arrangement.train(dict(candidate.teeth))
+    place = {body: k for k, body in enumerate(train.bodies)}
+    turning = np.zeros((len(train.meshes), len(place)))
+    for row, mesh in zip(turning, train.meshes, strict=True):
+        for body, coefficient in mesh.equation().items():
+            row[place[body]] = coefficient
+    driving, driven, held = (np.eye(len(place))[place[body]] for body in candidate.roles)
+    stated = np.zeros(len(place))
+    stated[-2] = speed
+    rates = np.linalg.solve(np.vstack([turning, driving, held]), stated)
+    forces = np.linalg.solve(np.vstack([turning, driven, held]).T, -torque * driving)
+    return [
+        MeshLoad(
+            (float(force) * mesh.first_teeth, -mesh.sense * float(force) * mesh.second_teeth),
+            float(rates[place[mesh.first]] - rates[place[mesh.carrier]]),
+        )
+        for mesh, force in zip(train.meshes, forces, strict=False)
+    ]
+
+
+class _Toothed(NamedTuple):
+    """A mesh by its teeth: numbers, addenda, whether the second is a ring, module and who is bent both ways."""
+
+    teeth: tuple[int, int]
+    addenda: tuple[float, float]
+    internal: bool
+    module: float
+    ways: tuple[bool, bool]
+
+
+@dataclass
+class Bearing:
+    """What the meshes of a problem carry; each is judged once."""
+
+    problem: PlanetaryProblem
+    stated: PlanetPower
+    strongest: float = 0.0
+    _judges: dict[_Toothed, Judge] = field(default_factory=dict)
+
+    def carrying(self, candidate: Candidate) -> Borne | None:
+        """A train with its least module that carries the power, faces yet to be found; None where no module does."""
+        arrangement = ARRANGEMENTS[candidate.arrangement]
+        loads = self._loads(candidate)
+        for module in self.problem.listed_modules:
+            if not self._fits(arrangement, candidate, module):
+                continue
+            mechanism = mechanism_of(self.problem, candidate, module)
+            judges = list(self._judged(arrangement, mechanism, loads))
+            share = min(judge.carried_power(speed) / power for _, judge, power, speed in judges)
+            self.strongest = max(self.strongest, share * self.stated.power)
+            # Where rounding decides, the faces are looked for.
+            sure = share >= 1.0 + EQUAL or (share >= 1.0 - EQUAL and self._faces(arrangement, judges) is not None)
+            if sure:
+                return Borne(candidate, mechanism, candidate.size * decimal(module))
+        return None
+
+    def made(self, borne: Borne) -> Borne:
+        """The same train with the least faces of its planes."""
+        arrangement = ARRANGEMENTS[borne.candidate.arrangement]
+        judges = list(self._judged(arrangement, borne.mechanism, self._loads(borne.candidate)))
+        faces = {"face_widths": self._faces(arrangement, judges)}
+        return borne._replace(mechanism=borne.mechanism.model_copy(update=faces))
+
+    def _loads(self, candidate: Candidate) -> list[MeshLoad]:
+        arrangement = ARRANGEMENTS[candidate.arrangement]
+        return mesh_loads(arrangement, candidate, self.stated.power / self.stated.speed, self.stated.speed)
+
+    def _fits(self, arrangement: Arrangement, candidate: Candidate, module: float) -> bool:
+        """Whether size and room are kept with a module; the search has looked at the ones that are kept best."""
+        problem = self.problem
+        if len(problem.listed_modules) == 1 or (problem.max_size is None and problem.min_clearance == 0.0):
+            return True
+        demands = demands_of(problem, arrangement, module)
+        exact = {gear: (count, count) for gear, count in candidate.teeth}
+        numbers = (
+            ToothNumbers(arrangement, planets, demands._replace(limits=exact)) for planets in arrangement.planet_sets
+        )
+        return all(each.count for each in numbers)
+
+    def _judged(
+        self, arrangement: Arrangement, mechanism: PlanetaryMechanism, loads: Sequence[MeshLoad]
+    ) -> Iterator[tuple[int, Judge, float, float]]:
+        """Plane, stresses, power of one copy and speed of every mesh that carries something."""
+        teeth = [(mechanism.teeth[one], mechanism.teeth[other]) for one, other in arrangement.meshes]
+        share = self.stated.sharing(self.problem.planets) / self.problem.planets
+        rows = arrangement.meshes, teeth, loads, powers(loads, teeth, share), both_ways(arrangement, loads)
+        for mesh, pair, load, power, ways in zip(*rows, strict=True):
+            if power > 0.0:
+                addenda = mechanism.addendum[mesh[0]], mechanism.addendum[mesh[1]]
+                toothed = _Toothed(pair, addenda, arrangement.places[mesh[1]].internal, mechanism.module, ways)
+                yield plane_of(arrangement, mesh), self._judge(toothed), power, abs(load.speed)
+
+    def _judge(self, mesh: _Toothed) -> Judge:
+        if mesh not in self._judges:
+            angle, module = math.radians(self.problem.pressure_angle), mesh.module * self._unit
+            one, other = (
+                Gear(count, module, angle, addendum, internal=internal)
+                for count, addendum, internal in zip(mesh.teeth, mesh.addenda, (False, mesh.internal), strict=True)
+            )
+            loaded = Loaded(planetary_contact((one, other)), 1.0, 1.0, mesh.ways, spares_rings=True)
+            self._judges[mesh] = Judge(loaded, self.stated)
+        return self._judges[mesh]
+
+    def _faces(
+        self, arrangement: Arrangement, judges: list[tuple[int, Judge, float, float]]
+    ) -> list[float | None] | None:
+        """The least face of each plane, in the problem's unit, None of one without load; None where one has none."""
+        faces: list[float | None] = []
+        for plane in range(planes_of(arrangement)):
+            meshes = [judge.under(power, speed) for at, judge, power, speed in judges if at == plane]
+            width = common_width(meshes, self.stated.kept) if meshes else None
+            if meshes and width is None:
+                return None
+            faces.append(None if width is None else width / self._unit)
+        return faces
+
+    @property
+    def _unit(self) -> float:
+        return 1000.0 * METRES[self.problem.length_unit]
+
+
+def judged(problem: PlanetaryProblem, stated: PlanetPower, listing: Listing) -> Judged:
+    """The best trains of a listing that carry a power."""
+    bearing = Bearing(problem, stated)
+    listed, by_size = listing.nearest(), problem.rank_by == "size"
+    every, reached = len(listed) < MOST_JUDGED, 0
+    if by_size and every:
+        listed.sort(key=lambda candidate: (candidate.size, candidate))
+    elif by_size:
+        listed, reached = listing.smallest()
+    verdicts = [bearing.carrying(candidate) for candidate in listed]
+    carry = [found for found in verdicts if found is not None]
+    ranked = sorted(
+        carry, key=lambda one: (one.size, one.candidate) if by_size else (one.error, one.size, one.candidate)
+    )
+    smallest = sorted(carry, key=lambda one: (one.size, one.candidate))
+    best = (_one_a_size(ranked) if by_size else ranked)[: problem.max_designs]
+    whole = len(best) == problem.max_designs
+    last = max((listed.index(one.candidate) for one in best), default=-1) if whole else len(listed) - 1
+    if len(problem.listed_modules) == 1:
+        settled = True
+    elif by_size:
+        settled = whole and best[-1].size <= reached * decimal(problem.listed_modules[0])
+    else:
+        settled = whole and best[-1].error < listed[-1].error
+    least = min((one.error for one in carry), default=None)
+    return Judged(
+        [bearing.made(one) for one in best],
+        [bearing.made(one) for one in pareto(smallest, lambda one: one.error)],
+        sum(one.error == least for one in carry),
+        sum(found is None for found in verdicts[: last + 1]),
+        bearing.strongest,
+        len(listed),
+        every,
+        every or (whole and settled),
+    )
+
+
+def _one_a_size(ranked: list[Borne]) -> list[Borne]:
+    """The first of each size."""
+    return [one for k, one in enumerate(ranked) if k == 0 or one.size != ranked[k - 1].size]

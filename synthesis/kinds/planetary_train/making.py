@@ -1,0 +1,76 @@
+"""What a planetary train that the search has found is made of, and what the search demands of tooth numbers."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
+from synthesis.kinds.planetary_train.design import PlanetaryMechanism, PlanetPlaces
+from synthesis.kinds.planetary_train.nearest import Candidate
+from synthesis.kinds.planetary_train.problem import PlanetaryProblem
+from synthesis.kinds.planetary_train.tooth_numbers import Demands, divisions
+from synthesis.kinds.planetary_train.verification import SIZE_SLACK
+from synthesis.model import mesh_limits
+from synthesis.model.gear_answer import Ratio
+
+
+def demands_of(problem: PlanetaryProblem, arrangement: Arrangement, module: float | None = None) -> Demands:
+    """The demands on tooth numbers of one arrangement, lengths in half modules; of a module, or of any listed one."""
+    listed = problem.listed_modules if module is None else [module]
+    return Demands(
+        {gear.name: problem.teeth.limits(gear.name, gear.internal) for gear in arrangement.gears},
+        problem.planets,
+        problem.spacing == "equal",
+        math.radians(problem.pressure_angle),
+        problem.min_contact_ratio,
+        problem.least_room(listed[-1]),
+        math.inf if problem.max_size is None else problem.max_size / listed[0] * (1.0 + SIZE_SLACK),
+        problem.fillets == "refuse",
+    )
+
+
+def mechanism_of(problem: PlanetaryProblem, candidate: Candidate, module: float) -> PlanetaryMechanism:
+    """The dimensions of a train with a module."""
+    arrangement = ARRANGEMENTS[candidate.arrangement]
+    known = dict(candidate.teeth)
+    teeth = {gear: known[gear] for gear in arrangement.gear_names}
+    driving, driven, fixed = candidate.roles
+    return PlanetaryMechanism(
+        arrangement=arrangement.name,
+        teeth=teeth,
+        planets=problem.planets,
+        places=_places(problem, arrangement, teeth),
+        module=module,
+        pressure_angle=problem.pressure_angle,
+        addendum={gear: _addendum(problem, arrangement, teeth, gear) for gear in teeth},
+        input=driving,
+        output=driven,
+        fixed=fixed,
+        ratio=Ratio.of(candidate.ratio),
+    )
+
+
+def _places(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[str, int]) -> dict[str, PlanetPlaces]:
+    """Equal angles, or the places where planets can be put in that are nearest to equal angles."""
+    count = problem.planets
+    places = {}
+    for planets in arrangement.planet_sets:
+        whole = count
+        if problem.spacing == "nearest":
+            whole = int(divisions(arrangement, planets, {gear: np.array([z]) for gear, z in teeth.items()})[0]) or count
+        steps = [(2 * k * whole + count) // (2 * count) for k in range(count)]
+        places.update({planet: PlanetPlaces(divisions=whole, steps=steps) for planet in planets})
+    return places
+
+
+def _addendum(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[str, int], gear: str) -> float:
+    """A module, or what is left of it where a ring's teeth are shortened for the smallest of its planets."""
+    if not arrangement.places[gear].internal:
+        return 1.0
+    mates = [np.array([float(teeth[mate])]) for mate in arrangement.meshing(gear)]
+    ring = np.array([float(teeth[gear])])
+    angle = math.radians(problem.pressure_angle)
+    fillets = problem.fillets == "refuse"
+    return min(round(float(mesh_limits.ring_addendum(mate, ring, angle, fillets)[0]), 6) for mate in mates)
