@@ -128,6 +128,12 @@ def test_planets_roll_between_their_mates(name, monkeypatch):
         shown = [turning.Turning(g.placed, g.speed, g.orbit, g.axis, 0, g.toothed) for g in layout]
     planets = [gear for gear in shown if gear.orbit and gear.placed.centre != gear.axis]
     assert planets
+    # The equation below holds of a train that stands still too: the input turns by 1, the output by 1 over the ratio.
+    ratio = design.mechanism.ratio
+    turns = {gear.speed for gear in shown} | {gear.orbit for gear in planets}
+    assert any(turn == pytest.approx(1.0) for turn in turns)
+    assert any(turn == pytest.approx(ratio.denominator / ratio.numerator) for turn in turns)
+    met = 0
     for planet in planets:
         for mate in (gear for gear in shown if gear.placed.centre == planet.axis):
             apart = abs(planet.placed.centre - planet.axis)
@@ -135,9 +141,12 @@ def test_planets_roll_between_their_mates(name, monkeypatch):
             internal = mate.placed.gear.internal
             if apart != pytest.approx(sizes[1] - sizes[0] if internal else sum(sizes)):
                 continue
+            met += 1
             # Past the carrier both pitch circles roll on each other.
             rolled = [(one.speed - planet.orbit) * size for one, size in zip((planet, mate), sizes, strict=True)]
             assert rolled[0] == pytest.approx(rolled[1] if internal else -rolled[1])
+            assert abs(rolled[0]) > 1e-3
+    assert met >= 2 * len({planet.placed.centre for planet in planets})
 
 
 def test_a_carrier_has_the_colour_of_its_part(monkeypatch):
