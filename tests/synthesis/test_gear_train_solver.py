@@ -193,6 +193,24 @@ def test_the_pareto_set_is_one() -> None:
     assert errors[0] <= 0.01
 
 
+def test_the_pareto_set_is_that_of_all_trains() -> None:
+    """By plain loops over all drivers and driven gears of one and two stages: none is missing, and none too many."""
+    sides = {k: list(itertools.combinations_with_replacement(range(15, 31), k)) for k in (1, 2)}
+    every = [
+        (sum(drivers) + sum(driven), abs(math.prod(driven) / math.prod(drivers) / math.sqrt(2.0) - 1.0))
+        for k in sides
+        for drivers, driven in itertools.product(sides[k], repeat=2)
+    ]
+    front: list[tuple[int, float]] = []
+    for size, error in sorted(every):
+        if error <= 0.01 and (not front or error < front[-1][1] - 1e-14):
+            front.append((size, error))
+    result = solved(ratio="sqrt(2)", max_stages=2, teeth={"min": 15, "max": 30}, max_designs=1)
+    assert len(front) > 3
+    assert [train.size for train in result.pareto] == [size for size, _ in front]
+    assert [abs(train.relative_error) for train in result.pareto] == pytest.approx([error for _, error in front])
+
+
 def test_a_number_is_the_decimal_that_was_written() -> None:
     result = solved(ratio=2.54, max_stages=1, teeth={"min": 12, "max": 130}, tolerance=0)
     assert meshes(result) == [(50, 127)]
