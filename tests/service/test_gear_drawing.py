@@ -166,3 +166,30 @@ def test_csv_lists_every_gear(task: tuple[GearTrainDesign, GearTrainProblem]) ->
     for row, placed in zip(rows, gears, strict=True):
         assert float(row[f"pitch_diameter_{problem.length_unit}"]) == 2.0 * placed.pitch_radius
         assert Fraction(row["speed_over_input"]) == placed.speed
+
+
+def test_numbers_of_the_table_by_hand() -> None:
+    """Full-depth gears of two stages: circles from teeth and module, shafts apart by half the teeth, exact speeds."""
+    stated = {"kind": "gear_train", "ratio": "35/6", "max_stages": 2, "teeth": {"min": 20, "max": 60}, "tolerance": 0.0}
+    problem = parse_problem({**stated, "module": 2.5, "pressure_angle": 25.0})
+    assert isinstance(problem, GearTrainProblem)
+    design = solve(problem, lambda fraction, message: None).designs[0]
+    rows = list(csv.DictReader(io.StringIO(exported(design, problem, "train", "csv"))))
+    stages = design.mechanism.stages
+    teeth = [n for stage in stages for n in (stage.driver, stage.driven)]
+    assert len(teeth) == 4
+    assert [(row["stage"], row["role"]) for row in rows] == [
+        ("1", "driver"), ("1", "driven"), ("2", "driver"), ("2", "driven"),
+    ]  # fmt: skip
+    for row, z in zip(rows, teeth, strict=True):
+        assert int(row["teeth"]) == z
+        circles = {"module": 2.5, "pitch_diameter": 2.5 * z, "outside_diameter": 2.5 * (z + 2.0)}
+        circles |= {"root_diameter": 2.5 * (z - 2.5), "base_diameter": 2.5 * z * math.cos(math.radians(25.0))}
+        for name, value in circles.items():
+            assert float(row[f"{name}_mm"]) == pytest.approx(value, rel=1e-12), name
+    centres = [complex(float(row["centre_x_mm"]), float(row["centre_y_mm"])) for row in rows]
+    assert centres[1] == centres[2]
+    for k in (0, 2):
+        assert abs(centres[k + 1] - centres[k]) == pytest.approx(1.25 * (teeth[k] + teeth[k + 1]))
+    second = -Fraction(teeth[0], teeth[1])
+    assert [Fraction(row["speed_over_input"]) for row in rows] == [1, second, second, Fraction(6, 35)]
