@@ -223,6 +223,8 @@ def same_answer(answer: dict[str, Any], best: Best | None, decided: bool) -> str
         return f"{ratio['value']} against {best}"
     if answer["search"]["ties"] != best.ties:
         return f"{answer['search']['ties']} ties against {best.ties}"
+    if best.ties == 1 and abs(Fraction(ratio["numerator"], ratio["denominator"])) != abs(best.ratio):
+        return f"{ratio['numerator']}/{ratio['denominator']} against {best.ratio}"
     return None
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
 import pytest
@@ -54,7 +55,18 @@ def test_a_brute_force_finds_the_same(number: int) -> None:
     assert isinstance(problem, GearTrainProblem)
     assert isinstance(result, GearTrainResult)
     assert all(design.verification.passed for design in result.designs)
-    assert same_answer(result.model_dump(), best_train(statement), not problem.searches_distances) is None
+    answer, best, decided = result.model_dump(), best_train(statement), not problem.searches_distances
+    assert same_answer(answer, best, decided) is None
+    assert same_answer(answer, best, not decided) is not None
+    assert best is None or same_answer(answer, None, decided) is not None
+    if best is not None:
+        others = [
+            {"ties": best.ties + 1},
+            {"error": best.error + 1e-9},
+            {"ratio": best.ratio * Fraction(10**9 + 1, 10**9)},
+        ]
+        for other in others[: 3 if best.ties == 1 else 2]:
+            assert same_answer(answer, best._replace(**other), decided) is not None
 
 
 @pytest.mark.campaign
