@@ -248,6 +248,30 @@ def test_what_is_not_judged_is_told(monkeypatch: pytest.MonkeyPatch, rank_by: st
     assert False in complete
 
 
+def test_more_trains_of_the_smallest_size_than_are_judged(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The nearest of that size are judged, and the answer does not say that there are none."""
+    one_ring = {"teeth": {"min": 17, "max": 36, "gears": {"ring": {"min": 96, "max": 96}}}}
+    stated = {
+        **SIMPLE,
+        **one_ring,
+        "tolerance": 0.2,
+        "module": 1.6,
+        "strength": POWER,
+        "rank_by": "size",
+        "max_designs": 1,
+    }
+    full = solved(**stated)
+    assert full.search.judged is not None
+    assert full.search.judged > 2
+    monkeypatch.setattr(carrying, "MOST_JUDGED", 2)
+    few = solved(**stated)
+    assert few.search.judged == 2
+    assert few.designs[0].mechanism == full.designs[0].mechanism
+    weak = solved(**{**stated, "strength": {**POWER, "power_kw": 500.0}})
+    assert not weak.search.complete
+    assert "Others were not judged" in weak.summary
+
+
 def test_where_none_carries_the_strongest_is_told() -> None:
     stated = {**SIMPLE, "modules": [1.0, 1.25]}
     result = solved(**stated, strength={**POWER, "power_kw": 500.0})

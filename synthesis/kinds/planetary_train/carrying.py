@@ -101,6 +101,8 @@ class Listing:
                 low, found = middle + 1, some
             else:
                 high = middle
+        # Where already the first size that has any has more, those of it that are nearest.
+        found = found or self.nearest(sizes[low])
         return sorted(found, key=lambda candidate: (candidate.size, candidate)), sizes[low - 1] if low else 0
 
 
