@@ -44,11 +44,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         from service.solve import SolveFailure, solve
 
         try:
-            solve(command.problem, command.url, os.environ.get("MECHSYNTH_API_KEY"), command.output, command.forms)
+            key = os.environ.get("MECHSYNTH_API_KEY")
+            solve(command.problem, command.url, key, command.output, command.forms, as_json=command.json)
         except (SolveFailure, OSError) as failure:
             print(f"mechsynth solve: {failure}", file=sys.stderr)
             return EXIT_FAILURE
         return 0
+    if command.name in ("analyze", "draw"):
+        return _of_file(command)
     if command.name == "openapi":
         from service.app import api_document
 
@@ -64,6 +67,33 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"mechsynth warm: {failure}", file=sys.stderr)
         return EXIT_FAILURE
     return 0
+
+
+def _of_file(command: argparse.Namespace) -> int:
+    from service.client import ClientError
+    from service.sources import SourceError
+
+    try:
+        if command.name == "draw":
+            from service.draw import draw
+
+            draw(command.answer, command.design, command.output)
+        else:
+            from service.analyze import analyze
+
+            analyze(command.mechanism, command.url, os.environ.get("MECHSYNTH_API_KEY"), command.output)
+    except (SourceError, ClientError, OSError) as failure:
+        print(f"mechsynth {command.name}: {failure}", file=sys.stderr)
+        return EXIT_FAILURE
+    return 0
+
+
+def _at_service(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--url",
+        default=os.environ.get("MECHSYNTH_URL", "http://127.0.0.1:8000"),
+        help="the service (MECHSYNTH_URL; the API key comes from MECHSYNTH_API_KEY)",
+    )
 
 
 def _settings() -> Settings | None:
@@ -143,17 +173,28 @@ def _parser() -> argparse.ArgumentParser:
     demo = commands.add_parser("demo", help="solve a problem through a service of its own, and draw the answer")
     demo.add_argument("--output", type=Path, default=Path("var/demo.svg"), help="where the drawing goes (SVG)")
     solve = commands.add_parser("solve", help="solve the problem in a file: print the answer, write the drawings")
-    solve.add_argument("problem", help="a JSON file with a problem, or the body of a request; - for standard input")
     solve.add_argument(
-        "--url",
-        default=os.environ.get("MECHSYNTH_URL", "http://127.0.0.1:8000"),
-        help="the service (MECHSYNTH_URL; the API key comes from MECHSYNTH_API_KEY)",
+        "problem",
+        help="a JSON file with a problem, or the body of a request; - for standard input; "
+        "or a .csv with columns x, y, angle (motion), x, y (path), or input, output (function)",
     )
+    _at_service(solve)
+    solve.add_argument("--json", action="store_true", help="print the job with its answer as JSON, instead of tables")
     solve.add_argument("--output", type=Path, help="folder of the drawings; named after the file when left out")
     solve.add_argument(
         "--forms", default="svg,dxf,csv", type=lambda text: [form for form in text.split(",") if form],
         help="which files to write for each design, separated by commas; '' for none",
     )  # fmt: skip
+    analyze = commands.add_parser("analyze", help="tell what is known of the mechanism in a file: angles, joints, ...")
+    analyze.add_argument(
+        "mechanism", help="a JSON file with a mechanism, or the body of a request; - for standard input"
+    )
+    _at_service(analyze)
+    analyze.add_argument("-o", "--output", type=Path, help="a file, .json or .csv; left out, JSON is printed")
+    draw = commands.add_parser("draw", help="draw a design of an answer; this needs no service")
+    draw.add_argument("answer", help="what mechsynth solve --json has printed; - for standard input")
+    draw.add_argument("-o", "--output", type=Path, required=True, help="the file: .svg, .gif, .dxf or .csv")
+    draw.add_argument("--design", type=int, default=0, help="which of the designs, counted from 0")
     openapi = commands.add_parser("openapi", help="write the OpenAPI document to a file")
     openapi.add_argument("output", type=Path)
     keys = commands.add_parser("keys", help="make, list and revoke API keys").add_subparsers(

@@ -6,6 +6,7 @@ import json
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +16,15 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from service import client as service
+from service.sources import STANDARD_INPUT, SourceError, problem_of
 from service.units import symbols
 from synthesis.registry import parse_problem
 
 _COLUMNS = 7
 """Metrics that fit beside each other on a terminal; the files have all of them."""
+
+_UNBOUNDED = 10_000
+"""Columns of a file: more than any table has."""
 
 _LEFT_OUT = {"skeleton", "profile", "pitch_curve", "program", "type"}
 
@@ -28,44 +33,46 @@ class SolveFailure(Exception):
     """The problem was not solved; the message says why."""
 
 
-def solve(source: str, url: str, key: str | None, output: Path | None, forms: Sequence[str]) -> None:
+def solve(
+    source: str, url: str, key: str | None, output: Path | None, forms: Sequence[str], *, as_json: bool = False
+) -> None:
     """Solve the problem in a file (``-``: standard input), print the answer, write the drawings.
+
+    The answer is printed as tables, or as JSON: the job with its problem and its result, every number in full.
 
     Raises
     ------
     SolveFailure
         When the file holds no problem, or the service does not solve it.
     """
-    problem, label = _problem(source)
-    folder = output if output is not None else Path("designs" if source == "-" else f"{Path(source).stem}-designs")
+    try:
+        problem, label = problem_of(source)
+    except SourceError as error:
+        raise SolveFailure(str(error)) from None
+    folder = (
+        output
+        if output is not None
+        else Path("designs" if source == STANDARD_INPUT else f"{Path(source).stem}-designs")
+    )
     with service.Client(url, key) as client:
         try:
             job = _solved(client, problem, label)
-            assert job.result is not None
-            report(job, Console(soft_wrap=True))
+            if as_json:
+                print(json.dumps(asdict(job), ensure_ascii=False))
+            else:
+                report(job, _console())
             written = list(_drawings(client, job, folder, forms))
         except service.Refused as refusal:
             raise SolveFailure(f"the service refuses: {refusal}") from None
         except service.ClientError as error:
             raise SolveFailure(str(error)) from None
     if written:
-        print(f"\nwritten: {folder}/ {', '.join(written)}")
+        print(f"\nwritten: {folder}/ {', '.join(written)}", file=sys.stderr if as_json else sys.stdout)
 
 
-def _problem(source: str) -> tuple[dict[str, Any], str | None]:
-    try:
-        text = sys.stdin.read() if source == "-" else Path(source).read_text(encoding="utf-8")
-        stated = json.loads(text)
-    except OSError as error:
-        raise SolveFailure(f"cannot read {source} ({error.strerror})") from None
-    except ValueError as error:
-        raise SolveFailure(f"{source} is not JSON: {error}") from None
-    if not isinstance(stated, dict):
-        raise SolveFailure(f"{source} holds no JSON object")
-    inner = stated.get("problem")
-    if isinstance(inner, dict):  # the body of a request
-        return inner, stated.get("label")
-    return stated, None if source == "-" else Path(source).stem
+def _console() -> Console:
+    """Where tables go: as wide as the terminal is; where it is none, so wide that nothing is cut in a file."""
+    return Console(soft_wrap=True) if sys.stdout.isatty() else Console(soft_wrap=True, width=_UNBOUNDED)
 
 
 def _solved(client: service.Client, problem: Mapping[str, Any], label: str | None) -> service.Job:
