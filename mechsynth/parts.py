@@ -78,6 +78,7 @@ from synthesis.kinds.gear_train.problem import (
     StockedGear,
     TeethRange,
 )
+from synthesis.kinds.gear_train.stated_stages import StageTeethRange, StatedStage
 from synthesis.kinds.gearbox.problem import (
     SpindleSpeeds,
     StageRatio,
@@ -279,6 +280,7 @@ __all__ = [
     "SpindleSpeeds",
     "SpringEnd",
     "StageRatio",
+    "StageTeethRange",
     "StatedBody",
     "StatedCouplerPoint",
     "StatedCrank",
@@ -295,6 +297,7 @@ __all__ = [
     "StatedSkeleton",
     "StatedSlide",
     "StatedSpring",
+    "StatedStage",
     "StatedTorque",
     "Stock",
     "StockedGear",

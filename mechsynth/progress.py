@@ -15,6 +15,9 @@ Progress = bool | Told
 """True: a bar, by ``tqdm.auto`` where tqdm is installed, otherwise lines on standard error. False: nothing."""
 
 
+_FORMAT = "{desc}{percentage:3.0f} %|{bar}| {elapsed}"
+
+
 def silent(_fraction: float, _message: str) -> None:
     """Tell nobody."""
 
@@ -28,7 +31,7 @@ def telling(progress: Progress) -> Iterator[Told]:
         yield silent
     else:
         try:
-            bar = importlib.import_module("tqdm.auto").tqdm(total=100, unit="%", leave=False)
+            bar = importlib.import_module("tqdm.auto").tqdm(total=100, bar_format=_FORMAT, leave=False)
         except ImportError:
             yield _Lines().told
             return

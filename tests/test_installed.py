@@ -13,7 +13,7 @@ from service.client import Client
 from tests.service.running import until
 
 ROOT = Path(__file__).parents[1]
-PROJECT = ("kinematics", "synthesis", "service", "pyproject.toml", "README.md", "LICENSE")
+PROJECT = ("kinematics", "synthesis", "service", "mechsynth", "pyproject.toml", "README.md", "LICENSE")
 STARTS = "from synthesis.kinds.path.starts import nine_point_start; print(len(nine_point_start().y))"
 
 pytestmark = [pytest.mark.campaign, pytest.mark.timeout(900)]
@@ -86,7 +86,18 @@ def test_starts_and_licence_are_in_the_wheel(installed, outside):
     assert licence.read_text().startswith("MIT License")
 
 
+def test_the_library_is_in_the_wheel_with_its_types(installed, outside, tmp_path):
+    program = (
+        "from mechsynth import GearTrain, solve\n"
+        "design = solve(GearTrain(ratio='7/3', max_stages=1)).designs[0]\n"
+        "print(design.to_svg('train.svg').read_text()[:4], len(design.motion(12)))\n"
+    )
+    assert run(installed / "python", "-c", program, cwd=tmp_path, env=outside).split() == ["<svg", "13"]
+    for package in ("kinematics", "synthesis", "service", "mechsynth"):
+        assert [*installed.parent.glob(f"lib/python*/site-packages/{package}/py.typed")]
+
+
 def test_no_part_of_the_tests_is_in_the_wheel(installed):
     packages = {path.parent.name for path in installed.parent.glob("lib/python*/site-packages/*/__init__.py")}
-    assert packages >= {"kinematics", "synthesis", "service"}
+    assert packages >= {"kinematics", "synthesis", "service", "mechsynth"}
     assert not packages & {"tests", "benchmarks", "tools"}

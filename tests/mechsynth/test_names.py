@@ -47,7 +47,8 @@ def test_every_part_of_a_statement_has_a_name():
     problems = {kind.problem for kind in KINDS.values()}
     every = set().union(*(stated(problem, set()) for problem in problems)) - problems
     named = [getattr(parts, name) for name in parts.__all__]
-    assert {model.__name__ for model in every - set(named)} == MADE
+    unnamed = {model.__name__ for model in every - set(named)}
+    assert unnamed == MADE, "list them in mechsynth/parts.py"
     assert len(set(named)) == len(named)
     assert {name for name in parts.__all__ if getattr(parts, name).__name__ != name} == {"RotorStock"}
 
