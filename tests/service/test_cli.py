@@ -107,6 +107,6 @@ def test_the_demo_prints_and_draws(tmp_path):
 
 
 def test_the_demo_fails_when_the_service_does(tmp_path):
-    done = mechsynth(tmp_path, "demo", workers="none")
+    done = mechsynth(tmp_path, "demo", max_queued="none")
     assert done.returncode == 1
     assert "demo" in done.stderr
