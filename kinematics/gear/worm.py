@@ -167,9 +167,21 @@ class WormDrive:
         return math.tan(self.lead_angle) * math.cos(self.normal_pressure_angle) <= friction
 
     def forces(self, torque: float, friction: float) -> WormForces:
-        """Forces at a torque of the worm (Shigley, eq. 13-43)."""
+        """Forces of sliding teeth at a torque of the worm (Shigley, eq. 13-43); where the gear drives, at −friction.
+
+        Raises
+        ------
+        DimensionError
+            Where friction holds the worm or its gear under that torque: the forces of teeth that rest are not known.
+        """
         phi, lead = self.normal_pressure_angle, self.lead_angle
+        if torque == 0.0:
+            return WormForces(0.0, 0.0, 0.0)
+        around = math.cos(phi) * math.sin(lead) + friction * math.cos(lead)
+        along = math.cos(phi) * math.cos(lead) - friction * math.sin(lead)
+        if not min(around, along) > 0.0:
+            raise DimensionError("friction", "less than what holds the worm", abs(friction))
         worm = 2.0 * torque / self.dimensions.worm_diameter
-        normal = worm / (math.cos(phi) * math.sin(lead) + friction * math.cos(lead))
-        gear = normal * (math.cos(phi) * math.cos(lead) - friction * math.sin(lead))
+        normal = worm / around
+        gear = normal * along
         return WormForces(worm, gear, normal * math.sin(phi))

@@ -2,7 +2,9 @@
 
 Speeds are exact fractions of the input's. The torque on a shaft is the power that reaches it over its speed; each mesh
 passes on a stated share of the power, or 1 − μ H with the friction coefficient μ and the loss factor H of its teeth. A
-torque against the speed of the input takes power out there: the output drives, and has to bring the losses too.
+torque against the speed of the input takes power out there: the output drives, and has to bring the losses too. A worm
+passes on what its own friction lets it, whatever is stated for the other meshes: its forces follow from that friction,
+and so must the torques that they carry.
 """
 
 from __future__ import annotations
@@ -86,7 +88,9 @@ class GivenStage(StageForm):
     face_width: PositiveNumber | None = Field(
         default=None,
         description="For `strength`; of helical gears for the overlap, of bevel gears for the forces, which then "
-        "stand in the middle of the face.",
+        "stand in the middle of the face. That of bevel gears is less than the cone distance, where their teeth would "
+        "reach the apex; in practice it is at most 0.3 of it, and 10 modules (Shigley's Mechanical Engineering Design, "
+        "Tab. 13-3).",
     )
     addendum: GivenAddenda | None = Field(
         default=None,
@@ -187,7 +191,9 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         description="Torque on the input shaft, N m; against its speed at the first position the output drives.",
     )
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.0, le=1.0)] | None = Field(
-        default=None, description="Share of the power that every mesh passes on; from the friction where left out."
+        default=None,
+        description="Share of the power that every mesh passes on, but those of worms, whose loss is always that of "
+        "their own friction; from the friction where left out.",
     )
     friction: Annotated[float, Field(strict=True, ge=0.0, le=1.0)] = Field(
         default=USUAL_FRICTION, description="Friction coefficient between the teeth; of a worm it is the stage's own."
@@ -213,20 +219,38 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
                 faults.append((f"/mechanism/stages/{number}/shift", "a stage with an idler has no shift"))
         faults += self._wrong_strength()
         if not faults:
-            faults += self._wrong_distances()
+            faults += self._wrong_distances() + self._wrong_faces()
         if not faults and self.mechanism.ratio is not None:
             faults += self.mechanism.ratio.faults(self.mechanism.train().ratio)
-        if not faults and self.flows_back and any(0.0 in stage for stage in shares_of(self)):
-            worms = [
-                k for k, stage in enumerate(self.mechanism.stages) if stage.type == "worm" and 0.0 in shares_of(self)[k]
-            ]
-            faults += [
-                (f"/mechanism/stages/{k}/friction", "with so much of it the gear cannot drive the worm") for k in worms
-            ]
-            if not worms:
-                detail = "with so much of it a mesh loses all power, so that the output drives nothing"
-                faults.append(("/friction", detail))
+        if not faults:
+            faults += self._holding()
+        if self.mesh_efficiency is not None and all(stage.type == "worm" for stage in self.mechanism.stages):
+            faults.append(("/mesh_efficiency", "the loss of a worm is that of its own friction; leave it out"))
         return faults
+
+    @property
+    def held_worms(self) -> list[int]:
+        """Which stages, from 0, are worms that pass on no power, whether they drive or their gears."""
+        shares = shares_of(self)
+        return [k for k, stage in enumerate(self.mechanism.stages) if stage.type == "worm" and 0.0 in shares[k]]
+
+    def _holding(self) -> list[tuple[str, str]]:
+        """Where friction lets no power through although there is a torque."""
+        if self.input_torque == 0.0:
+            return []
+        worms, back = self.held_worms, self.flows_back
+        detail = "the gear cannot drive the worm" if back else "the worm cannot drive its gear, whatever the torque"
+        faults = [(f"/mechanism/stages/{k}/friction", f"with so much of it {detail}") for k in worms]
+        if back and not worms and any(0.0 in stage for stage in shares_of(self)):
+            detail = "with so much of it a mesh loses all power, so that the output drives nothing"
+            faults.append(("/friction", detail))
+        return faults
+
+    @classmethod
+    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+        """As that of every mechanism, and without a load where friction holds a worm."""
+        request = cls.model_validate({"mechanism": mechanism, "motion": {"steps": steps}})
+        return request.model_copy(update={"input_torque": 0.0} if request.held_worms else {}).answer()
 
     @property
     def flows_back(self) -> bool:
@@ -267,6 +291,18 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
             if stage.centre_distance is not None and abs(stage.centre_distance - has) > SAME_DISTANCE * has
         ]
 
+    def _wrong_faces(self) -> list[tuple[str, str]]:
+        """Faces of bevel gears that would reach over the apex of their cones."""
+        angle = math.radians(self.mechanism.pressure_angle)
+        faults = []
+        for number, stage in enumerate(self.mechanism.stages):
+            if stage.type == "bevel" and stage.face_width is not None:
+                far = train_stage(stage, angle).cones(angle).cone_distance
+                if not stage.face_width < far:
+                    detail = f"expected less than the cone distance of these gears, {far:.6g}"
+                    faults.append((f"/mechanism/stages/{number}/face_width", detail))
+        return faults
+
     def answer(self) -> dict[str, Any]:
         """Everything about the train, in the shape of :class:`GearTrainAnalysis`."""
         return _analysis(self)
@@ -299,11 +335,16 @@ class LoadedMesh(MeshGeometry):
         description="At the first position, length units per second; of a worm that of its own threads."
     )
     tangential_force: float = Field(description="N; of a worm that on the gear, which is axial on the worm.")
-    radial_force: float = Field(description="N; of bevel gears on the driver.")
+    radial_force: float = Field(description="N, which pushes the gears apart; of bevel gears on the driver.")
+    radial_forces: OfGears | None = optional(
+        "N, of bevel gears: on the driver and on the driven gear, each towards its axis. Of all others both are "
+        "`radial_force`."
+    )
     axial_force: OfGears | None = optional(
         "N, of helical, bevel and worm gears: on the driver and on the driven gear. Of helical gears positive where "
-        "it points the way in which a right-handed screw goes with the input's rotation, of bevel gears away from the "
-        "apex; of a worm its size."
+        "it points along the axis about which the speed of their shafts is counted (of a train with bevel or worm "
+        "stages the `axis` in `shafts`, otherwise the input's) while the input's speed is positive, and against it "
+        "while that is negative; of bevel gears positive away from the apex; of a worm its size."
     )
     strength: PairStrength | None = optional("Stresses, where a method is stated.")
 
@@ -376,8 +417,6 @@ def shares_of(request: GearTrainAnalysisRequest) -> tuple[tuple[float | None, ..
 
 def _worm_share(request: GearTrainAnalysisRequest, stage: TrainStage, train: OrdinaryTrain) -> float:
     """Share of the power that a worm passes on, or its gear where that drives; 0 where friction holds it."""
-    if request.mesh_efficiency is not None:
-        return request.mesh_efficiency
     worm = stage.worm(train.pressure_angle)
     return worm.driven_back(stage.friction) if request.flows_back else worm.efficiency(stage.friction)
 
@@ -533,7 +572,7 @@ def _radius(stage: TrainStage, train: OrdinaryTrain) -> float:
 
 
 def _sideways(stage: TrainStage, train: OrdinaryTrain, force: float, way: float) -> dict[str, Any]:
-    """Axial forces of helical and bevel gears, and the radial one of the latter, at a tangential force."""
+    """Axial forces of helical and bevel gears, and the radial ones of the latter, at a tangential force."""
     if stage.kind == "helical":
         axial = force * math.tan(stage.helix_angle) * way
         return {"axial_force": {"driver": axial, "driven": -axial}}
@@ -541,6 +580,7 @@ def _sideways(stage: TrainStage, train: OrdinaryTrain, force: float, way: float)
         apart, (one, two) = force * math.tan(train.pressure_angle), stage.cones(train.pressure_angle).cones
         return {
             "radial_force": apart * math.cos(one),
+            "radial_forces": {"driver": apart * math.cos(one), "driven": apart * math.cos(two)},
             "axial_force": {"driver": apart * math.sin(one), "driven": apart * math.sin(two)},
         }
     return {}

@@ -74,7 +74,8 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
         description="Torque on the first input, N m; against its speed at the first position the output drives.",
     )
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.5, le=1.0)] = Field(
-        default=0.99, description="Of every mesh as an ordinary pair."
+        default=0.99,
+        description="Of every mesh as an ordinary pair, but those of worms, whose loss is that of their own friction.",
     )
     wanted_ratio: ExactRatio | None = Field(default=None, description=WANTED)
 
@@ -93,11 +94,18 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
                 if not own and unit.driven_ratio() is None:
                     own = [("/mechanism", "with these members the train does not pass its motion on")]
             else:
-                own = GearTrainAnalysisRequest(mechanism=unit).faults()
+                # Its meshes lose what is stated here, its worms what their own friction takes.
+                driving = GearTrainAnalysisRequest(mechanism=unit, input_torque=_torque(self.flows_back), friction=0.0)
+                own = driving.faults()
             faults += [(f"/mechanism/units/{k}{path.removeprefix('/mechanism')}", detail) for path, detail in own]
         if not faults and self.mechanism.ratio is not None:
             faults += self.mechanism.ratio.faults(self.mechanism.driven_ratio())
         return faults
+
+    @property
+    def flows_back(self) -> bool:
+        """Whether power leaves at the input, at the first position: the output drives."""
+        return self.input_torque * float(self.motion.inputs()[1][0]) < 0.0
 
     def answer(self) -> dict[str, Any]:
         """Everything about the series, in the shape of :class:`TrainSeriesAnalysis`."""
@@ -135,7 +143,7 @@ class TrainSeriesAnalysis(DrivenAnalysis):
 def _analysis(request: TrainSeriesAnalysisRequest) -> dict[str, Any]:
     at, speed, time = request.motion.inputs()
     share, power = Fraction(1), 1.0
-    back = request.input_torque * float(speed[0]) < 0.0
+    back = request.flows_back
     shafts = [{"speed_ratio": 1.0, "torque": request.input_torque, **request.motion.geared(1.0, at, speed)}]
     units: list[dict[str, Any]] = []
     known = True
@@ -170,11 +178,16 @@ def _analysis(request: TrainSeriesAnalysisRequest) -> dict[str, Any]:
     }
 
 
+def _torque(back: bool) -> float:
+    """Torque on the input of a unit that is told alone."""
+    return -1.0 if back else 1.0
+
+
 def _told(
     request: TrainSeriesAnalysisRequest, unit: GivenGearTrain | GivenPlanetaryTrain, back: bool
 ) -> dict[str, Any]:
     """A unit alone, its input at speed 1 and with torque 1, or −1 where the output drives."""
-    torque = -1.0 if back else 1.0
+    torque = _torque(back)
     stated: dict[str, Any] = {
         "mechanism": unit, "motion": {"at": 0.0}, "mesh_efficiency": request.mesh_efficiency,
     }  # fmt: skip

@@ -189,6 +189,15 @@ def test_a_worm_that_locks_is_not_driven_back(client: httpx.Client) -> None:
     assert [fault["path"] for fault in reply.json()["errors"]] == ["/mechanism/stages/3/friction"]
 
 
+def test_a_stated_efficiency_of_meshes_is_not_that_of_worms(client: httpx.Client) -> None:
+    plain, told = analysed(client, ANALYSED), analysed(client, {**ANALYSED, "mesh_efficiency": 0.9})
+    assert [mesh["efficiency"] for mesh in told["meshes"]] == [0.9, 0.9, 0.9, plain["meshes"][3]["efficiency"]]
+    worm = {"type": "gear_train", "stages": ANALYSED["mechanism"]["stages"][3:]}
+    reply = client.post("/v1/analyses", json={"mechanism": worm, "mesh_efficiency": 0.9})
+    assert reply.status_code == 422
+    assert [fault["path"] for fault in reply.json()["errors"]] == ["/mesh_efficiency"]
+
+
 @pytest.mark.parametrize(
     ("stage", "changes", "path"),
     [
@@ -198,6 +207,8 @@ def test_a_worm_that_locks_is_not_driven_back(client: httpx.Client) -> None:
         (3, {"driver": 9}, "driver"),
         (3, {"face_width": 10.0}, "face_width"),
         (0, {"addendum": {"driver": 1.0, "driven": 1.0}}, "addendum"),
+        (2, {"face_width": 20.0}, "face_width"),
+        (3, {"friction": 1.0, "driver": 6, "diameter_quotient": 4.0}, "friction"),
     ],
 )
 def test_stages_of_an_analysis_are_refused_by_field(
