@@ -28,7 +28,7 @@ from service.render.gears.crossing import Section
 from service.render.gears.placed import PlacedGear, box_around
 from service.render.gears.planetary_layout import placed_planetary_gears
 from service.render.gears.series_layout import series_layout
-from service.render.gears.train_layout import TrainGear, placed_gears, view_words
+from service.render.gears.train_layout import TrainGear, caption_rows, placed_gears, view_words
 from service.render.page import dxf
 from synthesis.kinds.gear_train.design import GearTrainDesign
 from synthesis.kinds.gear_train.problem import GearTrainProblem
@@ -82,8 +82,13 @@ def gear_train_drawing(design: GearTrainDesign, problem: GearTrainProblem, title
         module = design.mechanism.stages[placed.stage - 1].module
         words = f"stage {placed.stage} {placed.role}: z={placed.count} m={module:.6g}{_kind_words(design, placed)}"
         dxf.add_words(space, below, f"{words} x={_normal_shift(placed):.6g}" if problem.is_fitted else words, height)
-    for box, caption in view_words(gears, driven_train(design.mechanism).stages):
-        dxf.add_words(space, complex(0.5 * (box.left + box.right), box.high + LETTERS * size), caption, LETTERS * size)
+    captions, height = view_words(gears, driven_train(design.mechanism).stages), LETTERS * size
+    middles = [0.5 * (box.left + box.right) for box, _ in captions]
+    # Letters are at most about as wide as high.
+    halves = [0.5 * height * len(caption) for _, caption in captions]
+    rows = caption_rows([(at - half, at + half) for at, half in zip(middles, halves, strict=True)], height)
+    for at, row, (_, caption) in zip(middles, rows, captions, strict=True):
+        dxf.add_words(space, complex(at, box_around(gears).high + height * (1.0 + LINE_STEP * row)), caption, height)
     return dxf.written(document)
 
 

@@ -163,6 +163,17 @@ def view_words(gears: Sequence[TrainGear], stages: Sequence[TrainStage]) -> list
     return words if any(not stage.is_parallel for stage in stages) else []
 
 
+def caption_rows(spans: Sequence[tuple[float, float]], apart: float) -> list[int]:
+    """In which row, from 0 on, the caption of each view stands so that those of a row are ``apart``; ends of each."""
+    ends: list[float] = []
+    rows = []
+    for left, right in spans:
+        row = next((k for k, end in enumerate(ends) if end + apart <= left), len(ends))
+        ends[row : row + 1] = [right]
+        rows.append(row)
+    return rows
+
+
 def moved_section(gear: TrainGear, stage: TrainStage, pressure_angle: float, turned: float) -> Points:
     """The outline of a section when the input has turned so far, radians: a worm's threads go along its axis."""
     assert gear.section is not None

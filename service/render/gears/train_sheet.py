@@ -10,7 +10,7 @@ from service.render.checks import checks, verdict
 from service.render.gears.crossing import Section
 from service.render.gears.marks import COLOURS, PAPER, circles, label, label_box, shifted_teeth
 from service.render.gears.placed import box_around
-from service.render.gears.train_layout import TrainGear, placed_gears, view_words
+from service.render.gears.train_layout import TrainGear, caption_rows, placed_gears, view_words
 from service.render.outline import entries
 from service.render.page import blocks
 from service.render.page.numbers import length
@@ -28,8 +28,11 @@ HEIGHTS = (420.0, 860.0)
 MARGIN, FOOT = 20.0, 26.0
 """Room in the panel around what is shown, and more of it below for the scale bar, pixels."""
 
-CAPTION = 14.0
-"""Depth of a caption below what it tells of, pixels."""
+CAPTION, CAPTIONS_APART = 14.0, 14.0
+"""Depth of a row of captions, below all that is shown, and room between two of a row, pixels."""
+
+CAPTION_LETTERS = 10.5
+"""Font size of a caption, pixels."""
 
 TURN_RADII, TURN = (14.0, 30.0), 140.0
 """Least and greatest radius, pixels, and angle, degrees, of the arrow that shows how a shaft turns."""
@@ -44,16 +47,35 @@ PLACES = (90.0, 65.0, 115.0, 40.0, 140.0, 270.0, 245.0, 295.0, 220.0, 320.0, 15.
 def gear_train_sheet(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
     """The drawing of a gear train as a complete SVG document."""
     gears = placed_gears(design.mechanism, problem.reverted)
-    view = fitted(box_around(gears), beside(), HEIGHTS, MARGIN, FOOT)
+    view, captions = _captioned(gears, view_words(gears, driven_train(design.mechanism).stages))
     tables, y = stacked(_tables(design, problem, gears))
     drawn = train_panel(gears, view, problem.length_unit, typed=problem.stages is not None)
-    for box, words in view_words(gears, driven_train(design.mechanism).stages):
-        at = view.point(complex(box.left, box.low))
-        x = max(view.panel.left + 6.0, min(at.real, view.panel.right - 6.0 - text_width(words, 10.5)))
-        drawn.add(text(x, at.imag + CAPTION, words, 10.5, fill=GROUND))
+    drawn.add(*captions)
     bottom = max(view.panel.high, y)
     words = _words(design, problem)
     return sheet(title or "Gear train", words, _description(design, problem), [drawn, *tables], bottom)
+
+
+def _captioned(gears: list[TrainGear], told: list[tuple[Box, str]]) -> tuple[Viewport, list[Element]]:
+    """A panel with room for what is told of each view, in as many rows below all of them as keep the words apart."""
+    shown, depth = box_around(gears), 0
+    while True:
+        view = fitted(shown, beside(), HEIGHTS, MARGIN, FOOT + depth * CAPTION)
+        spans = []
+        for box, words in told:
+            wide, panel = text_width(words, CAPTION_LETTERS), view.panel
+            left = max(panel.left + 6.0, min(view.point(complex(box.left)).real, panel.right - 6.0 - wide))
+            spans.append((left, left + wide))
+        rows = caption_rows(spans, CAPTIONS_APART)
+        # More rows leave less room for the views, which can take still more rows: at most one for each.
+        if max(rows, default=-1) < depth:
+            break
+        depth += 1
+    low = view.point(complex(shown.left, shown.low)).imag
+    return view, [
+        text(left, low + (row + 1) * CAPTION, words, CAPTION_LETTERS, fill=GROUND)
+        for (left, _), row, (_, words) in zip(spans, rows, told, strict=True)
+    ]
 
 
 def _words(design: GearTrainDesign, problem: GearTrainProblem) -> str:
@@ -113,8 +135,10 @@ def train_panel(gears: list[TrainGear], view: Viewport, unit: str, name: str = "
         at += below * 11j
         group.add(text(at.real + 5.0, at.imag + 4.0, words, 10.5, fill=GROUND))
     taken: list[Box] = []
+    # Threads and teeth in mesh stay in sight: no number of a round gear stands on a worm.
+    bodies = [Box.around(view.points(one.centre + one.section.outline)) for one in gears if one.section is not None]
     for placed in gears:
-        group.add(_label(placed, view, taken))
+        group.add(_label(placed, view, taken, bodies))
     group.add(scale_bar(view, unit)[0])
     return group
 
@@ -152,8 +176,8 @@ def _unit(vector: complex) -> complex:
     return complex(vector / abs(vector))
 
 
-def _label(placed: TrainGear, view: Viewport, taken: list[Box]) -> Element:
-    """Tooth number at the pitch circle, at the first place where it covers no other label."""
+def _label(placed: TrainGear, view: Viewport, taken: list[Box], bodies: list[Box]) -> Element:
+    """Tooth number at the pitch circle, at the first place where it covers no other label and no body in section."""
     words = f"{placed.count}"
     panel = view.panel.grown(-3.0)
     boxes = []
@@ -166,7 +190,8 @@ def _label(placed: TrainGear, view: Viewport, taken: list[Box]) -> Element:
     inside = [
         box for box in boxes if panel.holds(complex(box.left, box.low)) and panel.holds(complex(box.right, box.high))
     ]
-    free = [box for box in inside if not any(box.overlaps(other) for other in taken)]
+    covered = taken if placed.section is not None else [*taken, *bodies]
+    free = [box for box in inside if not any(box.overlaps(other) for other in covered)]
     box = (free or inside or boxes)[0]
     taken.append(box)
     return label(box, words, COLOURS[placed.stage - 1], words)
@@ -174,7 +199,9 @@ def _label(placed: TrainGear, view: Viewport, taken: list[Box]) -> Element:
 
 def _named(placed: TrainGear, stage: Stage, unit: str) -> str:
     """Teeth and pitch diameter of a gear."""
-    what = "threads" if stage.type == "worm" and placed.role == "driver" else "teeth"
+    what = "teeth"
+    if stage.type == "worm" and placed.role == "driver":
+        what = "thread" if placed.count == 1 else "threads"
     ring = ", ring" if placed.gear.internal else ""
     return f"{placed.count} {what}{ring}, ⌀ {length(2.0 * placed.pitch_radius)} {unit}"
 
@@ -225,11 +252,10 @@ def _tables(design: GearTrainDesign, problem: GearTrainProblem, gears: list[Trai
         rows: list[tuple[str, str]] = [("type", stage.type)] if stage.type else []
         rows += [(placed.role, _named(placed, stage, unit)) for placed in own]
         rows += _of_type(stage, meshes[0], unit)
-        rows += [
-            ("module", f"{length(stage.module)} {unit}"),
-            ("shaft distance", f"{length(metrics.centre_distances[number - 1])} {unit}"),
-            ("contact ratio", ", ".join(f"{mesh.contact_ratio:.3f}" for mesh in meshes)),
-        ]
+        rows.append(("module", f"{length(stage.module)} {unit}"))
+        if stage.type != "bevel":
+            rows.append(("shaft distance", f"{length(metrics.centre_distances[number - 1])} {unit}"))
+        rows.append(("contact ratio", ", ".join(f"{mesh.contact_ratio:.3f}" for mesh in meshes)))
         if problem.is_fitted:
             cut = [placed.gear for placed in own]
             rows += [
