@@ -123,6 +123,11 @@ def runs_in_ring(pinion: int, ring: int, angle: float) -> bool:
     )
     if line + reach > cutter + 1e-12 * ring:
         return False
+    # The cutter that shapes the ring is turned through it as the pinion is.
+    if along < 0.5 * (ring - teeth) * math.sin(angle):
+        return False
+    if not _corners_pass(teeth, ring, angle, inner, 0.5 * teeth + 1.25):
+        return False
     return _corners_pass(pinion, ring, angle, inner, outer)
 
 
@@ -185,10 +190,21 @@ def _distance(stage: dict[str, Any], a: int, b: int, module: float) -> float:
     return 0.5 * module * count / math.cos(math.radians(stage.get("helix_angle") or 0.0))
 
 
+def _written_out(stage: dict[str, Any]) -> dict[str, Any]:
+    """What tells stages apart, with what is usual where nothing is said."""
+    usual: dict[str, dict[str, Any]] = {
+        "internal": {"ring": "driven"},
+        "bevel": {"shaft_angle": 90.0},
+        "worm": {"diameter_quotient": 10.0, "hand": "right", "friction": 0.05},
+    }
+    said = {k: v for k, v in stage.items() if k not in ("driver", "driven", "face_width") and v is not None}
+    return usual.get(stage["type"], {}) | said
+
+
 def nearest(statement: dict[str, Any]) -> Nearest | None:
     """The nearest train of a statement whose ratio is rational; None where there is none within the tolerance."""
     stages = statement["stages"]
-    alike = [{k: v for k, v in stage.items() if k not in ("driver", "driven", "face_width")} for stage in stages]
+    alike = [_written_out(stage) for stage in stages]
     rows = [allowed(statement, number) for number in range(len(stages))]
     target = Fraction(statement["ratio"])
     sign = math.prod(sense(stage) for stage in stages)

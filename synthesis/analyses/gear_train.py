@@ -369,7 +369,7 @@ class GearTrainAnalysis(DrivenAnalysis):
     gears: list[TurningGear]
     meshes: list[LoadedMesh]
     centre_distances: list[float] = Field(description="Of the shafts of each stage, idlers in line.")
-    drift: Drift | None = optional("Where a ratio is wanted, and the train turns its way.")
+    drift: Drift | None = optional("Where a ratio is wanted.")
 
 
 def _analysis(request: GearTrainAnalysisRequest) -> dict[str, Any]:

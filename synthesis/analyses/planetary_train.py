@@ -321,7 +321,7 @@ class PlanetaryAnalysis(DrivenAnalysis):
     bodies: list[TurningBody]
     meshes: list[LoadedPlanetaryMesh]
     shift_table: list[ShiftState] | None = optional("Where `include` asks for it: the largest ratio first.")
-    drift: Drift | None = optional("Where a ratio is wanted, and the train turns its way.")
+    drift: Drift | None = optional("Where a ratio is wanted.")
 
 
 def _analysis(request: PlanetaryAnalysisRequest) -> dict[str, Any]:

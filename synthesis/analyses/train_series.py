@@ -137,7 +137,7 @@ class TrainSeriesAnalysis(DrivenAnalysis):
     units: list[PlanetaryAnalysis | GearTrainAnalysis] = Field(
         description="In the order of the power, for one position of the own input."
     )
-    drift: Drift | None = optional("Where a ratio is wanted, and the series turns its way.")
+    drift: Drift | None = optional("Where a ratio is wanted.")
 
 
 def _analysis(request: TrainSeriesAnalysisRequest) -> dict[str, Any]:

@@ -106,6 +106,7 @@ class MeshGeometry(Answer):
     type: StageKind | None = optional("Of the stage, where it is not one of external spur gears; so is what follows.")
     pitch_diameter: LengthOfGears | None = optional("Of bevel gears at the large end.")
     addendum: OfGears | None = optional("Of an internal pair, modules: the ring's teeth are shortened for the pinion.")
+    ring_trimmed: bool | None = optional("Of an internal pair: whether the usual cutter takes off tips of the ring.")
     helix_angle: AngleOfGears | None = optional("Of helical gears, positive for right-handed ones.")
     transverse_module: Length | None = optional("Of helical gears, in the plane of rotation.")
     virtual_teeth: OfGears | None = optional("Of spur gears with the same teeth: in the normal plane, on back cones.")
@@ -145,8 +146,13 @@ def rack_undercuts(mesh: Mesh, helix: Helix | None = None) -> tuple[bool, bool]:
 
 def reaches_fillet(mesh: Mesh) -> bool:
     """Whether contact goes below an involute: of gears as a rack cuts them, of a ring as the usual cutter shapes it."""
-    ring = ShapedRing(mesh.gear, int(usual_cutter(mesh.gear.teeth))) if mesh.gear.internal else None
+    ring = shaped_ring(mesh) if mesh.gear.internal else None
     return min(tool_contact(mesh, ring).margins) < -ON_LIMIT * mesh.centre_distance
+
+
+def shaped_ring(mesh: Mesh) -> ShapedRing:
+    """The ring of a mesh with the usual cutter."""
+    return ShapedRing(mesh.gear, int(usual_cutter(mesh.gear.teeth)))
 
 
 def rack_depth(pressure_angle: float, helix_angle: float = 0.0) -> float:
@@ -243,6 +249,7 @@ def _of_type(stage: TrainStage, mesh: Mesh, pressure_angle: float) -> dict[str, 
     if stage.kind == "internal":
         told["addendum"] = OfGears(driver=one.addendum, driven=two.addendum)
         told["interferes"] = mesh.interferes or reaches_fillet(mesh)
+        told["ring_trimmed"] = shaped_ring(mesh).is_trimmed
         return told
     gear = HelicalGear(stage.driver, stage.module, stage.helix_angle, pressure_angle)
     angle, shrunk = round(math.degrees(stage.helix_angle), SHOWN), math.cos(stage.helix_angle) ** 3

@@ -8,6 +8,8 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field
 
+from kinematics.errors import DimensionError
+from kinematics.gear.bevel import BevelCones
 from kinematics.gear.train import USUAL_FRICTION, USUAL_QUOTIENT, StageKind, TrainStage
 from synthesis.model import mesh_limits
 from synthesis.model.dimension import ANGLE
@@ -30,6 +32,14 @@ OF_TYPES: dict[str, tuple[StageKind, ...]] = {
     "friction": ("worm",),
 }
 """Which types of stages have these fields."""
+
+USUAL: dict[str, Any] = {
+    "shaft_angle": RIGHT_ANGLE,
+    "diameter_quotient": USUAL_QUOTIENT,
+    "hand": "right",
+    "friction": USUAL_FRICTION,
+}
+"""What those fields are where they are left out."""
 
 HelixAngle = Annotated[float, ANGLE, Field(strict=True, ge=-45.0, le=45.0)]
 
@@ -80,6 +90,19 @@ class StageForm(Statement):
         """Which types of stages have a field."""
         return OF_TYPES[name]
 
+    def or_usual(self, name: str) -> Any:
+        """What a field says, or what it is of such a stage where it is left out; None where it has none."""
+        stated = getattr(self, name)
+        return USUAL.get(name) if stated is None and self.type in self.types_with(name) else stated
+
+    def meeting_cones(self, driver: int, driven: int) -> bool:
+        """Whether bevel gears of so many teeth have pitch cones that are less than flat."""
+        try:
+            BevelCones(driver, driven, 1.0, math.radians(self.or_usual("shaft_angle")))
+        except DimensionError as error:
+            return error.name != "shaft_angle"
+        return True
+
     def faults_of_type(self) -> list[tuple[str, str]]:
         """Fields that another type has, and those that are missing, by their path below the stage."""
         faults = [
@@ -89,6 +112,14 @@ class StageForm(Statement):
         ]
         if self.type == "helical" and not self.helix_angle:
             faults.append(("/helix_angle", "state the helix angle of the driver, other than 0"))
+        driver, driven = getattr(self, "driver", None), getattr(self, "driven", None)
+        if (
+            self.type == "bevel"
+            and isinstance(driver, int)
+            and isinstance(driven, int)
+            and not self.meeting_cones(driver, driven)
+        ):
+            faults.append(("/shaft_angle", f"bevel gears of {driver} and {driven} teeth have no cones at this angle"))
         return faults
 
 

@@ -94,8 +94,23 @@ def internal_contact(planet: Real, ring: Real, angle: float, fillets: bool = Fal
 
 def tips_clear(planet: Real, ring: Real, angle: float, fillets: bool = False) -> Mask:
     """Whether the tips of a planet and its ring pass each other; a matter of rings hardly larger than their planets."""
-    tip, inner, apart = planet + 2.0, ring - 2.0 * ring_addendum(planet, ring, angle, fillets), ring - planet
-    base, ring_base = planet * np.cos(angle), ring * np.cos(angle)
+    return _tips_pass(planet, ring, planet + 2.0, ring - 2.0 * ring_addendum(planet, ring, angle, fillets), angle)
+
+
+def ring_untrimmed(ring: Real, addendum: Real, angle: float) -> Mask:
+    """Whether the usual cutter takes nothing off the tips of a ring of this addendum, modules.
+
+    Its own tips pass them outside the line of action, and on that line the ring's reach no farther than its involutes.
+    """
+    cutter, inner = usual_cutter(ring), ring - 2.0 * addendum
+    reached = np.sqrt(np.maximum(inner**2 - (ring * np.cos(angle)) ** 2, 0.0))
+    passed = _tips_pass(cutter, ring, cutter + 2.0 * CUTTER_ADDENDUM, inner, angle)
+    return np.asarray(passed & (reached >= (ring - cutter) * np.sin(angle)), np.bool_)
+
+
+def _tips_pass(planet: Real, ring: Real, tip: Real, inner: Real, angle: float) -> Mask:
+    """Whether tips on a circle ``tip`` pass those of a ring on a circle ``inner``, of the pitch circles' distance."""
+    apart, base, ring_base = ring - planet, planet * np.cos(angle), ring * np.cos(angle)
     inside = inner >= apart + tip
     meets = (inner > np.abs(apart - tip)) & (inner >= ring_base)
 

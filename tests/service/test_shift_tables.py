@@ -146,7 +146,19 @@ def test_a_clock_train_gains_or_loses(client: httpx.Client, mechanism: dict[str,
     slow = told(client, mechanism=mechanism, wanted_ratio=float(wanted) - 0.01)["drift"]
     assert slow["seconds_per_day"] < 0.0
     assert "drift" not in told(client, mechanism=mechanism)
-    assert "drift" not in told(client, mechanism=mechanism, wanted_ratio=f"-{wanted}"), "it turns the other way"
+    other = told(client, mechanism=mechanism, wanted_ratio=f"-{wanted}")["drift"]
+    assert other == {**drift, "opposite": True}, "it turns the other way"
+    assert "opposite" not in drift
+
+
+def test_a_worm_of_either_hand_drifts_from_the_size_of_a_ratio(client: httpx.Client) -> None:
+    """The sign of its ratio is that about axes which cross, not the sense that a wanted ratio could state."""
+    worm: dict[str, Any] = {"type": "worm", "driver": 2, "driven": 40}
+    for hand in ("right", "left"):
+        train = {"type": "gear_train", "stages": [worm | {"hand": hand}]}
+        drift = told(client, mechanism=train, wanted_ratio="20.002")["drift"]
+        assert drift["relative_error"] == pytest.approx(-1 / 10001, rel=1e-9)
+        assert drift.get("opposite", False) == (hand == "left")
 
 
 def test_a_train_without_error_never_is_off(client: httpx.Client) -> None:

@@ -94,6 +94,10 @@ def test_a_unit_of_a_series_has_typed_stages(client: httpx.Client) -> None:
     told = client.post("/v1/analyses", json={"mechanism": design["mechanism"]})
     assert told.status_code == 200
     assert told.json()["ratio"]["numerator"] < 0
+    for stages in (1, 2):
+        counted = {**series, "units": [{**unit, "max_stages": stages}, other]}
+        reply = client.post("/v1/jobs", json={"problem": counted})
+        assert [fault["path"] for fault in reply.json()["errors"]] == ["/problem/units/0/max_stages"]
 
 
 @pytest.mark.parametrize(
@@ -106,9 +110,18 @@ def test_a_unit_of_a_series_has_typed_stages(client: httpx.Client) -> None:
         ({"stages": [{"type": "hypoid"}]}, "/problem/stages/0/type"),
         ({"stages": []}, "/problem/stages"),
         ({"max_stages": 4}, "/problem/max_stages"),
+        ({"max_stages": 3}, "/problem/max_stages"),
+        ({"max_stages": 2}, "/problem/max_stages"),
+        ({"stages": [{"type": "internal", "driver": 40, "driven": 42}]}, "/problem/stages/0"),
+        ({"stages": [{"type": "bevel", "driver": 20, "driven": 60, "shaft_angle": 120.0}]},
+         "/problem/stages/0/shaft_angle"),
+        ({"stages": [{"type": "internal", "driver": 20}], "teeth": [{"min": 30, "max": 31}, {"max": 90}]},
+         "/problem/teeth/0"),
+        ({"stages": [CROSSING["stages"][0], *[{"type": "external"}] * 3], "teeth": {"min": 12, "max": 2000}},
+         "/problem/teeth"),
         ({"centre_distance": 60.0}, "/problem/stages/0/type"),
     ],
-)
+)  # fmt: skip
 def test_faults_are_told_where_they_stand(client: httpx.Client, changes: Statement, path: str) -> None:
     reply = client.post("/v1/jobs", json={"problem": {**PARALLEL, **changes}})
     assert reply.status_code == 422

@@ -91,11 +91,12 @@ def test_a_ring_keeps_the_direction() -> None:
     assert faults(INTERNAL, {"type": "external"}, INTERNAL, ratio="-4") == []
 
 
+@pytest.mark.parametrize("ratio", ["35/18", "2", "40/21", "8/3", "3"])
 @pytest.mark.parametrize("ring", ["driver", "driven"])
-def test_rings_are_as_a_pair_tells_them(ring: str) -> None:
+def test_rings_are_as_a_pair_tells_them(ring: str, ratio: str) -> None:
     """Every internal stage that is answered is sound as a `gear_pair`, and shortened no more than that takes."""
-    ratio = "3/8" if ring == "driver" else "8/3"
-    result = solved(INTERNAL | {"ring": ring}, ratio=ratio, teeth={"min": 18, "max": 70}, max_designs=20)
+    asked = str(1 / Fraction(ratio)) if ring == "driver" else ratio
+    result = solved(INTERNAL | {"ring": ring}, ratio=asked, teeth={"min": 18, "max": 70}, max_designs=20)
     assert len(result.designs) > 5
     for design in result.designs:
         stage = design.mechanism.stages[0]

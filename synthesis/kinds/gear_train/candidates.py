@@ -20,14 +20,12 @@ from numpy.typing import NDArray
 from synthesis.kinds.gear_train import kernels
 from synthesis.kinds.gear_train.kernels import Gears
 from synthesis.kinds.gear_train.pairing import Integers, Rule
+from synthesis.kinds.gear_train.problem import FEW_TRAINS
 from synthesis.kinds.gear_train.shortlist import Floats, Found
 from synthesis.kinds.gear_train.task import Task
 
 WINDOW_MARGIN = 1e-9
 """Share by which a window of ratios is widened, so that the rounding of its powers loses no train."""
-
-FEW_TRAINS = 20_000_000
-"""Trains that are gone through one by one, where they are no more than so many."""
 
 MANY_TRAINS = 10_000_000
 """Trains of two halves from which on it pays to put them in order once more."""

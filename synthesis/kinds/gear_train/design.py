@@ -73,7 +73,9 @@ class GearTrainMetrics(Answer):
     relative_error: float = Field(description="The error over the size of the demanded ratio.")
     total_teeth: int = Field(description="Of drivers and driven gears, idlers not counted.")
     largest_gear: int
-    largest_stage_ratio: float = Field(description="Larger over smaller gear, the greatest of all stages.")
+    largest_stage_ratio: float = Field(
+        description="Larger over smaller gear, the greatest of all stages; of a worm stage gear teeth over threads."
+    )
     hunting_tooth: bool = Field(description="The teeth of every mesh have no common divisor.")
     centre_distances: list[Length] = Field(description="Of the shafts of each stage, idlers in line.")
     meshes: list[MeshGeometry]

@@ -6,17 +6,13 @@ import math
 from collections import Counter
 from collections.abc import Iterator
 
-from kinematics.gear.train import USUAL_FRICTION, USUAL_QUOTIENT
 from synthesis.kinds.gear_train.design import GearTrainMechanism, Idler, Stage
 from synthesis.kinds.gear_train.fitting import FittedStage
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.search import Train
 from synthesis.kinds.gear_train.task import Task, needs_idler
 from synthesis.model.gear_answer import OfGears, Ratio
-from synthesis.model.gear_stages import OF_TYPES, RIGHT_ANGLE, ring_addenda
-
-TOLD = ("type", *OF_TYPES)
-"""What a stage of a design takes from its statement."""
+from synthesis.model.gear_stages import OF_TYPES, ring_addenda
 
 Known = dict[tuple[int, tuple[int, int]], list[Stage]]
 """By the row of a stage and its teeth: the stage with every module that fits it."""
@@ -43,11 +39,8 @@ def _typed(problem: GearTrainProblem, task: Task, number: int, stage: Stage) -> 
     if not task.stated:
         return stage
     stated = task.stated[number]
-    told = {name: getattr(stated, name) for name in TOLD if getattr(stated, name) is not None}
-    if stated.type == "bevel":
-        told.setdefault("shaft_angle", RIGHT_ANGLE)
-    if stated.type == "worm":
-        told = {"diameter_quotient": USUAL_QUOTIENT, "hand": "right", "friction": USUAL_FRICTION} | told
+    told = {name: stated.or_usual(name) for name in OF_TYPES if stated.or_usual(name) is not None}
+    told["type"] = stated.type
     if stated.type == "internal":
         one, two = ring_addenda(stage.driver, stage.driven, math.radians(problem.pressure_angle))
         told["addendum"] = OfGears(driver=one, driven=two)

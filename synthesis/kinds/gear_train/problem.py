@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
+from synthesis.kinds.gear_train.rings import no_ring_runs
 from synthesis.kinds.gear_train.stated_stages import StatedStage, sense_of
 from synthesis.model.dimension import INVERSE_LENGTH
 from synthesis.model.gear_statement import (
@@ -29,6 +30,9 @@ from synthesis.model.statement import Contradiction, Count, Flag, PositiveLength
 MOST_HALVES = 10_000_000
 """Choices of the drivers (or of the driven gears) of all stages that a search holds at most; about 200 MB."""
 
+FEW_TRAINS = 20_000_000
+"""Trains that are gone through one by one, where they are no more than so many."""
+
 MOST_COAXIAL = 3_000_000_000
 """Combinations of all stages but one that a search of coaxial trains goes through at most; a minute or two."""
 
@@ -43,6 +47,11 @@ NEAR = Fraction(1, 100)
 among which the smallest are sought. Of all trains whatever their error the smallest would be no answer to a ratio."""
 
 DEFAULT_MOST_TEETH = 100
+
+USUAL_STAGES = 3
+"""Stages of a train at most, where nothing is said of them."""
+
+GEARS: tuple[Literal["driver"], Literal["driven"]] = ("driver", "driven")
 
 FITTED_TYPES, CARRYING_TYPES = ("external", "helical"), ("external", "internal")
 """Types of stages whose teeth can be fitted, and those whose strength is estimated."""
@@ -166,7 +175,9 @@ class GearTrainProblem(StatedProblem):
         "An idler has teeth within the ranges of the other gears, or is one more gear of the stock; of its stage the "
         "two meshes with it keep the demands on meshes, and driver and driven gear the limit of the stage ratio.",
     )
-    max_stages: Annotated[Count, Field(ge=1, le=4)] = 3
+    max_stages: Annotated[Count, Field(ge=1, le=4)] | None = Field(
+        default=None, description=f"{USUAL_STAGES} where left out; not beside `stages`."
+    )
     stages: list[StatedStage] | None = Field(
         default=None,
         min_length=1,
@@ -179,6 +190,7 @@ class GearTrainProblem(StatedProblem):
     teeth: TeethRange | Annotated[list[TeethRange], Field(min_length=2, max_length=8)] | None = Field(
         default=None,
         description="Range of tooth numbers; or one range for each position: driver and driven gear of stage 1, 2, ... "
+        "Gears that a stage states stand as they are; the range of their position has to hold them. "
         f"Left out, without a stock: the fewest that no mate can undercut to {DEFAULT_MOST_TEETH}.",
     )
     stock: list[ToothNumber | StockedGear] | None = Field(
@@ -291,7 +303,9 @@ class GearTrainProblem(StatedProblem):
     @property
     def most_stages(self) -> int:
         """Stages of a train at most; exactly so many where they are stated one by one."""
-        return self.max_stages if self.stages is None else len(self.stages)
+        if self.stages is not None:
+            return len(self.stages)
+        return USUAL_STAGES if self.max_stages is None else self.max_stages
 
     @property
     def are_parallel(self) -> bool:
@@ -437,7 +451,9 @@ class GearTrainProblem(StatedProblem):
             for number, stage in enumerate(self.stages)
             for path, detail in stage.faults()
         ]
-        if self.max_stages not in (type(self).model_fields["max_stages"].default, len(self.stages)):
+        if not faults:
+            faults += self._impossible_gears(self.stages)
+        if self.max_stages is not None:
             detail = f"{len(self.stages)} stages are stated one by one; leave max_stages out"
             faults.append(Contradiction("/max_stages", detail))
         if self.stock is not None:
@@ -457,6 +473,18 @@ class GearTrainProblem(StatedProblem):
         if self.strength is not None and any(stage.type == "internal" for stage in self.stages):
             wrong = self.strength.faults_of_ring()
             faults += [Contradiction(f"/strength{path}", detail) for path, detail in wrong]
+        return faults
+
+    def _impossible_gears(self, stages: list[StatedStage]) -> list[Contradiction]:
+        """Stages whose gears are given, and none of which can be made or run."""
+        faults = []
+        for number, stage in enumerate(stages):
+            path, pairs = f"/stages/{number}", stage.given_pairs()
+            if stage.type == "bevel" and not any(stage.meeting_cones(*pair) for pair in pairs):
+                faults.append(Contradiction(f"{path}/shaft_angle", "these bevel gears have no cones at this angle"))
+            if stage.type == "internal" and no_ring_runs(stage, math.radians(self.pressure_angle)):
+                detail = "the pinion does not run in the ring: their tips, or the fillets, foul one another"
+                faults.append(Contradiction(path, f"{detail}; state more teeth of the ring, or fewer of the pinion"))
         return faults
 
     def _wrong_direction(self, stages: list[StatedStage]) -> list[Contradiction]:
@@ -481,6 +509,8 @@ class GearTrainProblem(StatedProblem):
                     f"got {len(self.teeth)}",
                 )
             )
+        elif isinstance(self.teeth, list) and self.stages is not None:
+            contradictions += self._contradicting_places(self.teeth, self.stages)
         for place, one in enumerate(self.ranges):
             if one.min is None and self._fewest_at(place) > one.max:
                 path = f"/teeth/{place}/max" if isinstance(self.teeth, list) else "/teeth/max"
@@ -500,6 +530,19 @@ class GearTrainProblem(StatedProblem):
                     )
                 )
         return contradictions
+
+    def _contradicting_places(self, ranges: list[TeethRange], stages: list[StatedStage]) -> list[Contradiction]:
+        """Ranges of places whose gears a stage states, where they do not hold these gears."""
+        faults = []
+        for place, one in enumerate(ranges):
+            stage, name = stages[place // 2], GEARS[place % 2]
+            limits = stage.limits(name)
+            if limits is None:
+                continue
+            if not ((one.min or 0) <= limits[0] and limits[1] <= one.max):
+                detail = f"does not hold the {name} gear that stage {place // 2 + 1} states; drop one of them"
+                faults.append(Contradiction(f"/teeth/{place}", detail))
+        return faults
 
     def _fewest_at(self, place: int) -> int:
         """Fewest teeth that are not undercut, of a place in the list of ranges or of all."""
@@ -529,11 +572,41 @@ class GearTrainProblem(StatedProblem):
                 contradictions.append(Contradiction("/centre_distance", expected))
         return contradictions
 
+    @property
+    def _is_given(self) -> bool:
+        """Whether the stages state all of their gears."""
+        return all(stage.limits(name) is not None for stage in self.stages or [] for name in GEARS)
+
+    def _are_alike(self, stages: list[StatedStage]) -> bool:
+        """Whether gears may stand in any of the stages, so that each choice of them is met in one order only."""
+        ranges = self.position_ranges()
+        own = self.is_fitted and (self.has_own_modules or isinstance(self.centre_distance, list))
+        return not own and len(set(ranges[0::2])) == len(set(ranges[1::2])) == len({s.likeness for s in stages}) == 1
+
+    def _unlike(self, widths: list[int]) -> int:
+        """About what a search of stages that are not alike holds or goes through: every stage's own choices.
+
+        ``widths`` are the numbers of tooth numbers of driver and driven gear of each stage.
+        """
+        modules, pairs = len(self.exact_modules()), list(zip(widths[0::2], widths[1::2], strict=True))
+        low, high = self.shift_limits
+        shifted = math.ceil(4.0 * (high - low)) + 1 if self.is_fitted else 1
+        meshes = [min(pair) * modules * shifted for pair in pairs]
+        if self.shares_distance:
+            meshes = [one * two * modules for one, two in pairs]
+        choices = math.prod(meshes[:-1])
+        if self.reverted:
+            # Each distance has its own choices of all stages but one; it is one that every stage has.
+            return choices if self.is_fitted else choices * min(sum(pair) for pair in pairs) * modules
+        halves = max(math.prod(widths[0::2]), math.prod(widths[1::2]))
+        # Few fitted meshes are combined instead.
+        return min(halves, MOST_HALVES) if self.is_fitted and choices <= FEW_TRAINS else halves
+
     def _too_much(self) -> list[Contradiction]:
         if self._wrong_lists() or self._wrong_fit():
             return []
         k = self.most_stages
-        field = "/teeth"
+        field = "/teeth" if self.teeth is not None or not self._is_given else "/stages"
         if self.stock is not None:
             widths, field = [len(self.stocked())] * (2 * k), "/stock"
         else:
@@ -541,7 +614,14 @@ class GearTrainProblem(StatedProblem):
         if self.shares_distance and max(widths) > MOST_FITTED:
             detail = f"{max(widths)} tooth numbers are more than the {MOST_FITTED} whose pairs are fitted to a distance"
             return [Contradiction(field, f"{detail} that is left open; narrow them or state the distance")]
-        if self.reverted:
+        if self.stages is not None and not self._are_alike(self.stages):
+            half = self._unlike(widths)
+            most, what = (
+                (MOST_COAXIAL, "combinations of meshes")
+                if self.reverted
+                else (MOST_HALVES, "choices of drivers or driven gears")
+            )
+        elif self.reverted:
             meshes = max(widths) * len(self.exact_modules())
             if self.is_fitted:
                 # At one distance the sums of teeth that a shift takes up; at an open one all pairs.
@@ -556,8 +636,8 @@ class GearTrainProblem(StatedProblem):
             if isinstance(self.teeth, list):
                 half = max(math.prod(widths[0::2]), math.prod(widths[1::2]))
             else:
-                half = math.comb(widths[0] + k - 1, k)
+                half = math.comb(max(widths[:2]) + k - 1, k)
         if half <= most:
             return []
-        detail = f"about {half:.0e} {what} in {k} stages are more than the {most:.0e} that a search covers"
+        detail = f"about {float(half):.0e} {what} in {k} stages are more than the {most:.0e} that a search covers"
         return [Contradiction(field, f"{detail}; narrow the tooth numbers or allow fewer stages")]

@@ -12,7 +12,7 @@ from synthesis.kinds.gear_train.design import (
     Stage,
 )
 from synthesis.kinds.gear_train.making import mechanism_of, sign_of, stages_of
-from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.kinds.gear_train.problem import GEARS, GearTrainProblem
 from synthesis.kinds.gear_train.search import Outcome, Train, order, search
 from synthesis.kinds.gear_train.task import Task, gear_train_task
 from synthesis.kinds.gear_train.verification import verify
@@ -149,7 +149,9 @@ def _scope(problem: GearTrainProblem, number: str) -> str:
     """What the answer is the best of, and whether that is proven."""
     if problem.searches_distances:
         return f"It is the best of all {number} trains of the tooth numbers stated. {SEARCHED}"
-    return f"Proven over all {number} trains of the tooth numbers stated."
+    own = any(stage.limits(name) is not None for stage in problem.stages or [] for name in GEARS)
+    besides = ", the gears that stages state standing as they are" if own and problem.teeth is not None else ""
+    return f"Proven over all {number} trains of the tooth numbers stated{besides}."
 
 
 def _why_none(problem: GearTrainProblem, task: Task, outcome: Outcome) -> str:

@@ -1,8 +1,8 @@
 """Which gears may mesh in stages that are stated one by one, and at which distances such meshes stand.
 
-A pinion runs in a ring if the ring, its teeth shortened so that they stay off the pinion's fillet, still passes the
-pinion's tips, is not reached in its own fillet, and keeps a pair of teeth in contact. The pitch cones of bevel gears
-have to be less than flat. Whether other gears dig into one another is looked at where that is refused.
+The pitch cones of bevel gears have to be less than flat, and rings are those of
+:func:`~synthesis.kinds.gear_train.rings.run_in_rings`. Whether other gears dig into one another is looked at where that
+is refused.
 """
 
 from __future__ import annotations
@@ -11,26 +11,15 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
 from kinematics.gear.bevel import BevelCones
 from kinematics.gear.teeth import largest_gear
-from kinematics.gear.train import USUAL_QUOTIENT
 from kinematics.gear.worm import WormDrive
 from synthesis.kinds.gear_train.pairing import Integers
 from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.kinds.gear_train.rings import Pairs, run_in_rings
 from synthesis.kinds.gear_train.stated_stages import StatedStage
-from synthesis.model import mesh_limits
-from synthesis.model.gear_stages import RIGHT_ANGLE
-
-Pairs = NDArray[np.bool_]
-
-LEAST_CONTACT = 1.0
-"""Contact ratio of a ring with its pinion: with less there are moments in which no teeth touch."""
-
-SHORTEST = 0.3
-"""Addendum of a ring's shortened teeth at least, modules."""
 
 SAME_DISTANCE = 1e-13
 """Share of a distance within which those of stages with different helix angles are one, in rounding."""
@@ -61,25 +50,16 @@ def _outside(problem: GearTrainProblem, stage: StatedStage, most: int) -> Pairs:
 
 
 def _in_rings(problem: GearTrainProblem, stage: StatedStage, most: int) -> Pairs:
-    angle = math.radians(problem.pressure_angle)
     pinion, ring = np.meshgrid(*[np.arange(most + 1.0)] * 2, indexing="ij")
-    found = np.zeros(pinion.shape, np.bool_)
-    inside = (pinion > 0) & (ring > pinion)
-    one, two = pinion[inside], ring[inside]
-    with np.errstate(invalid="ignore", divide="ignore"):
-        short = mesh_limits.ring_addendum(one, two, angle, fillets=True)
-        sound = (short >= SHORTEST) & mesh_limits.tips_clear(one, two, angle, fillets=True)
-        sound &= mesh_limits.internal_contact(one, two, angle, fillets=True) >= LEAST_CONTACT
-        sound &= mesh_limits.ring_fillet_clear(one, two, angle)
-    found[inside] = sound
+    found = run_in_rings(pinion, ring, math.radians(problem.pressure_angle))
     return found.T if stage.ring == "driver" else found
 
 
 def _bevel(problem: GearTrainProblem, stage: StatedStage, most: int) -> Pairs:
     """Pairs that have cones; of the teeth asked for alone, as each is made."""
-    sigma = math.radians(RIGHT_ANGLE if stage.shaft_angle is None else stage.shaft_angle)
+    sigma = math.radians(stage.or_usual("shaft_angle"))
     found = np.zeros((most + 1, most + 1), np.bool_)
-    for driver, driven in _asked(stage):
+    for driver, driven in stage.given_pairs():
         try:
             mesh = BevelCones(driver, driven, 1.0, sigma, math.radians(problem.pressure_angle)).back_mesh
         except DimensionError:
@@ -89,20 +69,12 @@ def _bevel(problem: GearTrainProblem, stage: StatedStage, most: int) -> Pairs:
 
 
 def _worms(problem: GearTrainProblem, stage: StatedStage, most: int) -> Pairs:
-    quotient = USUAL_QUOTIENT if stage.diameter_quotient is None else stage.diameter_quotient
+    quotient = stage.or_usual("diameter_quotient")
     found = np.zeros((most + 1, most + 1), np.bool_)
-    for driver, driven in _asked(stage):
+    for driver, driven in stage.given_pairs():
         gear = WormDrive(driver, driven, 1.0, quotient, math.radians(problem.pressure_angle)).gear
         found[driver, driven] = problem.interference == "report" or not gear.is_undercut
     return found
-
-
-def _asked(stage: StatedStage) -> list[tuple[int, int]]:
-    """Tooth numbers of a stage whose gears are given."""
-    one, two = stage.limits("driver"), stage.limits("driven")
-    assert one is not None
-    assert two is not None
-    return [(a, b) for a in range(one[0], one[1] + 1) for b in range(two[0], two[1] + 1)]
 
 
 def distance_keys(

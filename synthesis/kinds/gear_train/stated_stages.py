@@ -8,15 +8,15 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from kinematics.gear.train import CROSSING, StageKind
-from synthesis.model.gear_stages import MOST_THREADS, StageForm
+from synthesis.model.gear_stages import MOST_THREADS, OF_TYPES, StageForm
 from synthesis.model.gear_statement import FEWEST_TEETH, MOST_TEETH
 from synthesis.model.statement import Count, Range
 
 MOST_GIVEN = 12_000
 """Pairs of gears of a bevel or worm stage, of which each is made, at most."""
 
-KEPT_APART = ("driver", "driven")
-"""Fields that do not make stages unlike: gears of stages that are alike but for these may change places."""
+KEPT_APART = ("face_width",)
+"""Fields that do not make stages unlike, as the gears do not: those of stages that are alike may change places."""
 
 StageTeeth = Annotated[Count, Field(ge=1, le=MOST_TEETH)]
 """Teeth of a gear, or the threads of a worm."""
@@ -59,10 +59,9 @@ class StatedStage(StageForm):
 
     @property
     def likeness(self) -> tuple[Any, ...]:
-        """What stages have in common whose gears may change places."""
-        return tuple(
-            getattr(self, name) for name in type(self).model_fields if name not in KEPT_APART and name != "face_width"
-        )
+        """What stages have in common whose gears may change places, whether or not what is usual is written."""
+        ring = (self.ring or "driven") if self.type == "internal" else None
+        return (self.type, ring, *(self.or_usual(name) for name in OF_TYPES if name not in KEPT_APART))
 
     def limits(self, name: Literal["driver", "driven"]) -> tuple[int, int] | None:
         """Fewest and most teeth of a gear, where they are stated here."""
@@ -82,6 +81,8 @@ class StatedStage(StageForm):
         faults = self.faults_of_type()
         if self.ring is not None and self.type != "internal":
             faults.append(("/ring", "only an internal stage has a ring; leave it out"))
+        if self.type == "internal":
+            faults += self._wrong_ring()
         for name, least, most in self._bounds():
             limits = self.limits(name)
             if limits is None:
@@ -96,6 +97,23 @@ class StatedStage(StageForm):
                 ("/driven", f"more than {MOST_GIVEN} pairs of a stage that is {self.type}; narrow the ranges")
             )
         return faults
+
+    def _wrong_ring(self) -> list[tuple[str, str]]:
+        """Whether no ring that is stated here has more teeth than any pinion that is."""
+        pinion, ring = self.limits("driver"), self.limits("driven")
+        if self.ring == "driver":
+            pinion, ring = ring, pinion
+        if pinion is None or ring is None or ring[1] > pinion[0]:
+            return []
+        which = self.ring or "driven"
+        return [("", f"the {which} gear is the ring, which has more teeth than its pinion; `ring` states which it is")]
+
+    def given_pairs(self) -> list[tuple[int, int]]:
+        """The pairs of driver and driven gear, where both are stated here and they are few; otherwise none."""
+        one, two = self.limits("driver"), self.limits("driven")
+        if one is None or two is None or self._pairs() > MOST_GIVEN:
+            return []
+        return [(a, b) for a in range(one[0], one[1] + 1) for b in range(two[0], two[1] + 1)]
 
     def _pairs(self) -> int:
         """How many pairs the ranges that are stated here leave."""

@@ -11,7 +11,7 @@ from collections import Counter
 from fractions import Fraction
 
 from kinematics.errors import DimensionError
-from kinematics.gear.train import OrdinaryTrain
+from kinematics.gear.train import OrdinaryTrain, TrainStage
 from synthesis.kinds.gear_train.design import GearTrainDesign, GearTrainMechanism, GearTrainMetrics, Stage, TurningShaft
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.stated_stages import StatedStage
@@ -67,9 +67,7 @@ def verify(problem: GearTrainProblem, mechanism: GearTrainMechanism) -> GearTrai
         relative_error=float(errors[0]),
         total_teeth=sum(gears),
         largest_gear=max(gears),
-        largest_stage_ratio=max(
-            (max(s.driver, s.driven) / min(s.driver, s.driven) for s in train.stages if s.kind != "worm"), default=1.0
-        ),
+        largest_stage_ratio=max(_widest(stage) for stage in train.stages),
         hunting_tooth=all(math.gcd(*pair) == 1 for pair in pairs),
         centre_distances=list(train.centre_distances),
         meshes=meshes,
@@ -89,6 +87,11 @@ def verify(problem: GearTrainProblem, mechanism: GearTrainMechanism) -> GearTrai
         verification=Verification.of(checks),
         metrics=metrics,
     )
+
+
+def _widest(stage: TrainStage) -> float:
+    """Larger over smaller number of teeth, or of a worm's threads."""
+    return max(stage.driver, stage.driven) / min(stage.driver, stage.driven)
 
 
 def _errors(problem: GearTrainProblem, ratio: Fraction) -> tuple[Fraction, Fraction]:
@@ -138,7 +141,7 @@ def _gear_checks(
             for s in train.stages
             if s.kind != "worm"
         )
-        value = metrics.largest_stage_ratio
+        value = max((_widest(s) for s in train.stages if s.kind != "worm"), default=1.0)
         checks.append(Check(name="stage_ratio", passed=kept, value=value, limit=problem.max_stage_ratio))
     if problem.max_total_teeth is not None:
         checks.append(tolerated("total_teeth", metrics.total_teeth, problem.max_total_teeth))
@@ -157,7 +160,7 @@ def _type_checks(
     checks = [Check(name="stage_types", passed=stated)]
     rings = [mesh for mesh in metrics.meshes if mesh.type == "internal"]
     if rings:
-        runs = not any(mesh.interferes or mesh.contact_ratio < 1.0 for mesh in rings)
+        runs = not any(mesh.interferes or mesh.ring_trimmed or mesh.contact_ratio < 1.0 for mesh in rings)
         checks.append(Check(name="rings", passed=runs))
     return checks
 

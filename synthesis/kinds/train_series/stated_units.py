@@ -40,7 +40,7 @@ def _unit(name: str, kind: str, words: str) -> Any:
         if field not in OF_THE_SERIES | OF_A_POWER.get(kind, set()):
             info = copy.copy(info)
             if field == "max_stages":
-                info.default = USUAL_STAGES
+                info.description = f"{USUAL_STAGES} where left out; not beside `stages`."
             fields[field] = (info.annotation, info)
     return create_model(name, __base__=Statement, __module__=__name__, __doc__=words, **fields)
 
@@ -82,9 +82,8 @@ def problem_of(unit: Any, ratio: Fraction, length_unit: str) -> Any:
     """
     asked = abs(ratio) if unit.type == "gear_train" else ratio
     stated = {field: getattr(unit, field) for field in type(unit).model_fields if field != "type"}
-    if stated.get("stages") is not None and stated["max_stages"] == USUAL_STAGES:
-        # What a unit has where nothing is said, which its kind says otherwise.
-        del stated["max_stages"]
+    if unit.type == "gear_train" and unit.stages is None and unit.max_stages is None:
+        stated["max_stages"] = USUAL_STAGES
     return PROBLEMS[unit.type].model_validate(
         {**stated, "kind": unit.type, "ratio": str(asked), "tolerance": 0.0, "length_unit": length_unit}
     )

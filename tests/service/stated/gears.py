@@ -40,7 +40,7 @@ FACTORS: dict[str, Any] = {
     "elastic": 160.0,
 }
 STAGES: dict[str, Any] = {
-    "max_stages": 3,
+    "max_stages": None,
     "ratio": "10",
     "stages": [
         {"type": "external"},
@@ -49,7 +49,7 @@ STAGES: dict[str, Any] = {
     ],
 }
 CROSSING: dict[str, Any] = {
-    "max_stages": 3,
+    "max_stages": None,
     "ratio": "30",
     "stages": [
         {"type": "worm", "driver": 2, "driven": 40, "hand": "right", "friction": 0.05, "diameter_quotient": 10.0},
@@ -68,12 +68,12 @@ TRAIN_ROWS: dict[str, Any] = {
     "ratio": "128/50",
     "direction": "opposite",
     "max_stages": 1,
-    "stages": Row([{"type": "external"}, {"type": "internal"}], {"max_stages": 3}),
+    "stages": Row([{"type": "external"}, {"type": "internal"}], {"max_stages": None}),
     "stages[].type": Row("internal", STAGES),
     "stages[].helix_angle": Row(-15.0, STAGES, at="stages[1].helix_angle"),
     "stages[].face_width": Row(25.0, STAGES, at="stages[1].face_width"),
     "stages[].ring": Row(
-        "driver", {"stages": [{"type": "internal", "ring": "driven"}], "max_stages": 3, "ratio": "127/50"}
+        "driver", {"stages": [{"type": "internal", "ring": "driven"}], "max_stages": None, "ratio": "127/50"}
     ),
     "stages[].shaft_angle": Row(70.0, CROSSING, at="stages[1].shaft_angle"),
     "stages[].diameter_quotient": Row(12.0, CROSSING),
@@ -197,7 +197,7 @@ def unit_rows(model: str) -> dict[str, Any]:
         if name.split(".")[0] not in OF_THE_SERIES | OF_A_POWER.get(UNIT_KINDS[model], set()):
             row = stated if isinstance(stated, Row) else Row(stated)
             if name.removeprefix("stages[].") in OF_CROSSING:
-                row = Row(row.value, {"max_stages": 3, "stages": [{"type": "external"}]})
+                row = Row(row.value, {"max_stages": None, "stages": [{"type": "external"}]})
             base = {f"units[{place}].{field}": value for field, value in row.base.items() if field not in OF_THE_SERIES}
             found[f"units[]<{model}>.{name}"] = Row(row.value, base, at=f"units[{place}].{row.at or name}")
     return found

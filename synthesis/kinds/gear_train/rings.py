@@ -1,0 +1,47 @@
+"""Which pinions run in which rings.
+
+A pinion runs in a ring if the ring, its teeth shortened so that they stay off the pinion's fillet, still passes the
+pinion's tips, is not reached in its own fillet, and keeps a pair of teeth in contact; and if the cutter that shapes
+the ring passes its tips too, so that it takes nothing off them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.gear_train.stated_stages import StatedStage
+from synthesis.model import mesh_limits
+from synthesis.model.mesh_limits import Real
+
+Pairs = NDArray[np.bool_]
+
+LEAST_CONTACT = 1.0
+"""Contact ratio of a ring with its pinion: with less there are moments in which no teeth touch."""
+
+SHORTEST = 0.3
+"""Addendum of a ring's shortened teeth at least, modules."""
+
+
+def run_in_rings(pinion: Real, ring: Real, angle: float) -> Pairs:
+    """Whether pinions run in rings, by their teeth; ``angle``: of pressure, radians. The arrays are of one shape."""
+    found = np.zeros(pinion.shape, np.bool_)
+    inside = (pinion > 0) & (ring > pinion)
+    one, two = pinion[inside], ring[inside]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        short = mesh_limits.ring_addendum(one, two, angle, fillets=True)
+        sound = (short >= SHORTEST) & mesh_limits.tips_clear(one, two, angle, fillets=True)
+        sound &= mesh_limits.internal_contact(one, two, angle, fillets=True) >= LEAST_CONTACT
+        sound &= mesh_limits.ring_fillet_clear(one, two, angle)
+        sound &= mesh_limits.ring_untrimmed(two, short, angle)
+    found[inside] = sound
+    return found
+
+
+def no_ring_runs(stage: StatedStage, angle: float) -> bool:
+    """Whether none of the rings that an internal stage states runs with a pinion that it states."""
+    pairs = np.array(stage.given_pairs(), np.float64)
+    if not len(pairs):
+        return False
+    pinion, ring = pairs.T[::-1] if stage.ring == "driver" else pairs.T
+    return not run_in_rings(pinion, ring, angle).any()
