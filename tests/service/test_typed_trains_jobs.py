@@ -119,7 +119,7 @@ def test_a_unit_of_a_series_has_typed_stages(client: httpx.Client) -> None:
          "/problem/teeth/0"),
         ({"stages": [CROSSING["stages"][0], *[{"type": "external"}] * 3], "teeth": {"min": 12, "max": 2000}},
          "/problem/teeth"),
-        ({"centre_distance": 60.0}, "/problem/stages/0/type"),
+        ({"centre_distance": 60.0}, "/problem/stages/1/type"),
     ],
 )  # fmt: skip
 def test_faults_are_told_where_they_stand(client: httpx.Client, changes: Statement, path: str) -> None:
