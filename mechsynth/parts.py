@@ -162,6 +162,7 @@ from synthesis.model.manufacture import (
     Tolerances,
 )
 from synthesis.model.motions import Sweep
+from synthesis.model.planet_strength import PlanetPower
 from synthesis.model.space import (
     Body,
     FixedPivotZones,
@@ -253,6 +254,7 @@ __all__ = [
     "PathPivots",
     "PathPoint",
     "PinFriction",
+    "PlanetPower",
     "PlanetaryTeeth",
     "PointMass",
     "PolarPlace",

@@ -8,6 +8,8 @@ from synthesis.registry import KINDS, example, examples, parse_problem
 # Numbers without a unit: ratios, shares, residuals by the task's size, relative errors, values of a function. A number
 # that is in none of these models, or has another name, says what it measures.
 CARRIED = {"body_travel_ratio", "body_turn_ratio"}
+CARRIED_POWER = {"power_kw", "quality", "allowable_bending", "allowable_contact", "max_face_width"}
+
 PURE = {
     "AgainstMotion": {"forward", "backward"},  # forces, or torques on a link
     "Allocation": {"cost"},
@@ -65,7 +67,8 @@ PURE = {
     "Overbalance": {"share"},
     "StatedGear": {"ratio"},
     "GearTrainUnit": {"max_stage_ratio", "min_contact_ratio", "min_tip_thickness"},
-    "CarriedPower": {"power_kw", "quality", "allowable_bending", "allowable_contact", "max_face_width"},  # kW, MPa
+    "CarriedPower": CARRIED_POWER,  # kW, MPa
+    "PlanetPower": {*CARRIED_POWER, "load_sharing"},
     "StatedFactors": {
         "form",
         "overload",
@@ -82,6 +85,7 @@ PURE = {
         "pitch_line_velocity",
         "dynamic",
         "load_distribution",
+        "load_sharing",
         "contact_geometry",
     },
     "StressedGear": {  # MPa
