@@ -28,7 +28,7 @@ from synthesis.model.ratio_target import Target, decimal, parse_target
 from synthesis.model.statement import Contradiction, Count, Flag, PositiveLength, Range, StatedProblem, Statement
 
 MOST_HALVES = 10_000_000
-"""Choices of the drivers (or of the driven gears) of all stages that a search holds at most; about 200 MB."""
+"""Choices of the drivers (or of the driven gears) of all stages that a search holds at most; 0.8 GB for both."""
 
 FEW_TRAINS = 20_000_000
 """Trains that are gone through one by one, where they are no more than so many."""
