@@ -68,6 +68,7 @@ def checked(folder, program):
     return done.returncode, done.stdout + done.stderr
 
 
+@pytest.mark.campaign
 def test_a_program_that_uses_the_library_is_strictly_typed(tmp_path):
     program = Path(__file__).with_name("program.py").read_text()
     assert checked(tmp_path, program) == (0, "Success: no issues found in 1 source file\n")
