@@ -51,6 +51,8 @@ def explained(fault: Mapping[str, Any]) -> str:
         return "There is no such field; check its name."
     if fault["type"] == "missing":
         return "This field is required."
+    if fault["type"] in ("list_type", "tuple_type"):
+        return "This must be a list."
     unread = fault["type"] == "unknown_kind" and not isinstance(fault["input"], dict)
     if unread or fault["type"] in ("model_type", "model_attributes_type", "dict_type"):
         return "This must be an object."

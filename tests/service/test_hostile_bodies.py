@@ -192,6 +192,13 @@ def test_at_most_twenty_faults_are_listed(client):
     assert "more than 20 faults" in problem["detail"]
 
 
+def test_what_has_to_be_a_list_is_told_so(client):
+    _, problem = refused(client, raw('{"kind":"motion","positions":3}'))
+    assert [(each["path"], each["detail"]) for each in problem["errors"]] == [
+        ("/problem/positions", "This must be a list.")
+    ]
+
+
 def test_a_body_over_the_limit_by_its_header(client):
     status, problem = refused(client, b" " * (MIB + 1))
     assert (status, problem["type"]) == (413, "/problems/body-too-large")
