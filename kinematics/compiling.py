@@ -149,7 +149,16 @@ class _Declared(_Dispatcher):  # type: ignore[misc]  # of a class without types
 
 
 def _njit(*signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """`numba.njit`, its cache held against all sources of the kernel."""
+    """`numba.njit`, its cache held against all sources of the kernel, and its options all stated.
+
+    What a kernel leaves open, `numba` takes from the kernel that it is compiled for: the same kernel would have other
+    code, and answers other digits, wherever another one was compiled first. A multiplication that is fused with an
+    addition is no option at all: even of the compiler's own functions, such as the division of complex numbers, one
+    version is kept for all kernels of a process, that of the first.
+    """
+    if options.get("fastmath"):
+        raise ValueError("a kernel is compiled by the rules of IEEE 754, as all others are")
+    options = {"error_model": "numpy", "fastmath": False, "forceinline": False, **options}
     declared = None if not signature or isfunction(signature[0]) else signature[0]
     compile_kernel = numba.njit(*(signature if declared is None else ()), **options)
 

@@ -49,8 +49,8 @@ LANES = 64
 """Inputs at most that are worked on side by side, by vector instructions; all that is known of them stays in the
 first-level cache."""
 
-OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
-"""How the kernels are compiled: products and sums may be fused, nothing else is relaxed."""
+OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+"""How the kernels are compiled: division by zero as in NumPy."""
 
 STEP: dict[str, Any] = OPTIONS | {"forceinline": True}
 """A step that is called in one place."""

@@ -3,8 +3,7 @@
 A kernel works out once what belongs to a design, takes the cosines and sines of a row of input angles once, and leaves
 to the inner loop over angles only sums, products, one or two roots and one or two divisions on separate rows of real
 and imaginary parts. Such a loop has no branches and no calls, so that the compiler makes vector instructions of it,
-four angles at a time on AVX2. Products and sums may be fused (``contract``), nothing else is relaxed: an invalid
-position is NaN.
+four angles at a time on AVX2. An invalid position is NaN.
 
 Arguments that kernels share, C-contiguous:
 
@@ -34,7 +33,7 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Mask = NDArray[np.bool_]
 
-OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
+OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
 """How every kernel is compiled: kept on disk, without the interpreter's lock, division by zero as in NumPy."""
 
 ON_TOGGLE = 16 * float(np.finfo(np.float64).eps)

@@ -65,7 +65,7 @@ def solve(factors: NDArray[Any], pivots: Any, b: NDArray[Any]) -> None:
         b[i] = total * factors[i, i]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+@njit(cache=True, nogil=True, error_model="numpy")
 def reduce(matrix: Complex) -> bool:
     """Solve a system with its right sides, which stand as further columns and are replaced by the solutions.
 

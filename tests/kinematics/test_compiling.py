@@ -1,5 +1,6 @@
 """A kernel on disk is the kernel of the sources as they stand now, those in other files too."""
 
+import math
 import os
 import subprocess
 import sys
@@ -122,6 +123,18 @@ def test_a_declared_kernel_is_used_by_kernels_as_a_function_and_as_an_argument()
     assert twice(passed_first, np.ones(4)) == 2.0
     assert total.signatures == passed_first.signatures == [SUM.args]
     assert unused.signatures == []
+
+
+def test_a_kernel_has_its_own_rules_whatever_kernel_calls_it_first() -> None:
+    ratio = njit()(lambda x, y: x / y)
+    calls = njit(error_model="python")(lambda x, y: ratio(x, y))
+    assert calls(1.0, 0.0) == math.inf
+    assert ratio.targetoptions["fastmath"] is False
+
+
+def test_no_kernel_may_round_otherwise_than_by_the_rules() -> None:
+    with pytest.raises(ValueError, match="IEEE 754"):
+        njit(fastmath={"contract"})
 
 
 def test_no_kernel_is_compiled_by_importing_solvers(tmp_path: Path) -> None:

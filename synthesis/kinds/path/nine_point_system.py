@@ -41,7 +41,7 @@ ORBITS = 1442
 GROUPS = np.array([0] * 4 + [1] * 4 + [2] * 8)
 """The vectors of a dyad share a scale, and so do the rotations."""
 
-OPTIONS: Any = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
+OPTIONS: Any = {"cache": True, "nogil": True, "error_model": "numpy"}
 """How the kernels are compiled: vectors for the eight points, with fused multiplications and no exceptions."""
 
 LANES = 8
