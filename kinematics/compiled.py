@@ -67,7 +67,7 @@ def _mark(part: str) -> Path:
 @cache
 def _folder() -> Path:
     """Where the kernels of this package are kept."""
-    found = (locator.from_function(is_compiled, __file__) for locator in LOCATORS)  # type: ignore[no-untyped-call]
+    found = (locator.from_function(is_compiled, __file__) for locator in LOCATORS)
     return Path(next(locator.get_cache_path() for locator in found if locator is not None))
 
 

@@ -94,14 +94,15 @@ class InCheckout(BesideSources):
     def from_function(cls, py_func: Any, py_file: str) -> Any:
         """As numba asks; None where this is no place for the kernel."""
         in_checkout = (_root(Path(py_file).resolve()) / "pyproject.toml").exists()
-        return super().from_function(py_func, py_file) if in_checkout else None  # type: ignore[no-untyped-call]
+        beside: Any = super()  # numba annotates nothing
+        return beside.from_function(py_func, py_file) if in_checkout else None
 
 
 class OfUser(_BySources, UserWideCacheLocator):
     """Kernels in the user's cache folder, where there is one."""
 
 
-LOCATORS = (InStatedFolder, InCheckout, OfUser, BesideSources)
+LOCATORS: tuple[Any, ...] = (InStatedFolder, InCheckout, OfUser, BesideSources)
 """Where kernels may be kept, in the order in which places are tried."""
 
 _LOCATORS = ",".join(f"{__name__}.{locator.__name__}" for locator in LOCATORS)
@@ -110,7 +111,7 @@ _LOCATORS = ",".join(f"{__name__}.{locator.__name__}" for locator in LOCATORS)
 _Dispatcher: Any = CPUDispatcher
 
 
-class _Declared(_Dispatcher):  # type: ignore[misc]  # of a class without types
+class _Declared(_Dispatcher):
     """A kernel of one declared signature, which is compiled when the kernel is first used, not when it is imported."""
 
     declared: Any = None

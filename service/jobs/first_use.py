@@ -31,7 +31,7 @@ class FirstUse(event.Listener):
         self._progress: Callable[[float, str], None] = lambda fraction, message: None
         self._last = (0.0, "")
         self._depth = 0
-        event.register(_COMPILES, self)  # type: ignore[no-untyped-call]
+        event.register(_COMPILES, self)
 
     @contextmanager
     def told(self, progress: Callable[[float, str], None]) -> Iterator[Callable[[float, str], None]]:

@@ -140,7 +140,7 @@ def _refine(
 
 
 @njit(
-    types.UniTuple(types.int64, 2)(  # type: ignore[no-untyped-call]  # of numba
+    types.UniTuple(types.int64, 2)(
         types.FunctionType(SYSTEM), _INDICES, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, types.float64, types.int64,
         types.int64,
     ),

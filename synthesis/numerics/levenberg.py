@@ -58,7 +58,7 @@ _STALLED, _SINGULAR, _IMPOSSIBLE = int(Status.STALLED), int(Status.SINGULAR), in
 _STEP_LIMIT, _GRADIENT, _COST = int(Status.STEP_LIMIT), int(Status.GRADIENT), int(Status.COST)
 _STEP, _ZERO = int(Status.STEP), int(Status.ZERO)
 
-ENDED: Any = types.Tuple((types.float64, types.int64))  # type: ignore[no-untyped-call]  # of numba
+ENDED: Any = types.Tuple((types.float64, types.int64))
 """The type of an end: half the sum of squares, and the :class:`~synthesis.numerics.status.Status`."""
 
 
