@@ -177,6 +177,12 @@ class LinkageProblem(StatedProblem):
         """Whether more designs are looked for than are listed: what is found is ordered anew, and then cut."""
         return self._listed_later
 
+    def listing_later(self, order: str, most: int) -> Self:
+        """The statement with an order, and with so many designs at least, which are not all listed."""
+        asked = self.model_copy(update={"rank_by": order, "max_designs": max(self.max_designs, most)})
+        asked._listed_later = True
+        return asked
+
     @property
     def force_units(self) -> Literal["si", "consistent"]:
         """Those of the block `dynamics`, by default SI."""

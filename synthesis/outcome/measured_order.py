@@ -39,15 +39,8 @@ def searched_for(problem: Problem) -> Problem:
         return problem
     if problem.rank_by not in LOOKED_AT:
         gridded = problem.manufacture is not None and problem.manufacture.gridded
-        return _listed_later(problem, problem.rank_by, GRIDDED) if gridded else problem
-    return _listed_later(problem, type(problem).model_fields["rank_by"].default, LOOKED_AT[problem.rank_by])
-
-
-def _listed_later(problem: Problem, order: str, most: int) -> Problem:
-    """The statement with an order, and with so many designs at least, which are not all listed."""
-    asked = problem.model_copy(update={"rank_by": order, "max_designs": max(problem.max_designs, most)})
-    asked._listed_later = True  # type: ignore[attr-defined]
-    return asked
+        return problem.listing_later(problem.rank_by, GRIDDED) if gridded else problem
+    return problem.listing_later(type(problem).model_fields["rank_by"].default, LOOKED_AT[problem.rank_by])
 
 
 def searched_on(problem: LinkageProblem, result: Result[Any], solve: Callable[[Any], Result[Any]]) -> Result[Any]:
