@@ -74,11 +74,8 @@ from synthesis.kinds.function.problem import (
     Scales,
     Zeros,
 )
-from synthesis.kinds.gear_train.problem import (
-    StockedGear,
-    TeethRange,
-)
 from synthesis.kinds.gear_train.stated_stages import StageTeethRange, StatedStage
+from synthesis.kinds.gear_train.stated_train import StockedGear, TeethRange
 from synthesis.kinds.gearbox.problem import (
     SpindleSpeeds,
     StageRatio,

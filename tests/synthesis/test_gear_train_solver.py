@@ -13,7 +13,8 @@ from pydantic import ValidationError
 
 from synthesis.dispatch import solve
 from synthesis.kinds.gear_train.design import GearTrainMechanism, GearTrainResult, Idler, Stage
-from synthesis.kinds.gear_train.problem import GearTrainProblem, TeethRange
+from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.kinds.gear_train.stated_train import TeethRange
 from synthesis.kinds.gear_train.verification import verify
 from synthesis.model.gear_answer import Ratio
 from synthesis.model.ratio_target import parse_target

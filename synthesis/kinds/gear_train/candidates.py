@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.kinds.gear_train import kernels
+from synthesis.kinds.gear_train.extent import FEW_TRAINS
 from synthesis.kinds.gear_train.kernels import Gears
 from synthesis.kinds.gear_train.pairing import Integers, Rule
-from synthesis.kinds.gear_train.problem import FEW_TRAINS
 from synthesis.kinds.gear_train.shortlist import Floats, Found
 from synthesis.kinds.gear_train.task import Task
 

@@ -18,8 +18,9 @@ from typing import Any, NamedTuple
 from kinematics.gear.train import TrainStage
 from synthesis.kinds.gear_train.design import GearTrainMechanism, Idler, Stage
 from synthesis.kinds.gear_train.making import Known, assembled, choices_of, idler_choices
-from synthesis.kinds.gear_train.problem import NEAR, GearTrainProblem
+from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.search import Outcome, Train, order
+from synthesis.kinds.gear_train.stated_train import NEAR
 from synthesis.kinds.gear_train.task import Task, needs_idler
 from synthesis.model.dynamics import METRES
 from synthesis.model.gear_strength import (

@@ -5,9 +5,9 @@ Every number of stages is searched in turn, with its own
 requested, and these are ordered in exact arithmetic. Where two errors differ by less than double precision resolves,
 the loops could have dropped a train that belongs to the answer; then the search is repeated with a larger capacity.
 
-Without a stated tolerance the search begins within :data:`~synthesis.kinds.gear_train.problem.NEAR`, which leaves the
-loops the fewest trains. All errors are searched only if that finds fewer trains than requested and the ratio is within
-reach.
+Without a stated tolerance the search begins within :data:`~synthesis.kinds.gear_train.stated_train.NEAR`, which leaves
+the loops the fewest trains. All errors are searched only if that finds fewer trains than requested and the ratio is
+within reach.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ import numpy as np
 from synthesis.kinds.gear_train.candidates import Candidates, Halves, coaxial_meshes, few_meshes, stage_reach
 from synthesis.kinds.gear_train.kernels import WINDOW_MARGIN
 from synthesis.kinds.gear_train.pairing import MOST_STAGES, Integers
-from synthesis.kinds.gear_train.problem import NEAR
 from synthesis.kinds.gear_train.shortlist import NOISE, Found
+from synthesis.kinds.gear_train.stated_train import NEAR
 from synthesis.kinds.gear_train.task import UNLIMITED, Task
 from synthesis.model.ratio_target import Target
 from synthesis.outcome.exhaustive import pareto

@@ -12,8 +12,9 @@ from synthesis.kinds.gear_train.design import (
     Stage,
 )
 from synthesis.kinds.gear_train.making import mechanism_of, sign_of, stages_of
-from synthesis.kinds.gear_train.problem import GEARS, GearTrainProblem
+from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.search import Outcome, Train, order, search
+from synthesis.kinds.gear_train.stated_stages import GEARS
 from synthesis.kinds.gear_train.task import Task, gear_train_task
 from synthesis.kinds.gear_train.verification import verify
 from synthesis.model.gear_answer import Ratio

@@ -18,6 +18,9 @@ MOST_GIVEN = 12_000
 KEPT_APART = ("face_width",)
 """Fields that do not make stages unlike, as the gears do not: those of stages that are alike may change places."""
 
+GEARS: tuple[Literal["driver"], Literal["driven"]] = ("driver", "driven")
+"""The gears of a stage, in the order of the power."""
+
 StageTeeth = Annotated[Count, Field(ge=1, le=MOST_TEETH)]
 """Teeth of a gear, or the threads of a worm."""
 

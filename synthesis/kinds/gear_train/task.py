@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from kinematics.gear.teeth import largest_gear
 from synthesis.kinds.gear_train.fitting import Fit, fit_meshes
 from synthesis.kinds.gear_train.pairing import MOST_STAGES, Integers, Rule
-from synthesis.kinds.gear_train.problem import FINEST_PITCHES, GearTrainProblem
+from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.stage_meshes import distance_keys, sound_meshes
 from synthesis.kinds.gear_train.stated_stages import StatedStage
+from synthesis.kinds.gear_train.stated_train import FINEST_PITCHES
 from synthesis.model.gear_statement import MOST_TEETH
 from synthesis.model.ratio_target import Target, decimal
 

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
-from synthesis.kinds.gear_train.problem import NEAR, GearTrainProblem
+from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.solver import SEARCHED
+from synthesis.kinds.gear_train.stated_train import NEAR
 from synthesis.kinds.train_series.catalogue import Catalogue, catalogue_of
 from synthesis.kinds.train_series.design import (
     ParetoSeries,

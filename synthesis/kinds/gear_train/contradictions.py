@@ -1,0 +1,192 @@
+"""What contradicts itself in a stated gear train: faults that no single field shows."""
+
+from __future__ import annotations
+
+import math
+
+from synthesis.kinds.gear_train.extent import beyond_search
+from synthesis.kinds.gear_train.rings import no_ring_runs
+from synthesis.kinds.gear_train.stated_stages import GEARS, StatedStage, sense_of
+from synthesis.kinds.gear_train.stated_train import FINEST_PITCHES, ROUNDING, StatedTrain, TeethRange
+from synthesis.model.ratio_target import parse_target
+from synthesis.model.statement import Contradiction
+
+FITTED_TYPES, CARRYING_TYPES = ("external", "helical"), ("external", "internal")
+"""Types of stages whose teeth can be fitted, and those whose strength is estimated."""
+
+
+def contradictions_of(stated: StatedTrain) -> list[Contradiction]:
+    """All of them, by field; how much a search would cover is looked at where its lists suit the stages."""
+    unsuited = [*_wrong_lists(stated), *_wrong_fit(stated)]
+    return [
+        *_wrong_stages(stated),
+        *_contradicting_fields(stated),
+        *unsuited,
+        *([] if unsuited else beyond_search(stated)),
+        *_too_weak(stated),
+    ]
+
+
+def _wrong_stages(stated: StatedTrain) -> list[Contradiction]:
+    """Faults of stages that are stated one by one, and of what is asked of them together."""
+    if stated.stages is None:
+        return []
+    faults = [
+        Contradiction(f"/stages/{number}{path}", detail)
+        for number, stage in enumerate(stated.stages)
+        for path, detail in stage.faults()
+    ]
+    if not faults:
+        faults += _impossible_gears(stated, stated.stages)
+    if stated.max_stages is not None:
+        detail = f"{len(stated.stages)} stages are stated one by one; leave max_stages out"
+        faults.append(Contradiction("/max_stages", detail))
+    if stated.stock is not None:
+        detail = "a stock does not tell of which type its gears are; state driver and driven of the stages"
+        faults.append(Contradiction("/stock", detail))
+    faults += _wrong_direction(stated, stated.stages)
+    for number, stage in enumerate(stated.stages):
+        path = f"/stages/{number}/type"
+        if stated.reverted and not stage.is_parallel:
+            faults.append(Contradiction(path, f"a {stage.type} stage has no parallel shafts; drop reverted"))
+        if stated.is_fitted and stage.type not in FITTED_TYPES:
+            detail = f"teeth of a stage that is {stage.type} are not fitted; drop {', '.join(stated.fitting_fields)}"
+            faults.append(Contradiction(path, detail))
+        if stated.strength is not None and stage.type not in CARRYING_TYPES:
+            detail = f"the strength of a stage that is {stage.type} is not estimated; drop strength"
+            faults.append(Contradiction(path, detail))
+    if stated.strength is not None and any(stage.type == "internal" for stage in stated.stages):
+        wrong = stated.strength.faults_of_ring()
+        faults += [Contradiction(f"/strength{path}", detail) for path, detail in wrong]
+    return faults
+
+
+def _impossible_gears(stated: StatedTrain, stages: list[StatedStage]) -> list[Contradiction]:
+    """Stages whose gears are given, and none of which can be made or run."""
+    faults = []
+    for number, stage in enumerate(stages):
+        path, pairs = f"/stages/{number}", stage.given_pairs()
+        if stage.type == "bevel" and not any(stage.meeting_cones(*pair) for pair in pairs):
+            faults.append(Contradiction(f"{path}/shaft_angle", "these bevel gears have no cones at this angle"))
+        if stage.type == "internal" and no_ring_runs(stage, math.radians(stated.pressure_angle)):
+            detail = "the pinion does not run in the ring: their tips, or the fillets, foul one another"
+            faults.append(Contradiction(path, f"{detail}; state more teeth of the ring, or fewer of the pinion"))
+    return faults
+
+
+def _wrong_direction(stated: StatedTrain, stages: list[StatedStage]) -> list[Contradiction]:
+    """A direction that these stages do not have."""
+    wanted, sense = stated.demanded_sign, sense_of(stages)
+    if not wanted or wanted == sense:
+        return []
+    field = "/ratio" if stated.direction == "any" else "/direction"
+    if not sense:
+        detail = "has no meaning where shafts meet or cross: it depends on the side on which the gears stand"
+        return [Contradiction(field, f"a direction {detail}; state the size of the ratio only")]
+    turning = "alike" if sense > 0 else "in opposite directions"
+    detail = f"these stages turn input and output {turning}; make one more of them internal, or one less"
+    return [Contradiction(field, detail)]
+
+
+def _contradicting_fields(stated: StatedTrain) -> list[Contradiction]:
+    """Fields of which each says what another one says, or its opposite."""
+    contradictions = []
+    if stated.direction == "same" and parse_target(stated.ratio)[0] < 0:
+        contradictions.append(
+            Contradiction("/direction", "a negative ratio states opposite directions; drop one of them")
+        )
+    if stated.module is not None and stated.diametral_pitch is not None:
+        contradictions.append(
+            Contradiction("/diametral_pitch", "the module already states the pitch; give one of them")
+        )
+    if stated.stock is not None and stated.teeth is not None:
+        contradictions.append(
+            Contradiction("/stock", "the stock already states the tooth numbers; drop teeth or stock")
+        )
+    if stated.reverted and stated.most_stages < 2:
+        contradictions.append(Contradiction("/reverted", "a reverted train has at least two stages; raise max_stages"))
+    return contradictions
+
+
+def _wrong_lists(stated: StatedTrain) -> list[Contradiction]:
+    """Lists of ranges and of modules that do not suit the stages, or ranges without a sound tooth number."""
+    contradictions = []
+    if isinstance(stated.teeth, list) and len(stated.teeth) != 2 * stated.most_stages:
+        contradictions.append(
+            Contradiction(
+                "/teeth",
+                f"expected {2 * stated.most_stages} ranges, driver and driven gear of {stated.most_stages} stages, "
+                f"got {len(stated.teeth)}",
+            )
+        )
+    elif isinstance(stated.teeth, list) and stated.stages is not None:
+        contradictions += _contradicting_places(stated, stated.teeth, stated.stages)
+    for place, one in enumerate(stated.ranges):
+        if one.min is None and _fewest_at(stated, place) > one.max:
+            path = f"/teeth/{place}/max" if isinstance(stated.teeth, list) else "/teeth/max"
+            detail = f"below the least sound tooth number {_fewest_at(stated, place)}; state min as well"
+            contradictions.append(Contradiction(path, detail))
+    if isinstance(stated.module, list):
+        if len(set(stated.module)) < len(stated.module) and stated.reverted:
+            contradictions.append(Contradiction("/module", "lists a module twice; each is a choice for every stage"))
+        elif max(stated.pitches()) > FINEST_PITCHES:
+            contradictions.append(Contradiction("/module", "the modules have no common measure; round them"))
+        elif not stated.reverted and len(stated.module) != stated.most_stages:
+            contradictions.append(
+                Contradiction(
+                    "/module", f"expected the modules of {stated.most_stages} stages, got {len(stated.module)}"
+                )
+            )
+    return contradictions
+
+
+def _contradicting_places(
+    stated: StatedTrain, ranges: list[TeethRange], stages: list[StatedStage]
+) -> list[Contradiction]:
+    """Ranges of places whose gears a stage states, where they do not hold these gears."""
+    faults = []
+    for place, one in enumerate(ranges):
+        stage, name = stages[place // 2], GEARS[place % 2]
+        limits = stage.limits(name)
+        if limits is None:
+            continue
+        if not ((one.min or 0) <= limits[0] and limits[1] <= one.max):
+            detail = f"does not hold the {name} gear that stage {place // 2 + 1} states; drop one of them"
+            faults.append(Contradiction(f"/teeth/{place}", detail))
+    return faults
+
+
+def _fewest_at(stated: StatedTrain, place: int) -> int:
+    """Fewest teeth that are not undercut, of a place in the list of ranges or of all."""
+    if stated.stages is None:
+        return stated.fewest_teeth
+    rows = stated.stages[place // 2 : place // 2 + 1] if isinstance(stated.teeth, list) else stated.stages
+    free = [stage for stage in rows if stage.driver is None or stage.driven is None]
+    return max((stage.fewest_teeth(stated.pressure_angle, ROUNDING) for stage in free), default=0)
+
+
+def _wrong_fit(stated: StatedTrain) -> list[Contradiction]:
+    """Modules to choose from that are stated otherwise too, and distances that do not suit the stages."""
+    contradictions = []
+    if stated.modules is not None:
+        for name, pitch in (("module", stated.module), ("diametral_pitch", stated.diametral_pitch)):
+            if pitch is not None:
+                contradictions.append(Contradiction("/modules", f"drop {name}, or state it alone"))
+        if len(set(stated.modules)) < len(stated.modules):
+            contradictions.append(Contradiction("/modules", "lists a module twice; each is a choice"))
+    if isinstance(stated.centre_distance, list):
+        if stated.reverted:
+            contradictions.append(
+                Contradiction("/centre_distance", "a reverted train has one distance for all stages; state a number")
+            )
+        elif len(stated.centre_distance) != stated.most_stages:
+            expected = f"expected the distances of {stated.most_stages} stages, got {len(stated.centre_distance)}"
+            contradictions.append(Contradiction("/centre_distance", expected))
+    return contradictions
+
+
+def _too_weak(stated: StatedTrain) -> list[Contradiction]:
+    """Faults of what the teeth have to carry."""
+    if stated.strength is None:
+        return []
+    return [Contradiction(f"/strength{path}", detail) for path, detail in stated.strength.faults()]
