@@ -9,157 +9,32 @@ and so must the torques that they carry.
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import replace
-from fractions import Fraction
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ConfigDict, Field, ValidationInfo, field_validator
+from pydantic import ConfigDict, Field
 
 from kinematics.errors import DimensionError
 from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, FULL_DEPTH_DEDENDUM, Gear, Mesh
-from kinematics.gear.train import USUAL_FRICTION, Axis, OrdinaryTrain, StageKind, TrainStage
+from kinematics.gear.train import USUAL_FRICTION, Axis, OrdinaryTrain, TrainStage
 from kinematics.gear.worm import WormDrive
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
 from synthesis.analyses.drift import WANTED, Drift, drifting
+from synthesis.analyses.given_train import GivenGearTrain
+from synthesis.analyses.loaded_meshes import Flow, LoadedMesh, loaded_meshes
 from synthesis.model.answer import Answer, optional
 from synthesis.model.dynamics import METRES
-from synthesis.model.gear_answer import Helix, MeshGeometry, OfGears, Ratio, mesh_geometries, rack_undercuts
-from synthesis.model.gear_stages import MOST_THREADS, StageForm, train_stage
-from synthesis.model.gear_statement import (
-    FEWEST_TEETH,
-    MOST_TEETH,
-    Addendum,
-    ExactRatio,
-    PressureAngle,
-    ShiftCoefficient,
-    ToothNumber,
-)
-from synthesis.model.gear_strength import (
-    Loaded,
-    PairStrength,
-    StrengthMethod,
-    bent_both_ways,
-    stage_contact,
-    told,
-)
-from synthesis.model.statement import Number, PositiveNumber, Statement
+from synthesis.model.gear_answer import Helix, Ratio, rack_undercuts
+from synthesis.model.gear_stages import train_stage
+from synthesis.model.gear_statement import ExactRatio
+from synthesis.model.gear_strength import StrengthMethod
+from synthesis.model.statement import Number
 
 SAME_DISTANCE = 1e-6
 """Share of a centre distance by which a stated one may differ from that of the teeth."""
-
-SAME_RATIO = 1e-9
-"""Share by which the number that is stated beside a ratio's numerator and denominator may differ from them."""
-
-
-class GivenShifts(Statement):
-    """Profile shifts of a stage, modules, positive outwards; the tips are shortened so that the clearance stays."""
-
-    driver: ShiftCoefficient
-    driven: ShiftCoefficient
-
-
-class GivenAddenda(Statement):
-    """Addenda of driver and driven gear of an internal stage, modules."""
-
-    driver: Addendum
-    driven: Addendum
-
-
-class GivenStage(StageForm):
-    """Two gears that mesh; the driven gear sits on the shaft of the next stage's driver."""
-
-    driver: Annotated[int, Field(strict=True, ge=1, le=MOST_TEETH)] = Field(
-        description=f"Teeth of the driving gear, at least {FEWEST_TEETH}; of a worm its threads."
-    )
-    driven: ToothNumber
-    module: PositiveNumber = Field(
-        default=1.0,
-        description="Module in length units: of helical teeth in the normal plane, of bevel teeth at the large end, "
-        "of a worm the axial one.",
-    )
-    shift: GivenShifts | None = None
-    centre_distance: PositiveNumber | None = Field(
-        default=None, description="As in a design: it has to be that of the teeth without play."
-    )
-    face_width: PositiveNumber | None = Field(
-        default=None,
-        description="For `strength`; of helical gears for the overlap, of bevel gears for the forces, which then "
-        "stand in the middle of the face. That of bevel gears is less than the cone distance, where their teeth would "
-        "reach the apex; in practice it is at most 0.3 of it, and 10 modules (Shigley's Mechanical Engineering Design, "
-        "Tab. 13-3).",
-    )
-    addendum: GivenAddenda | None = Field(
-        default=None,
-        description="Of an internal stage; left out: the ring's is as long as the pinion's flank lets it be.",
-    )
-
-    @field_validator("driver")
-    @classmethod
-    def _teeth_or_threads(cls, driver: int, info: ValidationInfo) -> int:
-        worm = info.data.get("type") == "worm"
-        if not (1 <= driver <= MOST_THREADS if worm else driver >= FEWEST_TEETH):
-            raise ValueError(
-                f"expected 1 to {MOST_THREADS} threads" if worm else f"expected at least {FEWEST_TEETH} teeth"
-            )
-        return driver
-
-    def faults_of_type(self) -> list[tuple[str, str]]:
-        """Fields that another type has, gears that this type does not take, by their path below the stage."""
-        faults = super().faults_of_type()
-        if self.type not in ("external", "helical") and self.shift is not None:
-            faults.append(("/shift", f"a stage that is {self.type} has no shift"))
-        if self.type != "internal" and self.addendum is not None:
-            faults.append(("/addendum", "only an internal stage has other addenda than a module"))
-        if self.type == "internal" and self.driver == self.driven:
-            faults.append(("/driven", "a ring has more teeth than its pinion"))
-        return faults
-
-    @classmethod
-    def types_with(cls, name: str) -> tuple[StageKind, ...]:
-        """Which types of stages have a field; a face width is asked of all that carry a force."""
-        return ("external", "internal", "helical", "bevel") if name == "face_width" else super().types_with(name)
-
-
-class GivenIdler(Statement):
-    """A gear between driver and driven gear of a stage; several of one stage stand in the order of the list."""
-
-    stage: Annotated[int, Field(strict=True, ge=1, le=16)]
-    teeth: ToothNumber
-
-
-class GivenRatio(Statement):
-    """A ratio as in a design; it is compared with that of the teeth."""
-
-    numerator: Annotated[int, Field(strict=True)]
-    denominator: Annotated[int, Field(strict=True, ge=1)]
-    value: Number
-
-    def faults(self, ratio: Fraction) -> list[tuple[str, str]]:
-        """What is wrong where the teeth have another ratio."""
-        same = self.numerator == ratio * self.denominator
-        if same and math.isclose(self.value, float(ratio), rel_tol=SAME_RATIO):
-            return []
-        return [("/mechanism/ratio", f"the teeth have the ratio {ratio}; leave the ratio out")]
-
-
-class GivenGearTrain(Statement):
-    """An ordinary gear train as in a design."""
-
-    type: Literal["gear_train"]
-    stages: list[GivenStage] = Field(min_length=1, max_length=16)
-    idlers: list[GivenIdler] = Field(default=[], max_length=64)
-    ratio: GivenRatio | None = None
-    pressure_angle: PressureAngle = 20.0
-
-    def train(self) -> OrdinaryTrain:
-        """The train for the analysis core."""
-        idlers = {k: tuple(i.teeth for i in self.idlers if i.stage == k) for k in range(1, len(self.stages) + 1)}
-        angle = math.radians(self.pressure_angle)
-        return OrdinaryTrain(tuple(train_stage(s, angle, idlers[k]) for k, s in enumerate(self.stages, 1)), angle)
 
 
 class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
@@ -323,32 +198,6 @@ class TurningGear(TurningPart):
     undercut: bool = Field(description="By a rack that cuts it.")
 
 
-class LoadedMesh(MeshGeometry):
-    """A mesh with its contact and its load."""
-
-    path_of_contact: float
-    approach: float = Field(description="Part of the path before the pitch point, with the driver driving.")
-    recess: float
-    clearance: float
-    efficiency: float | None = Field(description="Null where fewer than one pair of teeth is in contact.")
-    pitch_line_velocity: float = Field(
-        description="At the first position, length units per second; of a worm that of its own threads."
-    )
-    tangential_force: float = Field(description="N; of a worm that on the gear, which is axial on the worm.")
-    radial_force: float = Field(description="N, which pushes the gears apart; of bevel gears on the driver.")
-    radial_forces: OfGears | None = optional(
-        "N, of bevel gears: on the driver and on the driven gear, each towards its axis. Of all others both are "
-        "`radial_force`."
-    )
-    axial_force: OfGears | None = optional(
-        "N, of helical, bevel and worm gears: on the driver and on the driven gear. Of helical gears positive where "
-        "it points along the axis about which the speed of their shafts is counted (of a train with bevel or worm "
-        "stages the `axis` in `shafts`, otherwise the input's) while the input's speed is positive, and against it "
-        "while that is negative; of bevel gears positive away from the apex; of a worm its size."
-    )
-    strength: PairStrength | None = optional("Stresses, where a method is stated.")
-
-
 class Shaft(Answer):
     """A shaft that passes torque on, from the input shaft to the output shaft."""
 
@@ -381,6 +230,7 @@ def _analysis(request: GearTrainAnalysisRequest) -> dict[str, Any]:
     known = all(share is not None for stage in shares for share in stage)
     gained = tuple(tuple(1.0 / share for share in stage) for stage in passed) if request.flows_back else passed
     torques = train.torques(request.input_torque, gained)
+    flow = Flow(train, shares, torques, float(speed[0]), request.flows_back, METRES[request.length_unit])
     speeds = [1.0, *(float(stage[-1]) for stage in train.speeds)]
     return {
         "input_angle": at.tolist(),
@@ -393,7 +243,7 @@ def _analysis(request: GearTrainAnalysisRequest) -> dict[str, Any]:
             for w, t, axis in zip(speeds, torques, train.axes, strict=True)
         ],
         "gears": _gears(request, train, at, speed),
-        "meshes": _meshes(request, train, shares, torques, float(speed[0])),
+        "meshes": loaded_meshes(flow, request.strength, [stage.face_width for stage in request.mechanism.stages]),
         "centre_distances": list(train.centre_distances),
         **drifting(train.ratio, request.wanted_ratio),
     }
@@ -496,125 +346,6 @@ def _worm_and_gear(worm: WormDrive) -> list[dict[str, Any]]:
         "undercut": False,
     }
     return [threads, _dimensions(worm.gear, worm.gear.is_undercut)]
-
-
-def _meshes(
-    request: GearTrainAnalysisRequest,
-    train: OrdinaryTrain,
-    shares: tuple[tuple[float | None, ...], ...],
-    torques: tuple[float, ...],
-    speed: float,
-) -> list[dict[str, Any]]:
-    """Every mesh with its contact and its forces at the first position."""
-    geometries = iter(mesh_geometries(train))
-    loaded: list[dict[str, Any]] = []
-    for number, (stage, meshes, efficiencies, turns, torque) in enumerate(
-        zip(train.stages, train.meshes, shares, train.speeds, torques[:-1], strict=True)
-    ):
-        begin = len(loaded)
-        if stage.kind == "worm":
-            told = _worm_loaded(request, stage, train, torque, float(turns[0]) * speed)
-            loaded.append({**next(geometries).model_dump(), **told, "efficiency": efficiencies[0]})
-            continue
-        # The tangential force passes through an idler; each mesh takes its losses from it. It is that of the gear that
-        # drives: where the output does, a mesh has lost its share before its force reaches the driver.
-        radius = _radius(stage, train)
-        if stage.shifts != (0.0, 0.0):
-            radius *= meshes[0].centre_distance / meshes[0].standard_distance
-        force = abs(torque) / (radius * METRES[request.length_unit])
-        for (driver, driven), mesh, share, turn in zip(
-            itertools.pairwise(stage.gears), meshes, efficiencies, turns[:-1], strict=True
-        ):
-            passed = 1.0 if share is None else share
-            if request.flows_back:
-                force /= passed
-            parts = mesh.approach, mesh.recess
-            approach, recess = parts if driver <= driven else parts[::-1]
-            loaded.append(
-                {
-                    **next(geometries).model_dump(),
-                    "path_of_contact": mesh.path_of_contact,
-                    "approach": approach,
-                    "recess": recess,
-                    "clearance": mesh.clearance,
-                    "efficiency": share,
-                    "pitch_line_velocity": abs(float(turn) * speed)
-                    * (
-                        radius
-                        if stage.shifts != (0.0, 0.0) or stage.kind != "external"
-                        else 0.5 * stage.module * driver
-                    ),
-                    "tangential_force": force,
-                    "radial_force": force * math.tan(mesh.pressure_angle),
-                    **_sideways(stage, train, force, 1.0 if (turn > 0) != request.flows_back else -1.0),
-                }
-            )
-            if request.strength is not None:
-                place = len(loaded) - begin - 1
-                power = force * abs(float(turn) * speed) * METRES[request.length_unit] * 0.5 * stage.module * driver
-                if stage.shifts != (0.0, 0.0):
-                    power *= mesh.centre_distance / mesh.standard_distance
-                turning = abs(float(turn) * speed)
-                loaded[-1]["strength"] = _strength(request, stage, place, number, power, turning)
-            if not request.flows_back:
-                force *= passed
-    return loaded
-
-
-def _radius(stage: TrainStage, train: OrdinaryTrain) -> float:
-    """Radius of the driver at which the force of an unshifted stage stands."""
-    if stage.kind == "helical":
-        return 0.5 * stage.module * stage.driver / math.cos(stage.helix_angle)
-    radius = 0.5 * stage.module * stage.driver
-    if stage.kind == "bevel" and stage.face_width is not None:
-        radius -= 0.5 * stage.face_width * math.sin(stage.cones(train.pressure_angle).cones[0])
-    return radius
-
-
-def _sideways(stage: TrainStage, train: OrdinaryTrain, force: float, way: float) -> dict[str, Any]:
-    """Axial forces of helical and bevel gears, and the radial ones of the latter, at a tangential force."""
-    if stage.kind == "helical":
-        axial = force * math.tan(stage.helix_angle) * way
-        return {"axial_force": {"driver": axial, "driven": -axial}}
-    if stage.kind == "bevel":
-        apart, (one, two) = force * math.tan(train.pressure_angle), stage.cones(train.pressure_angle).cones
-        return {
-            "radial_force": apart * math.cos(one),
-            "radial_forces": {"driver": apart * math.cos(one), "driven": apart * math.cos(two)},
-            "axial_force": {"driver": apart * math.sin(one), "driven": apart * math.sin(two)},
-        }
-    return {}
-
-
-def _worm_loaded(
-    request: GearTrainAnalysisRequest, stage: TrainStage, train: OrdinaryTrain, torque: float, turning: float
-) -> dict[str, Any]:
-    """Contact in the middle plane and forces of a worm and its gear."""
-    worm, friction = stage.worm(train.pressure_angle), stage.friction
-    # Where the gear drives, friction is against its way.
-    sign = -1.0 if request.flows_back else 1.0
-    forces = worm.forces(abs(torque) / METRES[request.length_unit], sign * friction)
-    return {
-        "path_of_contact": worm.approach + worm.recess,
-        "approach": worm.approach,
-        "recess": worm.recess,
-        "clearance": (FULL_DEPTH_DEDENDUM - FULL_DEPTH_ADDENDUM) * worm.module,
-        "pitch_line_velocity": abs(turning) * 0.5 * worm.dimensions.worm_diameter,
-        "tangential_force": forces.gear,
-        "radial_force": forces.radial,
-        "axial_force": {"driver": forces.gear, "driven": forces.worm},
-    }
-
-
-def _strength(
-    request: GearTrainAnalysisRequest, stage: TrainStage, place: int, number: int, power: float, turning: float
-) -> dict[str, Any]:
-    """Stresses of one mesh of a stage, its gears as they stand in the order of the power, in millimetres."""
-    assert request.strength is not None
-    unit = 1000.0 * METRES[request.length_unit]
-    contact = stage_contact(stage, place, math.radians(request.mechanism.pressure_angle), unit)
-    width = request.mechanism.stages[number].face_width
-    return told(Loaded(contact, power, turning, bent_both_ways(stage, place)), request.strength, width, unit)
 
 
 FAMILY = Family(GearTrainAnalysisRequest, GearTrainAnalysis)

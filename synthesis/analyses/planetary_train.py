@@ -16,7 +16,7 @@ from kinematics.gear.planetary import EXTERNAL, GROUND, INTERNAL, Mesh, Speeds, 
 from kinematics.gear.power import PowerFlow, power_flow
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.analyses.drift import WANTED, Drift, drifting
-from synthesis.analyses.gear_train import GivenRatio
+from synthesis.analyses.given_train import GivenRatio
 from synthesis.analyses.planet_strength import mesh_strengths, strength_faults
 from synthesis.analyses.shift_table import (
     MOST_STATES,

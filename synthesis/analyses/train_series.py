@@ -10,7 +10,8 @@ from pydantic import ConfigDict, Discriminator, Field
 
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
 from synthesis.analyses.drift import WANTED, Drift, drifting
-from synthesis.analyses.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest, GivenGearTrain, GivenRatio
+from synthesis.analyses.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest
+from synthesis.analyses.given_train import GivenGearTrain, GivenRatio
 from synthesis.analyses.planetary_train import GivenPlanetaryTrain, PlanetaryAnalysis, PlanetaryAnalysisRequest
 from synthesis.model.answer import optional
 from synthesis.model.gear_answer import Ratio

@@ -1,0 +1,131 @@
+"""An ordinary gear train as it is given: its stages, its idlers, and the ratio that is stated beside them."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import Annotated, Literal
+
+from pydantic import Field, ValidationInfo, field_validator
+
+from kinematics.gear.train import OrdinaryTrain, StageKind
+from synthesis.model.gear_stages import MOST_THREADS, StageForm, train_stage
+from synthesis.model.gear_statement import (
+    FEWEST_TEETH,
+    MOST_TEETH,
+    Addendum,
+    PressureAngle,
+    ShiftCoefficient,
+    ToothNumber,
+)
+from synthesis.model.statement import Number, PositiveNumber, Statement
+
+SAME_RATIO = 1e-9
+"""Share by which the number that is stated beside a ratio's numerator and denominator may differ from them."""
+
+
+class GivenShifts(Statement):
+    """Profile shifts of a stage, modules, positive outwards; the tips are shortened so that the clearance stays."""
+
+    driver: ShiftCoefficient
+    driven: ShiftCoefficient
+
+
+class GivenAddenda(Statement):
+    """Addenda of driver and driven gear of an internal stage, modules."""
+
+    driver: Addendum
+    driven: Addendum
+
+
+class GivenStage(StageForm):
+    """Two gears that mesh; the driven gear sits on the shaft of the next stage's driver."""
+
+    driver: Annotated[int, Field(strict=True, ge=1, le=MOST_TEETH)] = Field(
+        description=f"Teeth of the driving gear, at least {FEWEST_TEETH}; of a worm its threads."
+    )
+    driven: ToothNumber
+    module: PositiveNumber = Field(
+        default=1.0,
+        description="Module in length units: of helical teeth in the normal plane, of bevel teeth at the large end, "
+        "of a worm the axial one.",
+    )
+    shift: GivenShifts | None = None
+    centre_distance: PositiveNumber | None = Field(
+        default=None, description="As in a design: it has to be that of the teeth without play."
+    )
+    face_width: PositiveNumber | None = Field(
+        default=None,
+        description="For `strength`; of helical gears for the overlap, of bevel gears for the forces, which then "
+        "stand in the middle of the face. That of bevel gears is less than the cone distance, where their teeth would "
+        "reach the apex; in practice it is at most 0.3 of it, and 10 modules (Shigley's Mechanical Engineering Design, "
+        "Tab. 13-3).",
+    )
+    addendum: GivenAddenda | None = Field(
+        default=None,
+        description="Of an internal stage; left out: the ring's is as long as the pinion's flank lets it be.",
+    )
+
+    @field_validator("driver")
+    @classmethod
+    def _teeth_or_threads(cls, driver: int, info: ValidationInfo) -> int:
+        worm = info.data.get("type") == "worm"
+        if not (1 <= driver <= MOST_THREADS if worm else driver >= FEWEST_TEETH):
+            raise ValueError(
+                f"expected 1 to {MOST_THREADS} threads" if worm else f"expected at least {FEWEST_TEETH} teeth"
+            )
+        return driver
+
+    def faults_of_type(self) -> list[tuple[str, str]]:
+        """Fields that another type has, gears that this type does not take, by their path below the stage."""
+        faults = super().faults_of_type()
+        if self.type not in ("external", "helical") and self.shift is not None:
+            faults.append(("/shift", f"a stage that is {self.type} has no shift"))
+        if self.type != "internal" and self.addendum is not None:
+            faults.append(("/addendum", "only an internal stage has other addenda than a module"))
+        if self.type == "internal" and self.driver == self.driven:
+            faults.append(("/driven", "a ring has more teeth than its pinion"))
+        return faults
+
+    @classmethod
+    def types_with(cls, name: str) -> tuple[StageKind, ...]:
+        """Which types of stages have a field; a face width is asked of all that carry a force."""
+        return ("external", "internal", "helical", "bevel") if name == "face_width" else super().types_with(name)
+
+
+class GivenIdler(Statement):
+    """A gear between driver and driven gear of a stage; several of one stage stand in the order of the list."""
+
+    stage: Annotated[int, Field(strict=True, ge=1, le=16)]
+    teeth: ToothNumber
+
+
+class GivenRatio(Statement):
+    """A ratio as in a design; it is compared with that of the teeth."""
+
+    numerator: Annotated[int, Field(strict=True)]
+    denominator: Annotated[int, Field(strict=True, ge=1)]
+    value: Number
+
+    def faults(self, ratio: Fraction) -> list[tuple[str, str]]:
+        """What is wrong where the teeth have another ratio."""
+        same = self.numerator == ratio * self.denominator
+        if same and math.isclose(self.value, float(ratio), rel_tol=SAME_RATIO):
+            return []
+        return [("/mechanism/ratio", f"the teeth have the ratio {ratio}; leave the ratio out")]
+
+
+class GivenGearTrain(Statement):
+    """An ordinary gear train as in a design."""
+
+    type: Literal["gear_train"]
+    stages: list[GivenStage] = Field(min_length=1, max_length=16)
+    idlers: list[GivenIdler] = Field(default=[], max_length=64)
+    ratio: GivenRatio | None = None
+    pressure_angle: PressureAngle = 20.0
+
+    def train(self) -> OrdinaryTrain:
+        """The train for the analysis core."""
+        idlers = {k: tuple(i.teeth for i in self.idlers if i.stage == k) for k in range(1, len(self.stages) + 1)}
+        angle = math.radians(self.pressure_angle)
+        return OrdinaryTrain(tuple(train_stage(s, angle, idlers[k]) for k, s in enumerate(self.stages, 1)), angle)
