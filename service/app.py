@@ -25,6 +25,7 @@ from service.api import (
     events,
     forces,
     health,
+    imports,
     jobs,
     metrics,
     outlines,
@@ -32,6 +33,7 @@ from service.api import (
     studio,
 )
 from service.drawings import Drawings
+from service.imports.desk import ImportDesk
 from service.jobs.batches.desk import BatchDesk
 from service.jobs.batches.store import BatchStore
 from service.jobs.database import connect, sqlite_file, upgrade
@@ -51,7 +53,8 @@ _DESCRIPTION = """Designs mechanisms and verifies every answer by driving it.
 State a problem in a job (`POST /v1/jobs`), wait for it or come back for it, and read the designs from its result.
 Many problems at once are a batch (`POST /v1/batches`).
 `GET /v1/problems` lists what can be asked, each with an example that runs as it is. A mechanism that exists already is
-analysed at once (`POST /v1/analyses`), and the outlines in a drawing are read (`POST /v1/outlines`).
+analysed at once (`POST /v1/analyses`). The outlines in a drawing are read (`POST /v1/outlines`), and so are the curves
+in a drawing, a table or a picture (`POST /v1/imports`).
 
 Angles are degrees, counter-clockwise from +x; lengths are plain numbers in the problem's `length_unit`. Unknown fields
 are refused. Errors are `application/problem+json` (RFC 9457); validation errors name each field by its JSON pointer."""
@@ -68,6 +71,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
         app.state.analyst = analyst = Analyst()
         analyst.start(after=lambda: kernels.has(ANALYSIS) or (kernels.ended and analyst.asked))
         app.state.drawings = Drawings()
+        app.state.readers = readers = ImportDesk(settings.log_level, settings.log_format)
         try:
             executor.subscribe(notifier.publish)
             executor.start()
@@ -90,6 +94,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
             await asyncio.gather(*polling)
         finally:
             notifier.close()
+            readers.stop()
             await run_in_threadpool(executor.stop)
             engine.dispose()
 
@@ -124,7 +129,7 @@ def application(lifespan: Lifespan[FastAPI]) -> FastAPI:
         redirect_slashes=False,
         # Problems and designs have one schema each, whether they come or go.
         separate_input_output_schemas=False,
-        openapi_tags=[jobs.TAG, batches.TAG, analyses.TAG, outlines.TAG, problems.TAG, health.TAG],
+        openapi_tags=[jobs.TAG, batches.TAG, analyses.TAG, outlines.TAG, imports.TAG, problems.TAG, health.TAG],
     )
     errors.install(app)
     docs.install(app)
@@ -138,6 +143,7 @@ def application(lifespan: Lifespan[FastAPI]) -> FastAPI:
         batches.following,
         analyses.router,
         outlines.router,
+        imports.router,
         problems.router,
         health.router,
         metrics.router,

@@ -9,6 +9,7 @@ from fastapi import Depends, Request
 
 from service.analyst import Analyst
 from service.drawings import Drawings
+from service.imports.desk import ImportDesk
 from service.jobs.batches.desk import BatchDesk
 from service.jobs.batches.rows import BatchSummary
 from service.jobs.desk import JobDesk
@@ -34,4 +35,5 @@ Batches = Annotated[BatchDesk, Depends(_part("batches", BatchDesk))]
 Poller = Annotated[JobPoller[JobSummary], Depends(_part("poller", JobPoller))]
 BatchPoller = Annotated[JobPoller[BatchSummary], Depends(_part("batch_poller", JobPoller))]
 Board = Annotated[Drawings, Depends(_part("drawings", Drawings))]
+Readers = Annotated[ImportDesk, Depends(_part("readers", ImportDesk))]
 Core = Annotated[Analyst, Depends(_part("analyst", Analyst))]

@@ -8,9 +8,6 @@ from __future__ import annotations
 
 import importlib
 import os
-import resource
-import signal
-import sys
 import threading
 import time
 from dataclasses import dataclass
@@ -23,8 +20,8 @@ from service.jobs import faults
 from service.jobs.batches.identity import digest
 from service.jobs.batches.slices import Slices
 from service.jobs.batches.store import BatchStore
+from service.jobs.confined import confine, limit_memory
 from service.jobs.database import connect, patiently
-from service.jobs.orphans import die_with
 from service.jobs.progress import ProgressWriter
 from service.jobs.schema import Claim
 from service.jobs.solving import Solving, Stopped
@@ -40,8 +37,6 @@ the queue again or at its end."""
 
 LIBRARIES_MB = 400
 """What solvers load after the worker has started, beside what a job is allowed: convex optimization, kernels."""
-
-_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 log = structlog.get_logger(__name__)
 
@@ -82,21 +77,13 @@ _post: _Post | None = None
 def start(settings: WorkerSettings, solving: Solving) -> None:
     """Prepare this process for its jobs: its end, its limits, the solvers. Called once, first of all."""
     global _post
-    die_with(settings.server_pid)
-    # Ctrl-C at a terminal reaches the whole group of processes; it is the server's to act on, and it stops its workers.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # The default action ends the process at once; a handler in Python would wait for native code to return.
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    # As many workers as processors run side by side, so threads inside them would only compete.
-    for variable in _THREADS:
-        os.environ[variable] = "1"
-    logs.configure(settings.log_level, settings.log_format)
+    confine(settings.server_pid, settings.log_level, settings.log_format)
     dispatch = importlib.import_module("synthesis.dispatch")
     dispatch.warm_up()
     engine = connect(settings.store_url, durable=False)
     store = JobStore(engine)
     progress = ProgressWriter(store)
-    _limit_memory(settings.memory_mb + LIBRARIES_MB)
+    limit_memory(settings.memory_mb + LIBRARIES_MB)
     first_use: FirstUse = importlib.import_module("service.jobs.first_use").FirstUse(solving)
     slices = Slices(BatchStore(engine), solving, faults.out_of_memory(settings.memory_mb))
     _post = _Post(store, progress, settings, solving, slices, first_use)
@@ -163,29 +150,3 @@ def _solve(post: _Post, job: Claim) -> tuple[str, str]:
     with post.progress.attempt(job.job_id, job.attempt) as progress, post.first_use.told(progress) as told:
         result = dispatch.solve(problem, post.solving.stoppable(told)).model_dump_json()
     return result, digest(problem)
-
-
-def _limit_memory(beyond_mb: int) -> None:
-    """Allow ``beyond_mb`` MiB on top of what the process has now.
-
-    On Linux ``RLIMIT_DATA`` counts the private memory that can be written. ``RLIMIT_AS`` would count address space
-    as well that allocators and compilers reserve and never touch, so no honest figure could be set with it.
-    """
-    kind = resource.RLIMIT_DATA if sys.platform == "linux" else resource.RLIMIT_AS
-    limit = _memory_in_use() + (beyond_mb << 20)
-    hard = resource.getrlimit(kind)[1]
-    if hard != resource.RLIM_INFINITY:
-        limit = min(limit, hard)
-    resource.setrlimit(kind, (limit, hard))
-
-
-def _memory_in_use() -> int:
-    """The bytes that count against the limit; 0 where the system does not tell."""
-    try:
-        with open("/proc/self/status", encoding="ascii") as status:
-            for line in status:
-                if line.startswith("VmData:"):
-                    return int(line.split()[1]) << 10
-    except OSError:
-        pass
-    return 0

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.outlines.limits import MOST_TOLD
+from service.outlines.curves import Source
+from service.outlines.limits import LONGEST_NAME, MOST_TOLD
 
 DrawingUnit = Literal["mm", "cm", "m", "in"]
 
@@ -67,3 +69,26 @@ class Outlines(BaseModel):
     outlines: list[Outline]
     left_out: list[LeftOut] = Field(description=f"What gives no outline, {MOST_TOLD} elements at most.")
     left_out_count: int = Field(description="How many elements give no outline.")
+
+
+def told(source: Source) -> dict[str, str | None]:
+    """What an answer says of where a curve comes from."""
+    return {name: short(getattr(source, name)) for name in ("element", "id", "name", "layer")}
+
+
+def told_left_out(left_out: Sequence[tuple[Source, str]]) -> list[LeftOut]:
+    """The first of the elements that were left out, with their reasons."""
+    return [LeftOut(**told(source), reason=sentence(reason)) for source, reason in left_out[:MOST_TOLD]]
+
+
+def short(text: str | None) -> str | None:
+    """A text of the drawing, which may have anything in it, as one that can be told."""
+    if text is None:
+        return None
+    spelt = text.encode("utf-8", "replace").decode()
+    return spelt if len(spelt) <= LONGEST_NAME else f"{spelt[: LONGEST_NAME - 1]}…"
+
+
+def sentence(reason: str) -> str:
+    """A reason as a sentence of its own."""
+    return f"{reason[:1].upper()}{reason[1:]}."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,15 +15,23 @@ FREE, BRANCH = -1, -2
 """Instead of the end that an end meets: it meets none, or more than one."""
 
 
-def joined(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], list[tuple[Curve, str]]]:
-    """The closed chains of open curves, and the curves that are in none with the reason.
+@dataclass(frozen=True)
+class Chain:
+    """Open curves in a row: each begins where the one before it ends, and the first where the last ends if ``closed``.
 
-    Curves are joined where the ends of two of them, and of no third one, lie within ``reach`` of one another. In a
-    chain each begins where the one before it ends.
+    ``branching``: it ends where more than two ends meet, or such a place keeps it from being closed.
     """
+
+    members: list[Curve]
+    closed: bool
+    branching: bool = False
+
+
+def chains(curves: Sequence[Curve], reach: float) -> list[Chain]:
+    """Open curves joined at their ends: where the ends of two of them, and of no third one, lie within ``reach``."""
     partner = _partners(curves, reach)
     seen: set[int] = set()
-    chains, alone = [], []
+    found = []
     # From their free ends first: what is left then are rings.
     for begin in sorted(range(2 * len(curves)), key=lambda end: partner[end] >= 0):
         if begin // 2 in seen:
@@ -33,13 +42,21 @@ def joined(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], li
             seen.add(end // 2)
             one = curves[end // 2]
             members.append(one if end % 2 == 0 else backwards(one))
-            last = int(partner[end ^ 1])
-            end = last
-        if partner[begin] >= 0:
-            chains.append(members)
+            end = int(partner[end ^ 1])
+        closed = bool(partner[begin] >= 0)
+        found.append(Chain(members, closed, branching=not closed and BRANCH in (partner[begin], end)))
+    return found
+
+
+def joined(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], list[tuple[Curve, str]]]:
+    """The closed chains of open curves, and the curves that are in none with the reason."""
+    rings, alone = [], []
+    for chain in chains(curves, reach):
+        if chain.closed:
+            rings.append(chain.members)
         else:
-            alone += [(one, _reason(members, BRANCH in (partner[begin], end))) for one in members]
-    return chains, alone
+            alone += [(one, _reason(chain)) for one in chain.members]
+    return rings, alone
 
 
 def _partners(curves: Sequence[Curve], reach: float) -> NDArray[np.int64]:
@@ -73,9 +90,10 @@ def _thrice_at_most(places: Complex) -> NDArray[np.int64]:
     return np.asarray(np.sort(order[~fourth]))
 
 
-def _reason(members: Sequence[Curve], branching: bool) -> str:
-    if branching:
+def _reason(chain: Chain) -> str:
+    if chain.branching:
         return "more than two open elements meet at one point there"
+    members = chain.members
     gap = abs(members[-1].end - members[0].start)
     if len(members) == 1:
         return f"it is open: its ends are {gap:.4g} apart"

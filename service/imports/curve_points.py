@@ -1,0 +1,141 @@
+"""The points of a curve: dense where it bends, its corners as they stand."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.imports.limits import MOST_POINTS
+from service.imports.thinning import astray, at_most, thinned
+from service.outlines.curves import STRAIGHT, Complex, flattened, line, steps
+from service.outlines.faults import Unsuitable
+from service.outlines.limits import DEFAULT_TOLERANCE
+
+SAME = 1e-12
+"""Points this share of the greatest coordinate apart are one, which rounding has made two."""
+
+LOOKED = 0.125
+"""What of the tolerance goes to the chords between the points that are looked at; the rest to those that are left."""
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """How many points a curve is to have: ``tolerance`` None takes a share of its own extent, and keeps its corners."""
+
+    tolerance: float | None
+    max_points: int
+
+
+class Points(NamedTuple):
+    """The points of a curve, complex, shape (n,); of a closed one the first is not repeated."""
+
+    points: Complex
+    tolerance: float
+
+
+def of_pieces(pieces: Complex, closed: bool, asked: Asked, reach: float = 0.0) -> Points:
+    """Points of a curve that is stated by cubics, shape (n, 4), one after the other.
+
+    Corners, where a straight piece begins or ends, stay as they stand unless a tolerance is asked for. Ends that lie
+    within ``reach`` of one another are one point.
+
+    Raises
+    ------
+    ValueError
+        It has no length.
+    Unsuitable
+        It takes more points than are counted here.
+    """
+    pieces = pieces[np.ptp(pieces.real, axis=1) + np.ptp(pieces.imag, axis=1) > 0.0]
+    if not len(pieces):
+        raise ValueError("it has no length")
+    if closed and abs(pieces[-1, 3] - pieces[0, 0]) > reach:
+        pieces = np.concatenate([pieces, line(pieces[-1, 3], pieces[0, 0])])
+    extent = _extent(pieces.ravel())
+    tolerance = DEFAULT_TOLERANCE * extent if asked.tolerance is None else asked.tolerance
+    chords = LOOKED * tolerance
+    counts = steps(pieces, chords)
+    if counts.sum() > MOST_POINTS:
+        raise Unsuitable(
+            f"A curve has more than {MOST_POINTS} points at a tolerance of {tolerance:.4g}; give a larger one."
+        )
+    dense = flattened(pieces, chords)
+    straight = _straight(pieces)
+    kept = np.zeros(len(dense), bool)
+    ends = np.concatenate([[0], np.cumsum(counts)])
+    kept[ends[:-1]] |= straight
+    kept[ends[1:]] |= straight
+    return _chosen(dense, kept, closed, tolerance - chords, asked, 0.0 if straight.all() else chords, reach)
+
+
+def of_points(points: Complex, closed: bool, asked: Asked, tolerance: float = 0.0) -> Points:
+    """Points of a curve that is stated by points, shape (n,): all of them, or those within a tolerance.
+
+    ``tolerance`` is what is taken where none is asked for; 0 keeps all points.
+    """
+    whole = np.append(points, points[0]) if closed else points
+    within = asked.tolerance if asked.tolerance is not None else tolerance
+    return _chosen(whole, np.full(len(whole), within == 0.0), closed, within, asked)
+
+
+def _chosen(
+    dense: Complex,
+    kept: NDArray[np.bool_],
+    closed: bool,
+    tolerance: float,
+    asked: Asked,
+    chords: float = 0.0,
+    reach: float = 0.0,
+) -> Points:
+    """``tolerance`` is for the chords between the points that are left, ``chords`` for those between all of them."""
+    same = max(SAME * float(np.abs(dense).max()), reach)
+    new = np.append(True, np.abs(np.diff(dense)) > same)
+    dense, kept = dense[new], kept[new]
+    if closed:
+        # It comes back to its first point, to the last digit or not.
+        if len(dense) > 1 and abs(dense[-1] - dense[0]) <= same:
+            dense, kept = dense[:-1], kept[:-1]
+        dense, kept = np.append(dense, dense[0]), np.append(kept, True)
+    if len(dense) < 2 + closed:
+        raise ValueError("it has no length")
+    if asked.tolerance is not None:
+        kept = np.zeros(len(dense), bool)
+    chosen = thinned(dense, tolerance, kept) if tolerance > 0.0 else np.arange(len(dense))
+    if len(chosen) - closed > asked.max_points:
+        chosen = at_most(dense, asked.max_points + closed, tolerance)
+    away = astray(dense, chosen)
+    found = dense[chosen[:-1] if closed else chosen]
+    return Points(found, away + chords if away or chords else 0.0)
+
+
+def length_of(pieces: Complex) -> float:
+    """Length of a curve that is stated by cubics: the speed is integrated by Gauss in two halves of each."""
+    total = 0.0
+    edges = np.diff(pieces, axis=1)
+    for start in (0.0, 0.5):
+        t = start + 0.25 * (_NODES + 1.0)
+        s = 1.0 - t
+        basis = 3.0 * np.stack([s**2, 2.0 * s * t, t**2])
+        total += float((np.abs(edges @ basis) @ _WEIGHTS).sum()) * 0.25
+    return total
+
+
+def length_of_points(points: Complex, closed: bool) -> float:
+    """Length of the chords between points."""
+    way = np.append(points, points[0]) if closed else points
+    return float(np.abs(np.diff(way)).sum())
+
+
+def _straight(pieces: Complex) -> NDArray[np.bool_]:
+    """Which cubics are lines that run evenly from end to end."""
+    bends = np.abs(pieces[:, :-2] - 2.0 * pieces[:, 1:-1] + pieces[:, 2:]).max(axis=1)
+    return np.asarray(bends <= STRAIGHT * np.abs(np.diff(pieces, axis=1)).sum(axis=1))
+
+
+def _extent(points: Complex) -> float:
+    return float(max(np.ptp(points.real), np.ptp(points.imag)))

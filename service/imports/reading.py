@@ -1,0 +1,209 @@
+"""From a file in any format to its curves as points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from service.imports.answer import Format, ImportedCurve, ImportedPoint, Imports
+from service.imports.curve_points import Asked, Points, length_of, length_of_points, of_pieces, of_points
+from service.imports.limits import DEFAULT_POINTS, MOST_CURVES, MOST_POINTS, PNG
+from service.imports.picture import COARSE, FINE, picture_of
+from service.imports.table import table_of
+from service.outlines.answer import DrawingUnit, sentence, short, told, told_left_out
+from service.outlines.curves import Complex, Curve, Source
+from service.outlines.drawing import Drawing
+from service.outlines.faults import ForeignFormat, NoOutline, Unsuitable
+from service.outlines.formats import MILLIMETRES, drawing_of, extent, placed
+from service.outlines.joining import chains
+from service.outlines.limits import DEFAULT_TOLERANCE, FARTHEST, JOINED
+from service.outlines.path_data import unit_arc
+
+
+@dataclass(frozen=True)
+class Found:
+    """A curve before its points are chosen: ``drawn`` are cubics, shape (n, 4), or points, shape (n,)."""
+
+    source: Source
+    drawn: Complex
+    closed: bool
+    joined: int = 1
+    reach: float = 0.0
+    tolerance: float = 0.0
+
+    def chosen(self, asked: Asked) -> Points:
+        """Its points as they are asked for."""
+        if self.drawn.ndim == 2:
+            return of_pieces(self.drawn, self.closed, asked, self.reach)
+        return of_points(self.drawn, self.closed, asked, self.tolerance)
+
+    def length(self, points: Complex) -> float:
+        """How long it is, where these are its points. A contour wavers within a pixel, and is as long as its chords."""
+        return length_of(self.drawn) if self.drawn.ndim == 2 else length_of_points(points, self.closed)
+
+
+LeftOut = list[tuple[Source, str]]
+
+
+def imports_of(
+    content: bytes,
+    *,
+    length_unit: DrawingUnit = "mm",
+    tolerance: float | None = None,
+    max_points: int = DEFAULT_POINTS,
+    pixel_size: float | None = None,
+    tables: bool = True,
+) -> Imports:
+    """The curves of a file.
+
+    Parameters
+    ----------
+    content : bytes
+        SVG, the text form of DXF, PNG, or a table of points.
+    length_unit : optional
+        The unit of the answer, where the file states its own; the file's where it states none.
+    tolerance : float, optional
+        Chord tolerance in the unit of the answer; by default a share of each curve's extent, and points that the file
+        states are kept.
+    max_points : int
+        Points of a curve at most, whatever the tolerance.
+    pixel_size : float, optional
+        Side of a pixel in the unit of the answer, instead of what a picture states.
+    tables : bool
+        Whether text that begins as nothing else may be a table.
+
+    Raises
+    ------
+    DrawingError
+        One of its kinds says why there are no curves.
+    """
+    asked = Asked(tolerance, max_points)
+    # Numbers that overflow are looked for where they come out.
+    with np.errstate(all="ignore"):
+        if content.startswith(PNG):
+            return _picture(content, length_unit, pixel_size, asked)
+        drawing = drawing_of(content)
+        if drawing is not None:
+            return _drawing(drawing, length_unit, asked)
+        if not tables:
+            raise ForeignFormat("The body is neither SVG, DXF text nor PNG; a table is sent as text/csv.")
+        return _table(content, length_unit, asked)
+
+
+def _drawing(drawing: Drawing, length_unit: DrawingUnit, asked: Asked) -> Imports:
+    curves, left_out, scale, unit = placed(drawing, length_unit)
+    reach = JOINED * (asked.tolerance if asked.tolerance is not None else DEFAULT_TOLERANCE * extent(curves))
+    found = list(_connected(curves, reach))
+    return _answer(drawing.format, found, left_out, drawing.millimetres, unit, scale, asked)
+
+
+def _connected(curves: Sequence[Curve], reach: float) -> Iterator[Found]:
+    """What is closed by itself, and what is joined of the rest, in the order of the drawing."""
+    place: dict[int, int] = {}
+    for k, one in enumerate(curves):
+        place.setdefault(id(one.source), k)
+    open_ = [one for one in curves if not one.closed and extent([one]) > reach]
+    found = [([one], True, 0.0) for one in curves if one.closed]
+    found += [(chain.members, chain.closed, reach) for chain in chains(open_, reach)]
+    for members, closed, near in sorted(found, key=lambda one: min(place[id(each.source)] for each in one[0])):
+        yield Found(members[0].source, _pieces(members), closed, len(members), near)
+
+
+def _picture(content: bytes, length_unit: DrawingUnit, pixel_size: float | None, asked: Asked) -> Imports:
+    picture = picture_of(content)
+    stated = picture.millimetres
+    if pixel_size is not None:
+        across = up = pixel_size
+        unit: DrawingUnit | None = length_unit
+    elif stated is not None:
+        across, up = (side / MILLIMETRES[length_unit] for side in stated)
+        unit = length_unit
+    else:
+        across, up, unit = 1.0, 1.0, None
+    found = [
+        Found(
+            Source("contour"),
+            across * one.real + 1j * up * one.imag,
+            closed=True,
+            tolerance=(COARSE if steps else FINE) * max(across, up),
+        )
+        for one, steps in zip(picture.contours, picture.stepped, strict=True)
+    ]
+    left_out: LeftOut = [(Source("contour"), "it goes around a few pixels only")] * picture.specks
+    millimetres = None if unit is None else across * MILLIMETRES[unit]
+    return _answer("png", found, left_out, millimetres, unit, across, asked)
+
+
+def _table(content: bytes, length_unit: DrawingUnit, asked: Asked) -> Imports:
+    table = table_of(content)
+    scale = 1.0 if table.millimetres is None else table.millimetres / MILLIMETRES[length_unit]
+    name = None if table.names is None else ", ".join(table.names)
+    found = []
+    for points in table.curves:
+        closed = len(points) > 3 and bool(points[0] == points[-1])
+        found.append(Found(Source("points", name=name), scale * (points[:-1] if closed else points), closed))
+    unit = None if table.millimetres is None else length_unit
+    return _answer("csv", found, [], table.millimetres, unit, scale, asked)
+
+
+def _answer(
+    format_: Format,
+    found: Sequence[Found],
+    left_out: LeftOut,
+    millimetres: float | None,
+    unit: DrawingUnit | None,
+    scale: float,
+    asked: Asked,
+) -> Imports:
+    if len(found) > MOST_CURVES:
+        raise Unsuitable(f"The file has {len(found)} curves, more than {MOST_CURVES}.")
+    curves = []
+    left_out = list(left_out)
+    total = 0
+    for one in found:
+        try:
+            points, tolerance = one.chosen(asked)
+        except ValueError as error:
+            if isinstance(error, Unsuitable):
+                raise
+            left_out.append((one.source, str(error)))
+            continue
+        if not np.all(np.abs(points) <= FARTHEST):
+            left_out.append((one.source, f"its coordinates go beyond {FARTHEST:g}, or are no numbers"))
+            continue
+        total += len(points)
+        if total > MOST_POINTS:
+            raise Unsuitable(f"The curves have more than {MOST_POINTS} points together; give a larger tolerance.")
+        named: dict[str, Any] = told(one.source)
+        curves.append(
+            ImportedCurve(
+                **named,
+                points=[ImportedPoint.model_construct(x=z.real, y=z.imag) for z in points.tolist()],
+                closed=one.closed,
+                length=one.length(points),
+                tolerance=tolerance,
+                joined=one.joined,
+            )
+        )
+    if not curves:
+        reasons = [(short(source.id or source.element) or "", sentence(reason)) for source, reason in left_out]
+        raise NoOutline("The file has no curve." if reasons else "The file has no curve: it draws nothing.", reasons)
+    return Imports(
+        format=format_,
+        millimetres_per_unit=millimetres,
+        length_unit=unit,
+        scale=scale,
+        curves=curves,
+        left_out=told_left_out(left_out),
+        left_out_count=len(left_out),
+    )
+
+
+def _pieces(members: Sequence[Curve]) -> Complex:
+    (first, *_) = members
+    if first.circle is not None:
+        return np.asarray(first.circle.centre + first.circle.radius * unit_arc(0.0, 2.0 * np.pi))
+    return np.concatenate([one.pieces for one in members])

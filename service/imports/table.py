@@ -1,0 +1,119 @@
+"""Points from a table: two columns of numbers, in a row each, with names above them or without."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from service.imports.limits import MOST_COLUMNS, MOST_CURVES, MOST_POINTS
+from service.outlines.curves import Complex
+from service.outlines.faults import ForeignFormat, Malformed, Unsuitable
+from service.outlines.formats import MILLIMETRES
+from service.outlines.limits import FARTHEST
+
+_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+_UNIT = re.compile(r"(.*?)\s*[\[(]\s*([A-Za-z]+)\s*[\])]")
+LONGEST_CELL = 64
+"""Characters of a number."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """Curves as points, complex, one for each block of rows; the names of the columns; millimetres in their unit."""
+
+    curves: list[Complex]
+    names: tuple[str, str] | None
+    millimetres: float | None
+
+
+def table_of(content: bytes) -> Table:
+    """The points in a table.
+
+    Cells are parted by semicolons, tabs, commas or blanks, whichever of these the first row has, in this order; where
+    it is not by commas, a number may have one in place of its point. A first row that holds no numbers names the
+    columns: those called x and y are read, or the first two. A unit may stand with both: ``x [mm]``. An empty row
+    begins another curve, and what follows # is not read.
+
+    Raises
+    ------
+    ForeignFormat
+        It is no text.
+    Malformed
+        A cell is no number; the message has its line.
+    Unsuitable
+        There are no points, or too many.
+    """
+    lines = _text(content).splitlines()
+    rows = [(n, line.partition("#")[0].strip()) for n, line in enumerate(lines, 1)]
+    first = next((line for _, line in rows if line), None)
+    if first is None:
+        raise Unsuitable("The table has no rows.")
+    separator = next((one for one in ";\t," if one in first), None)
+    decimal_comma = separator != ","
+    names, millimetres, columns = None, None, (0, 1)
+    curves: list[list[complex]] = [[]]
+    count = 0
+    for n, line in rows:
+        if not line:
+            if curves[-1]:
+                curves.append([])
+            continue
+        cells = [cell.strip().strip('"').strip() for cell in line.split(separator, MOST_COLUMNS)]
+        if names is None and not count and _named(cells, decimal_comma):
+            names, columns, millimetres = _columns(cells)
+            continue
+        if len(cells) <= max(columns) or len(cells) > MOST_COLUMNS:
+            raise Malformed(f"Line {n} of the table has not two columns of numbers.")
+        curves[-1].append(complex(*(_value(cells[k], decimal_comma, n) for k in columns)))
+        count += 1
+        if count > MOST_POINTS or len(curves) > MOST_CURVES:
+            raise Unsuitable(f"The table has more than {MOST_POINTS} points, or more than {MOST_CURVES} curves.")
+    found = [np.array(curve) for curve in curves if curve]
+    if not found:
+        raise Unsuitable("The table has names and no points.")
+    return Table(found, names, millimetres)
+
+
+def _text(content: bytes) -> str:
+    encoding = "utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
+    try:
+        text = content.decode(encoding)
+    except UnicodeDecodeError:
+        # What is written by hand elsewhere has letters at most in its names.
+        text = content.decode("latin-1")
+    if any(code < " " and code not in "\t\r\n\f\v" for code in set(text)):
+        raise ForeignFormat("The body is neither SVG, DXF text, PNG nor a table of points.")
+    return text
+
+
+def _named(cells: list[str], decimal_comma: bool) -> bool:
+    return not any(_NUMBER.fullmatch(_pointed(cell, decimal_comma)) for cell in cells)
+
+
+def _columns(cells: list[str]) -> tuple[tuple[str, str], tuple[int, int], float | None]:
+    """Names, places and unit of the two columns that are read."""
+    parted = [_UNIT.fullmatch(cell) for cell in cells]
+    names = [found[1] if found else cell for found, cell in zip(parted, cells, strict=True)]
+    lower = [name.lower() for name in names]
+    columns = (lower.index("x"), lower.index("y")) if {"x", "y"} <= set(lower) else (0, 1)
+    if len(cells) < 2:
+        raise Unsuitable("The table has one column; it takes two, x and y.")
+    stated: set[str] = {found[2] if (found := parted[k]) else "" for k in columns}
+    units: dict[str, float] = {unit: MILLIMETRES[unit] for unit in MILLIMETRES}
+    return (names[columns[0]], names[columns[1]]), columns, units.get(stated.pop()) if len(stated) == 1 else None
+
+
+def _pointed(cell: str, decimal_comma: bool) -> str:
+    return cell.replace(",", ".", 1) if decimal_comma else cell
+
+
+def _value(cell: str, decimal_comma: bool, line: int) -> float:
+    spelt = _pointed(cell[: LONGEST_CELL + 1], decimal_comma)
+    if not _NUMBER.fullmatch(spelt) or len(spelt) > LONGEST_CELL:
+        raise Malformed(f"Line {line} of the table has a cell that is no number.")
+    value = float(spelt)
+    if not abs(value) <= FARTHEST:
+        raise Unsuitable(f"Line {line} of the table has a number beyond {FARTHEST:g}.")
+    return value

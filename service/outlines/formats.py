@@ -1,0 +1,76 @@
+"""What a body of bytes is as a drawing, and its curves in the unit that is asked for."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from service.outlines import dxf, svg
+from service.outlines.answer import DrawingUnit
+from service.outlines.curves import Curve, Source
+from service.outlines.drawing import Drawing
+from service.outlines.faults import ForeignFormat
+from service.outlines.limits import FARTHEST
+
+MILLIMETRES: dict[DrawingUnit, float] = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
+
+_TEXT_DXF = re.compile(rb"\s*(?:0|999)[ \t]*\r?\n")
+_COMPRESSED = (b"\x1f\x8b", b"PK\x03\x04")
+
+
+class Placed(NamedTuple):
+    """The curves of a drawing in the unit of an answer, ``scale`` of it in a unit of the drawing."""
+
+    curves: list[Curve]
+    left_out: list[tuple[Source, str]]
+    scale: float
+    unit: DrawingUnit | None
+
+
+def drawing_of(content: bytes) -> Drawing | None:
+    """What an SVG or DXF file draws; None where the content begins as neither.
+
+    Raises
+    ------
+    DrawingError
+        It cannot be read as what it begins as, or is of a sort that is known and not read.
+    """
+    if content.startswith(b"AutoCAD Binary DXF"):
+        raise ForeignFormat("The body is a binary DXF file; save it as text (ASCII) DXF.")
+    if content.startswith(b"AC10"):
+        raise ForeignFormat("The body is a DWG file; save it as text (ASCII) DXF.")
+    if content.startswith(_COMPRESSED):
+        raise ForeignFormat("The body is compressed; send the drawing itself.")
+    bare = content.removeprefix(b"\xef\xbb\xbf")
+    if bare.lstrip()[:1] == b"<" or content[:4] in (b"\xff\xfe<\0", b"\xfe\xff\0<"):
+        return svg.curves_of(content)
+    if _TEXT_DXF.match(bare):
+        return dxf.curves_of(bare)
+    return None
+
+
+def placed(drawing: Drawing, length_unit: DrawingUnit | None) -> Placed:
+    """The curves in a unit, where the drawing states its own; what lies too far out is left out."""
+    scale, unit = 1.0, None
+    if length_unit is not None and drawing.millimetres is not None:
+        scale, unit = drawing.millimetres / MILLIMETRES[length_unit], length_unit
+    left_out = list(drawing.left_out)
+    curves = []
+    for one in drawing.curves:
+        curve = one.scaled(scale)
+        if curve.finite:
+            curves.append(curve)
+        else:
+            left_out.append((one.source, f"its coordinates go beyond {FARTHEST:g}, or are no numbers"))
+    return Placed(curves, left_out, scale, unit)
+
+
+def extent(curves: Sequence[Curve]) -> float:
+    """The greater side of the box around all curves."""
+    if not curves:
+        return 0.0
+    low, high = np.array([one.corners for one in curves]).T
+    return float(max(high.real.max() - low.real.min(), high.imag.max() - low.imag.min()))
