@@ -13,7 +13,7 @@ from service.outlines.faults import ForeignFormat, Malformed, Unsuitable
 from service.outlines.formats import MILLIMETRES
 from service.outlines.limits import FARTHEST
 
-_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _UNIT = re.compile(r"(.*?)\s*[\[(]\s*([A-Za-z]+)\s*[\])]")
 LONGEST_CELL = 64
 """Characters of a number."""
