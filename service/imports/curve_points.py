@@ -32,10 +32,11 @@ class Asked:
 
 
 class Points(NamedTuple):
-    """The points of a curve, complex, shape (n,); of a closed one the first is not repeated."""
+    """The points of a curve, complex, shape (n,), of so many that were looked at; the first of a closed one once."""
 
     points: Complex
     tolerance: float
+    looked: int
 
 
 def of_pieces(pieces: Complex, closed: bool, asked: Asked, reach: float = 0.0) -> Points:
@@ -110,7 +111,7 @@ def _chosen(
         chosen = at_most(dense, asked.max_points + closed, tolerance)
     away = astray(dense, chosen)
     found = dense[chosen[:-1] if closed else chosen]
-    return Points(found, away + chords if away or chords else 0.0)
+    return Points(found, away + chords, len(dense))
 
 
 def length_of(pieces: Complex) -> float:

@@ -21,7 +21,7 @@ from typing import Any
 import structlog
 
 from service.imports import reader
-from service.imports.limits import READ_S
+from service.imports.limits import MEMORY_MB, READ_S
 from service.jobs.orphans import tell_children
 from service.logs import Format
 from service.outlines.faults import Unsuitable
@@ -57,11 +57,11 @@ class _Call:
 
 
 class ImportDesk:
-    """Has files read, each in its turn."""
+    """Has files read, each in its turn; ``memory_mb`` is what a file may take."""
 
-    def __init__(self, log_level: str, log_format: Format) -> None:
+    def __init__(self, log_level: str, log_format: Format, memory_mb: int = MEMORY_MB) -> None:
         self._calls: SimpleQueue[_Call | None] = SimpleQueue()
-        self._settings = (os.getpid(), log_level, log_format)
+        self._settings = (os.getpid(), log_level, log_format, memory_mb)
         self._lock = threading.Lock()
         self._hands: list[_Hand] = []
 
@@ -105,7 +105,7 @@ class _Hand(threading.Thread):
     The thread starts the process, which dies with it (:func:`service.jobs.orphans.die_with`).
     """
 
-    def __init__(self, n: int, calls: SimpleQueue[_Call | None], settings: tuple[int, str, Format]) -> None:
+    def __init__(self, n: int, calls: SimpleQueue[_Call | None], settings: tuple[int, str, Format, int]) -> None:
         super().__init__(name=f"reader-{n}", daemon=True)
         self._calls = calls
         self._settings = settings

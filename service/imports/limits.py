@@ -9,6 +9,9 @@ MOST_POINTS = 100_000
 PNG = b"\x89PNG\r\n\x1a\n"
 """What a PNG file begins with."""
 
+MOST_LOOKED = 300_000
+"""Points of all curves of a file together, before they are thinned."""
+
 MOST_PIXELS = 1 << 24
 """Of a picture: 4096 by 4096."""
 

@@ -77,13 +77,13 @@ def picture_of(content: bytes) -> Picture:
 
 def _samples(content: bytes) -> tuple[Samples, Samples | None, tuple[float, float] | None]:
     """Lightness, rows upwards; opacity where any is stated; millimetres of a pixel across and up."""
+    # Where it begins as it must; the library would refuse the largest in words of its own.
+    _bounded(int.from_bytes(content[16:20], "big"), int.from_bytes(content[20:24], "big"))
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             with Image.open(io.BytesIO(content), formats=("PNG",)) as picture:
-                width, height = picture.size
-                if width * height > MOST_PIXELS:
-                    raise Unsuitable(f"The picture has {width} × {height} pixels, more than {MOST_PIXELS}.")
+                _bounded(*picture.size)
                 density = picture.info.get("dpi")
                 opacity = None
                 if picture.mode.startswith("I"):
@@ -102,6 +102,11 @@ def _samples(content: bytes) -> tuple[Samples, Samples | None, tuple[float, floa
     if density and all(1e-3 < side < 1e9 for side in density):
         millimetres = (25.4 / float(density[0]), 25.4 / float(density[1]))
     return lightness[::-1], None if opacity is None else opacity[::-1], millimetres
+
+
+def _bounded(width: int, height: int) -> None:
+    if width * height > MOST_PIXELS:
+        raise Unsuitable(f"The picture has {width} × {height} pixels, more than {MOST_PIXELS}.")
 
 
 def _field(lightness: Samples, opacity: Samples | None) -> tuple[Samples, float]:

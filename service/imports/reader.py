@@ -11,7 +11,6 @@ from typing import Any, Final, Literal
 
 import structlog
 
-from service.imports.limits import MEMORY_MB
 from service.jobs.confined import confine, limit_memory
 from service.logs import Format
 from service.outlines import faults
@@ -47,14 +46,14 @@ class Fault:
         return _FAULTS[self.kind](self.message)
 
 
-def serve(pipe: Connection, server_pid: int, log_level: str, log_format: Format) -> None:
+def serve(pipe: Connection, server_pid: int, log_level: str, log_format: Format, memory_mb: int) -> None:
     """Read files from a pipe until it is closed."""
     confine(server_pid, log_level, log_format)
     from service.imports.reading import imports_of
     from service.outlines.reading import outlines_of
 
     doors = {"imports": imports_of, "outlines": outlines_of}
-    limit_memory(MEMORY_MB)
+    limit_memory(memory_mb)
     pipe.send(READY)
     while True:
         try:

@@ -10,7 +10,7 @@ import numpy as np
 
 from service.imports.answer import Format, ImportedCurve, ImportedPoint, Imports
 from service.imports.curve_points import Asked, Points, length_of, length_of_points, of_pieces, of_points
-from service.imports.limits import DEFAULT_POINTS, MOST_CURVES, MOST_POINTS, PNG
+from service.imports.limits import DEFAULT_POINTS, MOST_CURVES, MOST_LOOKED, MOST_POINTS, PNG
 from service.imports.picture import COARSE, FINE, picture_of
 from service.imports.table import table_of
 from service.outlines.answer import DrawingUnit, sentence, short, told, told_left_out
@@ -162,10 +162,10 @@ def _answer(
         raise Unsuitable(f"The file has {len(found)} curves, more than {MOST_CURVES}.")
     curves = []
     left_out = list(left_out)
-    total = 0
+    total = looked = 0
     for one in found:
         try:
-            points, tolerance = one.chosen(asked)
+            points, tolerance, looked_at = one.chosen(asked)
         except ValueError as error:
             if isinstance(error, Unsuitable):
                 raise
@@ -174,9 +174,9 @@ def _answer(
         if not np.all(np.abs(points) <= FARTHEST):
             left_out.append((one.source, f"its coordinates go beyond {FARTHEST:g}, or are no numbers"))
             continue
-        total += len(points)
-        if total > MOST_POINTS:
-            raise Unsuitable(f"The curves have more than {MOST_POINTS} points together; give a larger tolerance.")
+        total, looked = total + len(points), looked + looked_at
+        if total > MOST_POINTS or looked > MOST_LOOKED:
+            raise Unsuitable(f"The curves take more than {MOST_POINTS} points together; give a larger tolerance.")
         named: dict[str, Any] = told(one.source)
         curves.append(
             ImportedCurve(

@@ -17,11 +17,8 @@ from numpy.typing import NDArray
 
 from service.outlines.curves import Complex
 
-MOST_TRIES = 16
+MOST_TRIES = 12
 """Tolerances that are tried for a number of points; each is a pass over the curve."""
-
-SMALLEST = 1e-9
-"""Share of the extent that is tried first where no tolerance is known."""
 
 NEAR_ENOUGH = 0.9
 """A curve that has this share of the points that it may have is not tried with more."""
@@ -44,29 +41,29 @@ def thinned(points: Complex, tolerance: float, kept: Sequence[bool] | NDArray[np
     last = len(x) - 1
     chosen = [0]
     anchor, k = 0, 1
-    low = high = middle = reach = 0.0
+    # The wedge from its right to its left side, as vectors, and the square of the distance that was reached.
     opened = False
+    right_x = right_y = left_x = left_y = reach = 0.0
+    narrow = tolerance * tolerance
     while k <= last:
         dx, dy = x[k] - x[anchor], y[k] - y[anchor]
-        distance = math.hypot(dx, dy)
-        fits = True
-        if opened:
-            # The direction, measured from the first one that the wedge had.
-            turn = math.remainder(math.atan2(dy, dx) - middle, math.tau)
-            fits = low <= turn <= high and distance >= reach
-        if not fits:
+        square = dx * dx + dy * dy
+        if opened and not (square >= reach and right_x * dy - right_y * dx >= 0.0 and dx * left_y - dy * left_x >= 0.0):
             # The point before was the last that one chord reaches.
             anchor = k - 1
             chosen.append(anchor)
             opened, reach = False, 0.0
             continue
-        if distance > tolerance:
-            half = math.asin(tolerance / distance)
-            if opened:
-                low, high = max(low, turn - half), min(high, turn + half)
-            else:
-                opened, middle, low, high = True, math.atan2(dy, dx), -half, half
-            reach = max(reach, distance)
+        if square > narrow:
+            # The tangents to the circle about the point, as wide as the tolerance.
+            along = math.sqrt(square - narrow)
+            from_x, from_y = dx * along + dy * tolerance, dy * along - dx * tolerance
+            to_x, to_y = dx * along - dy * tolerance, dy * along + dx * tolerance
+            if not opened or right_x * from_y - right_y * from_x > 0.0:
+                right_x, right_y = from_x, from_y
+            if not opened or to_x * left_y - to_y * left_x > 0.0:
+                left_x, left_y = to_x, to_y
+            opened, reach = True, square
         if stays[k] or k == last:
             anchor = k
             chosen.append(k)
@@ -85,9 +82,11 @@ def at_most(points: Complex, count: int, tolerance: float) -> NDArray[np.int64]:
     free = np.zeros(len(points), bool)
     low, high = tolerance, np.inf
     above = np.arange(len(points))
-    tried = 4.0 * max(tolerance, SMALLEST * float(np.abs(points - points[0]).max()))
+    # Of a circle it takes the square of π over the number of its chords.
+    tried = max(4.0 * tolerance, float(np.abs(points - points[0]).max()) / count**2)
     for _ in range(MOST_TRIES):
-        found = thinned(points, tried, free)
+        # What a smaller tolerance has left out is nearer than that.
+        found = above[thinned(points[above], tried, free[above])]
         if NEAR_ENOUGH * count <= len(found) <= count:
             return found
         if len(found) < count:
@@ -95,16 +94,15 @@ def at_most(points: Complex, count: int, tolerance: float) -> NDArray[np.int64]:
         else:
             low, above = tried, found
         tried = 4.0 * tried if np.isinf(high) else math.sqrt(low * high) if low > 0.0 else 0.25 * high
-    while len(above) > count:
+    while (excess := len(above) - count) > 0:
         at = points[above]
         one, other = at[1:-1] - at[:-2], at[2:] - at[1:-1]
-        area = np.full(len(at), np.inf)
-        area[1:-1] = np.abs((one.conj() * other).imag)
-        # Of two neighbours one goes at a time, of equal ones the first.
-        least = (area[1:-1] < area[:-2]) & (area[1:-1] <= area[2:])
-        gone = 1 + np.flatnonzero(least)
-        gone = gone[np.argsort(area[gone], kind="stable")[: len(above) - count]]
-        above = np.delete(above, gone)
+        area = np.abs((one.conj() * other).imag)
+        # Some at once where many must go, but no two neighbours.
+        smallest = np.sort(np.argpartition(area, excess // 4)[: excess // 4 + 1])
+        begins = np.append(True, np.diff(smallest) > 1)
+        run = np.arange(len(smallest)) - np.maximum.accumulate(np.where(begins, np.arange(len(smallest)), 0))
+        above = np.delete(above, 1 + smallest[run % 2 == 0])
     return above
 
 
