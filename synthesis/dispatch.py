@@ -161,7 +161,10 @@ def compile_kind(name: str) -> None:
 
 
 def compile_demands() -> None:
-    """Compile what no example calls: linkages that weigh, are made, are steered into a room, sixbars of each type."""
+    """Compile what no example calls: linkages that weigh, are made, are steered into a room, sixbars of each type.
+
+    Those of motions may stand on a chain that is stated.
+    """
     statement = KINDS["motion"].examples[0] | {
         "max_designs": 1,
         "dynamics": {"links": {"density": 1.0, "thickness": 1.0, "width": 1.0}, "speed_rpm": 1.0},
@@ -184,6 +187,9 @@ def compile_demands() -> None:
     turns = {"kind": "function", "pairs": [{"input": 20.0 * x, "output": 9.0 * x + x * x} for x in range(4)]}
     solve(KINDS["function"].problem.model_validate(turns | weighed))
     sixbars = {"mechanisms": ["stephenson_2", "stephenson_3"], "max_designs": 1}
+    five = next(example["positions"] for example in KINDS["motion"].examples if example.get("mechanisms"))
+    stated = {"kind": "motion", "positions": five, "mechanisms": ["watt_1"], "chain": {"elbow": "left"}}
+    solve(KINDS["motion"].problem.model_validate(stated | {"max_designs": 1}))
     sine = {
         "kind": "function",
         "function": {"name": "sine", "x": [0.0, 90.0]},

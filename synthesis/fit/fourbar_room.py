@@ -17,6 +17,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numba import types
 from numpy.typing import NDArray
 
 from kinematics.compiling import njit
@@ -28,6 +29,8 @@ from synthesis.fit.room_margins import ROW, add_derivative, margins_of, parabola
 from synthesis.numerics.augmented_lagrangian import load_of
 
 Real = NDArray[np.float64]
+
+_VECTOR, _MATRIX = types.float64[::1], types.float64[:, ::1]
 Complex = NDArray[np.complex128]
 
 LINKAGE = 9
@@ -140,7 +143,13 @@ def fourbar_margins(
     return bool(force_margins(x, lengths, sign, ends, room[int(room[FORCES_AT]) :], values[len(values) - forced :]))
 
 
-@njit(**OPTIONS)
+@njit(
+    types.int64(
+        _VECTOR, _VECTOR, _MATRIX, types.float64, _VECTOR, _MATRIX, types.boolean, types.int64, _VECTOR, _VECTOR,
+        _VECTOR, _VECTOR, _MATRIX, types.int64
+    ),
+    **OPTIONS,
+)  # fmt: skip
 def room_rows(
     x: Real,
     lengths: Real,
