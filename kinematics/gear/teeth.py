@@ -37,16 +37,30 @@ def involute(angle: float) -> float:
     return math.tan(angle) - angle
 
 
-def tangent_of_involute(value: float) -> float:
-    """tan φ of the angle φ in (0, π/2) with tan φ − φ = ``value`` > 0, by Newton's method; kernels compile it."""
+def tangent_of_involute(value: float, near: float = 0.0, told: float = 4e-16) -> float:
+    """tan φ of the angle φ in (0, π/2) with tan φ − φ = ``value`` > 0, by Newton's method; kernels compile it.
+
+    Parameters
+    ----------
+    value : float
+    near : float
+        A first value; one is estimated where it is not positive.
+    told : float
+        The last step is less than this share; the error, as those of Newton are, less than about its square.
+    """
     # In t = tan φ the function t − atan t is convex and increasing: from a start above the root Newton falls onto it.
     # t − atan t ≥ t³/3/(1 + t²) gives the start for small values, t ≤ value + π/2 the one for large.
-    t: float = min(value + 0.5 * math.pi, 1.2 * (3.0 * value) ** (1.0 / 3.0) + value)
-    for _ in range(60):
+    t: float = near if near > 0.0 else min(value + 0.5 * math.pi, 1.2 * (3.0 * value) ** (1.0 / 3.0) + value)
+    before = 0.0
+    for left in range(59, -1, -1):
         step = (t - math.atan(t) - value) * (1.0 + t * t) / (t * t)
-        t -= step
-        if abs(step) <= 4e-16 * t:
+        last, t = t, t - step
+        if abs(step) <= told * t:
             break
+        if t == before:
+            # Rounding goes to and fro between two neighbours; the last of all steps decides.
+            return t if left % 2 == 0 else last
+        before = last
     return t
 
 

@@ -9,7 +9,7 @@ import pytest
 from numba import njit
 from numpy.typing import NDArray
 
-from kinematics.gear import shifting
+from kinematics.gear import shift_sums, shifting
 from kinematics.gear.flanks import Contact, rack_cut_form, straight_depth
 from kinematics.gear.shifting import Demands
 from kinematics.gear.teeth import Gear, Mesh
@@ -56,8 +56,8 @@ def grids_agree(asked: Demands, numbers: range, sums: int, splits: int) -> int:
             if not len(kept):
                 continue
             suited += 1
-            parts = shifting.sums_that_suit(teeth, mate, low, high, asked)
-            assert math.isfinite(shifting.sum_that_suits(teeth, mate, low, high, asked)), (teeth, mate)
+            parts = shift_sums.sums_that_suit(teeth, mate, low, high, asked)
+            assert math.isfinite(shift_sums.sum_that_suits(teeth, mate, low, high, asked)), (teeth, mate)
             for total in low + (high - low) * kept / sums:
                 assert any(near - 1e-9 <= total <= far + 1e-9 for near, far in parts), (teeth, mate, total)
             for near, far in parts:
@@ -69,7 +69,7 @@ def grids_agree(asked: Demands, numbers: range, sums: int, splits: int) -> int:
 
 def sum_suits(teeth: int, mate: int, total: float, asked: Demands) -> bool:
     working = shifting.with_sum(teeth, mate, total, asked)
-    return bool(working.distance > 0.0 and shifting.suits(teeth, mate, working, asked))
+    return bool(working.distance > 0.0 and shift_sums.suits(teeth, mate, working, asked))
 
 
 @pytest.mark.parametrize("asked", ASKED)
@@ -87,7 +87,7 @@ def test_all_sums_of_all_pairs_are_found(asked: Demands) -> None:
 def test_sums_that_suit_may_be_two_intervals() -> None:
     """12:33 keeps a tip of 0.45 modules and a contact ratio of 1.22 with less shift and with more, not between."""
     asked = demands(25.0, -0.35, 0.72, 1.22, 0.45)
-    parts = shifting.sums_that_suit(12, 33, -0.7, 1.44, asked)
+    parts = shift_sums.sums_that_suit(12, 33, -0.7, 1.44, asked)
     assert parts == pytest.approx(np.array([[-0.3552, -0.2077], [0.2223, 0.9171]]), abs=1e-3)
     grid = np.flatnonzero(on_a_grid(12, 33, -0.7, 1.44, 1000, 400, asked))
     assert np.count_nonzero(np.diff(grid) > 100) == 1
@@ -105,7 +105,7 @@ def test_sums_that_suit_may_be_two_intervals() -> None:
 )
 def test_sums_between_those_of_the_grid_are_found(pair: tuple[int, int], asked: Demands) -> None:
     """Where sums suit over some 1e-3, the search goes by the true margins of those that do not."""
-    sound = shifting.sum_that_suits(*pair, 2.0 * asked.least_shift, 2.0 * asked.most_shift, asked)
+    sound = shift_sums.sum_that_suits(*pair, 2.0 * asked.least_shift, 2.0 * asked.most_shift, asked)
     assert sum_suits(*pair, sound, asked)
 
 
@@ -113,7 +113,7 @@ def test_sums_between_those_of_the_grid_are_found(pair: tuple[int, int], asked: 
 @pytest.mark.parametrize("pair", [(23, 23), (18, 55), (25, 30), (40, 90)])
 def test_the_split_is_the_nearest_to_balanced_sliding(pair: tuple[int, int], asked: Demands) -> None:
     """Of 2000 splits none that keeps the demands has less difference of specific sliding."""
-    sound = shifting.sum_that_suits(*pair, 2.0 * asked.least_shift, 2.0 * asked.most_shift, asked)
+    sound = shift_sums.sum_that_suits(*pair, 2.0 * asked.least_shift, 2.0 * asked.most_shift, asked)
     if not math.isfinite(sound):
         pytest.fail("a pair of this table suits")
     working = shifting.with_sum(*pair, sound, asked)

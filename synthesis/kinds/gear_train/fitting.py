@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.gear import shifting
+from kinematics.gear import shift_sums, shifting
 from kinematics.gear.flanks import least_shift_of_rack, straight_depth
 from kinematics.gear.shifting import Demands
 from kinematics.gear.teeth import FULL_DEPTH_DEDENDUM
@@ -111,7 +111,7 @@ class Fit:
         pair, standard = (min(a, b), max(a, b)), 0.5 * (a + b)
         low = max(2.0 * demands.least_shift, self._sum_at(row, pair, limits[0] / module, -math.inf))
         high = min(2.0 * demands.most_shift, self._sum_at(row, pair, limits[1] / module, math.inf))
-        sums = shifting.sums_that_suit(*pair, low, high, demands)
+        sums = shift_sums.sums_that_suit(*pair, low, high, demands)
         if any(least <= 0.0 <= most for least, most in sums):
             return module * standard
         spans = [[module * float(shifting.with_sum(*pair, total, demands).distance) for total in span] for span in sums]
@@ -245,7 +245,7 @@ def _sound_between(asked: bytes, n: int, low: float, high: float, ends: bool, de
     """What pairs can take up depends on no ratio: who tries one ratio after another has it found once."""
     pairs = np.frombuffer(asked, np.bool_).reshape(n, n)
     least, most = (np.where(pairs, end, math.nan) for end in (low, high))
-    found = np.asarray(shifting.sound_between(least, most, ends, demands))
+    found = np.asarray(shift_sums.sound_between(least, most, ends, demands))
     found.flags.writeable = False
     return found
 

@@ -1,0 +1,98 @@
+"""Splits of sums of shifts: slopes decide as golden sections do, over the whole range and at its limits."""
+
+from __future__ import annotations
+
+import math
+from random import Random
+
+import pytest
+
+from kinematics.gear import shift_sums, shifting, splits
+from kinematics.gear.flanks import straight_depth
+from kinematics.gear.shifting import KEPT, TOLD, Demands
+from kinematics.gear.teeth import tangent_of_involute
+
+
+def drawn(rng: Random) -> tuple[int, int, Demands]:
+    """A pair and what it has to keep, every third one of helical gears."""
+    phi = math.radians(rng.choice([14.5, 17.5, 20.0, 22.5, 25.0, 28.0]))
+    shrunk = rng.choice([1.0, 1.0, math.cos(math.radians(20.0))])
+    least = rng.uniform(-1.0, 0.1)
+    demands = Demands(
+        math.atan(math.tan(phi) / shrunk),
+        shrunk * straight_depth(phi, 1.25),
+        shrunk * least,
+        shrunk * (least + rng.uniform(0.1, 2.0)),
+        rng.uniform(1.05, 1.6),
+        shrunk * rng.uniform(0.1, 0.8),
+        shrunk,
+    )
+    return rng.randint(6, 60), rng.randint(8, 120), demands
+
+
+def test_slopes_decide_as_golden_sections_do() -> None:
+    """Some of the sums are within 1e-9 modules of where the last sound split is lost."""
+    rng = Random(5)
+    verdicts: list[bool] = []
+    for number in range(2500):
+        teeth, mate, demands = drawn(rng)
+        low, high = 2.0 * demands.least_shift, 2.0 * demands.most_shift
+        total = rng.uniform(low, high)
+        if number % 3 == 0:
+            ends = shift_sums.sums_that_suit(teeth, mate, low, high, demands)
+            if len(ends):
+                total = rng.choice(ends.ravel().tolist()) + rng.uniform(-1e-9, 1e-9)
+        working, rack = shifting.with_sum(teeth, mate, total, demands), shifting.rack_of(demands)
+        if not working.distance > 0.0:
+            continue
+        sound = shifting.best_split(teeth, mate, working, demands, -KEPT)[1] >= -KEPT
+        guess = rng.choice([math.nan, rng.uniform(low, high)])
+        split = splits.sound_split(teeth, mate, working, demands, rack, guess)
+        assert math.isinf(split) or sound != math.isnan(split)
+        if math.isfinite(split):
+            assert shifting.margin(teeth, mate, working, split, demands) >= -KEPT
+        assert shift_sums.suits(teeth, mate, working, demands) == sound
+        verdicts.append(sound)
+        greatest = shifting.best_split(teeth, mate, working, demands, math.inf)[1]
+        margin = splits.greatest_margin(teeth, mate, working, demands, rack, guess)
+        if math.isfinite(margin.split):
+            assert margin.most - TOLD <= margin.least
+            assert (margin.least >= -KEPT) == sound
+            assert shifting.margin(teeth, mate, working, margin.split, demands) == margin.least
+        assert margin.least - TOLD <= greatest <= margin.most + 1e-12 or greatest == margin.most
+    assert 300 < sum(verdicts) < len(verdicts) - 300
+
+
+def test_a_pair_nearby_is_the_pair_of_the_sum() -> None:
+    """Few of Newton's steps, from the pair of another sum on, and all of them, from afar."""
+    rng = Random(6)
+    for _ in range(500):
+        teeth, mate, demands = drawn(rng)
+        rack = shifting.rack_of(demands)
+        totals = [rng.uniform(2.0 * demands.least_shift, 2.0 * demands.most_shift) for _ in range(2)]
+        _, near = shifting.nearby(teeth, mate, totals[0], rack, 0.0, shifting.TO_THE_LAST)
+        told, tangent = shifting.nearby(teeth, mate, totals[1], rack, near, shift_sums.NEWTON)
+        exact = shifting.with_sum(teeth, mate, totals[1], demands)
+        if exact.distance > 0.0:
+            assert told == pytest.approx(exact, rel=1e-12, abs=1e-12)
+            assert tangent == pytest.approx(told.line / (0.5 * (teeth + mate) * rack.cosine), rel=1e-14)
+        else:
+            assert math.isnan(told.distance)
+
+
+def test_newton_goes_to_and_fro_without_a_difference() -> None:
+    """The last digits are those of sixty of Newton's steps, whether or not they are all taken."""
+    rng = Random(7)
+    fro = 0
+    for _ in range(3000):
+        value = rng.uniform(0.002, 0.08)
+        t = min(value + 0.5 * math.pi, 1.2 * (3.0 * value) ** (1.0 / 3.0) + value)
+        for _ in range(60):
+            step = (t - math.atan(t) - value) * (1.0 + t * t) / (t * t)
+            t -= step
+            if abs(step) <= 4e-16 * t:
+                break
+        else:
+            fro += 1
+        assert tangent_of_involute(value) == t
+    assert fro > 100
