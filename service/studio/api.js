@@ -9,6 +9,9 @@
 /** @typedef {{element: string, id: string | null, name: string | null, layer: string | null, reason: string}} LeftOut */
 /** @typedef {{millimetres_per_unit: number | null, length_unit: string | null, scale: number, tolerance: number, outlines: Drawn[], left_out: LeftOut[], left_out_count: number}} Outlines */
 
+/** @typedef {{element: string, id: string | null, name: string | null, layer: string | null, points: {x: number, y: number}[], closed: boolean, length: number, tolerance: number, joined: number}} Curve */
+/** @typedef {{format: string, millimetres_per_unit: number | null, length_unit: string | null, scale: number, curves: Curve[], left_out: LeftOut[], left_out_count: number}} Curves */
+
 const KEY = "mechsynth.key";
 const RECONNECT_MS = 1000;
 
@@ -150,6 +153,14 @@ export async function outlines(drawing, unit) {
   const headers = { "Content-Type": "application/octet-stream" };
   const asked = () => ask(`/v1/outlines?${new URLSearchParams({ length_unit: unit })}`, { method: "POST", headers, body: drawing });
   return (await patiently(asked)).json();
+}
+
+/** The curves of a drawing, a table or a picture. @param {File} file @param {string} unit of the answer, where the file states its own @param {number} most points of a curve @returns {Promise<Curves>} */
+export async function curves(file, unit, most) {
+  // Some systems know no type for a table.
+  const headers = { "Content-Type": "application/octet-stream" };
+  const query = new URLSearchParams({ length_unit: unit, max_points: String(most) });
+  return (await patiently(() => ask(`/v1/imports?${query}`, { method: "POST", headers, body: file }))).json();
 }
 
 /**

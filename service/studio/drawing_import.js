@@ -154,7 +154,7 @@ function stated(space) {
 }
 
 /** @param {{element: string, id: string | null, name: string | null, layer: string | null}} one */
-function called({ element, id, name, layer }) {
+export function called({ element, id, name, layer }) {
   const own = [name, id].filter((text) => text !== null).join(", ") || element;
   return layer === null ? own : `${own} on ${layer}`;
 }
@@ -165,7 +165,7 @@ function around({ center: [x, y], radius }) {
 }
 
 /** @param {Point[]} points @param {number} axis */
-function spread(points, axis) {
+export function spread(points, axis) {
   const values = points.map((point) => point[axis]);
   return Math.max(...values) - Math.min(...values);
 }
@@ -176,6 +176,6 @@ function scaled([x, y], factor) {
 }
 
 /** @param {number} value */
-function rounded(value) {
+export function rounded(value) {
   return Number(value.toPrecision(DIGITS));
 }

@@ -2,6 +2,8 @@
 
 import * as api from "./api.js";
 import * as answers from "./answers.js";
+import { Backdrop } from "./backdrop.js";
+import { CurveImport } from "./curve_import.js";
 import { byId, el } from "./dom.js";
 import * as faults from "./faults.js";
 import { fill } from "./form.js";
@@ -19,9 +21,15 @@ let history;
 let posted = { id: "", problem: null };
 /** The statement whose answers are shown; null while there are none. @type {any} */
 let answered = null;
+/** @type {CurveImport | undefined} */
+let imported;
 
 const fields = byId("fields");
 const text = byId("json-text");
+
+const backdrop = new Backdrop(() => {
+  if (kinds.length) show({ form: false, json: false });
+});
 
 /** @param {any} error */
 function tell(error) {
@@ -33,13 +41,18 @@ function kind() {
   return kinds.find((one) => one.kind === problem.kind) ?? kinds[0];
 }
 
+/** Whether the problem may state the room. */
+function roomy() {
+  return "space" in kind().schema.properties;
+}
+
 /**
  * Show the problem in the form, on the canvas and as JSON; where it was changed stays as it is.
  * @param {{form?: boolean, sketch?: boolean, json?: boolean}} [parts]
  */
 function show({ form = true, sketch = true, json = true } = {}) {
   if (form) fill(fields, kind().schema, problem, (rebuilt) => edited({ form: rebuilt }));
-  if (sketch) canvas(byId("sketch"), problem, "space" in kind().schema.properties, (rebuilt) => edited({ form: rebuilt, sketch: rebuilt }));
+  if (sketch) canvas(byId("sketch"), problem, roomy(), (rebuilt) => edited({ form: rebuilt, sketch: rebuilt }), backdrop);
   if (json) {
     text.value = JSON.stringify(problem, null, 2);
     text.removeAttribute("aria-invalid");
@@ -154,6 +167,7 @@ async function begin() {
   }
   tell("");
   choices();
+  imported ??= new CurveImport(byId("import"), backdrop, () => ({ problem, roomy: roomy() }), () => edited({}));
   history = new History(byId("jobs"), kinds);
   state(kinds[0].example);
   byId("example").value = "0";

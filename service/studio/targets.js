@@ -34,9 +34,9 @@ const kept = new WeakMap();
 
 /**
  * @param {HTMLElement} place @param {any} problem changed in place @param {boolean} roomy whether the problem may state the room
- * @param {(rebuilt: boolean) => void} changed
+ * @param {(rebuilt: boolean) => void} changed @param {import("./backdrop.js").Backdrop} backdrop what lies behind it
  */
-export function canvas(place, problem, roomy, changed) {
+export function canvas(place, problem, roomy, changed, backdrop) {
   const found = readable(problem);
   const before = kept.get(place);
   const memory = before && before.problem === problem ? before : { problem, view: null, led: false, room: { role: before?.room.role } };
@@ -44,9 +44,9 @@ export function canvas(place, problem, roomy, changed) {
   kept.set(place, memory);
   const graph = problem.kind === "function";
   const grip = place.contains(document.activeElement) ? document.activeElement?.getAttribute("data-grip") : null;
-  place.replaceChildren(...(found ? drawnPlane(place, problem, found, roomy && !graph, memory, changed) : []),
+  place.replaceChildren(...(found ? drawnPlane(place, problem, found, roomy && !graph, memory, changed, graph ? null : backdrop) : []),
     // The graph of a function is not the plane in which its linkage lies.
-    ...(graph && roomy ? drawnPlane(place, problem, bare(problem), true, memory, changed) : []));
+    ...(graph && roomy ? drawnPlane(place, problem, bare(problem), true, memory, changed, backdrop) : []));
   if (grip) /** @type {SVGElement | null} */ (place.querySelector(`[data-grip="${CSS.escape(grip)}"]`))?.focus({ preventScroll: true });
 }
 
@@ -58,22 +58,22 @@ function bare(problem) {
 /**
  * A picture of a plane, and what is done in it.
  * @param {HTMLElement} place @param {any} problem @param {import("./handles.js").Stated} found @param {boolean} roomy @param {Kept} memory
- * @param {(rebuilt: boolean) => void} changed
+ * @param {(rebuilt: boolean) => void} changed @param {import("./backdrop.js").Backdrop | null} backdrop
  */
-function drawnPlane(place, problem, { handles, lines, word, add, offers, freehand }, roomy, memory, changed) {
+function drawnPlane(place, problem, { handles, lines, word, add, offers, freehand }, roomy, memory, changed, backdrop) {
   const corners = roomy ? areas(problem.space).flatMap((area) => area.extent) : [];
   const points = [...handles.flatMap(({ get, name }) => (name === "ground" ? [] : [get()])), ...corners];
   const view = roomy && memory.view && (memory.led || memory.view.suits(points)) ? memory.view : new View(points, WIDTH, HEIGHT, corners.length ? 40 : 80);
   if (roomy) memory.view = view;
   const led = (/** @type {boolean} */ somewhere) => {
     Object.assign(memory, { view: somewhere ? view : null, led: somewhere });
-    canvas(place, problem, roomy, changed);
+    if (backdrop) canvas(place, problem, roomy, changed, backdrop);
   };
   const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "group", "aria-label": "The problem in the plane" });
   const trail = svg("path", { class: "trail" });
   const pen = svg("path", { class: "pen" });
   const room = roomy ? new RoomEditor(picture, view, problem, memory.room, changed) : null;
-  picture.append(svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), ...grid(view), ...(room ? [room.node] : []), trail, pen);
+  picture.append(svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), ...(backdrop?.drawn(view, picture) ?? []), ...grid(view), ...(room ? [room.node] : []), trail, pen);
   const redraw = () => trail.setAttribute("d", lines().map((/** @type {any} */ line) => view.path(line)).join(""));
   const drawn = handles.map((handle, k) => held(handle, `${word ?? "handle"}${k}`, view, picture, () => drawn.forEach((one) => one.show()), redraw, changed));
   picture.append(...drawn.map((one) => one.group));
