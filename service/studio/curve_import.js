@@ -111,7 +111,10 @@ export class CurveImport {
     this.said.textContent = `Reading ${file.name} …`;
     this.button.disabled = true;
     try {
-      this.show(file, await api.curves(file, unit, most), unit, most);
+      const found = await api.curves(file, unit, most);
+      // An area is as it is drawn, however few points a path is to have.
+      const areas = most < OF_AREA && this.uses().some(({ closed }) => closed) ? await api.curves(file, unit, OF_AREA) : found;
+      if (file === this.file) this.show(file, found, areas, unit, most);
     } catch (error) {
       const why = error instanceof api.Refused ? error.errors.map((one) => el("li", {}, `${one.path.slice(1)}: ${one.detail}`)) : [];
       this.said.textContent = `${file.name}: ${error instanceof Error ? error.message : error}`;
@@ -122,8 +125,8 @@ export class CurveImport {
     }
   }
 
-  /** The curves, each with the choice of its use. @param {File} file @param {api.Curves} found @param {string} unit @param {number} most */
-  show(file, found, unit, most) {
+  /** The curves, each with the choice of its use. @param {File} file @param {api.Curves} found @param {api.Curves} areas the same with more points @param {string} unit @param {number} most */
+  show(file, found, areas, unit, most) {
     const uses = this.uses();
     const stated = this.stated().problem;
     const scale = el("input", { type: "number", id: "curve-scale", step: "any", min: 0, value: Number(found.scale.toPrecision(9)), oninput: () => told() });
@@ -136,7 +139,7 @@ export class CurveImport {
       return [rounded(u), rounded(v)];
     });
     const rows = found.curves.map((curve, k) => row(curve, k, uses));
-    const place = el("button", { type: "button", class: "small", id: "curve-place", onclick: () => this.place(file.name, rows, placed) }, "Use");
+    const place = el("button", { type: "button", class: "small", id: "curve-place", onclick: () => this.place(file.name, rows, (k, area) => placed((area ? areas : found).curves[k])) }, "Use");
     const told = () => {
       for (const { curve, size } of rows) {
         const points = placed(curve);
@@ -178,15 +181,15 @@ export class CurveImport {
     }
   }
 
-  /** @param {string} name @param {{curve: Curve, use: any}[]} rows @param {(curve: Curve) => Point[]} placed */
+  /** @param {string} name @param {{curve: Curve, use: any}[]} rows @param {(k: number, area: boolean) => Point[]} placed */
   place(name, rows, placed) {
     const uses = this.uses();
     let count = 0;
     try {
-      for (const { curve, use } of rows) {
+      for (const [k, { curve, use }] of rows.entries()) {
         const chosen = uses.find((one) => one.name === use.value);
         if (!chosen) continue;
-        chosen.state(placed(curve), curve.closed);
+        chosen.state(placed(k, chosen.closed === true), curve.closed);
         count += 1;
       }
     } catch (error) {

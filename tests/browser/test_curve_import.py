@@ -90,6 +90,7 @@ def test_a_dropped_drawing_becomes_a_path_and_areas(studio):
     assert z[[0, -1]] == pytest.approx(np.array([10 + 10j, 70 + 20j]))
     assert now["closed"] is False
     post = np.array(now["space"]["obstacles"][0]["polygon"]) @ np.array([1, 1j])
+    assert len(post) > 60  # not the nine that the path is to have
     assert np.abs(post - (50 + 80j)) == pytest.approx(np.full(len(post), 4), rel=1e-6)
     assert page.locator("#sketch .room .area.obstacle").count() == 1
 
