@@ -102,13 +102,18 @@ def _chosen(
         if len(dense) > 1 and abs(dense[-1] - dense[0]) <= same:
             dense, kept = dense[:-1], kept[:-1]
         dense, kept = np.append(dense, dense[0]), np.append(kept, True)
-    if len(dense) < 2 + closed:
+    if len(dense) < 2:
         raise ValueError("it has no length")
+    if closed and len(dense) < 4:
+        raise ValueError("it goes to and fro, and encloses nothing")
     if asked.tolerance is not None:
         kept = np.zeros(len(dense), bool)
     chosen = thinned(dense, tolerance, kept) if tolerance > 0.0 else np.arange(len(dense))
     if len(chosen) - closed > asked.max_points:
         chosen = at_most(dense, asked.max_points + closed, tolerance)
+    elif closed and len(chosen) < 4:
+        # However large the tolerance, it goes around something.
+        chosen = at_most(dense, 4, tolerance)
     away = astray(dense, chosen)
     found = dense[chosen[:-1] if closed else chosen]
     return Points(found, away + chords, len(dense))

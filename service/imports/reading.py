@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -96,20 +96,28 @@ def imports_of(
 def _drawing(drawing: Drawing, length_unit: DrawingUnit, asked: Asked) -> Imports:
     curves, left_out, scale, unit = placed(drawing, length_unit)
     reach = JOINED * (asked.tolerance if asked.tolerance is not None else DEFAULT_TOLERANCE * extent(curves))
-    found = list(_connected(curves, reach))
-    return _answer(drawing.format, found, left_out, drawing.millimetres, unit, scale, asked)
+    found, tiny = _connected(curves, reach)
+    return _answer(drawing.format, found, [*left_out, *tiny], drawing.millimetres, unit, scale, asked)
 
 
-def _connected(curves: Sequence[Curve], reach: float) -> Iterator[Found]:
-    """What is closed by itself, and what is joined of the rest, in the order of the drawing."""
+def _connected(curves: Sequence[Curve], reach: float) -> tuple[list[Found], LeftOut]:
+    """What is closed by itself, and what is joined of the rest, in the order of the drawing; and what is too short."""
     place: dict[int, int] = {}
     for k, one in enumerate(curves):
         place.setdefault(id(one.source), k)
-    open_ = [one for one in curves if not one.closed and extent([one]) > reach]
+    open_: list[Curve] = []
+    tiny: LeftOut = []
+    for one in curves:
+        if not one.closed and extent([one]) > reach:
+            open_.append(one)
+        elif not one.closed:
+            tiny.append((one.source, "it is no longer than the gap between ends that are joined"))
     found = [([one], True, 0.0) for one in curves if one.closed]
     found += [(chain.members, chain.closed, reach) for chain in chains(open_, reach)]
-    for members, closed, near in sorted(found, key=lambda one: min(place[id(each.source)] for each in one[0])):
-        yield Found(members[0].source, _pieces(members), closed, len(members), near)
+    found.sort(key=lambda one: min(place[id(each.source)] for each in one[0]))
+    return [
+        Found(members[0].source, _pieces(members), closed, len(members), near) for members, closed, near in found
+    ], tiny
 
 
 def _picture(content: bytes, length_unit: DrawingUnit, pixel_size: float | None, asked: Asked) -> Imports:
@@ -158,10 +166,9 @@ def _answer(
     scale: float,
     asked: Asked,
 ) -> Imports:
-    if len(found) > MOST_CURVES:
-        raise Unsuitable(f"The file has {len(found)} curves, more than {MOST_CURVES}.")
     curves = []
-    left_out = list(left_out)
+    found, shorter = _largest(found)
+    left_out = [*left_out, *shorter]
     total = looked = 0
     for one in found:
         try:
@@ -199,6 +206,19 @@ def _answer(
         curves=curves,
         left_out=told_left_out(left_out),
         left_out_count=len(left_out),
+    )
+
+
+def _largest(found: Sequence[Found]) -> tuple[Sequence[Found], LeftOut]:
+    """As many curves as an answer has, in their order; and those that are smaller, as left out."""
+    if len(found) <= MOST_CURVES:
+        return found, []
+    size = np.array([max(np.ptp(one.drawn.real), np.ptp(one.drawn.imag)) for one in found])
+    kept = set(np.argsort(-size, kind="stable")[:MOST_CURVES].tolist())
+    reason = f"it is smaller than the {MOST_CURVES} curves of an answer"
+    return (
+        [one for k, one in enumerate(found) if k in kept],
+        [(one.source, reason) for k, one in enumerate(found) if k not in kept],
     )
 
 

@@ -16,7 +16,7 @@ from service.outlines.limits import FARTHEST
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _UNIT = re.compile(r"(.*?)\s*[\[(]\s*([A-Za-z]+)\s*[\])]")
 LONGEST_CELL = 64
-"""Characters of a number."""
+"""Characters of a number, or of a name with its unit."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ def _named(cells: list[str], decimal_comma: bool) -> bool:
 
 def _columns(cells: list[str]) -> tuple[tuple[str, str], tuple[int, int], float | None]:
     """Names, places and unit of the two columns that are read."""
-    parted = [_UNIT.fullmatch(cell) for cell in cells]
+    parted = [_UNIT.fullmatch(cell) if len(cell) <= LONGEST_CELL else None for cell in cells]
     names = [found[1] if found else cell for found, cell in zip(parted, cells, strict=True)]
     lower = [name.lower() for name in names]
     columns = (lower.index("x"), lower.index("y")) if {"x", "y"} <= set(lower) else (0, 1)

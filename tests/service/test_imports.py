@@ -212,6 +212,32 @@ def test_what_gives_no_curve_is_told(client):
     assert "draws nothing" in refused(client, page(""), 422)["detail"]
 
 
+def test_what_is_next_to_nothing_gives_no_curve_and_what_is_closed_stays_around_something(client):
+    drawing = page(
+        '<path id="fro" d="M0 0h9z"/><path id="dot" d="M5 5h1e-9"/><path id="point" d="M5 5z"/>'
+        '<circle id="disc" cx="50" cy="50" r="9"/>'
+    )
+    for query in ({}, {"tolerance": 1e8}):
+        answer = found(client, drawing, **query)
+        (disc,) = answer["curves"]
+        assert disc["closed"]
+        assert len(disc["points"]) >= 3
+        assert shapely.Polygon(chords(disc)).area > 90
+        reasons = {one["id"]: one["reason"] for one in answer["left_out"]}
+        assert "fro" in reasons["fro"]
+        assert "gap" in reasons["dot"]
+
+
+def test_of_very_many_curves_the_largest_are_told(client):
+    lines = "".join(f'<path id="p{k}" d="M0 {k}h{k % 50 + 1}"/>' for k in range(1200))
+    answer = found(client, page(lines + '<path id="long" d="M-9 -9h99"/>'))
+    assert len(answer["curves"]) == 1000
+    assert answer["curves"][-1]["id"] == "long"
+    assert answer["left_out_count"] == 201
+    assert min(one["length"] for one in answer["curves"]) >= 9
+    assert "smaller" in answer["left_out"][0]["reason"]
+
+
 # Round trips.
 
 
