@@ -8,6 +8,8 @@
 #              multibody program is installed for them)
 # make fuzz    hundreds of requests of each operation, and of absurd problems of each kind; half an hour
 # make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
+# make docs    the site, in var/site: all pages, the references, and a gallery of machines that are solved for it
+# make test-docs  make the site, and see that every link holds and that what it shows has run
 # make package  a wheel, in dist/
 # make openapi  rewrite docs/openapi.json after a change of the API or of a kind of problem
 # make lock    resolve the dependencies of pyproject.toml anew
@@ -22,14 +24,15 @@ UV     := $(BIN)/uv
 PIP    := $(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check
 NODE   := tests/node/node_modules/.installed
 MULTIBODY := $(VENV)/.multibody
+SITE   := $(VENV)/.site
 
 # Files of tests are dealt out to two processes.
 SPREAD := -n 2 --dist loadfile
 
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: serve test fuzz test-cluster engines test-faults test-browser chromium campaign demo check quick bench openapi lock package \
-    clean suite cluster-rabbitmq cluster-redis
+.PHONY: serve test fuzz test-cluster engines test-faults test-browser chromium campaign demo check quick bench openapi lock package docs \
+    test-docs clean suite cluster-rabbitmq cluster-redis
 
 serve: $(SERVING)
 	@exec $(BIN)/mechsynth serve
@@ -41,7 +44,7 @@ test: $(STAMP)
 	@$(MAKE) --no-print-directory -j2 check suite
 
 suite: $(STAMP)
-	$(BIN)/pytest -m "not campaign and not fuzz and not faults and not browser and not cluster" $(SPREAD)
+	$(BIN)/pytest -m "not campaign and not fuzz and not faults and not browser and not cluster and not site" $(SPREAD)
 
 # The same tests of the service on PostgreSQL and Celery with RabbitMQ, and with Redis, side by side: the real servers,
 # on free ports. What only PostgreSQL has a part in is tried beside one of the two brokers.
@@ -100,7 +103,7 @@ check: $(STAMP)
 
 # The inner loop: everything but the tests marked slow.
 quick: $(STAMP)
-	$(BIN)/pytest -m "not slow and not campaign and not fuzz and not faults and not browser and not cluster" -q $(SPREAD)
+	$(BIN)/pytest -m "not slow and not campaign and not fuzz and not faults and not browser and not cluster and not site" -q $(SPREAD)
 
 bench: $(STAMP)
 	$(BIN)/python -m benchmarks.analysis
@@ -120,6 +123,13 @@ bench: $(STAMP)
 	$(BIN)/python -m benchmarks.cam
 	$(BIN)/python -m benchmarks.service
 	$(BIN)/python -m benchmarks.geometry_fuzz --cases 200
+
+docs: $(SITE)
+	$(BIN)/python -m tools.site
+
+# The tests make the site themselves.
+test-docs: $(SITE)
+	$(BIN)/pytest -m site tests/tools/test_site.py
 
 # Rewrites what the service promises; see the difference before it is committed.
 openapi: $(STAMP)
@@ -167,9 +177,10 @@ RESOLVE = $(UV) pip compile pyproject.toml --python-version 3.11 --universal --g
     --no-header --quiet
 
 lock: $(STAMP)
-	$(RESOLVE) --all-extras -o requirements-dev.lock
+	$(RESOLVE) --extra cluster --extra telemetry --extra dev -o requirements-dev.lock
 	$(RESOLVE) -c requirements-dev.lock -o requirements.lock
 	$(RESOLVE) --extra cluster --extra telemetry -c requirements-dev.lock -o requirements-cluster.lock
+	$(RESOLVE) --extra docs -c requirements-dev.lock -o requirements-docs.lock
 
 # What the tests need of node, from the lock beside it.
 $(NODE): tests/node/package.json tests/node/package-lock.json
@@ -182,6 +193,11 @@ $(NODE): tests/node/package.json tests/node/package-lock.json
 # An independent multibody program, which the campaign alone asks: no part of the service, and none of its lock.
 $(MULTIBODY): tests/oracles/multibody.lock | $(STAMP)
 	@$(UV) pip install --python $(BIN)/python --quiet --no-deps --require-hashes -r tests/oracles/multibody.lock
+	@touch $@
+
+# What makes the site, and runs the notebooks in it.
+$(SITE): requirements-docs.lock | $(STAMP)
+	@$(UV) pip install --python $(BIN)/python --quiet --no-deps --require-hashes -r requirements-docs.lock
 	@touch $@
 
 clean:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import doctest
+import json
 import re
 import subprocess
 import sys
@@ -10,7 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from synthesis.analyses import parse_request
 from synthesis.model.sixbars import IN_WORDS
+from synthesis.registry import parse_problem
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -20,14 +23,72 @@ PLACES = "kinematics|synthesis|service|mechsynth|tests|benchmarks|docs|tools"
 PATH = re.compile(rf"`(?:(?:python -m )?((?:{PLACES})(?:[./][\w<>*-]+)+/?))[^`]*`")
 """A file, folder or module in backticks, from the root of the repository."""
 
-LINK = re.compile(r"\]\((?!https?://|mailto:|#)([^)#\s]+)[^)]*\)")
+LINK = re.compile(r"\]\((?!https?://|mailto:)([^)#\s]*)(?:#([^)\s]+))?[^)]*\)")
+"""A link to a page, a place in it, or both."""
+
+BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+LAST = re.compile(r"(?<![,\[{])\n(?=\")")
+"""Where a field ends and the next begins without a comma between them, in a part of a statement."""
 
 
-@pytest.mark.parametrize("page", ["python.md"])
-def test_examples_run(page: str) -> None:
+@pytest.mark.parametrize(("page", "least"), [("python.md", 10), ("start.md", 8)])
+def test_examples_run(page: str, least: int) -> None:
     outcome = doctest.testfile(str(ROOT / "docs" / page), module_relative=False)
-    assert outcome.attempted > 10
+    assert outcome.attempted >= least
     assert outcome.failed == 0
+
+
+def blocks(language: str) -> list[tuple[Path, str]]:
+    """All blocks of code of a language, with the pages on which they stand."""
+    return [(page, code) for page in PAGES for own, code in BLOCK.findall(page.read_text("utf-8")) if own == language]
+
+
+def anchors(page: Path) -> set[str]:
+    """The places of a page that a link can name: its headings, as GitHub and this project's site name them."""
+    text = BLOCK.sub("", page.read_text("utf-8"))
+    headings = re.findall(r"^#+ (.+)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
+
+
+def test_every_statement_on_a_page_is_one_that_the_service_takes() -> None:
+    kinds, analyses, parts = set(), 0, 0
+    for page, code in blocks("json"):
+        try:
+            stated = json.loads(code)
+        except json.JSONDecodeError:  # fields of a statement, side by side
+            assert json.loads(f"{{{LAST.sub(',', code.strip())}}}"), page
+            parts += 1
+            continue
+        if "problem" in stated or "kind" in stated:
+            problem = parse_problem(stated.get("problem", stated))
+            problem.require_consistent()
+            kinds.add(problem.kind)
+        elif "mechanism" in stated:
+            parse_request(stated)
+            analyses += 1
+        else:
+            parts += 1
+    assert len(kinds) >= 17
+    assert analyses > 8
+    assert parts <= 8
+
+
+SHELL = blocks("sh")
+
+
+@pytest.mark.parametrize(("page", "code"), SHELL, ids=[f"{page.name}-{n}" for n, (page, _) in enumerate(SHELL)])
+def test_shell_examples_are_well_formed_and_post_what_the_service_takes(page: Path, code: str) -> None:
+    subprocess.run(["bash", "-n"], input=code, text=True, check=True)
+    for body in re.findall(r"-d '\n(\{.*?\})'", code, re.DOTALL):
+        parse_problem(json.loads(body)["problem"])
+
+
+def test_programs_on_pages_are_well_formed() -> None:
+    programs = [(page, code) for page, code in blocks("python") if ">>>" not in code]
+    assert programs
+    for page, code in programs:
+        compile(code, str(page), "exec")
 
 
 def exists(name: str) -> bool:
@@ -47,7 +108,9 @@ def exists(name: str) -> bool:
 def test_every_path_that_a_page_names_exists(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     assert [name for name in PATH.findall(text) if not exists(name)] == []
-    assert [link for link in LINK.findall(text) if not (page.parent / link).exists()] == []
+    assert [link for link, _ in LINK.findall(text) if not (page.parent / link).exists()] == []
+    named = [(page.parent / link if link else page, place) for link, place in LINK.findall(text) if place]
+    assert [(str(to), place) for to, place in named if to.suffix == ".md" and place not in anchors(to)] == []
 
 
 def test_the_door_for_python_costs_nothing_until_it_is_used() -> None:

@@ -1,0 +1,139 @@
+"""The page of fields and checks names all that there are, and none more."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+from pathlib import Path
+
+from synthesis.kinds.function.problem import FunctionConstraints
+from synthesis.kinds.path.problem import PathConstraints
+from synthesis.model.linkage_statement import FORCES, Constraints, LinkageProblem
+from synthesis.model.statement import StatedProblem
+from synthesis.proof.checks import REACHES_TARGETS
+from synthesis.proof.space import ROOM
+from synthesis.registry import KINDS
+
+ROOT = Path(__file__).parents[1]
+PAGE = (ROOT / "docs" / "checks.md").read_text("utf-8")
+
+MAKERS = {"Check", "at_least", "at_most", "tolerated", "within_zone", "check"}
+"""What makes a check: its name is the first argument, or is called so."""
+
+LIMITED = ("rate", "free_length", "preload", "min_length", "max_length", "max_force", "max_torque", "max_deflection")
+
+MADE_OF = {
+    ("kinds/balancing/verify_minimum.py", "f\"max_{level.name.replace(' ', '_')}\""): (
+        "max_shaking_force",
+        "max_shaking_moment",
+        "max_drive",
+        "max_joint_<joint>",
+    ),
+    ("kinds/cam/measured_rates.py", "f'peak_{name}'"): ("peak_velocity", "peak_acceleration", "peak_jerk"),
+    ("kinds/cam/measured_rates.py", "name"): ("meets_velocities", "meets_accelerations"),
+    ("kinds/cam/reproduction.py", "f'table_{dimension}'"): ("table_velocity", "table_acceleration", "table_jerk"),
+    ("kinds/cam/reproduction.py", "name"): (),
+    ("kinds/cam/verification.py", "name"): ("outer_wall_reproduces_program",),
+    ("kinds/dwell/verification.py", "f'dwell_{rest.index + 1}'"): ("dwell_<n>",),
+    ("kinds/dwell/verification.py", "f'dwell_{rest.index + 1}_at_end'"): ("dwell_<n>_at_end",),
+    ("kinds/dwell/verification.py", "f'dwell_{rest.index + 1}_at_place'"): ("dwell_<n>_at_place",),
+    ("kinds/gear_train/verification.py", "name"): ("contact_ratio", "tip_thickness"),
+    ("kinds/motion/checks.py", "name"): ("input_side", "output_side"),
+    ("kinds/spring_balancing/verification.py", "name"): (*LIMITED, "extension", "compression"),
+    ("outcome/forces.py", "name"): FORCES,
+    ("outcome/layout.py", "PLANES"): ("planes",),
+    ("outcome/manufacture.py", "YIELD"): ("yield",),
+    ("proof/checks.py", "REACHES_TARGETS"): (REACHES_TARGETS,),
+    ("proof/checks.py", "name"): (),
+    ("proof/constraints.py", "name"): ("fixed_pivot_region", "moving_pivot_region"),
+    ("proof/space.py", "ROOM[moving]"): ROOM[:2],
+    ("relaxation.py", "name"): ("ratio", "ratio_error", "ratios", "speeds"),
+}
+"""The names that are no literals where a check is made, by file and expression. Empty: names that others hand over."""
+
+
+def named(call: ast.Call) -> ast.expr | None:
+    """The name that a call gives a check."""
+    function = call.func.id if isinstance(call.func, ast.Name) else getattr(call.func, "attr", "")
+    if function not in MAKERS or (isinstance(call.func, ast.Attribute) and function != "check"):
+        return None
+    return next((word.value for word in call.keywords if word.arg == "name"), call.args[0] if call.args else None)
+
+
+def made() -> set[str]:
+    """The names of all checks that the sources make."""
+    names: set[str] = set()
+    places = set()
+    for path in sorted((ROOT / "synthesis").rglob("*.py")):
+        place = path.relative_to(ROOT / "synthesis").as_posix()
+        if place == "kinds/spring_balancing/effects.py":  # rows of a convex program, by the same word
+            continue
+        for call in (node for node in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(node, ast.Call)):
+            name = named(call)
+            if isinstance(name, ast.Constant) and isinstance(name.value, str):
+                names.add(name.value)
+            elif name is not None:
+                places.add((place, ast.unparse(name)))
+    assert places == MADE_OF.keys()
+    return names | {name for several in MADE_OF.values() for name in several}
+
+
+def rows(heading: str) -> list[list[str]]:
+    """The cells of the rows of all tables whose first column has a heading."""
+    found, inside = [], False
+    for line in PAGE.splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")] if line.startswith("|") else []
+        if not cells:
+            inside = False
+        elif cells[0] == heading:
+            inside = True
+        elif inside and set(cells[0]) != {"-"}:
+            found.append(cells)
+    return found
+
+
+def names_in(cell: str) -> list[str]:
+    return re.findall(r"`([^`]+)`", cell)
+
+
+def test_the_page_names_every_check_once_and_none_more() -> None:
+    listed = [name for cells in rows("check") for name in names_in(cells[0])]
+    once_more = {"shaking_force", "shaking_moment", "drive_torque", "size"}
+    assert {name for name in listed if listed.count(name) > 1} <= once_more
+    assert set(listed) == made()
+
+
+def test_every_kind_that_the_page_says_has_a_check_is_one() -> None:
+    words = {name for cells in rows("check") for name in names_in(cells[1]) if name.isidentifier()}
+    blocks = {"space", "layout", "manufacture", "dynamics", "constraints", "limits", "caps", "max_planes"}
+    assert words <= {*KINDS, *blocks, "closed", "shock_free", "counterweights"}
+
+
+def test_the_page_names_every_field_that_kinds_have_in_common() -> None:
+    listed = [names_in(cells[0])[0] for cells in rows("field") if len(cells) == 3]
+    assert sorted(listed) == sorted(LinkageProblem.model_fields)
+    assert listed[: len(StatedProblem.model_fields)] == list(StatedProblem.model_fields)
+    (of_linkages,) = re.findall(r"^(`motion`.*?) have these too", PAGE, re.MULTILINE | re.DOTALL)
+    assert set(names_in(of_linkages)) == {
+        kind.name for kind in KINDS.values() if issubclass(kind.problem, LinkageProblem)
+    }
+
+
+def test_the_page_names_every_constraint_with_its_default_and_its_check() -> None:
+    listed = {names_in(cells[0])[0]: cells for cells in rows("field of `constraints`")}
+    assert set(listed) == Constraints.model_fields.keys() | PathConstraints.model_fields.keys()
+    checks = {name for cells in rows("check") for name in names_in(cells[0])}
+    for name, (_, left_out, _, of_checks) in listed.items():
+        default = PathConstraints.model_fields[name].default
+        assert left_out.startswith("none" if default is None else f"`{json.dumps(default)}`")
+        assert {*names_in(of_checks)} <= checks
+    assert FunctionConstraints.model_fields["max_link_ratio"].default == 100.0
+    assert listed["max_link_ratio"][1] == "none; 100 for `function`"
+
+
+def test_every_field_of_every_problem_has_the_default_that_the_page_tells() -> None:
+    told = {names_in(cells[0])[0]: cells[1] for cells in rows("field") if len(cells) == 3}
+    for kind in KINDS.values():
+        for name in StatedProblem.model_fields.keys() - {"kind"}:
+            assert told[name].strip("`") == json.dumps(kind.problem.model_fields[name].default)

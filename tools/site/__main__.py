@@ -1,0 +1,40 @@
+"""Make the site: ``python -m tools.site`` writes ``var/site``."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from tools.site import decisions, gallery, http_reference, notebooks, pages, python_reference
+
+ROOT = Path(__file__).parents[2]
+
+
+def main(out: Path) -> int:
+    """Gather the pages below a folder, and have mkdocs make the site of them; any warning is a failure."""
+    folder = out / "pages"
+    shutil.rmtree(folder, ignore_errors=True)
+    pages.gathered(ROOT, folder)
+    folders = {
+        "decisions": decisions.written(ROOT / "docs" / "decisions", folder),
+        "reference/http": http_reference.written(ROOT / "docs" / "openapi.json", folder),
+        "reference/python": python_reference.written(ROOT, folder),
+        "notebooks": notebooks.written(ROOT / "docs" / "notebooks", folder),
+        "gallery": gallery.written(ROOT / "docs" / "gallery", folder),
+    }
+    template = Path(__file__).with_name("mkdocs.yml").read_text("utf-8")
+    settings = out / "mkdocs.yml"
+    settings.write_text(pages.settings(template, folders), encoding="utf-8")
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--clean", "-f", str(settings)]
+    quiet = {**os.environ, "NO_MKDOCS_2_WARNING": "1"}
+    made = subprocess.run(command, cwd=ROOT, env=quiet, check=False).returncode
+    if not made:
+        print(f"the site: {out / 'site' / 'index.html'}")
+    return made
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1] if len(sys.argv) > 1 else "var").resolve()))

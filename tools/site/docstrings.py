@@ -1,0 +1,15 @@
+"""Docstrings as Markdown: roles, double backticks and examples within the text become code."""
+
+from __future__ import annotations
+
+import re
+
+_ROLE = re.compile(r":(?:func|class|mod|meth|attr|data|exc|obj):`~?([^`]+)`")
+_LITERAL = re.compile(r"``([^`]+)``")
+_EXAMPLE = re.compile(r"(?:^|(?<=\n\n))>>> (?:.+\n?)+")
+
+
+def as_markdown(docstring: str) -> str:
+    """A docstring of reStructuredText as Markdown."""
+    text = _LITERAL.sub(r"`\1`", _ROLE.sub(r"`\1`", docstring))
+    return _EXAMPLE.sub(lambda example: f"```python\n{example[0].rstrip()}\n```\n", text)
