@@ -205,8 +205,8 @@ def _simple(schema: Schema, places: dict[str, str], page: str) -> str:
         inner = _type(schema.get("items", {}), places, page)
         return f"list of {inner}" + (f" ({limits})" if limits else "")
     if kind == "object":
-        members = schema.get("additionalProperties")
-        return f"object of {_type(members, places, page)}" if isinstance(members, dict) and members else "object"
+        named = schema.get("additionalProperties")
+        return f"object of {_type(named, places, page)}" if isinstance(named, dict) and named else "object"
     return f"{kind} {limits}".strip()
 
 
