@@ -11,6 +11,7 @@ ROOT = Path(__file__).parents[1]
 CONTAINER = ROOT / "docs" / "deploy" / "Dockerfile"
 PIN = re.compile(r"^([a-z0-9-]+)==(\S+)([^\n]*?) \\\n((?:    --hash=sha256:[0-9a-f]{64}(?: \\)?\n)+)", re.MULTILINE)
 FOR_DEVELOPERS = {"pytest", "mypy", "ruff", "hypothesis", "playwright", "schemathesis", "import-linter", "uv"}
+FOR_THE_SITE = {"mkdocs", "mkdocs-material", "mkdocstrings-python", "nbclient", "ipykernel"}
 FOR_CLUSTERS = {"celery", "psycopg", "redis", "opentelemetry-sdk"}
 
 
@@ -24,9 +25,7 @@ def packages(name: str) -> set[str]:
     return {package for package, _, _ in lock(name)}
 
 
-USERS, CLUSTERS, DEVELOPERS = (
-    lock(name) for name in ("requirements.lock", "requirements-cluster.lock", "requirements-dev.lock")
-)
+USERS, CLUSTERS, DEVELOPERS, SITE = (lock(f"requirements{name}.lock") for name in ("", "-cluster", "-dev", "-docs"))
 
 
 def test_users_get_the_packages_that_developers_have_tried():
@@ -38,6 +37,14 @@ def test_users_get_nothing_else():
     assert not packages("requirements-cluster.lock") & FOR_DEVELOPERS
     assert packages("requirements-cluster.lock") >= FOR_CLUSTERS
     assert packages("requirements-dev.lock") >= FOR_DEVELOPERS | {"setuptools"}
+
+
+def test_the_site_is_made_with_the_versions_that_developers_have_and_packages_of_its_own():
+    assert packages("requirements-docs.lock") >= packages("requirements.lock") | FOR_THE_SITE
+    assert not packages("requirements-dev.lock") & FOR_THE_SITE
+    versions = {(package, version) for package, version, _ in DEVELOPERS}
+    shared = {(package, version) for package, version, _ in SITE if package in packages("requirements-dev.lock")}
+    assert shared <= versions
 
 
 def test_convex_programs_come_with_the_solvers_that_are_called():

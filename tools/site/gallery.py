@@ -193,7 +193,7 @@ def _page(entry: Entry, code: str, answer: Any, forms: list[str]) -> str:
     guide = "gearbox" if entry.problem["kind"] == "layshaft_gearbox" else entry.problem["kind"]
     numbers = "".join(f"| {label} | {shown(at(answer, place))} |\n" for label, place in entry.numbers.items())
     checks = "".join(
-        f"| [`{check['name']}`](../checks.md#{check_anchor(check['name'])}) | {shown(check.get('value'))} | "
+        f"| [`{check['name']}`](../checks.md#{check_anchor(check['name'])}) | {shown(check.get('value', True))} | "
         f"{shown(check.get('limit'))} |\n"
         for check in best["verification"]["checks"]
     )
@@ -225,7 +225,7 @@ def shown(value: Any) -> str:
     if value is None:
         return ""
     if isinstance(value, bool):
-        return "yes" if value else "no"
+        return "kept" if value else "not kept"
     if isinstance(value, list):
         return ", ".join(shown(member) for member in value)
     return f"{value:.6g}" if isinstance(value, float) else str(value)
