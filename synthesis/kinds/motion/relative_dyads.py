@@ -17,6 +17,7 @@ import math
 from typing import Any
 
 import numpy as np
+from numba import types
 from numpy.typing import NDArray
 
 from kinematics.compiling import njit
@@ -24,6 +25,8 @@ from synthesis.numerics.elimination import factor, solve
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+
+_PLACES = types.complex128[::1]
 
 CONDITIONS = 4
 """Of five positions."""
@@ -60,7 +63,10 @@ def relative(
         shift[k] = one[0] + back * (other[k] - one[k]) - turn[k] * other[0]
 
 
-@njit(**OPTIONS)
+@njit(
+    types.int64(_PLACES, _PLACES, types.complex128, types.complex128, _PLACES, _PLACES),
+    **OPTIONS,
+)
 def dyads(
     shift: Complex, turn: Complex, known_fixed: complex, known_moving: complex, fixed: Complex, moving: Complex
 ) -> int:
