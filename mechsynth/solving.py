@@ -60,8 +60,12 @@ class Client:
 
     Parameters
     ----------
-    url, key, timeout_s
-        Where it is; its API key, where it has keys; how long one answer may take.
+    url : str
+        Where it is.
+    key : str, optional
+        Its API key, where it has keys.
+    timeout_s : float
+        How long one answer may take, seconds.
 
     Attributes
     ----------

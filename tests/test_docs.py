@@ -80,8 +80,21 @@ SHELL = blocks("sh")
 @pytest.mark.parametrize(("page", "code"), SHELL, ids=[f"{page.name}-{n}" for n, (page, _) in enumerate(SHELL)])
 def test_shell_examples_are_well_formed_and_post_what_the_service_takes(page: Path, code: str) -> None:
     subprocess.run(["bash", "-n"], input=code, text=True, check=True)
+    for named in re.findall(rf"(?<![\w/])(?:{PLACES})/[\w./-]+", code):
+        assert (ROOT / named).exists()
+    for target in re.findall(r"^make ([\w-]+)", code, re.MULTILINE):
+        assert re.search(rf"^{target}:", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE)
+    for command in re.findall(r"(?:^| )mechsynth ([a-z]+)", code, re.MULTILINE):
+        assert f'add_parser("{command}"' in (ROOT / "service" / "cli.py").read_text("utf-8")
     for body in re.findall(r"-d '\n(\{.*?\})'", code, re.DOTALL):
         parse_problem(json.loads(body)["problem"])
+
+
+def test_the_program_of_the_first_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (program,) = (code for page, code in blocks("python") if page.name == "index.md" and page.parent == ROOT / "docs")
+    monkeypatch.chdir(tmp_path)
+    exec(compile(program, "index.md", "exec"), {})
+    assert (tmp_path / "gripper.dxf").stat().st_size > 1000
 
 
 def test_programs_on_pages_are_well_formed() -> None:

@@ -126,7 +126,7 @@ def solving_code(entry: Entry) -> str:
         "from mechsynth import solve",
         "",
         f"problem = {laid_out(entry.problem, repr)}",
-        f"result = solve(problem, label={json.dumps(entry.title)})",
+        f"result = solve(problem, label={_quoted(entry.title)})",
         "print(result.summary)",
     ]
     return "\n".join(lines) + "\n"
@@ -167,12 +167,17 @@ def laid_out(value: Any, literal: Callable[[Any], str], indent: str = "") -> str
     return f"{opening}\n{inner}{joined}\n{indent}{closing}"
 
 
+def _quoted(text: str) -> str:
+    """A text as JSON and as Python have it."""
+    return json.dumps(text, ensure_ascii=False)
+
+
 def _flat(value: Any, literal: Callable[[Any], str]) -> str:
     if isinstance(value, dict):
         return "{" + ", ".join(f"{json.dumps(key)}: {_flat(member, literal)}" for key, member in value.items()) + "}"
     if isinstance(value, list):
         return "[" + ", ".join(_flat(member, literal) for member in value) + "]"
-    return json.dumps(value) if isinstance(value, str) else literal(value)
+    return _quoted(value) if isinstance(value, str) else literal(value)
 
 
 def _still(animation: Path) -> bytes:

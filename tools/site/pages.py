@@ -44,7 +44,7 @@ def gathered(root: Path, folder: Path) -> None:
             shutil.copyfile(source, target)
     for name in sorted(linked):
         _write_source(root, name, folder / SOURCES / f"{name}.md")
-    (folder / TASKS).write_text(_tasks((root / "README.md").read_text("utf-8")), encoding="utf-8")
+    (folder / TASKS).write_text(_tasks((root / "README.md").read_text("utf-8"), docs), encoding="utf-8")
     shutil.copytree(Path(__file__).with_name("theme"), folder / "theme", dirs_exist_ok=True)
 
 
@@ -64,10 +64,16 @@ def _within_the_site(text: str, at: Path, root: Path) -> tuple[str, set[str]]:
     return _LINK.sub(turned, text), linked
 
 
-def _tasks(readme: str) -> str:
-    """The section of the README on what it solves, as a page."""
+def _tasks(readme: str, docs: Path) -> str:
+    """The section of the README on what it solves, as a page: links have the headings of their pages."""
     section = readme.split("## What it solves\n", 1)[1].split("\n## ", 1)[0]
-    return "# All tasks\n" + section.replace("[docs/", "[").replace("](docs/", "](")
+
+    def named(link: re.Match[str]) -> str:
+        heading = (docs / link[2]).read_text("utf-8").split("\n", 1)[0].removeprefix("# ")
+        return f"[{heading.split(':')[0]}]({link[2]}{link[3]})"
+
+    linked = re.sub(r"\[(docs/[^\]]+)\]\(docs/([^)#]+)([^)]*)\)", named, section)
+    return "# All tasks\n" + linked.replace("](docs/", "](")
 
 
 def check_anchor(name: str) -> str:
