@@ -15,7 +15,7 @@ from synthesis.registry import KINDS, parse_problem
 from tools.site import gallery, http_reference
 from tools.site.__main__ import ROOT, main
 from tools.site.docstrings import as_markdown
-from tools.site.pages import check_anchor
+from tools.site.pages import TASKS, check_anchor
 
 ENTRIES = gallery.entries(ROOT / "docs" / "gallery")
 TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*-*.md"))
@@ -142,6 +142,15 @@ def test_tutorials_run(path: Path) -> None:
     outcome = doctest.testfile(str(path), module_relative=False)
     assert outcome.attempted > 5
     assert outcome.failed == 0
+
+
+def test_every_page_has_its_place_in_the_nav() -> None:
+    template = (ROOT / "tools" / "site" / "mkdocs.yml").read_text("utf-8")
+    listed = re.findall(r"- (?:[^:\n]+: )?(\S+\.md)$", template, re.MULTILINE)
+    docs = ROOT / "docs"
+    pages = {path.relative_to(docs).as_posix() for path in docs.rglob("*.md")}
+    assert set(listed) - {TASKS} == {page for page in pages if not page.startswith(("decisions/", "gallery/"))}
+    assert len(set(listed)) == len(listed)
 
 
 def test_there_is_a_machine_of_every_kind() -> None:
