@@ -17,6 +17,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+from tools.site.http_reference import guide
 from tools.site.pages import check_anchor
 
 GROUPS = {
@@ -195,7 +196,6 @@ def _still(animation: Path) -> bytes:
 
 def _page(entry: Entry, code: str, answer: Any, forms: list[str]) -> str:
     name, best = entry.name, answer["designs"][0]
-    guide = "gearbox" if entry.problem["kind"] == "layshaft_gearbox" else entry.problem["kind"]
     numbers = "".join(f"| {label} | {shown(at(answer, place))} |\n" for label, place in entry.numbers.items())
     checks = "".join(
         f"| [`{check['name']}`](../checks.md#{check_anchor(check['name'])}) | {shown(check.get('value', True))} | "
@@ -203,20 +203,26 @@ def _page(entry: Entry, code: str, answer: Any, forms: list[str]) -> str:
         for check in best["verification"]["checks"]
     )
     several = f", and {len(answer['designs']) - 1} more" if len(answer["designs"]) > 1 else ""
-    moved = f"![{entry.title}, moving]({name}/{name}.gif){{ .drawn loading=lazy }}\n\n" if "gif" in forms else ""
+    drawn = f"[![{entry.title}, labelled]({name}/{name}.svg){{ .drawn }}]({name}/{name}.svg)\n"
+    if "gif" in forms:
+        still = f"![{entry.title}]({name}/still.png){{ .drawn .calm }}"
+        first = f"{still}![{entry.title}, moving]({name}/{name}.gif){{ .drawn .lively }}\n"
+        last = f"## Drawing\n\n{drawn}"
+    else:
+        first, last = drawn, ""
     return (
-        f"# {entry.title}\n\n{entry.line}\n\n{moved}"
+        f"# {entry.title}\n\n{entry.line}\n\n{first}\n"
         f"{answer['summary']}\n\n"
         f"| the best design{several} | `{best['mechanism']['type']}` |\n|---|---|\n{numbers}\n"
         f"It was driven from its dimensions alone, and all its checks passed.\n\n"
         f"| check | value | limit |\n|---|---|---|\n{checks}\n"
         f"## Statement\n\n"
-        f"Its fields are those of [`{entry.problem['kind']}`](../{guide}.md); the whole answer is "
+        f"Its fields are those of [`{entry.problem['kind']}`](../{guide(entry.problem['kind'])}); the whole answer is "
         f"[answer.json]({name}/answer.json).\n\n"
         f'=== "Python"\n\n{_fenced("python", code)}\n'
         f'=== "HTTP"\n\n{_fenced("sh", shell_code(entry, forms))}\n'
         f'=== "JSON"\n\n{_fenced("json", laid_out(entry.problem, json.dumps))}\n'
-        f"## Drawing\n\n[![{entry.title}, labelled]({name}/{name}.svg){{ .drawn }}]({name}/{name}.svg)\n"
+        f"{last}"
     )
 
 

@@ -131,7 +131,7 @@ def _kind_page(page: str, kind: str, models: Schema, places: dict[str, str]) -> 
     stated = _reached(problem, models) & mine
     answered = mine - stated
     text = [
-        f"# `{kind}`\n\nWhat is told in words is on [the page of this kind](../../{_guide(kind)}).\n\n## Statement\n\n"
+        f"# `{kind}`\n\nWhat is told in words is on [the page of this kind](../../{guide(kind)}).\n\n## Statement\n\n"
     ]
     text += [_model(name, models[name], places, page, "###") for name in _first(problem, stated)]
     text.append("## Answer\n\n")
@@ -143,7 +143,8 @@ GUIDES = {"layshaft_gearbox": "gearbox.md"}
 """The pages of kinds that have none of their own name."""
 
 
-def _guide(kind: str) -> str:
+def guide(kind: str) -> str:
+    """The page of ``docs/`` that tells of a kind of problem."""
     return GUIDES.get(kind, f"{kind}.md")
 
 

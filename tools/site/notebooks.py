@@ -37,8 +37,19 @@ def as_page(notebook: Any) -> str:
             parts.append(cell.source)
         elif cell.cell_type == "code":
             parts.append(f"```python\n{cell.source}\n```")
-            parts += [shown for output in cell.outputs if (shown := _shown(output))]
+            parts += [shown for output in _joined(cell.outputs) if (shown := _shown(output))]
     return "\n\n".join(parts) + "\n"
+
+
+def _joined(outputs: list[Any]) -> list[Any]:
+    """The outputs of a cell, of which what was printed comes in pieces."""
+    joined: list[Any] = []
+    for output in outputs:
+        if joined and output.output_type == joined[-1].output_type == "stream":
+            joined[-1].text += output.text
+        else:
+            joined.append(output)
+    return joined
 
 
 def _shown(output: Any) -> str:
