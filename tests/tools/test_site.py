@@ -23,7 +23,7 @@ TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*-*.md"))
 
 def of_the_site(test):
     """Whichever test comes first has the whole site made, which takes a minute on two quiet processors."""
-    return pytest.mark.site(pytest.mark.timeout(600)(test))
+    return pytest.mark.site(pytest.mark.timeout(900)(test))
 
 
 class Page(HTMLParser):
