@@ -1,4 +1,4 @@
-"""Strength of spur teeth, a first estimate: bending by Lewis and by AGMA, contact stress by AGMA.
+"""Strength of teeth, a first estimate: bending by Lewis and by AGMA, contact stress by AGMA.
 
 Lewis takes the tooth for a beam with the whole tangential load at its tip. The load's line crosses the middle of the
 tooth at the apex of a parabola of constant strength; where it is widest against the profile, at the half thickness t/2
@@ -12,6 +12,9 @@ AGMA puts the load where a single pair carries it highest, counts its radial par
 W stands on the working pitch circles, φ_w is the working pressure angle: the normal force is W / cos φ_w.
 K_f = H + (s/ρ)^L (s/h)^M by Dolan and Broghamer (AGMA 908-B89; Budynas & Nisbett, Shigley's Mechanical Engineering
 Design, 8th ed., ch. 14, whose equation numbers stand with the factors). Newton, millimetre, MPa, metres a second.
+
+Helical teeth share the load: I is that of the plane of rotation over m_N, the face width over the least length of all
+lines of contact. Their J is read from charts (Figs. 14-7, 14-8), which no formula here replaces; it has to be stated.
 """
 
 from __future__ import annotations
@@ -113,10 +116,34 @@ def bending_geometry(contact: Contact, second: bool) -> float:
     return float(1.0 / (raised * stress))
 
 
-def contact_geometry(pressure_angle: float, ratio: float, internal: bool) -> float:
-    """AGMA's factor I of spur teeth, G = ``ratio`` ≥ 1 the teeth of the gear over the pinion's (eq. 14-23)."""
+def contact_geometry(pressure_angle: float, ratio: float, internal: bool, sharing: float = 1.0) -> float:
+    """AGMA's factor I, G = ``ratio`` ≥ 1 the teeth of the gear over the pinion's (eq. 14-23); m_N is ``sharing``."""
     share = ratio / (ratio - 1.0 if internal else ratio + 1.0)
-    return 0.5 * math.cos(pressure_angle) * math.sin(pressure_angle) * share
+    return 0.5 * math.cos(pressure_angle) * math.sin(pressure_angle) * share / sharing
+
+
+def load_sharing(contact_ratio: float, base_pitch: float, base_helix: float, width: float) -> float:
+    """AGMA's load sharing ratio m_N of helical teeth over a face of at least an axial pitch: F / L_min.
+
+    The lines of contact cross a field that is the face F wide and the path of contact long. With the transverse contact
+    ratio m_p, n_r its fraction, and the axial pitch p_x, all lines together are (m_p F − n p_x) / cos ψ_b long at
+    least, where n depends on the fraction of the overlap (AGMA 908-B89) and is n_r (1 − n_r) at most, which is taken:
+    so a wider face never shares the load worse. Where the overlap is more than 2, m_N = cos ψ_b / (0.95 m_p) is usual
+    (eq. 14-21).
+
+    Parameters
+    ----------
+    contact_ratio : float
+        In the plane of rotation.
+    base_pitch : float
+        In the plane of rotation, in the unit of the width.
+    base_helix : float
+        Helix angle on the base cylinders, radians, positive.
+    width : float
+    """
+    fraction = contact_ratio - math.floor(contact_ratio)
+    lost = fraction * (1.0 - fraction) * base_pitch / math.tan(base_helix)
+    return math.cos(base_helix) * width / (contact_ratio * width - lost)
 
 
 def _load_line(gear: Gear, radius: float) -> tuple[float, float]:

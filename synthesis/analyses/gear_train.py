@@ -30,7 +30,7 @@ from synthesis.model.dynamics import METRES
 from synthesis.model.gear_answer import Helix, Ratio, rack_undercuts
 from synthesis.model.gear_stages import train_stage
 from synthesis.model.gear_statement import ExactRatio
-from synthesis.model.gear_strength import StrengthMethod
+from synthesis.model.gear_strength import CARRYING_TYPES, StrengthMethod
 from synthesis.model.statement import Number
 
 SAME_DISTANCE = 1e-6
@@ -139,11 +139,13 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         wrong = stated.faults()
         if any(stage.type == "internal" for stage in self.mechanism.stages):
             wrong += stated.faults_of_ring()
+        if any(stage.type == "helical" for stage in self.mechanism.stages):
+            wrong += stated.faults_of_helix()
         faults = [(f"/strength{path}", detail) for path, detail in wrong]
         faults += [
             (f"/mechanism/stages/{number}/type", f"the strength of a stage that is {stage.type} is not estimated")
             for number, stage in enumerate(self.mechanism.stages)
-            if stage.type not in ("external", "internal")
+            if stage.type not in CARRYING_TYPES
         ]
         if self.input_torque == 0.0 or float(self.motion.inputs()[1][0]) == 0.0:
             faults.append(("/strength", "state a torque and a speed; no power is carried without"))

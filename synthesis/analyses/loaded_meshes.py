@@ -137,6 +137,7 @@ def loaded_meshes(flow: Flow, strength: StrengthMethod | None, widths: Sequence[
                 power = force * abs(float(turn) * flow.speed) * flow.unit * 0.5 * stage.module * driver
                 if stage.shifts != (0.0, 0.0):
                     power *= mesh.centre_distance / mesh.standard_distance
+                power /= math.cos(stage.helix_angle)
                 turning = abs(float(turn) * flow.speed)
                 loaded[-1]["strength"] = _strength(flow, strength, stage, place, widths[number], power, turning)
             if not flow.flows_back:
@@ -199,4 +200,5 @@ def _strength(
     """Stresses of one mesh of a stage, its gears as they stand in the order of the power, in millimetres."""
     unit = 1000.0 * flow.unit
     contact = stage_contact(stage, place, flow.train.pressure_angle, unit)
-    return told(Loaded(contact, power, turning, bent_both_ways(stage, place)), method, width, unit)
+    ways = bent_both_ways(stage, place)
+    return told(Loaded(contact, power, turning, ways, helix_angle=stage.helix_angle), method, width, unit)

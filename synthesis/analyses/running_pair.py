@@ -235,7 +235,7 @@ class RunningPairRequest(AnalysisRequest):
     length_unit: Literal["mm", "cm", "m", "in"] = Field(default="mm", description="Of the module, for `strength`.")
     strength: StatedStrength | None = Field(
         default=None,
-        description="A power that spur gears carry: stresses over the face width, or over the least that carries it.",
+        description="A power that the gears carry: stresses over the face width, or over the least that carries it.",
     )
     include: list[Literal["profiles"]] = Field(
         default=[], max_length=1, description="`profiles`: the true outlines of the teeth of both gears."
@@ -262,9 +262,11 @@ class RunningPairRequest(AnalysisRequest):
         if stated is None:
             return []
         wrong = stated.faults() + (stated.faults_of_ring() if given.internal else [])
+        if given.helix_angle != 0.0 and not given.internal:
+            wrong += stated.faults_of_helix()
         faults = [(f"/strength{path}", detail) for path, detail in wrong]
-        if given.helix_angle != 0.0:
-            faults.append(("/strength", "only spur teeth are judged; leave the helix angle out"))
+        if given.helix_angle != 0.0 and given.internal:
+            faults.append(("/strength", "helical teeth of rings are not judged; leave the helix angle out"))
         if self.speed_rpm == 0.0:
             faults.append(("/speed_rpm", "no power is carried at rest"))
         if given.face_width is None and stated.allowable_bending is None and stated.allowable_contact is None:
@@ -316,7 +318,8 @@ class RunningPairRequest(AnalysisRequest):
         given = self.mechanism
         distance = None if given.centre_distance is None else given.centre_distance * unit
         large = given.model_copy(update={"module": given.module * unit, "centre_distance": distance})
-        loaded = Loaded(large.pair().contact, 1000.0 * stated.power_kw, abs(self.speed_rpm) * RPM)
+        helix = math.radians(given.helix_angle)
+        loaded = Loaded(large.pair().contact, 1000.0 * stated.power_kw, abs(self.speed_rpm) * RPM, helix_angle=helix)
         return told(loaded, stated, given.face_width, unit)
 
 

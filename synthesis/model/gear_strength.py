@@ -1,4 +1,4 @@
-"""Stresses in the teeth of a spur pair that carries a power: what is stated and told, and the width that carries it.
+"""Stresses in the teeth of a pair that carries a power: what is stated and told, and the width that carries it.
 
 It is a first estimate: the equations of Lewis and of AGMA (:mod:`kinematics.gear.strength`) with factors that a client
 states, or that formulas of the textbook give. It knows no bearings, no lubricant, no wear and no life.
@@ -35,6 +35,9 @@ ESTIMATE = (
 OF_AGMA = ("size", "load_distribution", "rim", "bending_geometry", "contact_geometry", "elastic")
 """Factors that Lewis's equation does not have."""
 
+CARRYING_TYPES = ("external", "internal", "helical")
+"""Types of stages whose strength is estimated."""
+
 BENT_BOTH_WAYS = 0.7
 """Share of the allowable bending stress that teeth bear which are bent both ways in every turn, as an idler's are, by
 AGMA (Shigley, Sec. 14-4)."""
@@ -64,9 +67,11 @@ class StatedFactors(Statement):
     bending_geometry: tuple[Positive, Positive] | None = Field(
         default=None,
         description="AGMA's J; from the true profile. Its fillets have the 0.38 modules of ISO 53: tables for racks of "
-        "0.25 have values about a tenth lower.",
+        "0.25 have values about a tenth lower. Of rings and helical gears it is known only where it is stated.",
     )
-    contact_geometry: Positive | None = Field(default=None, description="AGMA's I.")
+    contact_geometry: Positive | None = Field(
+        default=None, description="AGMA's I; of helical gears known over faces of an axial pitch or more."
+    )
     elastic: Positive | None = Field(default=None, description="AGMA's C_p, √MPa; 191 of steel on steel.")
 
 
@@ -105,6 +110,15 @@ class StrengthMethod(Statement):
         if self.allowable_bending is None or getattr(self.factors, name) is not None:
             return []
         return [("/allowable_bending", f"the bending stress of a ring is not known without factors/{name}; state that")]
+
+    def faults_of_helix(self) -> list[tuple[str, str]]:
+        """What is wrong where the teeth are helical: what shares the load is read from charts, or not known."""
+        if self.method == "lewis":
+            return [("/method", "Lewis's equation is of spur teeth; take agma for helical ones")]
+        if self.allowable_bending is None or self.factors.bending_geometry is not None:
+            return []
+        detail = "the bending stress of helical teeth is not known without factors/bending_geometry; state that"
+        return [("/allowable_bending", detail)]
 
     @property
     def kept(self) -> list[str]:
@@ -151,7 +165,9 @@ class CarriedPower(StatedStrength):
 class StressedGear(Answer):
     """One gear: stresses in MPa, and how far below what it may bear; null where nothing is stated or known."""
 
-    form: float | None = Field(description="Lewis's Y; null for a ring of which none is stated.")
+    form: float | None = Field(
+        description="Lewis's Y; null for a ring of which none is stated; of helical gears that of the normal plane."
+    )
     size_factor: float | None
     bending_geometry: float | None
     bending_stress: float | None
@@ -178,6 +194,11 @@ class PairStrength(Answer):
     dynamic: float
     load_distribution: float | None
     contact_geometry: float | None
+    sharing_ratio: float | None = optional(
+        "AGMA's m_N of helical teeth: the face over the least length of all lines of contact. Left out where the face "
+        "overlaps by less than an axial pitch: the contact stress is then not known, unless `contact_geometry` is "
+        "stated."
+    )
     face_width: Length | None = Field(description="As stated, or the least that carries the load; the module's unit.")
     least_face_width: Length | None = optional(
         "The least that keeps all stated allowable stresses; left out where none are stated, where no width up to "
@@ -193,7 +214,8 @@ class PairStrength(Answer):
 class Loaded(NamedTuple):
     """A pair in millimetres and what it carries; which of its gears are bent both ways.
 
-    ``spares_rings``: the bending of a ring is no part of what is judged, where it is not known.
+    ``spares_rings``: the bending of a ring is no part of what is judged, where it is not known. Helical gears are those
+    of the plane of rotation, with their ``helix_angle``, radians.
     """
 
     contact: Contact
@@ -201,6 +223,37 @@ class Loaded(NamedTuple):
     speed: float
     both_ways: tuple[bool, bool] = (False, False)
     spares_rings: bool = False
+    helix_angle: float = 0.0
+
+    @property
+    def module(self) -> float:
+        """That of the normal plane."""
+        return self.contact.mesh.pinion.module * math.cos(self.helix_angle)
+
+    def in_normal_plane(self, gear: Gear) -> Gear:
+        """A gear of the pair, of a helical one the spur gear that the normal plane shows: z / cos³ β teeth."""
+        if self.helix_angle == 0.0:
+            return gear
+        shrunk = math.cos(self.helix_angle)
+        return replace(
+            gear,
+            teeth=gear.teeth / shrunk**3,
+            module=self.module,
+            pressure_angle=math.atan(math.tan(gear.pressure_angle) * shrunk),
+            addendum=gear.addendum / shrunk,
+            dedendum=gear.dedendum / shrunk,
+            shift=gear.shift / shrunk,
+        )
+
+    def sharing(self, width: float) -> float | None:
+        """AGMA's m_N over a face of this width: 1 of spur teeth, None of a face that overlaps by less than a pitch."""
+        if self.helix_angle == 0.0:
+            return 1.0
+        mesh = self.contact.mesh
+        helix = math.atan(math.tan(abs(self.helix_angle)) * math.cos(mesh.pinion.pressure_angle))
+        if width * math.tan(helix) < mesh.pinion.base_pitch or mesh.contact_ratio < 1.0:
+            return None
+        return strength.load_sharing(mesh.contact_ratio, mesh.pinion.base_pitch, helix, width)
 
     @property
     def working_diameters(self) -> tuple[float, float]:
@@ -224,6 +277,7 @@ class Stresses(NamedTuple):
     load_distribution: float | None
     contact_geometry: float | None
     gears: list[dict[str, Any]]
+    sharing: float | None = None
 
     def safeties(self, names: list[str]) -> list[tuple[str, float | None]]:
         """The safeties of these names of both gears, by name, but for those that are not judged."""
@@ -245,7 +299,7 @@ class Judge:
         self._forms: list[float | None] = []
         self._bending: list[float | None] = []
         for place, gear in enumerate((mesh.pinion, mesh.gear)):
-            self._forms.append(given[0][place] if given[0] else self._form(gear))
+            self._forms.append(given[0][place] if given[0] else self._form(loaded.in_normal_plane(gear)))
             self._bending.append(given[1][place] if given[1] else self._geometry(gear, place))
 
     @staticmethod
@@ -259,7 +313,7 @@ class Judge:
     def _geometry(self, gear: Gear, place: int) -> float | None:
         """AGMA's factor; None as above, and where it is not asked for."""
         try:
-            known = self._stated.method == "agma" and not gear.internal
+            known = self._stated.method == "agma" and not gear.internal and self._loaded.helix_angle == 0.0
             return strength.bending_geometry(self._loaded.contact, place == 1) if known else None
         except DimensionError:
             return None
@@ -282,20 +336,23 @@ class Judge:
             return Stresses(load, dynamic, None, None, rows)
         dynamic = self._dynamic(load)
         spread = factors.load_distribution or strength.load_distribution_factor(width, load.pinion_diameter)
-        teeth = sorted((mesh.pinion.teeth, mesh.gear.teeth))
-        geometry = factors.contact_geometry or strength.contact_geometry(
-            mesh.pressure_angle, teeth[1] / teeth[0], mesh.gear.internal
-        )
+        teeth, sharing = sorted((mesh.pinion.teeth, mesh.gear.teeth)), self._loaded.sharing(width)
+        geometry = factors.contact_geometry
+        if geometry is None and sharing is not None:
+            ratio = teeth[1] / teeth[0]
+            geometry = strength.contact_geometry(mesh.pressure_angle, ratio, mesh.gear.internal, sharing)
         rows = []
         for place, (form, bending) in enumerate(zip(self._forms, self._bending, strict=True)):
             size = factors.size[place] if factors.size else None
             if size is None and form is not None:
-                size = strength.size_factor(width, load.module, form)
+                size = strength.size_factor(width, self._loaded.module, form)
             found = Factors(factors.overload, dynamic, size or 1.0, spread, factors.rim)
             bent = None if bending is None else strength.bending_stress(load, bending, found)
-            pressed = strength.contact_stress(load, geometry, found, factors.elastic or strength.STEEL_ON_STEEL)
+            pressed = None
+            if geometry is not None:
+                pressed = strength.contact_stress(load, geometry, found, factors.elastic or strength.STEEL_ON_STEEL)
             rows.append(self._row(place, form, size, bent, pressed))
-        return Stresses(load, dynamic, spread, geometry, rows)
+        return Stresses(load, dynamic, spread, geometry, rows, sharing)
 
     def _lewis(self, load: Load, form: float | None, dynamic: float) -> float | None:
         return None if form is None else strength.lewis_stress(load, form, dynamic * self._stated.factors.overload)
@@ -344,7 +401,7 @@ class Judge:
 
     def _widths(self) -> list[float]:
         """Widths in equal ratios up to the widest, millimetres."""
-        most = self._stated.max_face_width * self._loaded.contact.mesh.pinion.module
+        most = self._stated.max_face_width * self._loaded.module
         return [most * math.pow(1e-3, 1.0 - k / WIDTHS) for k in range(WIDTHS + 1)]
 
     def _dynamic(self, load: Load) -> float:
@@ -410,7 +467,7 @@ def stage_contact(stage: TrainStage, place: int, pressure_angle: float, unit: fl
         Millimetres in the unit of the module.
     """
     gears = replace(stage, module=stage.module * unit).cut_gears(pressure_angle)
-    return tool_contact(Mesh(gears[place], gears[place + 1]))
+    return tool_contact(Mesh(gears[place], gears[place + 1]), helix_angle=stage.helix_angle)
 
 
 def bent_both_ways(stage: TrainStage, place: int) -> tuple[bool, bool]:
@@ -436,8 +493,10 @@ def told(loaded: Loaded, stated: StrengthMethod, face_width: float | None, unit:
         "pitch_line_velocity": found.load.speed,
         "dynamic": found.dynamic,
         "load_distribution": None if width is None else found.load_distribution,
-        "contact_geometry": found.contact_geometry,
+        "contact_geometry": found.contact_geometry if width is not None or loaded.helix_angle == 0.0 else None,
         "face_width": None if width is None else width / unit,
         "gears": rows,
     }
+    if loaded.helix_angle != 0.0 and width is not None and found.sharing is not None:
+        answer["sharing_ratio"] = found.sharing
     return answer if least is None else {**answer, "least_face_width": least / unit}

@@ -171,7 +171,7 @@ def test_every_field_counts(changes: dict[str, Any], told: str) -> None:
 @pytest.mark.parametrize(
     ("mechanism", "body", "path"),
     [
-        ({"helix_angle": 10.0}, {}, "/strength"),
+        ({"helix_angle": 10.0, "internal": True}, {}, "/strength"),
         ({}, {"speed_rpm": 0.0}, "/speed_rpm"),
         ({"face_width": None}, {}, "/mechanism/face_width"),
         (

@@ -177,7 +177,9 @@ class Bearing:
     def _judge(self, mesh: _Turning) -> Judge:
         if mesh not in self._judges:
             contact = stage_contact(mesh.alone, 0, math.radians(self.problem.pressure_angle), self._unit)
-            loaded = Loaded(contact, self.stated.power, self.stated.speed, mesh.both_ways)
+            loaded = Loaded(
+                contact, self.stated.power, self.stated.speed, mesh.both_ways, helix_angle=mesh.alone.helix_angle
+            )
             self._judges[mesh] = Judge(loaded, self.stated)
         return self._judges[mesh]
 
@@ -202,6 +204,8 @@ def _meshes(stage: Stage, idlers: tuple[int, ...], speed: float) -> Iterator[tup
         alone = TrainStage(one, other, stage.module, (), shifts)
         if stage.type == "internal" and stage.addendum is not None:
             alone = replace(alone, kind="internal", addenda=(stage.addendum.driver, stage.addendum.driven))
+        if stage.type == "helical" and stage.helix_angle is not None:
+            alone = replace(alone, kind="helical", helix_angle=math.radians(stage.helix_angle))
         yield _Turning(alone, bent_both_ways(whole, place)), speed * stage.driver / one
 
 

@@ -8,11 +8,12 @@ from synthesis.kinds.gear_train.extent import beyond_search
 from synthesis.kinds.gear_train.rings import no_ring_runs
 from synthesis.kinds.gear_train.stated_stages import GEARS, StatedStage, sense_of
 from synthesis.kinds.gear_train.stated_train import FINEST_PITCHES, ROUNDING, StatedTrain, TeethRange
+from synthesis.model.gear_strength import CARRYING_TYPES
 from synthesis.model.ratio_target import parse_target
 from synthesis.model.statement import Contradiction
 
-FITTED_TYPES, CARRYING_TYPES = ("external", "helical"), ("external", "internal")
-"""Types of stages whose teeth can be fitted, and those whose strength is estimated."""
+FITTED_TYPES = ("external", "helical")
+"""Types of stages whose teeth can be fitted."""
 
 
 def contradictions_of(stated: StatedTrain) -> list[Contradiction]:
@@ -58,7 +59,26 @@ def _wrong_stages(stated: StatedTrain) -> list[Contradiction]:
     if stated.strength is not None and any(stage.type == "internal" for stage in stated.stages):
         wrong = stated.strength.faults_of_ring()
         faults += [Contradiction(f"/strength{path}", detail) for path, detail in wrong]
-    return faults
+    return faults + _wrong_load(stated, stated.stages)
+
+
+def _wrong_load(stated: StatedTrain, stages: list[StatedStage]) -> list[Contradiction]:
+    """What of helical stages is not known, or follows, where they carry a power."""
+    helical = [number for number, stage in enumerate(stages) if stage.type == "helical"]
+    if stated.strength is None or not helical:
+        return []
+    faults = [Contradiction(f"/strength{path}", detail) for path, detail in stated.strength.faults_of_helix()]
+    if stated.strength.allowable_contact is not None and stated.strength.factors.contact_geometry is None:
+        least = max(math.pi / math.sin(math.radians(abs(stages[number].helix_angle or 90.0))) for number in helical)
+        if stated.strength.max_face_width < least:
+            detail = f"the contact stress of these helical teeth is known over faces of {least:.4g} modules and more"
+            faults.append(Contradiction("/strength/max_face_width", f"{detail}, where they overlap by a pitch"))
+    detail = "the strength decides over the face; leave it out, or drop strength"
+    return faults + [
+        Contradiction(f"/stages/{number}/face_width", detail)
+        for number in helical
+        if stages[number].face_width is not None
+    ]
 
 
 def _impossible_gears(stated: StatedTrain, stages: list[StatedStage]) -> list[Contradiction]:

@@ -239,7 +239,8 @@ def _strength(
         for place, speed in enumerate(speeds[:-1]):
             contact = stage_contact(stage, place, train.pressure_angle, unit)
             idle = place > 0, place + 1 < len(stage.gears) - 1
-            loaded = Loaded(contact, stated.power, abs(float(speed)) * stated.speed, idle)
+            turning = abs(float(speed)) * stated.speed
+            loaded = Loaded(contact, stated.power, turning, idle, helix_angle=stage.helix_angle)
             found.append(PairStrength(**told(loaded, stated, made.face_width, unit)))
     return found
 
