@@ -34,8 +34,13 @@ faults take longer than their size tells."""
 TABLE_BYTES = 16 << 20
 """What the values of all samples may take together, since the table shows them in each row."""
 
+RATIO_ERRORS = ("max_error", "relative_error", "error")
+"""Errors of gears, of which a kind shows the first that it has."""
+
 MORE_IS_BETTER = ("min_transmission_angle",)
-LESS_IS_BETTER = ("size",)
+
+SIZES = ("size", "total_teeth", "tooth_sum")
+"""Sizes, of which a kind shows the first that it has."""
 
 
 def plan_of(body: BatchRequest) -> tuple[str, Plan, Cost]:
@@ -80,9 +85,9 @@ def plan_of(body: BatchRequest) -> tuple[str, Plan, Cost]:
 
 def by_default(metrics: Sequence[str]) -> list[str]:
     """Of the metrics of a kind, what its front weighs up: an error, what is to be large, what is to be small."""
-    error = next((name for name in ERRORS if name in metrics), None)
-    known = (*(() if error is None else (error,)), *MORE_IS_BETTER, *LESS_IS_BETTER)
-    return [name for name in known if name in metrics]
+    error = [name for name in (*ERRORS, *RATIO_ERRORS) if name in metrics][:1]
+    size = [name for name in SIZES if name in metrics][:1]
+    return [*error, *(name for name in MORE_IS_BETTER if name in metrics), *size]
 
 
 def _not_finite(body: BatchRequest) -> Iterator[tuple[str, str]]:

@@ -239,8 +239,8 @@ async def weigh_up_batch(
 ) -> Response:
     """The rows of the table that no other beats (Pareto).
 
-    Without parameters: by error and size, of which less is better, and the least transmission angle, as far as the
-    table has them.
+    Without parameters: by error and size (of gears the sum of the teeth), of which less is better, and the least
+    transmission angle, as far as the table has them. Of errors with a sign the size counts.
     """
     plan, table = await _tabulated(desk, tenant, batch_id)
     least, greatest = _quantities(weighed, plan.metrics)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from ulid import ULID
 
+from service.api.batch_plans import by_default
 from service.api.batch_schemas import MOST_SAMPLES
 from service.jobs.batches import identity
 from service.jobs.batches import table as table_module
@@ -196,3 +197,26 @@ def test_rows_without_a_number_are_not_weighed_up():
     assert [row[0] for row in table.front(["size"], ["min_transmission_angle"]).rows] == [3, 4]
     assert [row[0] for row in table.front(["size"], []).rows] == [3]
     assert [row[0] for row in table.front(["min_transmission_angle"], []).rows] == [1]
+
+
+@pytest.mark.parametrize(
+    ("kind", "metrics"),
+    [
+        ("gear_train", ["relative_error", "total_teeth"]),
+        ("planetary_train", ["error", "size"]),
+        ("train_series", ["error", "total_teeth"]),
+        ("gearbox", ["max_error", "tooth_sum"]),
+        ("layshaft_gearbox", ["max_error", "tooth_sum"]),
+        ("motion", ["rms_residual", "min_transmission_angle", "size"]),
+        ("cam", ["size"]),
+        ("flywheel", []),
+    ],
+)
+def test_a_kind_shows_its_error_and_its_size(kind, metrics):
+    assert by_default(KINDS[kind].metrics) == metrics
+
+
+def test_an_error_with_a_sign_is_weighed_by_its_size():
+    table = Table(["error", "total_teeth"], [[-0.5, 40], [0.1, 60], [-0.01, 90], [0.02, 95], [None, 10]])
+    assert [row[0] for row in table.front(["error", "total_teeth"], []).rows] == [-0.5, 0.1, -0.01]
+    assert [row[0] for row in table.front([], ["error"]).rows] == [0.1]

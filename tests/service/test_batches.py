@@ -84,6 +84,30 @@ def test_a_batch_has_the_answers_of_its_problems(client):
 
 
 @pytest.mark.embedded
+def test_a_batch_of_gears_shows_errors_and_teeth(client):
+    """Two stages of few teeth are above or below their ratios: of the errors the size counts, not the sign."""
+    problem = {"kind": "gear_train", "ratio": 3.1, "max_stages": 1, "teeth": {"min": 18, "max": 60}, "max_designs": 1}
+    ratios = [2.713, 2.719, 3.03, 3.117, 3.141]
+    done = finished(client, post(client, {"problem": problem, "vary": [{"field": "/ratio", "values": ratios}]}))
+    rows = table(client, done)
+    for row in rows:
+        best = client.get(f"/v1/jobs/{row['job']}").json()["result"]["designs"][0]["metrics"]
+        assert (row["relative_error"], row["total_teeth"]) == (best["relative_error"], best["total_teeth"])
+    assert min(row["relative_error"] for row in rows) < 0.0 < max(row["relative_error"] for row in rows)
+    front = client.get(f"/v1/batches/{done['id']}/front").json()
+    assert (front["least"], front["greatest"]) == (["relative_error", "total_teeth"], [])
+
+    def beats(other, row):
+        better = [abs(other["relative_error"]) - abs(row["relative_error"]), other["total_teeth"] - row["total_teeth"]]
+        return max(better) <= 0.0 and min(better) < 0.0
+
+    kept = [dict(zip(front["columns"], row, strict=True)) for row in front["rows"]]
+    assert kept == [row for row in rows if not any(beats(other, row) for other in rows)]
+    nearest = client.get(f"/v1/batches/{done['id']}/front?least=relative_error").json()
+    assert [row[0] for row in nearest["rows"]] == [min(rows, key=lambda row: abs(row["relative_error"]))["/ratio"]]
+
+
+@pytest.mark.embedded
 def test_equal_problems_are_answered_from_the_store(client):
     problem = {**EXAMPLE["problem"], "seed": 11}
 

@@ -20,6 +20,9 @@ from service.jobs.states import Status
 
 Rows = np.ndarray[Any, np.dtype[np.float64]]
 
+SIGNED = ("relative_error", "error")
+"""Metrics that are errors of ratios, with their signs."""
+
 AT_ONCE = 200
 """Rows that are written in one go."""
 
@@ -61,12 +64,20 @@ class Table:
         Parameters
         ----------
         least, greatest : sequence of str
-            Columns in which less is better, and in which more is.
+            Columns in which less is better, and in which more is. Less of an error with a sign (:data:`SIGNED`) is less
+            of its size.
         """
         signs = {**dict.fromkeys(least, 1.0), **dict.fromkeys(greatest, -1.0)}
         places = [(self.columns.index(name), sign) for name, sign in signs.items()]
         complete = [row for row in self.rows if all(_number(row[place]) for place, _ in places)]
-        weighed = np.array([[sign * row[place] for place, sign in places] for row in complete], float)
+        by_size = {self.columns.index(name) for name in least if name in SIGNED}
+        weighed = np.array(
+            [
+                [abs(row[place]) if place in by_size else sign * row[place] for place, sign in places]
+                for row in complete
+            ],
+            float,
+        )
         return Table(self.columns, [complete[n] for n in unbeaten(weighed.reshape(len(complete), len(places)))])
 
 
