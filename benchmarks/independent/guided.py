@@ -217,8 +217,39 @@ def _compare_path(beside: Beside, stated: dict[str, Any], drive: Drive, met: Met
         tolerances = np.array([point["tolerance"] for point in stated["points"]])
         beside.check("within_tolerance", float((met.misses / tolerances).max()))
         beside.check("curve_within_tolerance", greatest_of(lambda z: course.tolerance_used(z, tolerances)))
+    if stated.get("stance") is not None:
+        _compare_stance(beside, stated, drive, met)
     compare_demands_of_path(beside, stated, drive, met.task, met.turns[:1])
     compare_cognates(beside, drive, met.turns)
+
+
+def _compare_stance(beside: Beside, stated: dict[str, Any], drive: Drive, met: Met) -> None:
+    """Height and speed of P from the first point of a stance to its last; the speed is that of the loops' equations."""
+    (first, last), foot = stated["stance"]["points"], drive.names.index("P")
+    start, end = float(met.turns[first]), float(met.turns[last])
+    if first > last:
+        end += math.copysign(met.used[1] - met.used[0], float(met.turns[-1] - met.turns[0]))
+    if not drive.follow(min(start, end), max(start, end)):
+        beside.unmeasured("could not be driven through its stance")
+        return
+    off = -cmath.phase(met.points[last] - met.points[first])
+    ways = np.exp(1j * off) * drive.at(np.array([start, end]))[:, foot]
+    mean = float(np.diff(ways.real)[0]) / (end - start)
+
+    def height(turns: Real) -> Real:
+        return np.asarray((np.exp(1j * off) * drive.at(turns)[:, foot]).imag)
+
+    def over_mean(turns: Real) -> Real:
+        return np.asarray((np.exp(1j * off) * drive.rates_at(turns)[:, foot]).real / mean)
+
+    low, high = min(start, end), max(start, end)
+    flatness = greatest(height, low, high).value - least(height, low, high).value
+    uneven = max(greatest(over_mean, low, high).value - 1.0, 1.0 - least(over_mean, low, high).value)
+    beside.metric("stance_flatness", flatness, met.task)
+    beside.metric("stance_speed_deviation", uneven, 1.0)
+    beside.metric("stance_rotation", math.degrees(high - low), 360.0)
+    beside.check("stance_flatness", flatness, met.task)
+    beside.check("stance_speed", uneven)
 
 
 def compare_demands_of_path(

@@ -64,7 +64,7 @@ checks.same_circuit checks.reaches_targets
 
 _PATH_CHECKS = """
 checks.within_tolerance checks.curve_within_tolerance checks.input_pivot_region checks.fixed_pivots checks.coupler_point
-checks.crank_phase
+checks.crank_phase checks.stance_flatness checks.stance_speed
 """
 
 COMPARED: dict[str, frozenset[str]] = {
@@ -87,6 +87,7 @@ COMPARED: dict[str, frozenset[str]] = {
             """
             metrics.sum_of_squares metrics.rms_distance metrics.max_distance metrics.curve_distance metrics.excursion
             metrics.both_way_rms targets.point_residual
+            metrics.stance_flatness metrics.stance_speed_deviation metrics.stance_rotation
             cognates.grashof cognates.full_rotation cognates.same_timing cognates.same_branch cognates.visits_in_order
             cognates.min_transmission_angle cognates.deviation
             """,

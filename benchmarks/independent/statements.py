@@ -169,6 +169,31 @@ def _tolerated_path(rng: np.random.Generator) -> Statement:
     return {"kind": "path", "method": "least_squares", "closed": closed, "points": points}
 
 
+def _legged(rng: np.random.Generator) -> Statement:
+    """The stance of a planted linkage, where its curve is flattest, held to what it does there and 5 % more."""
+    planted = crank_rocker(rng, 30.0)
+    turns = np.linspace(0.0, math.tau, 20, endpoint=False)
+    dense = np.linspace(0.0, 0.25 * math.tau, 2000)
+
+    def walked(first: int) -> tuple[float, float, float]:
+        steps = curve(planted, turns[first] + dense)
+        along = (steps - steps[0]) / (steps[-1] - steps[0])
+        speeds = np.gradient(along.real, dense) * dense[-1]
+        way = abs(steps[-1] - steps[0])
+        return float(np.ptp(along.imag)), float(np.abs(speeds - 1.0).max()), way
+
+    first = min(range(20), key=lambda k: walked(k)[0])
+    flat, uneven, way = walked(first)
+    stance = {"points": [first, (first + 5) % 20], "flatness": 1.05 * flat * way}
+    return {
+        "kind": "path",
+        "method": str(rng.choice(["curve_match", "least_squares"])),
+        "closed": True,
+        "points": listed(curve(planted, turns)),
+        "stance": stance | {"speed": "constant", "speed_tolerance": 1.05 * uneven},
+    }
+
+
 def _given_pivots(rng: np.random.Generator) -> Statement:
     planted = crank_rocker(rng, 25.0)
     pivots = {
@@ -331,6 +356,7 @@ MORE: list[tuple[str, Draw]] = [
     ("tolerated fit", _tolerated_fit),
     ("timed path", _timed),
     ("tolerated path", _tolerated_path),
+    ("path with a stance", _legged),
     ("given pivots", _given_pivots),
     ("open curve", _open_curve),
     ("placed curve", _placed_curve),

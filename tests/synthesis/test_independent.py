@@ -323,6 +323,7 @@ QUICK = (
     "sides",
     "timed path",
     "tolerated path",
+    "path with a stance",
     "functions",
     "body on a rocker",
     "demands of a line",
@@ -339,6 +340,7 @@ QUICKEST = [
     not in (
         "functions",
         "tolerated path",
+        "path with a stance",
         "input is driven",
         "coupler is driven",
         "demands of a line",

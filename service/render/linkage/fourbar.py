@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage.fourbar import Fourbar, positions, toggle_angles, traverse
-from service.render.linkage.motion import Demand, DrivenLinkage, demands_of, target_curve
+from service.render.linkage.motion import Demand, DrivenLinkage, demands_of, stance_curve, target_curve
 from service.render.page.svg import Box, Points
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.path.curve_placement import placed
@@ -80,7 +80,8 @@ class Scene:
     where the linkage does not close: over the input angles that the targets need, and over the whole branch (and the
     other branch, where a target lies on it). ``limits`` are the ends of the input's range, None for a crank; ``start``
     and ``end`` the input angles at the first and at the last target. ``target`` is the curve that is matched as a
-    whole, where the problem is that; its first point alone is a target then. ``demanded`` counts all demands, of which
+    whole, where the problem is that; its first point alone is a target then. ``stance`` are the points of a stance.
+    ``demanded`` counts all demands, of which
     ``demands`` are those that are drawn, and ``met`` those at which the linkage can be assembled.
     """
 
@@ -95,6 +96,7 @@ class Scene:
     demanded: int
     met: int
     target: Points | None = None
+    stance: Points | None = None
 
     @property
     def guides_a_body(self) -> bool:
@@ -184,8 +186,9 @@ def scene(design: LinkageDesign, problem: MotionProblem | PathProblem, motion: D
     shown = [demand for demand in demands if demand.index in kept]
     standing = [c for c in configurations if c.index in kept]
     return Scene(
-        linkage, standing, shown, curve, rest, motion.limits, start, end, len(demands), len(configurations), target
-    )
+        linkage, standing, shown, curve, rest, motion.limits, start, end, len(demands), len(configurations), target,
+        stance_curve(problem),
+    )  # fmt: skip
 
 
 def spread(count: int, most: int) -> list[int]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from service.render.linkage.fourbar_canvas import Canvas
 from service.render.linkage.motion import Demand
-from service.render.linkage.styles import LIMIT, MISS, TARGET_CURVE, USED_PATH, WHOLE_PATH
+from service.render.linkage.styles import LIMIT, MISS, STANCE, TARGET_CURVE, USED_PATH, WHOLE_PATH
 from service.render.page import symbols
 from service.render.page.numbers import angle
 from service.render.page.svg import CLIP_MARGIN, circle, clipped, line, path
@@ -68,6 +68,8 @@ def curves(canvas: Canvas) -> None:
     pieces, used = [piece for curve in scene.rest for piece in shown(curve)], shown(scene.used)
     if scene.target is not None:
         canvas.root.add(path(shown(scene.target), data_curve="target", **TARGET_CURVE))
+    if scene.stance is not None:
+        canvas.root.add(path(shown(scene.stance), data_curve="stance", **STANCE))
     canvas.root.add(
         path(pieces, **WHOLE_PATH, data_curve="branch"),
         path(used, **USED_PATH, stroke_linecap="round", data_curve="used"),

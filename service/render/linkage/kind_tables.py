@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,8 +18,9 @@ from service.render.linkage.drawing import PlanarPicture, Scene
 from service.render.linkage.fourbar import scene as fourbar_scene
 from service.render.linkage.fourbar_picture import FourbarPicture, description
 from service.render.linkage.function_diagram import function_diagram, range_arc
-from service.render.linkage.motion import DrivenLinkage, demands_of, target_curve
+from service.render.linkage.motion import DrivenLinkage, demands_of, stance_curve, target_curve
 from service.render.linkage.sprung import spring_balancing
+from service.render.linkage.styles import STANCE
 from service.render.page import blocks
 from service.render.page.diagrams import Diagram
 from service.render.page.numbers import angle, length, small
@@ -142,9 +144,16 @@ def guided(design: LinkageDesign, problem: MotionProblem | PathProblem, linkage:
         name,
         name,
         f"a linkage at {len(inputs)} targets",
-        PlanarPicture(scene, unit, heights=(460.0, 860.0)),
+        PlanarPicture(scene, unit, partial(_stance, problem), heights=(460.0, 860.0)),
         [blocks.rows("Targets", _first(met))],
     )
+
+
+def _stance(problem: MotionProblem | PathProblem, view: Viewport) -> list[Element]:
+    """The points of a stance, as they are demanded."""
+    points = stance_curve(problem)
+    drawn = None if points is None else path(view.shown(points), **STANCE, data_curve="stance")
+    return [] if drawn is None else [drawn]
 
 
 def _first(rows: list[tuple[str, str]]) -> list[tuple[str, str]]:

@@ -110,3 +110,12 @@ def target_curve(problem: Any) -> Points | None:
         return None
     points = np.array([place.point for place in problem.points])
     return np.append(points, points[0]) if problem.closed else points
+
+
+def stance_curve(problem: Any) -> Points | None:
+    """The demanded points of a stance, in order; None where none is demanded."""
+    stance = getattr(problem, "stance", None)
+    if stance is None:
+        return None
+    (first, last), points = stance.points, np.array([place.point for place in problem.points])
+    return np.concatenate([points[first:], points[: last + 1]]) if stance.around else points[first : last + 1]

@@ -18,6 +18,9 @@ USED_PATH: Style = {"stroke": CURVE, "stroke_width": 2.2}
 TARGET_CURVE: Style = {"stroke": DEMANDED, "stroke_width": 6.0, "stroke_opacity": 0.3}
 """A curve that is demanded as a whole."""
 
+STANCE: Style = {"stroke": DEMANDED, "stroke_width": 2.6, "stroke_linecap": "round"}
+"""The part of a path that is to be straight."""
+
 MISS: Style = {"stroke": DEMANDED, "stroke_width": 1.6}
 """From a demanded point to where the linkage passes it."""
 

@@ -100,6 +100,15 @@ def _transmission_sine(x: Real, lengths: Real, sign: float, ratio: float, theta:
 
 
 @njit(**OPTIONS)
+def jams(x: Real, lengths: Real, sign: float, ratio: float, cycle: float) -> bool:
+    """Whether a geared fivebar jams, or nearly does, somewhere in a cycle of its crank (radians)."""
+    for k in range(CYCLE_CHECKS):
+        if _transmission_sine(x, lengths, sign, ratio, cycle * k / CYCLE_CHECKS) < MIN_SINE:
+            return True
+    return False
+
+
+@njit(**OPTIONS)
 def _cost(
     family: int,
     x: Real,
@@ -112,10 +121,8 @@ def _cost(
     cycle: float,
 ) -> float:
     total = 0.0
-    if family == GEARED_FIVEBAR and cycle > 0.0:
-        for k in range(CYCLE_CHECKS):
-            if _transmission_sine(x, lengths, sign, ratio, cycle * k / CYCLE_CHECKS) < MIN_SINE:
-                return math.inf
+    if family == GEARED_FIVEBAR and cycle > 0.0 and jams(x, lengths, sign, ratio, cycle):
+        return math.inf
     for i in range(len(points)):
         closes, z, _ = place(family, x, lengths, sign, ratio, theta[i])
         if not closes:
@@ -126,7 +133,7 @@ def _cost(
 
 
 @njit(**OPTIONS)
-def _pivots_off(family: int, x: Real, lengths: Real, chart: Real, within: Real, off: Real, slopes: Real) -> float:
+def pivots_off(family: int, x: Real, lengths: Real, chart: Real, within: Real, off: Real, slopes: Real) -> float:
     """Sum of squared distances of the fixed pivots from their limits; ``off`` (4,) gets each coordinate's distance, and
     ``slopes`` (4, m) its derivatives by the unknowns."""
     off[:] = 0.0
@@ -161,7 +168,7 @@ def _first_log(family: int) -> int:
 
 
 @njit(**OPTIONS)
-def _links(family: int) -> int:
+def links_of(family: int) -> int:
     """Number of unknowns that stand for lengths."""
     return 4 if family <= FOURBAR or family == GEARED_FIVEBAR else 3
 
@@ -193,7 +200,7 @@ def _add_guides(
     family: int, x: Real, lengths: Real, chart: Real, longest: float, off: Real, off_slopes: Real, a: Real, g: Real
 ) -> None:
     """Add to A and g the residuals of fixed pivots outside their limits, and of lengths beyond the longest."""
-    m, logs, count = len(x), _first_log(family), _links(family)
+    m, logs, count = len(x), _first_log(family), links_of(family)
     guide = LENGTH_WEIGHT * LENGTH_WEIGHT
     for i in range(4):
         if off[i] != 0.0:
@@ -248,7 +255,7 @@ def _move(
 
     The linkage's step is shortened as a whole, so that it keeps its direction; angles are cut one by one.
     """
-    m, n, logs, count = len(x), len(theta), _first_log(family), _links(family)
+    m, n, logs, count = len(x), len(theta), _first_log(family), links_of(family)
     shrink = 1.0
     for j in range(logs, logs + count):
         shrink = min(shrink, MAX_LOG_STEP / max(MAX_LOG_STEP, abs(step[j])))
@@ -280,7 +287,7 @@ def _descend(
 ) -> float:
     """Descend in place; returns the sum of squared distances, infinite where the start does not close."""
     m, n = len(x), len(points)
-    count = _links(family)
+    count = links_of(family)
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     slopes = np.empty(m + 1, np.complex128)
     a, g = np.empty((m, m)), np.empty(m)
@@ -293,13 +300,13 @@ def _descend(
         return math.inf
     guide = LENGTH_WEIGHT * LENGTH_WEIGHT
     off, off_slopes = np.zeros(4), np.zeros((4, m))
-    distance += _pivots_off(family, x, lengths, chart, within, off, off_slopes)
+    distance += pivots_off(family, x, lengths, chart, within, off, off_slopes)
     cost = distance + guide * _excess(lengths[:count], m, x, longest)
     damping, idle = FIRST_DAMPING, 0
     for _ in range(iterations):
         natural(family, x, lengths, chart)
         _normal_equations(family, x, lengths, chart, sign, ratio, theta, points, weights, slopes, a, g, c, d, h)
-        _pivots_off(family, x, lengths, chart, within, off, off_slopes)
+        pivots_off(family, x, lengths, chart, within, off, off_slopes)
         _add_guides(family, x, lengths, chart, longest, off, off_slopes, a, g)
         accepted = False
         while damping < MAX_DAMPING:
@@ -309,7 +316,7 @@ def _descend(
             _move(family, x, theta, c, d, h, weights, damping, step, x_new, theta_new)
             natural(family, x_new, lengths, chart)
             distance_new = _cost(family, x_new, lengths, sign, ratio, theta_new, points, weights, cycle)
-            distance_new += _pivots_off(family, x_new, lengths, chart, within, off, off_slopes)
+            distance_new += pivots_off(family, x_new, lengths, chart, within, off, off_slopes)
             cost_new = distance_new + guide * _excess(lengths[:count], m, x_new, longest)
             if cost_new < cost:
                 accepted = True

@@ -243,7 +243,7 @@ def held_fit(
     return fit_of(target, fit.family, x, fit.sign, at_all_points(target, theta, part))
 
 
-def at_all_points(target: Target, theta: Real, part: slice) -> Real:
+def at_all_points(target: Target, theta: Real, part: slice | NDArray[np.int64]) -> Real:
     """Crank angles at all fitted points, from those at a part of them."""
     every = np.arange(len(target.fitted))
     at = every[part]

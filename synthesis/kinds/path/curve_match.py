@@ -17,6 +17,7 @@ stroke may be drawn by any link, between its toggles.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -62,8 +63,9 @@ from synthesis.kinds.path.nearness import (
     near_the_nearest,
     ranked_by_nearness,
 )
-from synthesis.kinds.path.point_fit import configuration_of, fitted, point_task
+from synthesis.kinds.path.point_fit import Candidate, PointTask, configuration_of, fitted, point_task
 from synthesis.kinds.path.problem import PathPoint, PathProblem
+from synthesis.kinds.path.stance_fit import as_fit, fits_in_stance
 from synthesis.kinds.path.verification import verify_path
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_statement import LengthLimits
@@ -150,6 +152,19 @@ def fitted_by_shape(problem: PathProblem, progress: Progress) -> list[FourbarCon
     return [_in_place(target, joints) for joints in linkages if min(joints.lengths) >= MIN_LINK]
 
 
+def stanced_by_points(
+    problem: PathProblem, candidates: Sequence[Candidate], task: PointTask
+) -> list[FourbarConfiguration]:
+    """Fits of a problem's points brought to its stance, in the problem's coordinates; not yet driven."""
+    target = Target(problem)
+    if len(target.points) < len(problem.points):
+        return []  # the first point once more as the last: fits of the whole curve take that for one
+    begun = [as_fit(candidate, task, target) for candidate in candidates]
+    setting = curve_setting(problem, target.centre, target.size)
+    ended = fits_in_stance(problem, target, begun, families_of(problem), setting)
+    return [_in_place(target, configuration(fit)) for fit in ended]
+
+
 def _drawing(
     problem: PathProblem, target: Target, setting: Real, progress: Progress
 ) -> tuple[list[FourbarConfiguration], CurveSweep | None]:
@@ -210,7 +225,13 @@ def _alike(problem: PathProblem, target: Target, setting: Real, progress: Progre
             progress(0.65 + 0.1 * k / len(USABLE), f"fitting with a transmission angle of {degrees:g}°")
             demands = usable(setting, degrees, MOST_UNEVEN)
             traded += fits_within(target, asked, partial(suited, demands), families, demands, MAX_USABLE)
-    return _running(asked, traded), CurveSweep(linkages=drawn, curves=swept, refined=followed)
+    sweep = CurveSweep(linkages=drawn, curves=swept, refined=followed)
+    if problem.stance is not None:
+        progress(0.75, "fitting the stance")
+        kept = fits_in_stance(problem, target, [*asked, *traded, *free], families, setting)
+        if kept:
+            return kept, sweep
+    return _running(asked, traded), sweep
 
 
 def _at_given_pivots(problem: PathProblem, target: Target, progress: Progress) -> list[FourbarConfiguration]:
@@ -224,16 +245,23 @@ def _at_given_pivots(problem: PathProblem, target: Target, progress: Progress) -
         update={"link_length": lengths.model_copy(update={"max": problem.longest_link})}
     )
     fits = [target.points, target.steps] if len(target.points) < SHAPE_POINTS else [target.points]
-    linkages = []
+    linkages: list[FourbarConfiguration] = []
+    begun: list[Fit] = []
     for n, along in enumerate(fits):
         part = part_of(progress, 0.8 * n / len(fits), 0.8 * (n + 1) / len(fits))
         points = [PathPoint(x=float(z.real), y=float(z.imag)) for z in target.centre + target.size * along]
-        changes = {"method": "least_squares", "points": points, "constraints": demands}
+        changes = {"method": "least_squares", "points": points, "constraints": demands, "stance": None}
         task = point_task(fit := problem.model_copy(update=changes))
         for candidate in fitted(fit, task, np.random.default_rng(problem.seed), part):
             joints = configuration_of(candidate, task)
             if joints is not None:
                 linkages.append(FourbarConfiguration(*((joint - target.centre) / target.size for joint in joints)))
+                begun += [as_fit(candidate, task, target)] if along is target.points else []
+    if problem.stance is not None:
+        setting = curve_setting(problem, target.centre, target.size)
+        return [
+            configuration(fit) for fit in fits_in_stance(problem, target, begun, families_of(problem), setting)
+        ] or linkages
     return linkages
 
 

@@ -40,6 +40,15 @@ class PathMetrics(LinkageMetrics):
         "For fits by sixbars to 24 points and more: root mean square of the points' distances from the curve and of "
         "the curve's, by its length, from the straight lines through the points; length units."
     )
+    stance_flatness: Length | None = optional(
+        "Of a stance: height across its line of the band in which P stays from its first point to its last; length "
+        "units."
+    )
+    stance_speed_deviation: float | None = optional(
+        "Of a stance: how much the speed of P along its line differs at most from its mean, as a share of that, while "
+        "the input turns evenly."
+    )
+    stance_rotation: Angle | None = optional("Of a stance: rotation of the input during it, degrees.")
 
 
 class CurvePlacement(Answer):

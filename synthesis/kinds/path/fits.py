@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from synthesis.kinds.path.curve_match import fitted_by_shape
+from synthesis.kinds.path.curve_match import fitted_by_shape, stanced_by_points
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.harvest import Harvest
 from synthesis.kinds.path.nearness import ERROR_TOLERANCE, FAR, NEARER, error_of, least_error, steady
@@ -42,6 +42,9 @@ def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
         mechanism = mechanism_of(candidate, task)
         return None if mechanism is None else verify_path(problem, mechanism)
 
+    def driven(linkage: FourbarConfiguration) -> PathDesign | str | None:
+        return verify_path(problem, fourbar_mechanism(linkage))
+
     fits = _Fits(problem, apart=SAME_FIT)
     first, second = part_of(progress, 0.0, FIRST_PART), part_of(progress, FIRST_PART, 1.0)
     minima = fitted(problem, task, np.random.default_rng(problem.seed), first)
@@ -50,11 +53,9 @@ def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
         verified,
         enough=max(2 * problem.max_designs, MIN_DRIVEN),
     )
+    if problem.stance is not None:
+        fits.sift(stanced_by_points(problem, minima, task), driven)
     if not problem.prescribed and fits.astray():
-
-        def driven(linkage: FourbarConfiguration) -> PathDesign | str | None:
-            return verify_path(problem, fourbar_mechanism(linkage))
-
         linkages = fitted_by_shape(problem, second)
         fits.sift(reported(linkages, second, (0.8, 1.0), "driving linkage {next} of {all}"), driven)
     kept = steady(fits.passed, problem)

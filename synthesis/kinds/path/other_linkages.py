@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from synthesis.fit.chart import GEARED_FIVEBAR, SLIDER_CRANK, SLIDER_ROCKER, natural
 from synthesis.fit.coupler_curve import place
 from synthesis.kinds.path.curve_candidates import cycle_of
-from synthesis.kinds.path.curve_descent import descend
+from synthesis.kinds.path.curve_descent import Descent, descend
 from synthesis.kinds.path.curve_fits import with_cognates
 from synthesis.kinds.path.curve_limits import pivot_limits
 from synthesis.kinds.path.curve_match import solve_curve_match
@@ -32,6 +32,7 @@ from synthesis.kinds.path.curve_target import angles_at, smooth_steps
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.nearness import FAR, order_of, steady
 from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.stance_fit import simple_in_stance, stance_spec
 from synthesis.kinds.path.verify_traced import verify_traced
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import (
@@ -43,6 +44,7 @@ from synthesis.model.linkage_answer import (
     SliderCrankMechanism,
 )
 from synthesis.model.linkages import FourbarConfiguration, skeleton, slider_crank_mechanism, to_complex, to_point
+from synthesis.numerics.portions import in_portions
 from synthesis.outcome.ranking import distinct
 from synthesis.outcome.sifting import Sifting, reported
 
@@ -170,6 +172,8 @@ def _fits(search: _Search, drawn: int, followed: int, again: int, progress: Prog
         fine = descend(
             family, begun.x[best], begun.sign[best], begun.theta[best], points, iterations=MAX_STEPS, **settings
         )
+        if problem.stance is not None:
+            fine = _in_stance(search, family, fine, begun.sign[best], points, settings)
         for k in np.argsort(fine.cost, kind="stable"):
             if math.isfinite(fine.cost[k]) and (problem.fitted or fine.cost[k] <= COST_TOLERANCE):
                 mechanism = _mechanism(
@@ -179,6 +183,28 @@ def _fits(search: _Search, drawn: int, followed: int, again: int, progress: Prog
                     fits.append((float(fine.cost[k]), mechanism))
         progress((n + 1.0) / len(tasks), f"{len(fits)} linkages fitted")
     return fits
+
+
+def _in_stance(
+    search: _Search, family: int, fits: Descent, sign: Real, points: Complex, settings: dict[str, Any]
+) -> Descent:
+    """Fits brought to the stance; those that do not come there stay as they are."""
+    problem = search.problem
+    assert problem.stance is not None
+    first, last = problem.stance.points
+    cycle = settings["cycle"] or 2.0 * math.pi
+    spec = stance_spec(problem, search.size, first, last, cycle)
+    x, theta, cost = fits.x.copy(), fits.theta.copy(), fits.cost.copy()
+
+    def work(some: slice) -> None:
+        for k in range(*some.indices(len(x))):
+            if math.isfinite(cost[k]):
+                end = simple_in_stance(family, x[k], float(sign[k]), theta[k], points, spec, **settings)
+                if end is not None:
+                    x[k], theta[k], cost[k] = end.x, end.theta, 2.0 * end.cost
+
+    in_portions(work, len(x), 1)
+    return Descent(x, theta, cost)
 
 
 class _Begun(NamedTuple):
@@ -218,7 +244,7 @@ def _kicked(ends: _Begun, points: Complex, settings: dict[str, Any], rng: np.ran
 def _from_fourbars(problem: PathProblem, progress: Progress) -> list[Mechanism]:
     """The geared fivebars that draw the curves of the best fourbars."""
     asked = problem.model_copy(
-        update={"mechanism": "fourbar", "gear_ratio": None, "max_designs": MAX_COGNATES, "layout": None}
+        update={"mechanism": "fourbar", "gear_ratio": None, "max_designs": MAX_COGNATES, "layout": None, "stance": None}
     )
     fourbars = solve_curve_match(asked, lambda share, message: progress(0.7, message))
     cognates: list[Mechanism] = []

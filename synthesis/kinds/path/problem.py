@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, Field, model_validator
 
 from synthesis.kinds.path.stated_mechanisms import SIXBARS, Mechanisms, Simple, Sixbar, lacking, of_types, simple_of
+from synthesis.kinds.path.stated_stance import Stance, faults_of_stance
 from synthesis.model.dimension import LENGTH
 from synthesis.model.linkage_statement import Constraints, LinkageProblem, Region
 from synthesis.model.manufacture import Held, Made, kept_pivots
@@ -227,6 +228,10 @@ class PathProblem(LinkageProblem):
         description="The types of linkages that are looked for, in place of mechanism; auto: fourbars, and sixbars "
         "where no fourbar is sound and near.",
     )
+    stance: Stance | None = Field(
+        default=None,
+        description="For legs: a part of the path that is straight, and gone with constant speed if wanted.",
+    )
     fixed_pivots: PathPivots = PathPivots()
     constraints: PathConstraints = PathConstraints()
     rounds: Annotated[Count, Field(ge=1, le=20)] = Field(
@@ -265,7 +270,7 @@ class PathProblem(LinkageProblem):
     def fitted(self) -> bool:
         """Whether the points are met as nearly as can be, and not exactly."""
         if self.method == "auto":
-            return len(self.points) > self.most_exact or self.tolerances is not None
+            return len(self.points) > self.most_exact or self.tolerances is not None or self.stance is not None
         return self.method in ("least_squares", "curve_match")
 
     @property
@@ -348,6 +353,7 @@ class PathProblem(LinkageProblem):
             *self._pivots(),
             *self._mechanism(),
             *self._closed(),
+            *faults_of_stance(self),
             *self.contradicting_demands(),
         ]
 

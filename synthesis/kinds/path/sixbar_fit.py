@@ -29,6 +29,7 @@ from synthesis.kinds.path.sixbar_rows import (
     sixbar_rows,
 )
 from synthesis.kinds.path.sixbar_shapes import Form
+from synthesis.kinds.path.stance_rows import MARGINS, STANCE, sixbar_stance_rows
 from synthesis.numerics.augmented_lagrangian import hold
 from synthesis.numerics.levenberg import descend_each
 from synthesis.numerics.portions import in_portions
@@ -135,21 +136,25 @@ def descended(
 
 def held(
     fits: Fits, points: Complex, weights: Real, setting: Real, *, back: int, turns: int, rounds: int = ROUNDS,
-    steps: int = HELD_STEPS,
+    steps: int = HELD_STEPS, stance: Real | None = None,
 ) -> Fits:  # fmt: skip
-    """The fits brought to where all demands hold; an infinite cost where they were not brought there."""
+    """The fits brought to where all demands hold; an infinite cost where they were not brought there.
+
+    ``stance`` is one of the points' rows, of :func:`synthesis.kinds.path.stance_fit.stance_spec`.
+    """
     rows, stated = _posed(fits.form, points, weights, setting, back, turns)
-    limits = margins_of(stated)
+    kernel, first, more = (sixbar_rows, 0, 0) if stance is None else (sixbar_stance_rows, STANCE, MARGINS)
+    limits, most = margins_of(stated) + more, rows_of(len(points), stated) + more
+    stated = stated if stance is None else np.concatenate([stance, stated])
     x, cost = fits.x.copy(), np.full(len(fits.x), math.inf)
     states = np.concatenate([fits.theta, np.zeros((len(x), limits))], axis=1)
 
     def work(some: slice) -> None:
         for k in range(*some.indices(len(x))):
             one, ended = stated.copy(), np.empty(1)
-            one[SIGN], one[SIDE] = fits.signs[k]
+            one[first + SIGN], one[first + SIDE] = fits.signs[k]
             status = hold(
-                sixbar_rows, x[k], rows, one, states[k], rows_of(len(points), one), limits, 4, HELD_WEIGHT, rounds,
-                steps, ended,
+                kernel, x[k], rows, one, states[k], most, limits, 4, HELD_WEIGHT, rounds, steps, ended
             )  # fmt: skip
             if status != Status.IMPOSSIBLE and states[k, len(points) :].min() > -HELD_WITHIN:
                 cost[k] = ended[0]

@@ -31,6 +31,7 @@ from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.sixbar_fit import Fits, descended, held, sixbar_setting
 from synthesis.kinds.path.sixbar_mechanism import fitted_sixbar
 from synthesis.kinds.path.sixbar_shapes import FAMILIES, FORMS, alike_sixbars
+from synthesis.kinds.path.stance_fit import stance_of_target
 from synthesis.kinds.path.verify_traced import verify_traced
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import SixbarMechanism
@@ -186,17 +187,20 @@ def _brought(
     """The best fitted to the points and brought to the demands; behind them those that were not brought there."""
     count = len(target.points)
     dense = problem.fitted and problem.closed and count >= DENSE
-    thin = thinning(target)
     fitted = len(target.fitted) if problem.matched else count
-    points, weights = target.fitted[:fitted][thin], target.weights[:fitted][thin]
+    part: slice | NDArray[np.int64] = thinning(target)
+    stance: Real | None = None
+    if problem.stance is not None:
+        part, stance = stance_of_target(problem, target, fitted)
+    points, weights = target.fitted[:fitted][part], target.weights[:fitted][part]
     within: list[_Candidate] = []
     beyond: list[_Candidate] = []
     for kind, fits, _ in begun[:BROUGHT]:
         theta = angles_at(places, fits.theta[0], problem.closed, math.tau)
-        at = fits._replace(theta=np.concatenate([theta, fits.theta[0]])[None, :fitted][:, thin])
+        at = fits._replace(theta=np.concatenate([theta, fits.theta[0]])[None, :fitted][:, part])
         if not problem.fitted:
             at = descended(at, points, weights, setting, steps=EXACT_STEPS, turns=TURNS, tolerance=EXACT_TOLERANCE)
-        end = held(at, points, weights, setting, back=BACK if dense else 0, turns=TURNS)
+        end = held(at, points, weights, setting, back=BACK if dense else 0, turns=TURNS, stance=stance)
         if math.isfinite(end.cost[0]):
             within.append(_Candidate(kind, end, float(end.cost[0])))
         else:

@@ -33,6 +33,7 @@ from synthesis.kinds.path.other_linkages import solve_other
 from synthesis.kinds.path.point_fit import warm_up as warm_up_fits
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.room_starts import bounded
+from synthesis.kinds.path.stance import told_of_stance
 from synthesis.kinds.path.starts import nine_point_start
 from synthesis.kinds.path.timed import solve_timed
 from synthesis.kinds.path.verify_cognates import with_cognates
@@ -58,7 +59,9 @@ def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
     """Solve a problem of path generation; every design brings its cognates."""
     result = _solved(problem, progress) if problem.mechanisms is None else solve_types(problem, _solved, progress)
     designs = [with_cognates(design) for design in result.designs]
-    return result.model_copy(update={"designs": designs})
+    return result.model_copy(
+        update={"designs": designs, "summary": f"{result.summary}{told_of_stance(designs, problem)}"}
+    )
 
 
 def _solved(problem: PathProblem, progress: Progress) -> PathResult:

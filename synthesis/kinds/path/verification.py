@@ -29,6 +29,7 @@ from synthesis.kinds.path.curve_target import DENSE
 from synthesis.kinds.path.design import PathDesign, PathMetrics
 from synthesis.kinds.path.passages import Passages, at_angles, at_points, in_order, nearest
 from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.stance import stance_checks, stance_of
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
 from synthesis.model.linkage_answer import FourbarMechanism, LinkageMechanism, SixbarMechanism, Target
@@ -164,6 +165,9 @@ def path_design(
         if of_sixbar and len(points) >= DENSE:
             gone["both_way_rms"] = both_ways(*way, points, problem.closed, at.misses)
         checks = _tolerance_checks(problem, at, way, points)
+        stance = stance_of(problem, way.place, way.used, np.radians(at.inputs))
+        own = [*stance_checks(problem, stance), *own]
+        gone |= {f"stance_{name}": value for name, value in stance.items()}
     else:
         checks = [reaches_targets(float(residuals.max()))]
     checks.append(Check(name="same_circuit", passed=at.on_circuit))

@@ -210,6 +210,9 @@ ELLIPSE = {
     "max_designs": 1,
 }
 
+WALKS = {**ELLIPSE, "stance": {"points": [2, 4], "flatness": 3.0}}
+EVENLY = {"points": [2, 4], "speed": "constant", "speed_tolerance": 0.4}
+
 PATH_ROWS: dict[str, Any] = {
     **UNITS,
     **DEMANDS,
@@ -243,6 +246,11 @@ PATH_ROWS: dict[str, Any] = {
     "fixed_pivots.input": Row([-12.0, 0.0], {"points": TIMED[:3], "fixed_pivots": {"input": [-10.0, 0.0]}}),
     "fixed_pivots.output": Row([42.0, 10.0], {"points": TIMED[:4], "fixed_pivots": {"output": [40.0, 10.0]}}),
     "rounds": Row(2, {**UNTIMED, "fixed_pivots": {}}),
+    "stance": Row(WALKS["stance"], ELLIPSE),
+    "stance.points": Row([1, 3], WALKS),
+    "stance.flatness": Row(0.5, WALKS),
+    "stance.speed": Row("constant", WALKS),
+    "stance.speed_tolerance": Row(0.2, {**ELLIPSE, "stance": EVENLY}),
 }
 
 QUICK_RETURN: dict[str, Any] = {

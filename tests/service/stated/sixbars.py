@@ -57,6 +57,8 @@ PATH: dict[str, Any] = {
     "max_designs": 1,
 }
 FITTED = {"method": "least_squares"}
+WALKS = {**FITTED, "closed": True, "stance": {"points": [1, 3], "flatness": 4.0}}
+EVENLY = {**FITTED, "closed": True, "stance": {"points": [1, 3], "speed": "constant", "speed_tolerance": 0.3}}
 TOLERATED = {"points": [{"x": x, "y": y, "tolerance": 2.0} for x, y in POINTS]}
 PAIRS = [{"input": 15.0 * k, "output": 12.0 * k + k * k} for k in range(6)]
 OF_PAIRS = {"function": None, "input_range": None, "output_range": None, "pairs": PAIRS}
@@ -154,6 +156,10 @@ TABLES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
             "points[].y": Row(31.0, FITTED),
             "points[].tolerance": Row(0.1, TOLERATED),
             "mechanisms": ["watt_1"],
+            "stance.flatness": Row(0.5, WALKS),
+            "stance.points": Row([2, 4], WALKS),
+            "stance.speed": Row("constant", WALKS),
+            "stance.speed_tolerance": Row(0.1, EVENLY),
             "gear_ratio": Row(2.0, {"mechanisms": ["geared_fivebar", "watt_1"], "gear_ratio": 1.0}),
             "fixed_pivots": {"input": [20.0, 10.0]},
             "fixed_pivots.input": Row([22.0, 12.0], {"fixed_pivots": {"input": [20.0, 10.0]}}),

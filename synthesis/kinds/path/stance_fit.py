@@ -1,0 +1,216 @@
+"""Fits brought to where their stance is as it is stated, beside all other demands.
+
+What shapes are alike says nothing of how evenly a point moves, so that many fits are brought there, the nearest and
+others: the rows are those of :mod:`synthesis.kinds.path.stance_rows`, the method that of multipliers. At the places
+looked at a stance is held a little narrower than it is demanded, as it may be wider between them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.fit.chart import FOURBAR, POINT, UNKNOWNS
+from synthesis.fit.chart import LENGTHS as LENGTHS_AT
+from synthesis.fit.demands import CHANGE_POINT, EQUATIONS, FAMILY, SIGN
+from synthesis.fit.demands import COSINE as LEAST_ANGLE
+from synthesis.kinds.path.curve_fits import Fit, at_all_points, cognate_fits, fit_of, that_differ, thinning
+from synthesis.kinds.path.curve_limits import usable
+from synthesis.kinds.path.curve_target import Target
+from synthesis.kinds.path.limits import MIN_GRASHOF, limits_of
+from synthesis.kinds.path.nearness import MOST_UNEVEN, USABLE
+from synthesis.kinds.path.point_fit import Candidate, PointTask
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.stance_rows import (
+    COSINE,
+    CYCLE,
+    FIRST,
+    FLATNESS,
+    JAM_CYCLE,
+    LAST,
+    LENGTHS,
+    LONGEST,
+    MARGINS,
+    OFF_MEAN,
+    PIVOTS,
+    RATIO,
+    SIMPLE,
+    SIMPLE_FAMILY,
+    SIMPLE_SIGN,
+    SINE,
+    STANCE,
+    WITHIN,
+    fourbar_stance_rows,
+    simple_stance_rows,
+)
+from synthesis.numerics.augmented_lagrangian import hold
+from synthesis.numerics.portions import in_portions
+from synthesis.numerics.status import Status
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Whole = NDArray[np.int64]
+
+NARROWER = 0.97
+"""Share of a stated flatness, and of a stated share of the speed, that is aimed at."""
+
+ROUNDS, STEPS, WEIGHT = 8, 80, 30.0
+"""Descents with multipliers, steps of each, and the weight at first."""
+
+MISSED = 1e-3
+"""By how much a demand may be missed at the end, in its own unit: the driven linkage is judged."""
+
+MOST_HELD, MOST_KEPT = 60, 12
+"""Fits that are brought to the stance, and of those that arrive the nearest that are driven."""
+
+
+def as_fit(candidate: Candidate, task: PointTask, target: Target) -> Fit:
+    """A fit to a target's own points as one to all that is fitted of it, in its unit; with its error."""
+    family, sign, n = int(candidate.setting[FAMILY]), float(candidate.setting[SIGN]), len(target.points)
+    scale = task.size / target.size
+    x = candidate.x[: UNKNOWNS[FOURBAR]].copy()
+    theta = candidate.state[:n] + x[2]
+    place = scale * complex(x[0], x[1]) + (task.origin - target.centre) / target.size
+    x[0], x[1] = place.real, place.imag
+    x[LENGTHS_AT : LENGTHS_AT + 4] += math.log(scale)
+    x[POINT : POINT + 2] *= scale
+    if len(target.fitted) > n:
+        places, angles = target.places, theta
+        if target.closed:
+            turn = math.copysign(2.0 * math.pi, theta[-1] - theta[0])
+            places, angles = np.append(places, 1.0), np.append(theta, theta[0] + turn)
+        shares = np.linspace(0.0, 1.0, len(target.fitted) - n, endpoint=not target.closed)
+        theta = np.concatenate([theta, np.interp(shares, places, angles)])
+    return fit_of(target, family, x, sign, theta)
+
+
+class Stanced(NamedTuple):
+    """A fit within its stance: unknowns (m,), crank angles at the points (n,), and half its sum of squares."""
+
+    x: Real
+    theta: Real
+    cost: float
+
+
+def stance_spec(problem: PathProblem, size: float, first: int, last: int, cycle: float) -> Real:
+    """What rows know of a stance, in a unit of ``size`` length units, from the row ``first`` to the row ``last``.
+
+    ``cycle`` is the input's, radians: it is passed over where the stance goes on past the last row.
+    """
+    stance = problem.stance
+    assert stance is not None
+    way = problem.points[stance.points[1]].point - problem.points[stance.points[0]].point
+    out = np.full(STANCE, math.inf)
+    out[FIRST], out[LAST], out[CYCLE] = first, last, cycle if first > last else 0.0
+    out[COSINE], out[SINE] = way.real / abs(way), way.imag / abs(way)
+    if stance.flatness is not None:
+        out[FLATNESS] = NARROWER * stance.flatness / size
+    if stance.off_mean is not None:
+        out[OFF_MEAN] = NARROWER * stance.off_mean
+    return out
+
+
+def stance_of_target(problem: PathProblem, target: Target, fitted: int) -> tuple[Whole, Real]:
+    """Which of a target's first ``fitted`` points are fitted, and the stance of their rows, in the target's unit.
+
+    The first and last point of the stance are always among them.
+    """
+    assert problem.stance is not None
+    # The last point of a closed curve may be its first once more, which a target leaves out.
+    first, last = (index % len(target.points) for index in problem.stance.points)
+    part = np.union1d(np.arange(fitted)[thinning(target)], [first, last])
+    rows = np.searchsorted(part, [first, last])
+    return part, stance_spec(problem, target.size, int(rows[0]), int(rows[1]), 2.0 * math.pi)
+
+
+def fits_in_stance(
+    problem: PathProblem, target: Target, fits: Sequence[Fit], families: list[int], setting: Real
+) -> list[Fit]:
+    """Fourbars near a target, their cognates too, brought to the stance; the nearest that differ come first.
+
+    Parameters
+    ----------
+    problem : PathProblem
+        With a stance.
+    target : Target
+        What is drawn.
+    fits : sequence of Fit
+        Where they begin.
+    families : list of int
+        To which an answer may belong.
+    setting : float
+        The other demands, of :func:`synthesis.kinds.path.curve_limits.curve_setting`.
+    """
+    variants = [one for fit in fits for one in (fit, *cognate_fits(fit, families))]
+    begun = that_differ(sorted(variants, key=lambda fit: fit.error), MOST_HELD)
+    part, spec = stance_of_target(problem, target, len(target.fitted))
+    demands = [setting]
+    if not math.isfinite(setting[LEAST_ANGLE]) and problem.rank_by != "accuracy":
+        demands.append(usable(setting, USABLE, MOST_UNEVEN))
+    tasks = [(fit, one) for fit in begun for one in demands]
+    ended: list[Fit | None] = [None] * len(tasks)
+
+    def work(some: slice) -> None:
+        for k in range(*some.indices(len(tasks))):
+            fit, one = tasks[k]
+            end = _fourbar(fit, target.fitted[part], target.weights[part], fit.theta[part], spec, one)
+            if end is not None:
+                ended[k] = fit_of(target, fit.family, end.x, fit.sign, at_all_points(target, end.theta, part))
+
+    in_portions(work, len(tasks), 1)
+    arrived = [fit for fit in ended if fit is not None and math.isfinite(fit.error)]
+    return that_differ(sorted(arrived, key=lambda fit: fit.error), len(demands) * MOST_KEPT)
+
+
+def _fourbar(fit: Fit, points: Complex, weights: Real, theta: Real, spec: Real, setting: Real) -> Stanced | None:
+    demanded = setting.copy()
+    demanded[FAMILY], demanded[SIGN], demanded[CHANGE_POINT] = fit.family, fit.sign, MIN_GRASHOF
+    n, x, limits = len(points), np.array(fit.x), limits_of(demanded) + MARGINS
+    state = np.zeros(3 * n + limits)
+    state[:n] = theta - x[2]
+    cost = _held(fourbar_stance_rows, x, points, weights, np.concatenate([spec, demanded]), state, limits, EQUATIONS)
+    return None if cost is None else Stanced(x, state[:n] + x[2], cost)
+
+
+def simple_in_stance(
+    family: int, x: Real, sign: float, theta: Real, points: Complex, spec: Real, *, ratio: float, longest: float,
+    cycle: float, within: Real,
+) -> Stanced | None:  # fmt: skip
+    """A slider-crank or geared fivebar brought to the stance; None where it does not come there.
+
+    Parameters
+    ----------
+    family, x, sign, theta, points
+        Of :func:`synthesis.kinds.path.curve_descent.descend`, of one start.
+    spec : float
+        Of :func:`stance_spec`.
+    ratio, longest, cycle, within
+        As there.
+    """
+    setting = np.empty(SIMPLE)
+    setting[:STANCE] = spec
+    setting[SIMPLE_FAMILY], setting[SIMPLE_SIGN], setting[RATIO] = family, sign, ratio
+    setting[LONGEST], setting[JAM_CYCLE], setting[WITHIN:] = longest, cycle, within.ravel()
+    n, x, limits = len(points), np.array(x), MARGINS + LENGTHS + PIVOTS
+    state = np.zeros(n + limits)
+    state[:n] = theta
+    cost = _held(simple_stance_rows, x, points, np.ones(n), setting, state, limits, PIVOTS)
+    return None if cost is None else Stanced(x, state[:n].copy(), cost)
+
+
+def _held(
+    rows: Any, x: Real, points: Complex, weights: Real, setting: Real, state: Real, limits: int, equations: int
+) -> float | None:
+    """Half the sum of squares where all demands hold, in place; None where they were not brought to hold."""
+    placed = np.stack([points.real, points.imag, np.zeros(len(points)), np.sqrt(weights)], axis=1)
+    ended = np.empty(1)
+    most = 2 * len(points) + limits
+    status = hold(rows, x, placed, setting, state, most, limits, equations, WEIGHT, ROUNDS, STEPS, ended)
+    margins = state[len(state) - limits :]
+    zero = np.abs(margins[-equations:])
+    off = max(-float(margins[:-equations].min()), float(zero[np.isfinite(zero)].max(initial=0.0)))
+    return float(ended[0]) if status != Status.IMPOSSIBLE and off <= MISSED and math.isfinite(ended[0]) else None

@@ -1,0 +1,364 @@
+"""Residuals of linkages of every family with a stance among their demands (:mod:`synthesis.kinds.path.stated_stance`).
+
+The crank angles at the stance's first and last point are those at which P is nearest to them, θ₀ and θ₁, which move
+with the unknowns as P's way does. At :data:`PLACES` angles in equal steps from θ₀ to θ₁ P has the height h across the
+stance line and the place s along it; the margins at each are
+
+    f/2 − |h − (max h + min h)/2|,
+    t − |(θ₁ − θ₀) s′/(s₁ − s₀) − 1|,        s′ = (s(θ + δ) − s(θ − δ))/2δ,
+
+f the flatness, t the share by which the speed may differ. They are margins of
+:mod:`synthesis.numerics.augmented_lagrangian` before all others. The rows of points, and of what else is demanded, are
+those of :mod:`synthesis.kinds.path.point_rows` and :mod:`synthesis.kinds.path.sixbar_rows`; slider-cranks and geared
+fivebars are held to their fixed pivots and their longest link.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.compiling import njit
+from synthesis.fit.chart import GEARED_FIVEBAR, OPTIONS, natural
+from synthesis.fit.coupler_curve import place_with_slopes
+from synthesis.fit.demands import FAMILY, SIGN
+from synthesis.fit.sixbar_curve import UNKNOWNS, pins_with_slopes, point_with_slopes
+from synthesis.kinds.path.curve_descent import jams, links_of, pivots_off
+from synthesis.kinds.path.point_rows import path_rows
+from synthesis.kinds.path.sixbar_rows import CARRIER, HOLDER, SIDE, sixbar_rows
+from synthesis.numerics.augmented_lagrangian import limit_rows
+from synthesis.numerics.levenberg import ROWS
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+PLACES = 25
+"""Places of P in the stance at which it is held."""
+
+MARGINS = 4 * PLACES
+"""Margins of a stance: of the heights, from above and from below, and of the speeds."""
+
+APART = 1e-3
+"""δ, radians: heights are those of the mean of two places so far apart, the error δ²/2 of P's acceleration."""
+
+FIRST, LAST, CYCLE, COSINE, SINE, FLATNESS, OFF_MEAN = range(7)
+"""Places in a setting, before all others: the rows of the stance's first and last point, the input's cycle where the
+stance goes on past the last row (radians, else 0), the direction of its line, the flatness, in the task's unit, and
+the share by which the speed may differ from its mean; infinite where nothing is stated."""
+
+STANCE = 7
+"""Numbers of a stance in a setting."""
+
+SIMPLE_FAMILY, SIMPLE_SIGN, RATIO, LONGEST, JAM_CYCLE, WITHIN = range(STANCE, STANCE + 6)
+"""Places in the setting of a slider-crank or a geared fivebar behind those: family, assembly, gear ratio, longest link,
+the cycle in which it must not jam, and the limits of fixed pivots (4, 2)."""
+
+SIMPLE = STANCE + 13
+"""Numbers of that setting."""
+
+LENGTHS, PIVOTS = 5, 4
+"""Margins of a slider-crank or a geared fivebar: lengths and P's arm below the longest, and pivots, which are
+equations."""
+
+SPEED_FLOOR = 1e-9
+"""Speed of P, task sizes a radian, below which its path has no direction; the same of its way in a stance."""
+
+SETTLING, MAX_TURN_STEP, TURN_TOLERANCE = 3, 0.25, 1e-8
+"""Steps by which crank angles are settled at each linkage, the greatest, and that after which they are, radians."""
+
+
+@njit(**OPTIONS)
+def _turn_at_nearest(by: Complex, unknowns: int, turn: Real) -> None:
+    """How the crank angle at which P is nearest to a point moves with the unknowns: P stays where it is on its way."""
+    along = by[unknowns]
+    square = along.real * along.real + along.imag * along.imag
+    for j in range(unknowns):
+        turn[j] = 0.0
+        if square > SPEED_FLOOR * SPEED_FLOOR:
+            turn[j] = -(along.real * by[j].real + along.imag * by[j].imag) / square
+
+
+@njit(**OPTIONS)
+def _end_of(state: Real, n: int, setting: Real) -> float:
+    """By how much the stance's last crank angle is beyond that at its last point."""
+    beyond: float = setting[CYCLE] if state[n - 1] >= state[0] else -setting[CYCLE]
+    return beyond
+
+
+@njit(**OPTIONS)
+def _margins(
+    places: Complex, by: Complex, turn: float, turns: Real, setting: Real, multipliers: Real, values: Real,
+    gradients: Real,
+) -> None:  # fmt: skip
+    """Margins of a stance and, of those that bear a load, their derivatives.
+
+    ``places`` (2 k,) are those before and those behind each angle, ``by`` (2 k, m) their derivatives; ``turn`` is the
+    crank's in the stance, ``turns`` (2, m) the derivatives of its ends.
+    """
+    values[:] = np.inf
+    count, m = len(places) // 2, by.shape[1]
+    cosine, sine = setting[COSINE], setting[SINE]
+    weight = multipliers[-1]
+    if setting[FLATNESS] < np.inf:
+        low, high = 0, 0
+        heights = np.empty(count)
+        for k in range(count):
+            both = places[k] + places[count + k]
+            heights[k] = 0.5 * (cosine * both.imag - sine * both.real)
+            low = k if heights[k] < heights[low] else low
+            high = k if heights[k] > heights[high] else high
+        middle = 0.5 * (heights[low] + heights[high])
+        for k in range(count):
+            for side in range(2):
+                number, toward = 2 * k + side, 1.0 if side == 0 else -1.0
+                values[number] = 0.5 * setting[FLATNESS] - toward * (heights[k] - middle)
+                if values[number] < multipliers[number] / weight:
+                    for j in range(m):
+                        own, ends = by[k, j] + by[count + k, j], by[low, j] + by[count + low, j]
+                        change = own - 0.5 * (ends + by[high, j] + by[count + high, j])
+                        gradients[number, j] = -0.5 * toward * (cosine * change.imag - sine * change.real)
+    if not setting[OFF_MEAN] < np.inf:
+        return
+    last = count - 1
+    whole = places[last] + places[count + last] - places[0] - places[count]
+    way = 0.5 * (cosine * whole.real + sine * whole.imag)
+    if abs(way) < SPEED_FLOOR:
+        way = math.copysign(SPEED_FLOOR, way)
+    for k in range(count):
+        step = places[count + k] - places[k]
+        speed = (cosine * step.real + sine * step.imag) / (2.0 * APART)
+        share = turn * speed / way
+        for side in range(2):
+            number, toward = 2 * (count + k) + side, 1.0 if side == 0 else -1.0
+            values[number] = setting[OFF_MEAN] - toward * (share - 1.0)
+            if values[number] < multipliers[number] / weight:
+                for j in range(m):
+                    change = by[count + k, j] - by[k, j]
+                    every = by[last, j] + by[count + last, j] - by[0, j] - by[count, j]
+                    by_speed = (cosine * change.real + sine * change.imag) / (2.0 * APART)
+                    by_way = 0.5 * (cosine * every.real + sine * every.imag)
+                    by_turn = turns[1, j] - turns[0, j]
+                    gradients[number, j] = -toward * (turn * by_speed + speed * by_turn - share * by_way) / way
+
+
+@njit(**OPTIONS)
+def _along(k: int, first: float, last: float) -> tuple[float, float]:
+    """Share of the stance at a place, and the crank angle there: before each of the angles at first, then behind it."""
+    share = (k % PLACES) / (PLACES - 1)
+    return share, first + share * (last - first) + (APART if k >= PLACES else -APART)
+
+
+@njit(**OPTIONS)
+def _moved(by: Complex, m: int, share: float, turns: Real, out: Complex) -> None:
+    """Derivatives of a place of the stance, its crank angle moving with those of the ends."""
+    for j in range(m):
+        turn = (1.0 - share) * turns[0, j] + share * turns[1, j]
+        out[j] = by[j] + complex(by[m].real * turn, by[m].imag * turn)
+
+
+@njit(**OPTIONS)
+def _simple_stance(
+    family: int, x: Real, lengths: Real, chart: Real, sign: float, ratio: float, first: float, last: float,
+    turns: Real, places: Complex, out: Complex,
+) -> bool:  # fmt: skip
+    """Places of P in the stance and their derivatives, of a linkage with one closure; False beyond a toggle.
+
+    ``first`` and ``last`` are crank angles; ``turns`` (2, m) gets their derivatives.
+    """
+    m = out.shape[1]
+    by = np.empty(m + 1, np.complex128)
+    for end in range(2):
+        closes, _ = place_with_slopes(family, x, lengths, chart, sign, ratio, first if end == 0 else last, by)
+        if not closes:
+            return False
+        _turn_at_nearest(by, m, turns[end])
+    for k in range(2 * PLACES):
+        share, angle = _along(k, first, last)
+        closes, places[k] = place_with_slopes(family, x, lengths, chart, sign, ratio, angle, by)
+        if not closes:
+            return False
+        _moved(by, m, share, turns, out[k])
+    return True
+
+
+@njit(ROWS, **OPTIONS)
+def fourbar_stance_rows(
+    x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
+) -> int:
+    """Rows of a fourbar, see :data:`synthesis.numerics.levenberg.ROWS`; those of path_rows, and its stance's.
+
+    ``setting`` begins with the stance. ``state`` is that of path_rows, with the stance's margins before all others.
+    """
+    n, own = len(points), setting[STANCE:]
+    inner = np.empty(len(state) - MARGINS)
+    inner[: 3 * n] = state[: 3 * n]
+    m = path_rows(x, points, own, multipliers[MARGINS:], inner, residuals, jacobian)
+    if m < 0:
+        return -1
+    state[: 3 * n], state[3 * n + MARGINS :] = inner[: 3 * n], inner[3 * n :]
+    lengths, chart = np.empty(4), np.empty((4, 4))
+    family = int(own[FAMILY])
+    natural(family, x, lengths, chart)
+    places, by = np.empty(2 * PLACES, np.complex128), np.empty((2 * PLACES, len(x)), np.complex128)
+    turns = np.zeros((2, len(x)))
+    first = x[2] + state[int(setting[FIRST])]
+    last = x[2] + state[int(setting[LAST])] + _end_of(state, n, setting)
+    if not _simple_stance(family, x, lengths, chart, own[SIGN], 0.0, first, last, turns, places, by):
+        return -1
+    rows: int = _with_stance(
+        places, by, last - first, turns, setting, multipliers, state[3 * n : 3 * n + MARGINS], residuals, jacobian, m
+    )
+    return rows
+
+
+@njit(**OPTIONS)
+def _with_stance(
+    places: Complex,
+    by: Complex,
+    turn: float,
+    turns: Real,
+    setting: Real,
+    multipliers: Real,
+    values: Real,
+    residuals: Real,
+    jacobian: Real,
+    m: int,
+) -> int:
+    """The rows of a stance, behind m others."""
+    gradients, loads = np.zeros((MARGINS, by.shape[1])), np.empty(MARGINS + 1)
+    loads[:MARGINS], loads[MARGINS] = multipliers[:MARGINS], multipliers[-1]
+    _margins(places, by, turn, turns, setting, loads, values, gradients)
+    rows: int = limit_rows(values, gradients, 0, loads, residuals, jacobian, m)
+    return rows
+
+
+@njit(ROWS, **OPTIONS)
+def sixbar_stance_rows(
+    x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
+) -> int:
+    """Rows of a sixbar: those of sixbar_rows, and its stance's; see :func:`fourbar_stance_rows`."""
+    n, own = len(points), setting[STANCE:]
+    inner = np.empty(len(state) - MARGINS)
+    inner[:n] = state[:n]
+    m = sixbar_rows(x, points, own, multipliers[MARGINS:], inner, residuals, jacobian)
+    if m < 0:
+        return -1
+    state[:n], state[n + MARGINS :] = inner[:n], inner[n:]
+    lengths, chart, turns = np.empty(4), np.empty((4, 4)), np.zeros((2, UNKNOWNS))
+    natural(int(own[FAMILY]), x, lengths, chart)
+    places, by = np.empty(2 * PLACES, np.complex128), np.empty((2 * PLACES, UNKNOWNS), np.complex128)
+    swings, slopes = np.zeros((2, UNKNOWNS + 1)), np.empty(UNKNOWNS + 1, np.complex128)
+    by_c, by_d = np.empty(UNKNOWNS + 1, np.complex128), np.empty(UNKNOWNS + 1, np.complex128)
+    first = state[int(setting[FIRST])]
+    last = state[int(setting[LAST])] + _end_of(state, n, setting)
+    for k in range(-2, 2 * PLACES):
+        share, angle = (0.0, first) if k == -2 else (1.0, last) if k == -1 else _along(k, first, last)
+        closes, c, d = pins_with_slopes(
+            x, lengths, chart, own[SIGN], int(own[CARRIER]), int(own[HOLDER]), angle, swings, by_c, by_d
+        )
+        if not closes:
+            return -1
+        closes, p = point_with_slopes(x, own[SIDE], c, d, by_c, by_d, slopes)
+        if not closes:
+            return -1
+        if k < 0:
+            _turn_at_nearest(slopes, UNKNOWNS, turns[k + 2])
+            continue
+        places[k] = p
+        _moved(slopes, UNKNOWNS, share, turns, by[k])
+    rows: int = _with_stance(
+        places, by, last - first, turns, setting, multipliers, state[n : n + MARGINS], residuals, jacobian, m
+    )
+    return rows
+
+
+@njit(ROWS, **OPTIONS)
+def simple_stance_rows(
+    x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
+) -> int:
+    """Rows of a slider-crank or a geared fivebar: points at their nearest places, stance, longest link, fixed pivots.
+
+    ``state`` has the crank angles at the points, the margins of the stance, and those of lengths and pivots.
+    """
+    n, unknowns, family = len(points), len(x), int(setting[SIMPLE_FAMILY])
+    sign, ratio = setting[SIMPLE_SIGN], setting[RATIO]
+    lengths, chart = np.zeros(4), np.zeros((4, 4))
+    natural(family, x, lengths, chart)
+    if not np.abs(x).max() < 30.0:
+        return -1
+    if family == GEARED_FIVEBAR and jams(x, lengths, sign, ratio, setting[JAM_CYCLE]):
+        return -1
+    by = np.empty(unknowns + 1, np.complex128)
+    m = 0
+    for i in range(n):
+        z, root, angle = complex(points[i, 0], points[i, 1]), points[i, 3], state[i]
+        for _ in range(SETTLING):
+            closes, p = place_with_slopes(family, x, lengths, chart, sign, ratio, angle, by)
+            if not closes:
+                return -1
+            gap, along = p - z, by[unknowns]
+            square = along.real * along.real + along.imag * along.imag
+            if square < SPEED_FLOOR * SPEED_FLOOR:
+                break
+            turn = -(along.real * gap.real + along.imag * gap.imag) / square
+            turn = min(max(turn, -MAX_TURN_STEP), MAX_TURN_STEP)
+            if abs(turn) < TURN_TOLERANCE:
+                break
+            angle += turn
+        closes, p = place_with_slopes(family, x, lengths, chart, sign, ratio, angle, by)
+        if not closes:
+            return -1
+        state[i] = angle
+        gap, along = p - z, by[unknowns]
+        speed = abs(along)
+        across = complex(-along.imag / speed, along.real / speed) if speed > SPEED_FLOOR else 1j
+        residuals[m] = root * (gap.real * across.imag - gap.imag * across.real)
+        residuals[m + 1] = root * (gap.real * across.real + gap.imag * across.imag)
+        for j in range(unknowns):
+            jacobian[m, j] = 0.0
+            jacobian[m + 1, j] = root * (by[j].real * across.real + by[j].imag * across.imag)
+        m += 2
+    values = state[n + MARGINS :]
+    gradients, off, slopes = np.zeros((LENGTHS + PIVOTS, unknowns)), np.zeros(4), np.zeros((4, unknowns))
+    _held_lengths(family, x, lengths, chart, setting[LONGEST], values, gradients)
+    within = np.ascontiguousarray(setting[WITHIN:SIMPLE]).reshape(4, 2)
+    pivots_off(family, x, lengths, chart, within, off, slopes)
+    for k in range(PIVOTS):
+        values[LENGTHS + k], gradients[LENGTHS + k] = off[k], slopes[k]
+    m = limit_rows(values, gradients, PIVOTS, multipliers[MARGINS:], residuals, jacobian, m)
+    places, out = np.empty(2 * PLACES, np.complex128), np.empty((2 * PLACES, unknowns), np.complex128)
+    turns = np.zeros((2, unknowns))
+    first = state[int(setting[FIRST])]
+    last = state[int(setting[LAST])] + _end_of(state, n, setting)
+    if not _simple_stance(family, x, lengths, chart, sign, ratio, first, last, turns, places, out):
+        return -1
+    rows: int = _with_stance(
+        places, out, last - first, turns, setting, multipliers, state[n : n + MARGINS], residuals, jacobian, m
+    )
+    return rows
+
+
+@njit(**OPTIONS)
+def _held_lengths(
+    family: int, x: Real, lengths: Real, chart: Real, longest: float, values: Real, gradients: Real
+) -> None:
+    """Shares by which lengths, and P's arm, are below the longest."""
+    values[:LENGTHS] = np.inf
+    if not longest < np.inf:
+        return
+    m, count = len(x), links_of(family)
+    logs = 4 if family == GEARED_FIVEBAR else 3
+    for k in range(count):
+        sign = 1.0 if lengths[k] >= 0.0 else -1.0
+        values[k] = 1.0 - sign * lengths[k] / longest
+        for j in range(count):
+            gradients[k, logs + j] = -sign * chart[k, j] / longest
+    arm = math.hypot(x[m - 2], x[m - 1])
+    values[LENGTHS - 1] = 1.0 - arm / longest
+    if arm > 0.0:
+        gradients[LENGTHS - 1, m - 2], gradients[LENGTHS - 1, m - 1] = (
+            -x[m - 2] / (arm * longest),
+            -x[m - 1] / (arm * longest),
+        )
