@@ -145,8 +145,9 @@ class _Hand(threading.Thread):
         except (EOFError, OSError):
             # Native code that gets no memory ends its process.
             raise _beyond("takes more memory to read than a file has here") from None
-        except Unsuitable:
+        except Unsuitable as error:
             self._end()
+            log.warning("a file was given up", reader=self.name, reason=str(error))
             raise
         finally:
             if self._process is not None and not self._process.is_alive():

@@ -30,6 +30,9 @@ _LENGTH = re.compile(rf"\s*({NUMBER})\s*([A-Za-z%]*)\s*")
 _NUMBERS = re.compile(rf"[\s,]*+(?:{NUMBER}[\s,]*+)*+")
 _HIDDEN = re.compile(r"(?:^|;)\s*display\s*:\s*none\b")
 
+_SHARES = {"xMin": 0.0, "YMin": 0.0, "xMax": 1.0, "YMax": 1.0}
+"""What of the room that is left over lies before a view box; where the middle is asked for, or nothing, a half."""
+
 GROUPS = {"svg", "g", "a", "switch"}
 UNSEEN = {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "style", "script", "title", "desc", "metadata"}
 """What draws nothing where it stands. Gradients, filters and the like have no shapes below them."""
@@ -68,7 +71,7 @@ class SvgReader:
             place = above @ transform_of(node.attributes.get("transform", ""))
             if name in GROUPS:
                 if name == "svg" and depth:
-                    raise ValueError("it is a drawing in the drawing, with a page of its own")
+                    place = place @ _inner(node, node)
                 below = _layer_of(node) or layer
                 for child in node.children:
                     self.visit(child, place, below, depth + 1)
@@ -93,8 +96,7 @@ class SvgReader:
         place = place @ Affine(shift=complex(_length(node, "x"), _length(node, "y")))
         if used.name.rpartition(" ")[2] != "symbol":
             return self.visit(used, place, layer, depth + 1)
-        if "viewBox" in used.attributes:
-            raise ValueError("it uses a symbol with a view box")
+        place = place @ _inner(used, node, used)
         for child in used.children:
             self.visit(child, place, layer, depth + 1)
         return None
@@ -157,6 +159,32 @@ def _page(root: Node) -> tuple[Affine, float | None]:
     absolute = [stated for stated in (width, height) if stated and stated[1] in MILLIMETRES]
     unit = least * 25.4 / 96.0 if absolute else None
     return Affine.of_matrix(across, 0.0, 0.0, -up, -across * left, up * (top + tall)), unit
+
+
+def _inner(node: Node, *sized: Node) -> Affine:
+    """Where what stands in a drawing within the drawing, or in a symbol, lies in the coordinates around it.
+
+    Its view box is fitted into a rectangle as wide and high as the first of ``sized`` says that says it (SVG 2, section
+    8.2). What reaches out of the rectangle is not cut off.
+    """
+    corner = Affine(shift=complex(_length(node, "x"), _length(node, "y")))
+    box = _numbers(node.attributes.get("viewBox", ""), "its view box")
+    if not box:
+        return corner
+    if len(box) != 4 or min(box[2:]) <= 0.0:
+        raise ValueError("its view box is not four numbers with a width and a height")
+    width, height = (
+        next((_length(one, name) for one in sized if name in one.attributes), 0.0) for name in ("width", "height")
+    )
+    if width <= 0.0 or height <= 0.0:
+        raise ValueError("it has a view box, and a width or height that depends on the page")
+    align, _, way = node.attributes.get("preserveAspectRatio", "").strip().partition(" ")
+    across, down = width / box[2], height / box[3]
+    if align != "none":
+        across = down = max(across, down) if way.strip() == "slice" else min(across, down)
+    left = _SHARES.get(align[:4], 0.5) * (width - across * box[2])
+    top = _SHARES.get(align[4:], 0.5) * (height - down * box[3])
+    return corner @ Affine.of_matrix(across, 0.0, 0.0, down, left - across * box[0], top - down * box[1])
 
 
 def _stated(text: str) -> tuple[float, str] | None:

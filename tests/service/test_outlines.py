@@ -115,6 +115,8 @@ def test_a_page_that_is_stretched(client):
 
 
 SEGMENT = 200 * (math.pi / 3 - math.sqrt(3) / 2)
+INNER = 'x="10" y="20" width="40" height="20" viewBox="-5 -5 10 10"'
+UNIT = '<rect x="-5" y="-5" width="10" height="10"/>'
 SHAPES = {
     # Each within the unit of a page 100 high, with its area and the middle of its bounds.
     '<rect x="10" y="10" width="30" height="20" rx="5"/>': (600 - (4 - math.pi) * 25, (25, 80)),
@@ -146,6 +148,15 @@ SHAPES = {
     '<g transform="translate(5 5)"><g transform="scale(2)"><rect width="5" height="5"/></g></g>': (100, (10, 90)),
     '<defs><rect id="u" width="10" height="10"/></defs><use href="#u" x="5" y="5"/>': (100, (10, 90)),
     '<symbol id="u"><rect width="5" height="5"/></symbol><use xlink:href="#u" transform="scale(2)"/>': (100, (5, 95)),
+    '<symbol id="u" viewBox="1 1 5 5"><rect x="1" y="1" width="5" height="5"/></symbol>'
+    '<use href="#u" x="10" y="10" width="20" height="20"/>': (400, (20, 80)),
+    # A drawing in the drawing, fitted into its page as it says: 10 by 10 into 40 by 20.
+    f'<svg {INNER}>{UNIT}</svg>': (400, (30, 70)),
+    f'<svg {INNER} preserveAspectRatio="xMinYMid meet">{UNIT}</svg>': (400, (20, 70)),
+    f'<svg {INNER} preserveAspectRatio="xMaxYMax">{UNIT}</svg>': (400, (40, 70)),
+    f'<svg {INNER} preserveAspectRatio="xMidYMax slice">{UNIT}</svg>': (1600, (30, 80)),
+    f'<svg {INNER} preserveAspectRatio="none">{UNIT}</svg>': (800, (30, 70)),
+    f'<svg x="10" y="20">{UNIT}</svg>': (100, (10, 80)),
 }  # fmt: skip
 
 
@@ -226,16 +237,19 @@ def test_what_is_left_out_is_told_with_its_reason(client):
         '<rect id="turned" width="9" height="9" transform="spin(3)"/><rect id="share" width="50%" height="9"/>'
         '<use id="nothing" href="#missing"/><use id="away" href="https://example.org/x.svg#a"/>'
         '<circle id="far" r="1" cx="1e300"/><image id="pic" href="x.png"/>'
+        '<svg id="inner" width="50%" height="9" viewBox="0 0 1 1"><rect width="1" height="1"/></svg>'
+        '<svg id="whole" viewBox="0 0 1 1"><rect width="1" height="1"/></svg>'
         '<path id="t1" d="M50 50h9"/><path id="t2" d="M50 50v9"/><path id="t3" d="M50 50h-9"/>'
     )
     answer = found(client, drawing)
     assert [one["id"] for one in answer["outlines"]] == ["good"]
     reasons = {one["id"]: one["reason"] for one in answer["left_out"]}
-    assert answer["left_out_count"] == len(reasons) == 15
+    assert answer["left_out_count"] == len(reasons) == 17
     for name, word in {
         "open": "open: its ends are 31.62 apart", "bow": "meets itself (Self-intersection[5 -5])", "flat": "no area",
         "odd": "at character 8", "lead": "path data is wrong", "t": "text", "turned": "transform", "share": "width",
         "nothing": "not in the drawing", "away": "not in the drawing", "far": "1e+09", "pic": "picture",
+        "inner": "depends on the page", "whole": "depends on the page",
         "t1": "more than two", "t2": "more than two", "t3": "more than two",
     }.items():  # fmt: skip
         assert word in reasons[name].replace("More", "more"), name
