@@ -117,6 +117,20 @@ def test_a_slotted_link_reaches_as_far_as_its_block_does() -> None:
     assert ram.grounded
 
 
+def test_a_slot_for_a_longer_block_reaches_farther() -> None:
+    shaper = catalogue.quick_return(0.0, -5.0j, 2.0, 4.0, 9.0, 3.0j, 0.0, 0.3)
+    at = float(shaper.reference_input)
+    plates = parts_of(shaper, 0.4, 0.2, at, at + TURN, slot_ends=0.75).plates
+    (rocker,) = [plate for plate in plates if plate.name == "rocker"]
+    assert np.abs(rocker.outline.points + 5.0j).max() == pytest.approx(7.75, abs=1e-9)
+
+
+def test_where_only_the_whole_motion_will_do_no_free_range_is_looked_for() -> None:
+    known, asked = over_a_turn(DRAG_LINK), over_a_turn(DRAG_LINK, whole=True)
+    assert (asked.free, [clash.parts for clash in asked.clashes]) == (None, [clash.parts for clash in known.clashes])
+    assert over_a_turn(CRANK_ROCKER, whole=True) == over_a_turn(CRANK_ROCKER)
+
+
 def test_a_coupler_point_is_part_of_its_plate_and_no_pin() -> None:
     parts = parts_of(CRANK_ROCKER, 0.4, 0.2, 0.0, 1.0)
     (coupler,) = [plate for plate in parts.plates if plate.name == "coupler"]

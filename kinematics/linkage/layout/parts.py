@@ -75,7 +75,9 @@ class Parts(NamedTuple):
     meshes: tuple[tuple[int, ...], ...]
 
 
-def parts_of(mechanism: Mechanism, link_width: float, pin_diameter: float, low: float, high: float) -> Parts:
+def parts_of(
+    mechanism: Mechanism, link_width: float, pin_diameter: float, low: float, high: float, slot_ends: float = 0.0
+) -> Parts:
     """The parts of one design.
 
     Parameters
@@ -87,6 +89,8 @@ def parts_of(mechanism: Mechanism, link_width: float, pin_diameter: float, low: 
     low, high : float
         Least and greatest input of the motion, radians or positions along the input slide: slots are as long as it
         needs them.
+    slot_ends : float
+        How much farther than its joint goes a slot of a link reaches at either end.
 
     Raises
     ------
@@ -101,7 +105,8 @@ def parts_of(mechanism: Mechanism, link_width: float, pin_diameter: float, low: 
         points = [complex(mechanism.joints[joint]) for joint in mechanism.links[link]]
         for slide, ends in zip(mechanism.slides, travel, strict=True):
             if slide.link == link:
-                points += [complex(slide.point) + end * complex(np.exp(1j * slide.angle)) for end in ends]
+                reach = ends[0] - slot_ends, ends[1] + slot_ends
+                points += [complex(slide.point) + end * complex(np.exp(1j * slide.angle)) for end in reach]
         plates.append(Plate(link, link, Part(link, _hull(points, ONE_PLACE * size), 0.5 * link_width)))
     pins = []
     shafts: dict[str, set[int]] = {}

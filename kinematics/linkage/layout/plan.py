@@ -106,6 +106,8 @@ def laid_out(
     gap: float,
     through: bool = False,
     closed: bool = False,
+    slot_ends: float = 0.0,
+    whole: bool = False,
 ) -> Layout:
     """Lay a linkage out in planes.
 
@@ -122,6 +124,11 @@ def laid_out(
         Whether shafts at fixed pivots are to pass all planes, and are held on both sides.
     closed : bool
         Whether the motion is one whole cycle, at whose ends everything stands alike.
+    slot_ends : float
+        How much farther than its joint goes a slot of a link reaches at either end, for a block that is longer than
+        the pin in it.
+    whole : bool
+        Whether only the whole motion will do: then no free range is looked for, which takes the longest.
 
     Raises
     ------
@@ -130,7 +137,7 @@ def laid_out(
     DimensionError
         For more plates, or stub shafts among them, than can be arranged.
     """
-    parts = parts_of(mechanism, link_width, pin_diameter, low, high)
+    parts = parts_of(mechanism, link_width, pin_diameter, low, high, slot_ends)
     scene = _Scene(mechanism, parts, low, high, gap)
     found = scene.met()
     shafts = {n for n, pin in enumerate(parts.pins) if through and pin.grounded}
@@ -138,15 +145,14 @@ def laid_out(
     builder = _Builder(parts, shafts, stubs)
     built = builder.best(found)
     unparted = built.unparted(found)
-    free: Interval | None = (low, high)
-    if unparted:
+    free: Interval | None = None if unparted else (low, high)
+    if unparted and not whole:
 
         @cache
         def buildable(meeting: tuple[int, ...]) -> bool:
             return builder.parts([found[n] for n in meeting])
 
         longest = _longest_free(scene.free(found, closed=closed), low, high, buildable, closed=closed)
-        free = None
         if longest is not None:
             free, meeting = longest
             built = builder.best([found[n] for n in meeting])
