@@ -1,9 +1,11 @@
-# make serve   start the service on http://127.0.0.1:8000 (MECHSYNTH_HOST, MECHSYNTH_PORT, ... change it)
+# make serve   start the service on http://127.0.0.1:8000 (MECHSYNTH_HOST, MECHSYNTH_PORT, ... change it); with
+#              MECHSYNTH_CAD=1 also the libraries that make solids of parts
 # make test    ruff, mypy, import-linter and the whole pytest suite but the browser's: see test-browser
 # make test-faults  what becomes of jobs when processes are killed, with figures
 # make test-cluster  the service on PostgreSQL, RabbitMQ and Redis (installed where they are missing and we are root)
 # make test-browser  drive the studio in the system's Chromium, check its types and its accessibility, and run a
 #              generated TypeScript client in node (Chromium and node are installed where they are missing and we are root)
+# make test-cad  the tests of solids, in an environment of their own with the extra cad (.venv-cad, a gigabyte)
 # make campaign  the checks with thousands of random problems: a tenth of them, or all with SHARE=1 (an independent
 #              multibody program is installed for them)
 # make fuzz    hundreds of requests of each operation, and of absurd problems of each kind; half an hour
@@ -25,6 +27,7 @@ PIP    := $(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-
 NODE   := tests/node/node_modules/.installed
 MULTIBODY := $(VENV)/.multibody
 SITE   := $(VENV)/.site
+CAD    := $(VENV)/.cad
 
 # Files of tests are dealt out to two processes.
 SPREAD := -n 2 --dist loadfile
@@ -32,9 +35,9 @@ SPREAD := -n 2 --dist loadfile
 export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: serve test fuzz test-cluster engines test-faults test-browser chromium campaign demo check quick bench openapi lock package docs \
-    test-docs clean suite cluster-rabbitmq cluster-redis
+    test-docs clean suite test-cad cad-suite cluster-rabbitmq cluster-redis
 
-serve: $(SERVING)
+serve: $(SERVING) $(if $(filter-out 0 false no,$(MECHSYNTH_CAD)),$(CAD))
 	@exec $(BIN)/mechsynth serve
 
 demo: $(SERVING)
@@ -44,7 +47,7 @@ test: $(STAMP)
 	@$(MAKE) --no-print-directory -j2 check suite
 
 suite: $(STAMP)
-	$(BIN)/pytest -m "not campaign and not fuzz and not faults and not browser and not cluster and not site" $(SPREAD)
+	$(BIN)/pytest -m "not campaign and not fuzz and not faults and not browser and not cluster and not site and not cad" $(SPREAD)
 
 # The same tests of the service on PostgreSQL and Celery with RabbitMQ, and with Redis, side by side: the real servers,
 # on free ports. What only PostgreSQL has a part in is tried beside one of the two brokers.
@@ -80,6 +83,18 @@ chromium:
 	    && apt-get update -q && apt-get install -qy --no-install-recommends chromium; } \
 	    || { echo "the browser tests need Debian's chromium: apt-get install chromium"; exit 1; }
 
+# The tests of the service say what it does without the extra, so that it is installed beside.
+test-cad:
+	@$(MAKE) --no-print-directory VENV=.venv-cad cad-suite
+
+cad-suite: $(VENV)/.cad-tests
+	$(BIN)/pytest -m cad -q tests/cad
+
+$(VENV)/.cad-tests: requirements-dev.lock requirements-cad.lock tests/cad/mesh.lock pyproject.toml
+	@echo "installing the locked packages and the extra cad (once; a minute or two)"
+	$(call install,requirements-dev.lock -r requirements-cad.lock -r tests/cad/mesh.lock)
+	@touch $@
+
 SHARE := 0.1
 
 campaign: $(STAMP) $(MULTIBODY)
@@ -103,7 +118,7 @@ check: $(STAMP)
 
 # The inner loop: everything but the tests marked slow.
 quick: $(STAMP)
-	$(BIN)/pytest -m "not slow and not campaign and not fuzz and not faults and not browser and not cluster and not site" -q $(SPREAD)
+	$(BIN)/pytest -m "not slow and not campaign and not fuzz and not faults and not browser and not cluster and not site and not cad" -q $(SPREAD)
 
 bench: $(STAMP)
 	$(BIN)/python -m benchmarks.analysis
@@ -165,6 +180,12 @@ $(SERVING): requirements.lock pyproject.toml
 	$(call install,requirements.lock)
 	@touch $@
 
+# What solids need besides: Open CASCADE, and what it brings.
+$(CAD): requirements-cad.lock pyproject.toml | $(SERVING)
+	@echo "installing the extra cad (once; a gigabyte)"
+	$(call install,requirements-cad.lock)
+	@touch $@
+
 # What developing needs, and all kernels compiled.
 $(STAMP): requirements-dev.lock requirements.lock pyproject.toml
 	@echo "installing the locked packages for development and compiling all kernels (once; minutes)"
@@ -181,6 +202,7 @@ lock: $(STAMP)
 	$(RESOLVE) -c requirements-dev.lock -o requirements.lock
 	$(RESOLVE) --extra cluster --extra telemetry -c requirements-dev.lock -o requirements-cluster.lock
 	$(RESOLVE) --extra docs -c requirements-dev.lock -o requirements-docs.lock
+	$(RESOLVE) --extra cad -c requirements-dev.lock -o requirements-cad.lock
 
 # What the tests need of node, from the lock beside it.
 $(NODE): tests/node/package.json tests/node/package-lock.json
@@ -201,4 +223,4 @@ $(SITE): requirements-docs.lock | $(STAMP)
 	@touch $@
 
 clean:
-	rm -rf $(VENV) var dist tests/node/node_modules
+	rm -rf $(VENV) .venv-cad var dist tests/node/node_modules

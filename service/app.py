@@ -29,6 +29,7 @@ from service.api import (
     jobs,
     metrics,
     outlines,
+    parts,
     problems,
     studio,
 )
@@ -46,6 +47,7 @@ from service.jobs.retention import keep_tidy
 from service.jobs.store import JobStore
 from service.kernels import ANALYSIS, KernelsState
 from service.metrics import Metrics
+from service.parts.workshop import Workshop
 from service.settings import Settings
 
 _DESCRIPTION = """Designs mechanisms and verifies every answer by driving it.
@@ -72,6 +74,9 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
         analyst.start(after=lambda: kernels.has(ANALYSIS) or (kernels.ended and analyst.asked))
         app.state.drawings = Drawings()
         app.state.readers = readers = ImportDesk(settings.log_level, settings.log_format)
+        app.state.workshop = workshop = Workshop(
+            settings.job_memory_mb, settings.job_timeout_s, settings.log_level, settings.log_format
+        )
         try:
             executor.subscribe(notifier.publish)
             executor.start()
@@ -95,6 +100,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics, kernel
         finally:
             notifier.close()
             readers.stop()
+            await run_in_threadpool(workshop.stop)
             await run_in_threadpool(executor.stop)
             engine.dispose()
 
@@ -138,6 +144,7 @@ def application(lifespan: Lifespan[FastAPI]) -> FastAPI:
         designs.router,
         forces.reading,
         forces.stating,
+        parts.router,
         events.router,
         batches.router,
         batches.following,

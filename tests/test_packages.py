@@ -12,6 +12,7 @@ CONTAINER = ROOT / "docs" / "deploy" / "Dockerfile"
 PIN = re.compile(r"^([a-z0-9-]+)==(\S+)([^\n]*?) \\\n((?:    --hash=sha256:[0-9a-f]{64}(?: \\)?\n)+)", re.MULTILINE)
 FOR_DEVELOPERS = {"pytest", "mypy", "ruff", "hypothesis", "playwright", "schemathesis", "import-linter", "uv"}
 FOR_THE_SITE = {"mkdocs", "mkdocs-material", "mkdocstrings-python", "nbclient", "ipykernel"}
+FOR_SOLIDS = {"build123d", "cadquery-ocp-novtk"}
 FOR_CLUSTERS = {"celery", "psycopg", "redis", "opentelemetry-sdk"}
 
 
@@ -45,6 +46,14 @@ def test_the_site_is_made_with_the_versions_that_developers_have_and_packages_of
     versions = {(package, version) for package, version, _ in DEVELOPERS}
     shared = {(package, version) for package, version, _ in SITE if package in packages("requirements-dev.lock")}
     assert shared <= versions
+
+
+def test_solids_are_made_with_the_versions_that_developers_have_and_packages_of_their_own():
+    assert packages("requirements-cad.lock") >= packages("requirements.lock") | FOR_SOLIDS
+    assert not packages("requirements-dev.lock") & FOR_SOLIDS
+    solids = {(package, version) for package, version, _ in lock("requirements-cad.lock")}
+    known = {(package, version) for package, version, _ in DEVELOPERS}
+    assert {one for one in solids if one[0] in packages("requirements-dev.lock")} <= known
 
 
 def test_convex_programs_come_with_the_solvers_that_are_called():

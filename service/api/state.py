@@ -15,6 +15,7 @@ from service.jobs.batches.rows import BatchSummary
 from service.jobs.desk import JobDesk
 from service.jobs.poller import JobPoller
 from service.jobs.schema import JobSummary
+from service.parts.workshop import Workshop
 
 T = TypeVar("T")
 
@@ -36,4 +37,5 @@ Poller = Annotated[JobPoller[JobSummary], Depends(_part("poller", JobPoller))]
 BatchPoller = Annotated[JobPoller[BatchSummary], Depends(_part("batch_poller", JobPoller))]
 Board = Annotated[Drawings, Depends(_part("drawings", Drawings))]
 Readers = Annotated[ImportDesk, Depends(_part("readers", ImportDesk))]
+Bench = Annotated[Workshop, Depends(_part("workshop", Workshop))]
 Core = Annotated[Analyst, Depends(_part("analyst", Analyst))]

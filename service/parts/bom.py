@@ -1,0 +1,50 @@
+"""The bill of materials of an assembly as a table."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from service.parts.items import Item
+from service.parts.model import Part
+from service.parts.shapes import Disc, Outline, extent
+from service.render.page.table import table
+
+HEADER = ("part", "quantity", "material", "length", "width", "thickness", "holes", "plane", "standard")
+
+
+def bill(listed: Sequence[Item]) -> str:
+    """The items with lengths in millimetres; of what is round the length is along its axis, the width its diameter."""
+    return table(HEADER, [row(item) for item in listed])
+
+
+def row(item: Item) -> list[str]:
+    """What the bill says of an item, in the order of :data:`HEADER`."""
+    part = item.part
+    length, width = part.length_and_width
+    sizes = (length, width, part.high - part.low)
+    if part.sort == "pin":
+        sizes = (part.high - part.low, width, width)
+    told = [millimetres(size) for size in sizes]
+    return [item.name, str(len(item.parts)), part.material, *told, holes(part), item.planes, part.standard]
+
+
+def holes(part: Part) -> str:
+    """The holes of a part by their diameters, and its slots by width and length."""
+    round_ones = Counter(millimetres(2.0 * hole.radius) for hole in part.region.holes if isinstance(hole, Disc))
+    told = [f"{count} x {diameter}" for diameter, count in round_ones.items()]
+    told += [_slot(hole) for hole in part.region.holes if not isinstance(hole, Disc)]
+    return "; ".join(told)
+
+
+def millimetres(value: float) -> str:
+    """A length to a thousandth."""
+    return f"{value:.3f}".rstrip("0").rstrip(".")
+
+
+def _slot(outline: Outline) -> str:
+    assert not isinstance(outline, Disc)
+    start, end, _ = max(outline.edges(), key=lambda edge: abs(edge[1] - edge[0]) if edge[2] == 0.0 else 0.0)
+    along = (end - start) / abs(end - start)
+    (low, high), (left, right) = extent(outline, along), extent(outline, 1j * along)
+    return f"slot {millimetres(right - left)} x {millimetres(high - low)}"

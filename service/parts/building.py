@@ -1,0 +1,413 @@
+"""From a mechanism whose planes are known to its assembly.
+
+Plane k, a plate thick, lies from k pitches less a thickness to k pitches; the base is plane 0. On a pin lie, from
+below: its head or a retaining ring, the plates that it joins with washers or a spacer in every gap between them, and a
+cap or another ring. The second base, where there is one, is above all planes.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from itertools import combinations, pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from service.parts.model import Assembly, Carrier, Motion, Part, Prism, Sort
+from service.parts.shapes import Disc, Outline, Region, ring, widened
+from service.parts.sizes import WALL, Sizes
+from service.parts.standards import bar, washer_for
+
+LINK_COLOURS = ("#1f5a9e", "#b8600b", "#22734a", "#5b3a8c", "#a3195b", "#1b7f86", "#8a6d1a", "#6b4b3a")
+BASE_COLOUR, PIN_COLOUR, FASTENER_COLOUR, BLOCK_COLOUR = "#76818c", "#c9ced4", "#3c444d", "#c2a14a"
+
+ONE_PLACE = 1e-9
+"""Distance as a share of the mechanism's size below which joints of one link lie on each other."""
+
+CORNER_INPUTS = 361
+"""Inputs at which it is seen how far the links reach, for posts beyond."""
+
+MATERIALS = {"print": ("PETG", "PETG"), "laser": ("sheet", "steel"), "mill": ("aluminium", "steel")}
+"""Of plates and of pins."""
+
+
+class Planes(NamedTuple):
+    """Where links and pins lie: planes of links from 1, and the lowest and the highest of each pin by its joint."""
+
+    links: Mapping[str, int]
+    pins: Mapping[str, tuple[int, int]]
+
+    @property
+    def highest(self) -> int:
+        """The highest plane of a moving link."""
+        return max(self.links.values())
+
+
+class Cut(NamedTuple):
+    """A hole in a plate: of a pin, or the slot of a slide."""
+
+    outline: Outline
+    name: str
+
+
+class Slot(NamedTuple):
+    """A slot of a link: the block's joint, the direction of the line, and the ends of the joint's travel on it."""
+
+    joint: str
+    link: str
+    direction: complex
+    ends: tuple[complex, complex]
+
+
+def assembled(
+    motion: Motion, planes: Planes, slots: Sequence[Slot], sizes: Sizes, unit: float, scale: float
+) -> Assembly:
+    """The assembly of a mechanism without gears.
+
+    Parameters
+    ----------
+    motion : Motion
+        In millimetres.
+    planes : Planes
+        With ``highest + 1`` for the second base.
+    slots : sequence of Slot
+        Of each slide.
+    sizes : Sizes
+    unit, scale : float
+        As the assembly tells them.
+    """
+    builder = _Builder(motion.mechanism, planes, slots, sizes)
+    parts = (*builder.plates(), *builder.blocks(), *builder.bases(motion), *builder.on_pins())
+    return Assembly(parts, motion, planes.highest, builder.sides, unit, scale)
+
+
+class _Builder:
+    def __init__(self, mechanism: Mechanism, planes: Planes, slots: Sequence[Slot], sizes: Sizes) -> None:
+        self._mechanism, self._planes, self._slots, self._sizes = mechanism, planes, slots, sizes
+        self._at = {name: complex(z) for name, z in mechanism.joints.items()}
+        size = max(abs(z - w) for z, w in combinations(self._at.values(), 2))
+        self._near = ONE_PLACE * size
+        self._groups = {joint: self._place(joint) for joint in planes.pins}
+        self.sides = 2 if any(high > planes.highest for _, high in planes.pins.values()) else 1
+        self._posts: dict[str, complex] = {}
+
+    def _place(self, joint: str) -> set[str]:
+        """The joints that have one pin with this: of one link, and in one place."""
+        found, grown = {joint}, True
+        while grown:
+            more = {
+                other
+                for listed in self._mechanism.links.values()
+                for one in found & set(listed)
+                for other in listed
+                if abs(self._at[other] - self._at[one]) <= self._near
+            }
+            grown = not more <= found
+            found |= more
+        return found
+
+    def _level(self, plane: int) -> tuple[float, float]:
+        top = plane * self._sizes.pitch
+        return top - self._sizes.thickness, top
+
+    # Plates
+
+    def plates(self) -> list[Part]:
+        """The moving links."""
+        moving = [link for link in self._mechanism.links if link != GROUND]
+        return [self._link(link, LINK_COLOURS[n % len(LINK_COLOURS)]) for n, link in enumerate(moving)]
+
+    def _link(self, link: str, colour: str) -> Part:
+        listed = self._mechanism.links[link]
+        slots = [slot for slot in self._slots if slot.link == link]
+        points = [self._at[joint] for joint in listed]
+        for slot in slots:
+            points += self._slot_ends(slot)
+        outer = widened(points, 0.5 * self._sizes.width)
+        region = Region(outer, tuple(cut.outline for cut in self.cuts(link)))
+        first, *others = listed
+        far = max(others, key=lambda name: abs(self._at[name] - self._at[first]))
+        direction = self._at[far] - self._at[first]
+        plane = self._planes.links[link]
+        return Part(
+            name=f"link_{plain(link)}",
+            described=link.replace("_", " "),
+            sort="link",
+            carrier=Carrier(link, first),
+            prisms=(Prism(region, *self._level(plane)),),
+            along=direction / abs(direction),
+            planes=(plane, plane),
+            material=MATERIALS[self._sizes.process][0],
+            colour=colour,
+        )
+
+    def cuts(self, link: str) -> list[Cut]:
+        """Holes of the pins of a link, of points of it that no pin holds, and its slots."""
+        radius = 0.5 * self._sizes.hole
+        own = set(self._mechanism.links[link])
+        cuts = [
+            Cut(Disc(self._at[next(iter(own & group))], radius), joint)
+            for joint, group in self._groups.items()
+            if own & group
+        ]
+        for slot in self._slots:
+            if slot.link == link:
+                wide = 0.5 * self._sizes.block[1] + self._sizes.clearance
+                cuts.append(Cut(widened(self._slot_ends(slot), wide), slot.joint))
+        pinned = {joint for group in self._groups.values() for joint in group}
+        spare = radius + WALL * self._sizes.pin
+        for joint in self._mechanism.links[link]:
+            if joint not in pinned and link != GROUND:
+                place = self._at[joint]
+                if all(_distance(place, cut.outline) >= spare for cut in cuts):
+                    cuts.append(Cut(Disc(place, radius), joint))
+        return cuts
+
+    def _slot_ends(self, slot: Slot) -> list[complex]:
+        """Centres of the round ends of a slot."""
+        length, width = self._sizes.block
+        beyond = 0.5 * (length - width) * slot.direction
+        return [slot.ends[0] - beyond, slot.ends[1] + beyond]
+
+    def blocks(self) -> list[Part]:
+        """The blocks that run in slots."""
+        length, width = self._sizes.block
+        found = []
+        placed = [(slot, plane) for slot in self._slots for plane in self._block_planes(slot)]
+        for n, (slot, plane) in enumerate(placed):
+            place = self._at[slot.joint]
+            half = 0.5 * (length - width) * slot.direction
+            outer = widened([place - half, place + half], 0.5 * width)
+            found.append(
+                Part(
+                    name=f"block_{plain(slot.joint)}{'' if len(placed) == 1 else f'_{n + 1}'}",
+                    described=f"block at {slot.joint}",
+                    sort="block",
+                    carrier=Carrier(slot.link, slot.joint),
+                    prisms=(Prism(Region(outer, (Disc(place, 0.5 * self._sizes.hole),)), *self._level(plane)),),
+                    along=slot.direction,
+                    planes=(plane, plane),
+                    material={"print": "PETG", "laser": "sheet", "mill": "bronze"}[self._sizes.process],
+                    colour=BLOCK_COLOUR,
+                )
+            )
+        return found
+
+    def _block_planes(self, slot: Slot) -> list[int]:
+        """The planes in which a joint has a block: that of the link with the slot, or those of the bases it reaches."""
+        if slot.link != GROUND:
+            return [self._planes.links[slot.link]]
+        reach = next(reach for joint, reach in self._planes.pins.items() if slot.joint in self._groups[joint])
+        return [plane for plane in (0, self._planes.highest + 1) if plane in reach]
+
+    # Bases
+
+    def bases(self, motion: Motion) -> list[Part]:
+        """The base, and the second one with the posts between."""
+        grounded = {joint: reach for joint, reach in self._planes.pins.items() if self._stands(joint)}
+        points = [self._at[joint] for joint in grounded if not self._slides_on_ground(joint)]
+        for slot in self._slots:
+            if slot.link == GROUND:
+                points += self._slot_ends(slot)
+        if self.sides == 2:
+            self._posts = self._corners(motion)
+            points += self._posts.values()
+        outer = widened(points, 0.5 * self._sizes.width)
+        names = {0: "base"} | ({self._planes.highest + 1: "second_base"} if self.sides == 2 else {})
+        return [self._base(name, plane, outer, self._held(grounded, plane)) for plane, name in names.items()]
+
+    def _corners(self, motion: Motion) -> dict[str, complex]:
+        """Places of four posts beyond everything that moves."""
+        driven = motion.at(motion.inputs(CORNER_INPUTS))
+        swept = []
+        for link, listed in self._mechanism.links.items():
+            points = [self._at[joint] for joint in listed]
+            points += [end for slot in self._slots if slot.link == link for end in self._slot_ends(slot)]
+            if points:
+                placed = motion.placed(Carrier(link, None if link == GROUND else listed[0]), driven)
+                swept += [placed.turn * z + placed.shift for z in points]
+        places = np.concatenate(swept)
+        places = places[np.isfinite(places)]
+        # Half a plate, half a post, a block where it reaches beyond its plate, and as much again as parts keep apart.
+        room = 0.5 * (self._sizes.width + self._sizes.collar) + self._sizes.block[0] + 2.0 * self._sizes.apart
+        left, right = float(places.real.min()) - room, float(places.real.max()) + room
+        low, high = float(places.imag.min()) - room, float(places.imag.max()) + room
+        corners = (complex(left, low), complex(right, low), complex(right, high), complex(left, high))
+        return {f"post_{n + 1}": place for n, place in enumerate(corners)}
+
+    def _stands(self, joint: str) -> bool:
+        """Whether a pin stands on a base, fixed or with its block."""
+        reach = self._planes.pins[joint]
+        return reach[0] == 0 or reach[1] > self._planes.highest
+
+    def _slides_on_ground(self, joint: str) -> bool:
+        return any(slot.link == GROUND and slot.joint in self._groups[joint] for slot in self._slots)
+
+    def _held(self, grounded: Mapping[str, tuple[int, int]], plane: int) -> list[complex]:
+        """Places of the holes in a base."""
+        shafts = [
+            self._at[joint]
+            for joint, (low, high) in grounded.items()
+            if low <= plane <= high and not self._slides_on_ground(joint)
+        ]
+        return [*shafts, *self._posts.values()]
+
+    def _base(self, name: str, plane: int, outer: Outline, holes: Sequence[complex]) -> Part:
+        _, width = self._sizes.block
+        slots = [slot for slot in self._slots if plane in self._block_planes(slot)]
+        cuts: list[Outline] = [Disc(place, 0.5 * self._sizes.hole) for place in holes]
+        cuts += [widened(self._slot_ends(slot), 0.5 * width + self._sizes.clearance) for slot in slots]
+        low, high = self._level(plane)
+        prisms = [Prism(Region(outer, tuple(cuts)), low, high)]
+        if self._sizes.process == "print":
+            prisms += self._bosses(plane, low, high)
+        points = list(holes) + [end for slot in slots for end in self._slot_ends(slot)]
+        return Part(
+            name=name,
+            described=name.replace("_", " "),
+            sort="base",
+            carrier=Carrier(GROUND, None),
+            prisms=tuple(prisms),
+            along=_longest(points) if self.sides == 1 else 1.0 + 0.0j,
+            planes=(plane, plane),
+            material=MATERIALS[self._sizes.process][0],
+            colour=BASE_COLOUR,
+        )
+
+    def _bosses(self, plane: int, low: float, high: float) -> list[Prism]:
+        """What a printed base has around its shafts, up to the nearest plate, or down to it."""
+        prisms = []
+        for joint in self._planes.pins:
+            levels = self._levels(joint)
+            if self._slides_on_ground(joint) or plane not in levels:
+                continue
+            boss = ring(self._at[joint], 0.5 * self._sizes.collar, 0.5 * self._sizes.hole)
+            if plane == 0:
+                prisms.append(Prism(boss, high, self._level(levels[1])[0] - self._sizes.play))
+            elif len(levels) > 1:
+                prisms.append(Prism(boss, self._level(levels[-2])[1] + self._sizes.play, low))
+        return prisms
+
+    # What stands on pins
+
+    def _levels(self, joint: str) -> list[int]:
+        """The planes of what a pin joins, bases and blocks among them, from below."""
+        group = self._groups[joint]
+        links = {link for link, listed in self._mechanism.links.items() if group & set(listed) and link != GROUND}
+        links |= {slot.link for slot in self._slots if slot.joint in group and slot.link != GROUND}
+        low, high = self._planes.pins[joint]
+        levels = {self._planes.links[link] for link in links}
+        levels |= {plane for plane in (0, self._planes.highest + 1) if plane in (low, high)}
+        return sorted(levels)
+
+    def on_pins(self) -> list[Part]:
+        """Pins, and what holds and parts the plates on them."""
+        parts: list[Part] = []
+        for joint in self._planes.pins:
+            levels = self._levels(joint)
+            spans = list(pairwise(levels))
+            if self._sizes.process == "print" and not self._slides_on_ground(joint):
+                # A printed base has bosses there.
+                spans = [(a, b) for a, b in spans if a != 0 and b <= self._planes.highest]
+            parts += self._pin(plain(joint), f"pin {joint}", Carrier(GROUND, joint), self._at[joint], levels)
+            parts += self._between(plain(joint), Carrier(GROUND, joint), self._at[joint], spans)
+        for name, place in self._posts.items():
+            levels = [0, self._planes.highest + 1]
+            parts += self._pin(name, name.replace("_", " "), Carrier(GROUND, None), place, levels)
+            parts += self._between(name, Carrier(GROUND, None), place, [(levels[0], levels[1])])
+        return parts
+
+    def _pin(self, name: str, described: str, carrier: Carrier, place: complex, levels: Sequence[int]) -> list[Part]:
+        """A pin with its head and its cap, or with a retaining ring at either end."""
+        sizes = self._sizes
+        low, high = self._level(levels[0])[0], self._level(levels[-1])[1]
+        planes = levels[0], levels[-1]
+        shank, top = 0.5 * sizes.pin, high + sizes.play
+        steel = MATERIALS[sizes.process][1]
+
+        def turned(part: str, what: str, stack: list[tuple[float, float, float, float]], **more: str) -> Part:
+            prisms = tuple(Prism(ring(place, outer, inner), z, end) for outer, inner, z, end in stack)
+            return Part(
+                f"{part}_{name}", what, "pin" if part == "pin" else "ring", carrier, prisms, 1.0 + 0.0j, planes, steel,
+                more.pop("colour"), round=True, **more,
+            )  # fmt: skip
+
+        if sizes.process == "print":
+            head = 0.5 * sizes.collar
+            stack = [(head, 0.0, low - sizes.cap, low), (shank, 0.0, low, top + sizes.cap)]
+            cap = [(head, shank, top, top + sizes.cap)]
+            return [
+                turned("pin", described, stack, colour=PIN_COLOUR),
+                turned("cap", f"cap of {described}, pressed or glued on", cap, colour=FASTENER_COLOUR),
+            ]
+        held = sizes.ring
+        groove, bottom = 0.5 * held.groove, low - held.width
+        stack = [
+            (shank, 0.0, bottom - held.beyond, bottom),
+            (groove, 0.0, bottom, low),
+            (shank, 0.0, low, top),
+            (groove, 0.0, top, top + held.width),
+            (shank, 0.0, top + held.width, top + held.width + held.beyond),
+        ]
+        below = [(0.5 * held.diameter, groove, low - held.thickness, low)]
+        above = [(0.5 * held.diameter, groove, top, top + held.thickness)]
+        what = f"retaining ring of {described}"
+        return [
+            turned("pin", described, stack, colour=PIN_COLOUR, standard=bar(sizes.pin)),
+            turned("ring_below", what, below, colour=FASTENER_COLOUR, standard=held.standard),
+            turned("ring_above", what, above, colour=FASTENER_COLOUR, standard=held.standard),
+        ]
+
+    def _between(self, name: str, carrier: Carrier, place: complex, spans: Sequence[tuple[int, int]]) -> list[Part]:
+        """Washers in the gaps between neighbouring planes, and spacers through planes that are passed."""
+        sizes = self._sizes
+        washer = washer_for(sizes.pin, sizes.width)
+        parts = []
+        for lower, upper in spans:
+            floor, ceiling = self._level(lower)[1], self._level(upper)[0]
+            own = f"{name}_{lower}_{upper}"
+            pieces: list[tuple[str, float, float, str]] = []
+            if upper == lower + 1 and sizes.washers and washer is not None:
+                pieces = [
+                    (f"washer_{own}_{n + 1}", floor + n * washer.thickness, floor + (n + 1) * washer.thickness,
+                     washer.standard)
+                    for n in range(sizes.washers)
+                ]  # fmt: skip
+            else:
+                pieces = [(f"spacer_{own}", floor, ceiling - sizes.play, "")]
+            for called, low, high, standard in pieces:
+                sort: Sort = "washer" if standard else "spacer"
+                region = ring(place, 0.5 * sizes.collar, 0.5 * sizes.hole)
+                parts.append(
+                    Part(
+                        called, "washer" if standard else "spacer", sort, carrier, (Prism(region, low, high),),
+                        1.0 + 0.0j, (lower, upper), MATERIALS[sizes.process][1], FASTENER_COLOUR, standard, round=True,
+                    )
+                )  # fmt: skip
+        return parts
+
+
+def plain(name: str) -> str:
+    """A name as files and CAD programs take it."""
+    return re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_") or "part"
+
+
+def _distance(place: complex, outline: Outline) -> float:
+    """How far a point lies from an outline that it is not in, about."""
+    if isinstance(outline, Disc):
+        return abs(place - outline.centre) - outline.radius
+    least = math.inf
+    for start, end, _ in outline.edges():
+        along = end - start
+        share = min(max(((place - start) * along.conjugate()).real / abs(along) ** 2, 0.0), 1.0)
+        least = min(least, abs(place - start - share * along))
+    return least
+
+
+def _longest(points: Sequence[complex]) -> complex:
+    """The direction in which points lie farthest apart."""
+    away = max((b - a for a, b in combinations(points, 2)), key=abs, default=1.0 + 0.0j)
+    return away / abs(away) if abs(away) > 0.0 else 1.0 + 0.0j

@@ -1,0 +1,161 @@
+"""The assembly as solids: STEP (AP242), STL, 3MF and glTF, by build123d on Open CASCADE.
+
+This is the only module that needs the extra ``cad``; :mod:`service.parts.extra` says whether it is there.
+Arcs stay arcs and holes cylinders; the mesh formats have them as polygons no farther than :data:`DEFLECTION` off.
+"""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from service.parts.items import Item
+from service.parts.model import Assembly, Part
+from service.parts.shapes import Disc, Outline, Region, middle_of
+
+DEFLECTION, TURN = 0.02, 0.1
+"""Greatest distance of a mesh from the part, millimetres, and angle between neighbouring facets, radians."""
+
+MADE_AT = "2000-01-01T00:00:00"
+"""Stands in STEP files as the time of their making, which a design does not have."""
+
+AP242, SCHEMA = 5, b"AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }"
+"""The number by which the library knows the schema, and its name in a file."""
+
+Solid = Any
+"""A shape of build123d, which this module alone knows."""
+
+
+def load() -> None:
+    """Import the libraries, which takes seconds."""
+    import build123d  # noqa: F401
+
+
+def solid(part: Part) -> Solid:
+    """A part at its place in the reference configuration, one solid without seams between its prisms."""
+    import build123d as b3d
+
+    pieces = []
+    for prism in part.prisms:
+        face = _face(prism.region)
+        pieces.append(b3d.extrude(face, amount=prism.high - prism.low, dir=(0, 0, 1)).moved(_up(prism.low)))
+    whole = pieces[0].fuse(*pieces[1:]).clean() if len(pieces) > 1 else pieces[0]
+    (made,) = whole.solids()
+    made.label = part.name
+    made.color = b3d.Color(*(int(part.colour[k : k + 2], 16) / 255.0 for k in (1, 3, 5)))
+    return made
+
+
+def placed(assembly: Assembly, solids: Sequence[Solid], input_: float) -> list[Solid]:
+    """The solids of all parts where they are at an input; they were made in the reference configuration."""
+    import build123d as b3d
+
+    driven = assembly.motion.at(np.array([input_]))
+    moved = []
+    for part, shape in zip(assembly.parts, solids, strict=True):
+        at = assembly.motion.placed(part.carrier, driven)
+        turn, shift = complex(at.turn[0]), complex(at.shift[0])
+        place = b3d.Location((shift.real, shift.imag, 0.0), (0.0, 0.0, float(np.degrees(np.angle(turn)))))
+        one = shape.moved(place)
+        one.label, one.color = shape.label, shape.color
+        moved.append(one)
+    return moved
+
+
+def step(solids: Sequence[Solid], name: str) -> bytes:
+    """Solids as one STEP assembly with their names and colours."""
+    import build123d as b3d
+    from OCP.Interface import Interface_Static
+    from OCP.STEPCAFControl import STEPCAFControl_Controller
+
+    STEPCAFControl_Controller.Init_s()
+    Interface_Static.SetIVal_s("write.step.schema", AP242)
+    whole = b3d.Compound(children=list(solids), label=name)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "assembly.step"
+        b3d.export_step(whole, path, timestamp=MADE_AT)
+        written = path.read_bytes()
+    # build123d makes the header before it knows the schema.
+    return re.sub(rb"FILE_SCHEMA\(\(.*?\)\);", b"FILE_SCHEMA(('" + SCHEMA + b"'));", written, count=1, flags=re.DOTALL)
+
+
+def stl(shape: Solid) -> bytes:
+    """A solid as a binary STL file."""
+    import build123d as b3d
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "part.stl"
+        b3d.export_stl(shape, path, tolerance=DEFLECTION, angular_tolerance=TURN)
+        return path.read_bytes()
+
+
+def three_mf(shape: Solid, name: str) -> bytes:
+    """A solid as a 3MF file."""
+    import build123d as b3d
+
+    mesher = b3d.Mesher()
+    mesher.add_shape(shape, linear_deflection=DEFLECTION, angular_deflection=TURN, part_number=name)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "part.3mf"
+        mesher.write(path)
+        return path.read_bytes()
+
+
+def glb(solids: Sequence[Solid], name: str) -> bytes:
+    """Solids as one binary glTF file: metres, and y upwards, along the shafts."""
+    import build123d as b3d
+
+    whole = b3d.Compound(children=list(solids), label=name)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "assembly.glb"
+        b3d.export_gltf(whole, path, binary=True, linear_deflection=DEFLECTION, angular_deflection=TURN)
+        return path.read_bytes()
+
+
+def lying(item: Item) -> Solid:
+    """A solid of an item as it is printed: along x, on the plate, its lowest face down."""
+    part = item.part
+    return _lying(solid(part), part)
+
+
+def _lying(shape: Solid, part: Part) -> Solid:
+    import build123d as b3d
+
+    back = float(np.degrees(np.angle(part.along.conjugate())))
+    turned = shape.moved(b3d.Location((0.0, 0.0, 0.0), (0.0, 0.0, back)))
+    low = turned.bounding_box().min
+    return turned.moved(b3d.Location((-low.X, -low.Y, -low.Z)))
+
+
+def _up(height: float) -> Any:
+    import build123d as b3d
+
+    return b3d.Location((0.0, 0.0, height))
+
+
+def _face(region: Region) -> Any:
+    import build123d as b3d
+
+    return b3d.Face(_wire(region.outer), [_wire(hole) for hole in region.holes])
+
+
+def _wire(outline: Outline) -> Any:
+    import build123d as b3d
+
+    if isinstance(outline, Disc):
+        centre = b3d.Plane((outline.centre.real, outline.centre.imag, 0.0))
+        return b3d.Wire([b3d.Edge.make_circle(outline.radius, centre)])
+    edges = []
+    for start, end, bulge in outline.edges():
+        a, b = (start.real, start.imag), (end.real, end.imag)
+        if bulge == 0.0:
+            edges.append(b3d.Edge.make_line(a, b))
+        else:
+            half = middle_of(start, end, bulge)
+            edges.append(b3d.Edge.make_three_point_arc(a, (half.real, half.imag), b))
+    return b3d.Wire(edges)

@@ -1,0 +1,38 @@
+"""The outline of a flat part with its holes as a DXF drawing in millimetres, as a laser cutter or a router takes it.
+
+Everything is on the layer CUT: outlines and slots are closed polylines whose round ends are true arcs, holes are
+circles. The part lies along x, with its lowest and leftmost points on the axes.
+"""
+
+from __future__ import annotations
+
+from ezdxf.layouts.layout import Modelspace
+
+from service.parts.model import Part
+from service.parts.shapes import Disc, Outline, extent
+from service.render.page import dxf
+
+LAYERS = {"CUT": (7, "CONTINUOUS")}
+
+
+def cutting(part: Part, title: str) -> str:
+    """The drawing of one part as a DXF document (R2010)."""
+    document = dxf.new_drawing(title, "mm", LAYERS)
+    space = document.modelspace()
+    outer, along = part.region.outer, part.along
+    corner = complex(extent(outer, along)[0], extent(outer, 1j * along)[0])
+    for outline in (outer, *part.region.holes):
+        _add(space, outline, along, corner)
+    return dxf.written(document)
+
+
+def _add(space: Modelspace, outline: Outline, along: complex, corner: complex) -> None:
+    """An outline turned so that ``along`` lies along x, and shifted by ``corner``."""
+    back = along.conjugate()
+    if isinstance(outline, Disc):
+        dxf.add_circle(space, outline.centre * back - corner, outline.radius, "CUT")
+        return
+    points = [
+        (z.real, z.imag, bulge) for z, bulge in ((start * back - corner, bulge) for start, _, bulge in outline.edges())
+    ]
+    space.add_lwpolyline(points, format="xyb", close=True, dxfattribs={"layer": "CUT"})

@@ -1,0 +1,62 @@
+"""Parts that are alike are made once: the items of an assembly, each with the parts that it stands for."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from typing import NamedTuple
+
+from service.parts.model import FLAT, Assembly, Part
+from service.parts.shapes import Disc
+
+DIGITS = 6
+"""Decimals of a millimetre to which alike parts agree."""
+
+
+class Item(NamedTuple):
+    """What is made or bought, and how often; ``name`` is that of its files."""
+
+    name: str
+    parts: tuple[Part, ...]
+
+    @property
+    def part(self) -> Part:
+        """One of them."""
+        return self.parts[0]
+
+    @property
+    def planes(self) -> str:
+        """The planes in which they lie, or which they reach from and to."""
+        spans = sorted({part.planes for part in self.parts})
+        return "; ".join(f"{low}" if low == high else f"{low}-{high}" for low, high in spans)
+
+
+def items(assembly: Assembly) -> list[Item]:
+    """The items of an assembly: plates first, then pins and what stands on them."""
+    alike: dict[Hashable, list[Part]] = {}
+    for part in assembly.parts:
+        alike.setdefault(_likeness(part), []).append(part)
+    kinds = [_kind(parts[0]) for parts in alike.values()]
+    numbers = dict.fromkeys(kinds, 0)
+    found = []
+    for kind, parts in zip(kinds, alike.values(), strict=True):
+        numbers[kind] += 1
+        name = kind if kinds.count(kind) == 1 and len(parts) > 1 else f"{kind}_{numbers[kind]}"
+        found.append(Item(parts[0].name if len(parts) == 1 else name, tuple(parts)))
+    order = ("base", "link", "block", "pin", "ring", "washer", "spacer")
+    return sorted(found, key=lambda item: order.index(item.part.sort))
+
+
+def _kind(part: Part) -> str:
+    return part.name.split("_")[0]
+
+
+def _likeness(part: Part) -> Hashable:
+    """What parts that are made alike have in common."""
+    if part.sort in FLAT or not part.round:
+        return part.name
+    stack = []
+    for region, low, high in part.prisms:
+        assert isinstance(region.outer, Disc)
+        radii = [region.outer.radius, *(hole.radius for hole in region.holes if isinstance(hole, Disc))]
+        stack.append(tuple(round(x, DIGITS) for x in (*radii, low - part.low, high - part.low)))
+    return part.sort, part.standard, tuple(stack)

@@ -1,0 +1,163 @@
+"""Whether the parts of an assembly want one place at once, and whether enough is left of the plates around their holes.
+
+This knows the parts alone, not the planes that were found for them: it moves every part, takes all pairs of prisms that
+share some height, and intersects their regions as polygons. A polygon of what is solid lies outside of its arcs, one of
+a hole inside, so that what is free of overlaps here is so in truth at the inputs looked at. Bodies of revolution on one
+pin are compared by their radii.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from kinematics.linkage.planar.drive import MechanismMotion
+from service.parts.model import FLAT, Assembly, Carrier, Part, Prism
+from service.parts.shapes import Disc, Outline, Region, ring_of
+
+POSITIONS = 144
+"""Inputs at which parts are looked at."""
+
+ROUNDING = 1e-9
+"""Share of the assembly's size by which faces that touch may seem to overlap."""
+
+
+class Overlap(NamedTuple):
+    """Two parts that want one place, and the input at which they want the most of it."""
+
+    parts: tuple[str, str]
+    at: float
+    area: float
+
+
+class Thin(NamedTuple):
+    """A place of a plate at which less is left than must be, and how much is."""
+
+    part: str
+    left: float
+
+
+def overlaps(assembly: Assembly, count: int = POSITIONS) -> list[Overlap]:
+    """The pairs of parts that overlap at some of ``count`` inputs of the motion.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    count : int
+        Inputs, spread over the whole motion.
+    """
+    inputs = assembly.motion.inputs(count)
+    size = assembly.size
+    moved = _Moved(assembly, assembly.motion.at(inputs))
+    found = []
+    for one, other in combinations(assembly.parts, 2):
+        most = np.zeros(count)
+        for first, second in _meeting(one, other, ROUNDING * size):
+            if one.round and other.round and one.carrier == other.carrier and _about_one_axis(first, second):
+                most = np.maximum(most, _on_one_pin(first, second, ROUNDING * size))
+            else:
+                most = np.maximum(most, moved.shared((one.carrier, first.region), (other.carrier, second.region)))
+        worst = int(np.argmax(most))
+        if most[worst] > (ROUNDING * size) ** 2:
+            found.append(Overlap((one.name, other.name), float(inputs[worst]), float(most[worst])))
+    return found
+
+
+def too_thin(assembly: Assembly, wall: float) -> list[Thin]:
+    """Plates of which less than ``wall`` is left between a hole and the edge or another hole."""
+    found = []
+    for part in assembly.parts:
+        if part.sort not in FLAT:
+            continue
+        for prism in part.prisms[:1]:
+            holes = [shapely.Polygon(_pairs(ring_of(hole, beyond=True))) for hole in prism.region.holes]
+            edge = shapely.LinearRing(_pairs(ring_of(prism.region.outer, beyond=False)))
+            inside = shapely.Polygon(edge)
+            left = [edge.distance(hole) if inside.contains(hole) else 0.0 for hole in holes]
+            left += [one.distance(other) for one, other in combinations(holes, 2)]
+            if left and min(left) < wall:
+                found.append(Thin(part.name, min(left)))
+    return found
+
+
+def _meeting(one: Part, other: Part, rounding: float) -> Iterator[tuple[Prism, Prism]]:
+    """Prisms of two parts that share some height."""
+    if min(one.high, other.high) - max(one.low, other.low) <= rounding:
+        return
+    for first in one.prisms:
+        for second in other.prisms:
+            if min(first.high, second.high) - max(first.low, second.low) > rounding:
+                yield first, second
+
+
+def _about_one_axis(first: Prism, second: Prism) -> bool:
+    one, other = first.region.outer, second.region.outer
+    return isinstance(one, Disc) and isinstance(other, Disc) and one.centre == other.centre
+
+
+def _on_one_pin(first: Prism, second: Prism, rounding: float) -> float:
+    """The area that two rings about one centre share, by their radii."""
+    (low, high), (inner, outer) = (_radii(prism.region) for prism in (first, second))
+    least, most = max(low, inner), min(high, outer)
+    return float(np.pi * (most**2 - least**2)) if most - least > rounding else 0.0
+
+
+def _radii(region: Region) -> tuple[float, float]:
+    assert isinstance(region.outer, Disc)
+    inner = [hole.radius for hole in region.holes if isinstance(hole, Disc)]
+    return max(inner, default=0.0), region.outer.radius
+
+
+Carried = tuple[Carrier, Region]
+"""A region and what it moves with."""
+
+
+class _Moved:
+    """The regions of an assembly at all inputs, each made once."""
+
+    def __init__(self, assembly: Assembly, driven: MechanismMotion) -> None:
+        carriers = {part.carrier for part in assembly.parts}
+        self._placed = {carrier: assembly.motion.placed(carrier, driven) for carrier in carriers}
+        self._boxes: dict[Carried, NDArray[np.float64]] = {}
+        self._polygons: dict[Carried, NDArray[np.object_]] = {}
+
+    def shared(self, first: Carried, second: Carried) -> NDArray[np.float64]:
+        """The area that two regions share at each input."""
+        a, b = self._box(first), self._box(second)
+        near = np.asarray(np.concatenate([a[:, :2] < b[:, 2:], b[:, :2] < a[:, 2:]], axis=1).all(axis=1))
+        areas = np.zeros(len(near))
+        if near.any():
+            areas[near] = shapely.area(shapely.intersection(self._solid(first)[near], self._solid(second)[near]))
+        return areas
+
+    def _ring(self, carried: Carried, outline: Outline, *, beyond: bool) -> NDArray[np.float64]:
+        """An outline at each input, shape (n, m, 2)."""
+        placed = self._placed[carried[0]]
+        places = placed.turn[:, None] * ring_of(outline, beyond=beyond) + placed.shift[:, None]
+        return np.stack([places.real, places.imag], axis=-1)
+
+    def _box(self, carried: Carried) -> NDArray[np.float64]:
+        """Left, low, right and high of a region at each input, shape (n, 4)."""
+        if carried not in self._boxes:
+            outer = self._ring(carried, carried[1].outer, beyond=True)
+            self._boxes[carried] = np.concatenate([outer.min(axis=1), outer.max(axis=1)], axis=1)
+        return self._boxes[carried]
+
+    def _solid(self, carried: Carried) -> NDArray[np.object_]:
+        """A region as a polygon at each input."""
+        if carried not in self._polygons:
+            region = carried[1]
+            holes = [shapely.linearrings(self._ring(carried, hole, beyond=False)) for hole in region.holes]
+            outer = shapely.linearrings(self._ring(carried, region.outer, beyond=True))
+            solid = shapely.polygons(outer, holes=np.stack(holes, axis=1)) if holes else shapely.polygons(outer)
+            self._polygons[carried] = solid
+        return self._polygons[carried]
+
+
+def _pairs(points: NDArray[np.complex128]) -> NDArray[np.float64]:
+    return np.column_stack([points.real, points.imag])

@@ -1,0 +1,312 @@
+"""The assembly on one sheet: its planes as an exploded side view to scale, the view from above, and the bill.
+
+The side view looks along the base from where the pins stand farthest apart. Each plane and each gap between two planes
+is drawn at its true height and moved up by the same space as all others; the pins hang above, in their true lengths,
+on the axes that lead down through everything they hold.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections import Counter
+from collections.abc import Sequence
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+
+from service.parts.bom import HEADER, millimetres, row
+from service.parts.items import Item
+from service.parts.model import FLAT, Assembly, Part
+from service.parts.shapes import Disc, Outline, extent, ring_of
+from service.render.page.blocks import Line, table
+from service.render.page.numbers import angle
+from service.render.page.sheet import EDGE, FULL, TOP, WIDTH, caption, framed, sheet
+from service.render.page.svg import Box, Element, Viewport, element, line, number, text, text_width
+from service.render.page.symbols import GREY, INK, scale_bar
+
+DIRECTIONS = 36
+"""Directions from which the side view may look."""
+
+SPACE, LEADING = 20.0, 13.5
+"""Between two layers of the side view at least, and between two lines of their names, pixels."""
+
+SIDE = 0.56
+"""Width of what is drawn in the side view, beside which names stand, as a share of the sheet's."""
+
+HIGHEST = 700.0
+"""What the layers and pins may take of the side view's height, without the space between them, pixels."""
+
+ABOVE = 420.0
+"""Height of the view from above, pixels."""
+
+MARGIN, SMALL = 26.0, 10.5
+
+ENDS = (0.0, 0.25, 0.34, 0.42, 0.50, 0.58, 0.75, 0.86, 1.0)
+"""Where the names of the bill begin, and the right ends of its other columns, shares of the width."""
+
+
+class Layer(NamedTuple):
+    """A plane, or the gap above it: its parts, and the height at which it begins."""
+
+    name: str
+    parts: tuple[Part, ...]
+    low: float
+
+    @property
+    def height(self) -> float:
+        """To its highest part."""
+        return max(part.high for part in self.parts) - self.low
+
+
+def assembly_sheet(assembly: Assembly, listed: Sequence[Item], title: str) -> str:
+    """The sheet as an SVG document.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    listed : sequence of Item
+        Its items.
+    title : str
+        Without characters that XML forbids.
+    """
+    count = f"{assembly.planes} {'plane' if assembly.planes == 1 else 'planes'}"
+    held = "one base" if assembly.sides == 1 else "two bases"
+    words = f"{len(listed)} items, {len(assembly.parts)} parts in {count} on {held}; lengths in millimetres"
+    if assembly.scale != 1.0:
+        words += f"; {assembly.scale:g} times the design"
+    side, y = _side_view(assembly, TOP)
+    plan, y = _plan(assembly, y + 16.0)
+    bill, y = _bill(listed, y + 10.0)
+    described = f"Exploded side view and view from above of an assembly of {len(assembly.parts)} parts, and their bill."
+    return sheet(title, words, described, [*side, *plan, bill], y)
+
+
+def _bill(listed: Sequence[Item], top: float) -> tuple[Element, float]:
+    lines = [Line(row(item)) for item in listed]
+    heads = [*HEADER]
+    return table("Bill of materials", heads, lines, ENDS, worded=0)(EDGE, top, FULL)
+
+
+# The side view
+
+
+def layers(assembly: Assembly) -> list[Layer]:
+    """All parts but the pins by planes and gaps, from below."""
+    found: dict[tuple[int, int], list[Part]] = {}
+    for part in assembly.parts:
+        if part.sort == "pin":
+            continue
+        plane, gap = part.planes[0], 1
+        if part.sort in FLAT:
+            gap = 0
+        elif part.sort == "ring":
+            # Above the highest plane of its pin, or below the lowest.
+            plane = part.planes[1] if part.name.startswith(("ring_above", "cap")) else part.planes[0] - 1
+        found.setdefault((plane, gap), []).append(part)
+    made = []
+    for (plane, gap), parts in sorted(found.items()):
+        name = "" if gap else _plane_name(plane, assembly)
+        made.append(Layer(name, tuple(parts), min(part.low for part in parts)))
+    return made
+
+
+def _plane_name(plane: int, assembly: Assembly) -> str:
+    if plane == 0:
+        return "base"
+    return "second base" if plane > assembly.planes else f"plane {plane}"
+
+
+def direction_of_view(assembly: Assembly) -> complex:
+    """The horizontal of the side view: along it the pins stand farthest apart."""
+    places = sorted({_centre(part) for part in assembly.parts if part.sort == "pin"}, key=lambda z: (z.real, z.imag))
+    if len(places) < 2:
+        return 1.0 + 0.0j
+
+    def parted(direction: complex) -> float:
+        along = [(z * direction.conjugate()).real for z in places]
+        return min(abs(a - b) for a, b in combinations(along, 2))
+
+    turns = [cmath.exp(1j * math.pi * (k - DIRECTIONS // 2) / DIRECTIONS) for k in range(DIRECTIONS)]
+    return max(sorted(turns, key=lambda turn: abs(cmath.phase(turn))), key=parted)
+
+
+def _centre(part: Part) -> complex:
+    outer = part.region.outer
+    assert isinstance(outer, Disc)
+    return outer.centre
+
+
+def _side_view(assembly: Assembly, top: float) -> tuple[list[Element], float]:
+    direction = direction_of_view(assembly)
+    spans = [extent(part.region.outer, direction) for part in assembly.parts]
+    left, right = min(low for low, _ in spans), max(high for _, high in spans)
+    stacked, pins = layers(assembly), _in_rows([part for part in assembly.parts if part.sort == "pin"], direction)
+    rows = [max(part.high - part.low for part in pins_row) for pins_row in pins]
+    heights = sum(layer.height for layer in stacked) + sum(rows)
+    scale = min((SIDE * FULL - 2.0 * MARGIN) / (right - left), HIGHEST / heights)
+    x0 = EDGE + MARGIN + 0.5 * (SIDE * FULL - 2.0 * MARGIN - scale * (right - left)) - scale * left
+    names = EDGE + SIDE * FULL + 8.0
+    drawn: list[Element] = []
+    y = top + 34.0
+    tops: dict[str, float] = {}
+    for pins_row, height in zip(pins, rows, strict=True):
+        y += 14.0
+        for pin in pins_row:
+            x = x0 + scale * (_centre(pin) * direction.conjugate()).real
+            base = y + scale * height
+            tops[pin.name] = base
+            drawn += _pin(pin, x, base, scale)
+            drawn.append(text(x, base - scale * (pin.high - pin.low) - 4.0, pin.described.removeprefix("pin "), SMALL,
+                              text_anchor="middle", fill=INK))  # fmt: skip
+        y += scale * height
+    ends: dict[complex, float] = {}
+    views: list[Element] = []
+    for layer in reversed(stacked):
+        told = _told(layer)
+        needed = max(scale * layer.height, LEADING * len(told))
+        y += SPACE
+        bottom = y + 0.5 * (needed + scale * layer.height)
+        for part in sorted(layer.parts, key=lambda part: part.sort == "block"):
+            views += _from_the_side(part, layer, direction, x0, bottom, scale)
+            if part.round:
+                ends[_centre(part)] = bottom
+        reach = max(extent(part.region.outer, direction)[1] for part in layer.parts)
+        at = bottom - 0.5 * scale * layer.height
+        views.append(
+            line(complex(x0 + scale * reach + 4.0, at), complex(names - 5.0, at), stroke="#d5dade", stroke_width=0.8)
+        )
+        first = at - 0.5 * LEADING * (len(told) - 1) + 0.35 * SMALL
+        for n, (words, weight) in enumerate(told):
+            views.append(text(names, first + n * LEADING, words, SMALL, fill=INK, font_weight=weight))
+        y += needed
+    axes = [
+        line(
+            complex(x, tops[pin.name]), complex(x, max(ends.get(_centre(pin), y), tops[pin.name]) + 6.0),
+            stroke=GREY, stroke_width=0.7, stroke_dasharray="9 3 2 3",
+        )
+        for pins_row in pins for pin in pins_row
+        for x in (x0 + scale * (_centre(pin) * direction.conjugate()).real,)
+    ]  # fmt: skip
+    panel = Box(EDGE, top, WIDTH - EDGE, y + 40.0)
+    bar, _ = scale_bar(Viewport(panel, 0j, 0j, scale), "mm")
+    seen = f"Exploded side view, the horizontal at {angle(math.degrees(cmath.phase(direction)), 0)} to x"
+    return [framed(panel, "side"), caption(panel, seen), *views, *axes, *drawn, bar], panel.high
+
+
+def _in_rows(pins: Sequence[Part], direction: complex) -> list[list[Part]]:
+    """Pins that would hide one another from the side, one above the other; the longest row last."""
+    rows: list[list[Part]] = []
+    for pin in sorted(pins, key=lambda pin: pin.low - pin.high):
+        low, high = extent(pin.region.outer, direction)
+        for row_ in rows:
+            if all(high < a or b < low for a, b in (extent(other.region.outer, direction) for other in row_)):
+                row_.append(pin)
+                break
+        else:
+            rows.append([pin])
+    return rows[::-1]
+
+
+def _pin(pin: Part, x: float, base: float, scale: float) -> list[Element]:
+    """A pin upright on a base line, from its prisms."""
+    shapes = []
+    for region, low, high in pin.prisms:
+        assert isinstance(region.outer, Disc)
+        radius = scale * region.outer.radius
+        shapes.append(
+            _rectangle(x - radius, base - scale * (high - pin.low), 2.0 * radius, scale * (high - low), pin.colour)
+        )
+    return shapes
+
+
+def _from_the_side(
+    part: Part, layer: Layer, direction: complex, x0: float, bottom: float, scale: float
+) -> list[Element]:
+    """A part as rectangles, with the hidden edges of its holes."""
+    shapes = []
+    for region, low, high in part.prisms:
+        left, right = (x0 + scale * end for end in extent(region.outer, direction))
+        y, height = bottom - scale * (high - layer.low), scale * (high - low)
+        shapes.append(_rectangle(left, y, right - left, height, part.colour))
+        for hole in region.holes:
+            for edge in extent(hole, direction):
+                x = x0 + scale * edge
+                shapes.append(line(complex(x, y), complex(x, y + height), stroke="#fff", stroke_width=0.8,
+                                   stroke_dasharray="2.5 1.8"))  # fmt: skip
+    return shapes
+
+
+def _rectangle(x: float, y: float, width: float, height: float, fill: str) -> Element:
+    return element("rect", x=x, y=y, width=width, height=height, fill=fill, stroke=INK, stroke_width=0.7)
+
+
+def _told(layer: Layer) -> list[tuple[str, str]]:
+    """What stands beside a layer: lines of words, and their weights."""
+    plates = [part for part in layer.parts if part.sort in FLAT]
+    if plates:
+        told = []
+        for part in sorted(plates, key=lambda part: part.sort == "block"):
+            where = "" if part.sort == "base" else f"{layer.name}: "
+            thickness = millimetres(part.prisms[0].high - part.prisms[0].low)
+            told.append((f"{where}{part.described}, {thickness} thick", "bold" if part.sort != "block" else "normal"))
+        return told
+    counted = Counter(_bought(part) for part in layer.parts)
+    lines: list[str] = []
+    for (what, size), count in sorted(counted.items()):
+        words = f"{count} {what}{'s' * (count > 1)} {size}"
+        if lines and text_width(f"{lines[-1]}, {words}", SMALL) < (1.0 - SIDE) * FULL - 2.0 * MARGIN:
+            lines[-1] += f", {words}"
+        else:
+            lines.append(words)
+    return [(words, "normal") for words in lines]
+
+
+def _bought(part: Part) -> tuple[str, str]:
+    """What a part on a pin is called, and its standard or its height."""
+    return part.name.split("_")[0], part.standard or f"{millimetres(part.high - part.low)} high"
+
+
+# From above
+
+
+def _plan(assembly: Assembly, top: float) -> tuple[list[Element], float]:
+    panel = Box(EDGE, top, WIDTH - EDGE, top + ABOVE)
+    rings = [ring_of(part.region.outer, beyond=True) for part in assembly.parts]
+    view = Viewport.fit(Box.around(np.concatenate(rings)), panel, MARGIN + 12.0, 16.0)
+    shapes = []
+    for part in sorted(assembly.parts, key=lambda part: part.high):
+        d = "".join(_path(outline, view) for outline in (part.region.outer, *part.region.holes))
+        # What is above all else is seen through.
+        opacity = 0.0 if part.sort == "base" and part.planes[0] else 0.82 if part.sort in FLAT else 1.0
+        shapes.append(
+            element("path", d=d, fill=part.colour, fill_opacity=opacity, fill_rule="evenodd", stroke=INK,
+                    stroke_width=0.7, data_part=part.name)
+        )  # fmt: skip
+    names = []
+    for part in assembly.parts:
+        if part.sort == "pin" and part.described.startswith("pin "):
+            at = view.point(_centre(part))
+            words = part.described.removeprefix("pin ")
+            radius = 0.5 * view.scale * part.length_and_width[0]
+            beside = at + complex(radius + 6.0, -radius - 4.0)
+            width = text_width(words, 11.5)
+            names.append(
+                element("rect", x=beside.real - 2.0, y=beside.imag - 10.0, width=width + 4.0, height=13.0, fill="#fff",
+                        fill_opacity=0.8)
+            )  # fmt: skip
+            names.append(text(beside.real, beside.imag, words, 11.5, fill=INK, font_weight="bold"))
+    bar, _ = scale_bar(view, "mm")
+    return [
+        framed(panel, "above"),
+        caption(panel, "From above, as the design states it"),
+        *shapes,
+        *names,
+        bar,
+    ], panel.high
+
+
+def _path(outline: Outline, view: Viewport) -> str:
+    points = view.points(ring_of(outline, beyond=True))
+    return "M" + "L".join(f"{number(z.real)} {number(z.imag)}" for z in points.tolist()) + "Z"

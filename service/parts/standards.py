@@ -1,0 +1,96 @@
+"""Standard parts by their nominal diameter, in millimetres, and the sizes of those that have no standard.
+
+Plain washers are those of ISO 7089 (product grade A), retaining rings those of DIN 471: for a shaft of the diameter d₁
+a ring of the thickness s in a groove of the diameter d₂ and the width m, with n of the shaft left beyond; 2 a more than
+d₁ is the room that its ends need.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+
+class Washer(NamedTuple):
+    """Outer diameter and thickness."""
+
+    diameter: float
+    thickness: float
+    standard: str = ""
+
+
+class RetainingRing(NamedTuple):
+    """Thickness, diameter and width of the groove, what is left beyond it, and the diameter that the ring needs."""
+
+    thickness: float
+    groove: float
+    width: float
+    beyond: float
+    diameter: float
+    standard: str = ""
+
+
+WASHERS = {
+    3.0: (7.0, 0.5),
+    4.0: (9.0, 0.8),
+    5.0: (10.0, 1.0),
+    6.0: (12.0, 1.6),
+    8.0: (16.0, 1.6),
+    10.0: (20.0, 2.0),
+    12.0: (24.0, 2.5),
+    16.0: (30.0, 3.0),
+    20.0: (37.0, 3.0),
+}
+"""ISO 7089: outer diameter and thickness, by the diameter of the bolt."""
+
+RINGS = {
+    3.0: (0.4, 2.8, 0.5, 0.3, 1.9),
+    4.0: (0.4, 3.8, 0.5, 0.3, 2.2),
+    5.0: (0.6, 4.8, 0.7, 0.3, 2.5),
+    6.0: (0.7, 5.7, 0.8, 0.5, 2.7),
+    8.0: (0.8, 7.6, 0.9, 0.6, 3.2),
+    10.0: (1.0, 9.6, 1.1, 0.6, 3.3),
+    12.0: (1.0, 11.5, 1.1, 0.8, 3.3),
+    16.0: (1.0, 15.2, 1.1, 1.2, 3.7),
+    20.0: (1.2, 19.0, 1.3, 1.5, 4.0),
+}
+"""DIN 471: s, d₂, m, n and a, by the diameter of the shaft."""
+
+PINS = (0.5, 0.6, 0.8, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0, 30.0, 40.0, 50.0)
+"""Nominal diameters of round bars, ISO 2338 and EN 10278."""
+
+SHEETS = (0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 25.0, 30.0)
+"""Thicknesses of sheets that are sold."""
+
+SAME = 1e-6
+"""Share by which a diameter may differ from a nominal one: a stated length may come from another unit."""
+
+
+def nominal(diameter: float, known: tuple[float, ...]) -> float | None:
+    """The nominal diameter that a diameter is."""
+    return next((one for one in known if math.isclose(one, diameter, rel_tol=SAME)), None)
+
+
+def washer_for(diameter: float, widest: float) -> Washer | None:
+    """The plain washer of a pin, where there is one that is not wider than ``widest``."""
+    size = nominal(diameter, tuple(WASHERS))
+    if size is None or WASHERS[size][0] > widest * (1.0 + SAME):
+        return None
+    return Washer(*WASHERS[size], standard=f"ISO 7089 - {size:g}")
+
+
+def retaining_ring_for(diameter: float, widest: float) -> RetainingRing:
+    """The retaining ring of a pin: that of the standard where it is no wider than ``widest``, or one in proportion."""
+    size = nominal(diameter, tuple(RINGS))
+    if size is not None:
+        s, groove, width, beyond, room = RINGS[size]
+        if size + 2.0 * room <= widest * (1.0 + SAME):
+            return RetainingRing(s, groove, width, beyond, size + 2.0 * room, f"DIN 471 - {size:g} x {s:g}")
+    d = diameter
+    return RetainingRing(0.1 * d, 0.95 * d, 0.1125 * d, 0.075 * d, min(1.7 * d, widest))
+
+
+def bar(diameter: float) -> str:
+    """The bright bar that a pin is cut from; empty where none is of that diameter."""
+    size = nominal(diameter, PINS)
+    return "" if size is None else f"EN 10278 - {size:g} h9"

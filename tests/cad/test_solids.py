@@ -1,0 +1,220 @@
+"""Solids of parts, opened by other libraries: valid, of the right volume, in their places, never in one another."""
+
+from __future__ import annotations
+
+import io
+import tempfile
+import zipfile
+from functools import cache
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from service.parts import cad
+from service.parts.items import items
+from service.parts.made import made
+from service.parts.model import Assembly
+from service.parts.orders import filled
+from service.parts.package import package
+from service.parts.shapes import Disc
+from service.parts.sizes import PartsQuery, Refused
+from service.stated import written
+from synthesis.dispatch import solve
+from synthesis.registry import parse_problem
+from tests.service.test_parts import MOTION, SLIDER
+
+pytestmark = [pytest.mark.cad, pytest.mark.timeout(300)]
+
+PROBLEMS: dict[str, dict[str, Any]] = {
+    "fourbar": MOTION,
+    "slider_crank": SLIDER,
+    "inverted_slider_crank": {**MOTION, "output_side": {"dyad": "RP"}},
+    "watt_2": {**MOTION, "driver_dyad": True},
+    "stephenson_3": {**MOTION, "driver_dyad": {"link": "coupler"}},
+    "crank_shaper": {"kind": "quick_return", "time_ratio": 1.4, "stroke": 100, "max_designs": 1},
+    "drag_link_slider": {
+        "kind": "quick_return", "time_ratio": 1.4, "stroke": 100, "mechanism": "drag_link_slider", "max_designs": 1,
+    },
+}  # fmt: skip
+TYPES = list(PROBLEMS)
+
+
+@cache
+def solved(kind: str) -> tuple[Any, Any, Any]:
+    problem = parse_problem(PROBLEMS[kind])
+    result = solve(problem, lambda _fraction, _message: None)
+    assert result.designs[0].mechanism.type == kind
+    return problem, result, result.designs[0]
+
+
+@cache
+def assembly(kind: str, process: str = "laser") -> Assembly:
+    problem, _, design = solved(kind)
+    return made(design, problem, PartsQuery(process=process))
+
+
+@cache
+def solids(kind: str, process: str = "laser") -> list[Any]:
+    return [cad.solid(part) for part in assembly(kind, process).parts]
+
+
+@pytest.mark.parametrize("process", ["laser", "print"])
+@pytest.mark.parametrize("kind", TYPES)
+def test_solids_are_valid_and_as_large_as_the_model_says(kind: str, process: str) -> None:
+    for part, solid in zip(assembly(kind, process).parts, solids(kind, process), strict=True):
+        assert solid.is_valid
+        assert solid.volume == pytest.approx(part.volume, rel=1e-6)
+        assert solid.volume > 0.0
+        box = solid.bounding_box()
+        assert pytest.approx((part.low, part.high), abs=1e-5) == (box.min.Z, box.max.Z)
+
+
+@pytest.mark.parametrize("kind", TYPES)
+def test_a_step_file_has_all_parts_by_name_with_holes_at_the_joints(kind: str) -> None:
+    from build123d import GeomType, import_step
+
+    whole, made_ = assembly(kind), solids(kind)
+    text = cad.step(made_, "assembly")
+    assert b"AP242_MANAGED_MODEL_BASED_3D_ENGINEERING" in text
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "a.step"
+        path.write_bytes(text)
+        read = import_step(path)
+    found = {child.label: child for child in read.children}
+    assert found.keys() == {part.name for part in whole.parts}
+    mechanism = whole.motion.mechanism
+    for part in whole.parts:
+        one = found[part.name]
+        assert one.volume == pytest.approx(part.volume, rel=1e-6)
+        colour = [int(part.colour[k : k + 2], 16) / 255.0 for k in (1, 3, 5)]
+        assert tuple(one.color)[:3] == pytest.approx(colour, abs=0.01)
+        if part.sort != "link":
+            continue
+        bores = [face for face in one.faces() if face.geom_type == GeomType.CYLINDER]
+        axes = {complex(round(a.X, 7), round(a.Y, 7)) for a in (face.axis_of_rotation.position for face in bores)}
+        joints = [complex(mechanism.joints[joint]) for joint in mechanism.links[part.carrier.link]]
+        held = {hole.centre for hole in part.region.holes if isinstance(hole, Disc)}
+        for a, b in combinations([z for z in joints if any(abs(z - w) < 1e-9 * whole.size for w in held)], 2):
+            near = [min(axes, key=lambda w, z=z: abs(w - z)) for z in (a, b)]  # type: ignore[misc]
+            assert abs(near[0] - near[1]) == pytest.approx(abs(a - b), rel=1e-6)
+
+
+@pytest.mark.parametrize(("kind", "process"), [(kind, "laser") for kind in TYPES] + [("fourbar", "print")])
+def test_no_two_solids_share_room_at_72_inputs(kind: str, process: str) -> None:
+    """Boxes first, then the kernel's own intersections."""
+    whole = assembly(kind, process)
+    made_ = solids(kind, process)
+    inputs = whole.motion.inputs(72)
+    shared = 0.0
+    tried = 0
+    resting: dict[tuple[int, int], tuple[complex, complex]] = {}
+    for input_ in inputs:
+        driven = whole.motion.at(np.array([input_]))
+        placed = cad.placed(whole, made_, float(input_))
+        boxes = [one.bounding_box(optimal=False) for one in placed]
+        for n, m in combinations(range(len(placed)), 2):
+            one, other = boxes[n], boxes[m]
+            if any(
+                min(getattr(one.max, axis), getattr(other.max, axis))
+                - max(getattr(one.min, axis), getattr(other.min, axis)) < 1e-4
+                for axis in "XYZ"
+            ):  # fmt: skip
+                continue
+            # Two that have not moved towards each other since need not be tried again.
+            a, b = (whole.motion.placed(whole.parts[k].carrier, driven) for k in (n, m))
+            towards = complex((b.shift[0] - a.shift[0]) / a.turn[0]), complex(b.turn[0] / a.turn[0])
+            if (
+                resting.get((n, m)) is not None
+                and max(abs(x - y) for x, y in zip(resting[n, m], towards, strict=True)) < 1e-9 * whole.size
+            ):
+                continue
+            resting[n, m] = towards
+            tried += 1
+            common = placed[n].intersect(placed[m])
+            bodies = [] if common is None else list(common)
+            shared += sum(getattr(body, "volume", 0.0) for body in bodies)
+    assert tried > 0
+    assert shared < 1e-6 * min(solid.volume for solid in made_)
+
+
+def test_two_solids_in_one_place_are_seen_to_share_room() -> None:
+    """What the test above looks for can be found."""
+    first = solids("fourbar")[0]
+    from build123d import Location
+
+    common = first.intersect(first.moved(Location((1.0, 0.0, 0.0))))
+    assert sum(body.volume for body in common) > 0.5 * first.volume
+
+
+@pytest.mark.parametrize("kind", ["fourbar", "slider_crank", "drag_link_slider"])
+def test_printed_parts_are_watertight_meshes_that_lie_on_the_plate(kind: str) -> None:
+    import trimesh
+
+    problem, _, design = solved(kind)
+    with zipfile.ZipFile(io.BytesIO(package(design, problem, PartsQuery(process="print"), "A"))) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    listed = items(assembly(kind, "print"))
+    assert {name for name in files if name.startswith("stl/")} == {f"stl/{item.name}.stl" for item in listed}
+    for item in listed:
+        mesh = trimesh.load_mesh(io.BytesIO(files[f"stl/{item.name}.stl"]), file_type="stl")
+        assert mesh.is_watertight
+        assert mesh.is_winding_consistent
+        assert mesh.volume == pytest.approx(item.part.volume, rel=0.02)
+        assert mesh.bounds[0] == pytest.approx([0.0, 0.0, 0.0], abs=0.02)
+        assert mesh.bounds[0][2] == pytest.approx(0.0, abs=1e-6)
+        vertices, triangles, unit = three_mf(files[f"3mf/{item.name}.3mf"])
+        assert unit == "millimeter"
+        other = trimesh.Trimesh(vertices, triangles)
+        assert other.is_watertight
+        assert other.volume == pytest.approx(item.part.volume, rel=0.02)
+
+
+def three_mf(content: bytes) -> tuple[Any, Any, str | None]:
+    """Vertices, triangles and unit of the one mesh in a 3MF file."""
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        root = ElementTree.fromstring(archive.read("3D/3dmodel.model"))
+    space = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
+    vertices = [[float(v.get(axis, "nan")) for axis in "xyz"] for v in root.iter(f"{space}vertex")]
+    triangles = [[int(t.get(name, "-1")) for name in ("v1", "v2", "v3")] for t in root.iter(f"{space}triangle")]
+    return np.array(vertices), np.array(triangles), root.get("unit")
+
+
+def test_a_glb_file_is_in_metres_with_the_shafts_along_y_and_moves_with_the_input() -> None:
+    import trimesh
+
+    problem, result, _ = solved("fourbar")
+    whole = assembly("fourbar")
+    stated = [float(np.degrees(x)) for x in (whole.motion.low, whole.motion.high)]
+    bounds = []
+    for degrees in stated:
+        content = filled(
+            problem.kind, written(problem), None, result.model_dump_json(), 0, {"input_angle": degrees}, "glb"
+        )
+        assert isinstance(content, bytes)
+        scene = trimesh.load(io.BytesIO(content), file_type="glb")
+        assert set(scene.geometry) or scene.graph
+        bounds.append(scene.bounds)
+        extents = scene.bounds[1] - scene.bounds[0]
+        heights = max(part.high for part in whole.parts) - min(part.low for part in whole.parts)
+        assert extents[1] == pytest.approx(0.001 * heights, rel=1e-3)
+    assert np.abs(bounds[0] - bounds[1]).max() > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("query", "path"),
+    [({"input_place": 1.0}, "/query/input_place"), ({"input_angle": 0.0}, "/query/input_angle")],
+)
+def test_an_input_that_is_none_is_refused_by_its_path(query: dict[str, float], path: str) -> None:
+    problem, result, _ = solved("fourbar")
+    low, high = (
+        float(np.degrees(x)) % 360.0 for x in (assembly("fourbar").motion.low, assembly("fourbar").motion.high)
+    )
+    if "input_angle" in query:
+        query = {"input_angle": 0.5 * (low + high) + (0.0 if high < low else 180.0)}
+    answer = filled(problem.kind, written(problem), None, result.model_dump_json(), 0, query, "step")
+    assert isinstance(answer, Refused)
+    assert answer.path == path

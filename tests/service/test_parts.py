@@ -1,0 +1,189 @@
+"""Parts of designs through HTTP: the zip, every field of the query, and what is refused."""
+
+from __future__ import annotations
+
+import csv
+import io
+import zipfile
+from itertools import pairwise
+from typing import Any
+
+import ezdxf
+import httpx
+import pytest
+
+from service.parts.extra import installed
+from tests.service.answers import finished
+
+THREE = [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 40.0, "y": 15.0, "angle": -25.0},
+         {"x": 75.0, "y": 5.0, "angle": -60.0}]  # fmt: skip
+MOTION = {"kind": "motion", "positions": THREE, "max_designs": 1, "length_unit": "mm"}
+SLIDER = {**MOTION, "output_side": {"dyad": "PR", "slide_angle": 15.0}}
+SIZES = {"width": 15, "pin": 5, "thickness": 4, "clearance": 0.2}
+
+
+@pytest.fixture(scope="module")
+def jobs(server: Any) -> dict[str, str]:
+    """The places of the first designs."""
+    found = {}
+    for name, problem in (("fourbar", MOTION), ("slider", SLIDER)):
+        found[name] = f"/v1/jobs/{finished(server.client, problem)['id']}/designs/0"
+    return found
+
+
+def parts(client: httpx.Client, place: str, **query: Any) -> dict[str, bytes]:
+    answer = client.get(f"{place}/parts", params=query)
+    assert answer.status_code == 200, answer.text
+    assert answer.headers["content-type"] == "application/zip"
+    with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def bill(files: dict[str, bytes]) -> dict[str, dict[str, str]]:
+    return {row["part"]: row for row in csv.DictReader(io.StringIO(files["bom.csv"].decode()))}
+
+
+def refused(client: httpx.Client, place: str, status: int, **query: Any) -> Any:
+    answer = client.get(f"{place}/parts", params=query)
+    assert answer.status_code == status, answer.text
+    assert answer.headers["content-type"] == "application/problem+json"
+    return answer.json()
+
+
+def test_the_zip_has_an_outline_of_each_plate_with_holes_where_the_joints_are(client: Any, jobs: Any) -> None:
+    files = parts(client, jobs["fourbar"], **SIZES)
+    skeleton = client.get(jobs["fourbar"].rsplit("/designs")[0]).json()["result"]["designs"][0]["mechanism"]["skeleton"]
+    joints = {name: complex(*place) for name, place in skeleton["joints"].items()}
+    for link in skeleton["links"]:
+        name = "base" if link["name"] == "ground" else f"link_{link['name']}"
+        document = ezdxf.read(io.StringIO(files[f"dxf/{name}.dxf"].decode()))
+        assert not document.audit().has_errors
+        assert document.units == ezdxf.units.MM
+        holes = list(document.modelspace().query("CIRCLE"))
+        assert {circle.dxf.radius for circle in holes} == {2.7}
+        places = [complex(circle.dxf.center.x, circle.dxf.center.y) for circle in holes]
+        found = sorted(abs(a - b) for a, b in pairwise([*places, places[0]]))
+        stated = [joints[joint] for joint in link["joints"]]
+        expected = sorted(abs(a - b) for a, b in pairwise([*stated, stated[0]]))
+        assert found == pytest.approx(expected, rel=1e-9)
+        (outline,) = document.modelspace().query("LWPOLYLINE")
+        assert outline.closed
+        low = min(y for _, y, *_ in outline.get_points("xyb"))
+        assert low == pytest.approx(0.0, abs=7.5)
+
+
+def test_the_bill_names_what_is_bought_by_its_standard(client: Any, jobs: Any) -> None:
+    rows = bill(parts(client, jobs["fourbar"], **SIZES))
+    assert {"base", "link_input", "link_coupler", "link_output"} <= rows.keys()
+    assert rows["link_input"]["thickness"] == "4"
+    assert rows["link_input"]["width"] == "15"
+    assert rows["washer"]["standard"] == "ISO 7089 - 5"
+    assert rows["ring"]["standard"] == "DIN 471 - 5 x 0.6"
+    assert rows["ring"]["quantity"] == "8"
+    assert {row["standard"] for name, row in rows.items() if name.startswith("pin")} == {"EN 10278 - 5 h9"}
+    assert rows["link_coupler"]["holes"] == "3 x 5.4"
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "name"),
+    [
+        ("width", 16, "fourbar"),
+        ("pin", 4, "fourbar"),
+        ("thickness", 6, "fourbar"),
+        ("clearance", 0.1, "fourbar"),
+        ("shafts", "both_sides", "fourbar"),
+        ("over", "cycle", "slider"),
+        ("scale", 1.5, "fourbar"),
+        ("process", "print", "fourbar"),
+    ],
+)
+def test_every_field_of_the_query_counts(client: Any, jobs: Any, field: str, value: Any, name: str) -> None:
+    base = {**SIZES, "process": "laser", "shafts": "one_side", "over": "used", "scale": 1.0}
+    if field == "process" and not installed():
+        assert refused(client, jobs[name], 501, **(base | {field: value}))["type"] == "/problems/no-cad"
+        return
+    files, others = parts(client, jobs[name], **base), parts(client, jobs[name], **(base | {field: value}))
+    assert files["bom.csv"] != others["bom.csv"]
+    rows, changed = bill(files), bill(others)
+    if field == "width":
+        assert changed["link_input"]["width"] == "16"
+    if field == "pin":
+        assert changed["link_input"]["holes"] == "2 x 4.4"
+    if field == "thickness":
+        assert changed["link_input"]["thickness"] == "6"
+    if field == "clearance":
+        assert changed["link_input"]["holes"] == "2 x 5.2"
+    if field == "shafts":
+        assert "second_base" in changed
+        assert "second_base" not in rows
+    if field == "over":
+        assert float(changed["base"]["length"]) > float(rows["base"]["length"])
+    if field == "scale":
+        length = float(rows["link_input"]["length"]) - 15.0
+        assert float(changed["link_input"]["length"]) - 15.0 == pytest.approx(1.5 * length, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("width", -1), ("width", "nan"), ("width", 1e7), ("width", 6), ("pin", 0), ("pin", 0.1), ("pin", "inf"),
+        ("thickness", 0), ("thickness", 0.01), ("thickness", 1e5), ("clearance", 0), ("clearance", 1e-9),
+        ("clearance", 2.0), ("shafts", "three"), ("over", "all"), ("scale", 0), ("scale", 1e5),
+        ("process", "cast"), ("colour", "red"),
+    ],
+)  # fmt: skip
+def test_bad_values_are_refused_by_their_path(client: Any, jobs: Any, field: str, value: Any) -> None:
+    answer = refused(client, jobs["fourbar"], 422, **(SIZES | {field: value}))
+    assert [fault["path"] for fault in answer["errors"]] == [f"/query/{field}"]
+
+
+def test_too_wide_links_are_refused_with_the_scale_that_works(client: Any, jobs: Any) -> None:
+    answer = refused(client, jobs["fourbar"], 422, width=60)
+    (fault,) = answer["errors"]
+    assert fault["path"] == "/query/width"
+    words = fault["detail"].split()
+    scale = float(words[words.index("scale") + 1])
+    width = float(words[words.index("width") + 2])
+    assert parts(client, jobs["fourbar"], width=60, scale=scale)
+    assert refused(client, jobs["fourbar"], 422, width=60, scale=0.97 * scale)
+    assert width == pytest.approx(60.0 / scale, rel=0.01)
+
+
+def test_a_mechanism_of_unit_size_is_refused_with_a_scale(client: Any) -> None:
+    tiny = {"kind": "motion", "max_designs": 1, "length_unit": "mm",
+            "positions": [{"x": 0.01 * p["x"], "y": 0.01 * p["y"], "angle": p["angle"]} for p in THREE]}  # fmt: skip
+    place = f"/v1/jobs/{finished(client, tiny)['id']}/designs/0"
+    (fault,) = refused(client, place, 422)["errors"]
+    assert fault["path"] == "/query/scale"
+    words = fault["detail"].split()
+    assert parts(client, place, scale=float(words[words.index("scale") + 1]))
+
+
+def test_blocks_and_slots_of_slides(client: Any, jobs: Any) -> None:
+    rows = bill(parts(client, jobs["slider"], **SIZES))
+    # A block leaves a quarter of its pin beside the hole, and a slot the clearance beside the block.
+    assert rows["block_b"]["width"] == "7.9"
+    assert "slot 8.3 x" in rows["base"]["holes"]
+
+
+def test_without_the_extra_there_are_outlines_alone(client: Any, jobs: Any) -> None:
+    files = parts(client, jobs["fourbar"], **SIZES)
+    assert ("assembly.step" in files) == installed()
+    assert (b"without its extra" in files["README.txt"]) != installed()
+    for form in ("step", "glb"):
+        assert client.get(f"{jobs['fourbar']}.{form}").status_code == (200 if installed() else 501)
+
+
+def test_there_are_no_parts_of_what_is_no_linkage_or_of_no_design(client: Any, jobs: Any) -> None:
+    train = finished(client, {"kind": "gear_train", "ratio": "7/3", "max_stages": 1})
+    assert client.get(f"/v1/jobs/{train['id']}/designs/0/parts").status_code == 404
+    assert client.get(f"{jobs['fourbar'][:-1]}7/parts").status_code == 404
+
+
+def test_the_block_of_the_problem_says_what_is_left_out(client: Any) -> None:
+    block = {"link_width": 18.0, "pin_diameter": 6.0, "thickness": 7.0, "shafts": "both_sides"}
+    job = finished(client, {**MOTION, "layout": block})
+    rows = bill(parts(client, f"/v1/jobs/{job['id']}/designs/0"))
+    assert (rows["link_input"]["width"], rows["link_input"]["thickness"]) == ("18", "7")
+    assert rows["link_input"]["holes"] == "2 x 6.2"
+    assert "second_base" in rows
