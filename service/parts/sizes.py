@@ -70,7 +70,7 @@ class PartsQuery(BaseModel):
         description="Whether shafts stand on one base, or between two; if left out as the problem states, or on one "
         "where that can be built.",
     )
-    over: Literal["used", "cycle"] | None = Field(
+    over: Literal["cycle", "used"] | None = Field(
         default=None,
         description="The motion that nothing may be in the way of: the used range or all of the cycle; if left out as "
         "the problem states, or the cycle of an input that turns fully.",
