@@ -9,6 +9,7 @@ from fastapi import APIRouter
 
 from service.api.guard import GuardedRoute
 from service.api.schemas import ProblemKind, ProblemKinds
+from service.parts.extra import installed
 from service.render import forms
 from synthesis.registry import KINDS, example
 
@@ -26,6 +27,7 @@ async def list_problems() -> ProblemKinds:
 @cache
 def _kinds() -> ProblemKinds:
     return ProblemKinds(
+        solids=installed(),
         problems=[
             ProblemKind(
                 kind=name,
@@ -36,5 +38,5 @@ def _kinds() -> ProblemKinds:
                 files={type_: list(offered) for type_ in kind.mechanisms if (offered := forms(type_))},
             )
             for name, kind in KINDS.items()
-        ]
+        ],
     )

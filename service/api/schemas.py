@@ -117,6 +117,10 @@ class ProblemKinds(BaseModel):
     model_config = ConfigDict(title="Problem kinds")
 
     problems: list[ProblemKind]
+    solids: bool = Field(
+        description="Whether parts of designs are had as solids too: printed, milled, as STEP and glTF. Without the "
+        "extra `cad` there are outlines alone."
+    )
 
 
 class Health(BaseModel):

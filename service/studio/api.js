@@ -78,10 +78,28 @@ function post(path, body, signal) {
 /** @type {Kind[]} */
 let told = [];
 
+let solids = false;
+
 /** @returns {Promise<Kind[]>} */
 export async function kinds() {
-  told = (await (await ask("/v1/problems")).json()).problems;
+  const answer = await (await ask("/v1/problems")).json();
+  told = answer.problems;
+  solids = answer.solids;
   return told;
+}
+
+/** Whether the service makes solids of parts, and not their outlines alone. */
+export function makesSolids() {
+  return solids;
+}
+
+/**
+ * The parts of a design of linkages as a zip, as something that a download can refer to; whoever gets it revokes it.
+ * @param {string} id @param {number} design @param {"laser" | "print"} process
+ */
+export async function parts(id, design, process) {
+  const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/parts?process=${process}`;
+  return URL.createObjectURL(await (await patiently(() => ask(path))).blob());
 }
 
 /** The forms of files that there are of a type of mechanism. @param {string} kind @param {string} mechanism @returns {string[]} */

@@ -15,7 +15,8 @@ export function downloads(job, n, drawing) {
       try {
         save(await make(), name);
       } catch (error) {
-        fault.replaceChildren(/** @type {Error} */ (error).message);
+        const reasons = error instanceof api.Refused ? error.errors.map((one) => one.detail) : [];
+        fault.replaceChildren(reasons.join(" ") || /** @type {Error} */ (error).message);
       }
       pressed.disabled = false;
     } }, title);
@@ -31,11 +32,29 @@ export function downloads(job, n, drawing) {
       const parts = [JSON.stringify({ problem: job.problem, result: job.result }, null, 1)];
       return URL.createObjectURL(new Blob(parts, { type: "application/json" }));
     }),
+    ...(job.result.designs[n].mechanism.skeleton ? made(job, n, button) : []),
     button("Report", `${job.kind}.html`, () => api.report(job.id)),
     // A link cannot send a key.
     api.key() ? "" : el("a", { href: api.reportAt(job.id), target: "_blank", rel: "noopener" }, "Open the report"),
     fault);
   return place;
+}
+
+/**
+ * The parts of a linkage, to cut and to print.
+ * @param {api.Job} job @param {number} n
+ * @param {(title: string, name: string, make: () => Promise<string>) => HTMLElement} button
+ */
+function made(job, n, button) {
+  const cut = button("Parts", `${job.kind}-${n}-parts.zip`, () => api.parts(job.id, n, "laser"));
+  cut.title = "Plates to be cut, with what joins them, a drawing of the assembly and a bill";
+  const printed = button("Printed parts", `${job.kind}-${n}-printed.zip`, () => api.parts(job.id, n, "print"));
+  printed.title = "STL and 3MF files of all parts, and their assembly";
+  if (!api.makesSolids()) {
+    printed.setAttribute("disabled", "");
+    printed.title = "This service makes no solids: it runs without its extra cad (MECHSYNTH_CAD=1 make serve)";
+  }
+  return [cut, printed];
 }
 
 /** The drawing in pixels, two for one of its own. @param {HTMLImageElement} image @returns {Promise<string>} */

@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import re
+import zipfile
 from html.parser import HTMLParser
 from pathlib import Path
 from xml.etree import ElementTree
@@ -13,6 +14,7 @@ from ezdxf import recover
 from PIL import Image, ImageChops
 from playwright.sync_api import TimeoutError
 
+from service.parts.extra import installed
 from service.render import forms
 from synthesis.registry import KINDS
 from tests.browser.test_studio import drawn, stated
@@ -178,8 +180,10 @@ def test_each_kind_is_stated_solved_moves_and_is_taken_home(studio, kind):
     job = page.url.rpartition("=")[2]
     design = json.loads(taken(page, "JSON").read_text())["result"]["designs"][0]
     offered = [one.inner_text() for one in page.locator("#downloads button").all()]
-    assert offered == [*(form.upper() for form in forms(design["mechanism"]["type"])), "PNG", "JSON", "Report"]
-    for name in offered:
+    parts = ["Parts", "Printed parts"] if "skeleton" in design["mechanism"] else []
+    files = [*(form.upper() for form in forms(design["mechanism"]["type"])), "PNG", "JSON"]
+    assert offered == [*files, *parts, "Report"]
+    for name in [*files, "Report"]:
         CHECKS[name](taken(page, name), job)
     assert page.locator("#downloads .error").inner_text() == ""
 
@@ -203,6 +207,29 @@ def test_the_report_opens_in_a_page_of_its_own_and_looks_as_it_should(studio):
     pages = report.pdf(format="A4").count(b"/Type /Page\n")
     designs = report.locator("section.design").count()
     assert pages >= 1 + designs, "each design on a page of its own"
+
+
+def test_parts_are_taken_home_and_printed_ones_where_solids_are_made(studio):
+    page = studio.page
+    page.select_option("#kind", "motion")
+    page.select_option("#example", "3")
+    studio.solve()
+    with zipfile.ZipFile(taken(page, "Parts")) as archive:
+        assert {"bom.csv", "assembly.svg", "dxf/base.dxf"} <= set(archive.namelist())
+    printed = page.locator("#downloads").get_by_role("button", name="Printed parts", exact=True)
+    assert printed.is_enabled() == installed()
+    assert ("without its extra cad" in printed.get_attribute("title")) != installed()
+
+
+def test_what_leaves_no_room_for_parts_is_said_beside_the_button(studio):
+    page = studio.page
+    page.select_option("#kind", "parallel_motion")
+    studio.solve()
+    page.locator("#downloads").get_by_role("button", name="Parts", exact=True).click()
+    said = page.locator("#downloads .error")
+    until(lambda: "There is no room for links" in said.inner_text(), 90, "the reason")
+    assert [text for text in studio.wrong if "409" not in text] == []
+    studio.wrong.clear()
 
 
 def test_no_file_is_offered_that_there_is_not(studio):
