@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.imports.limits import MOST_POINTS
-from service.imports.thinning import astray, at_most, thinned
+from service.imports.thinning import astray, at_most, thinned, with_farthest
 from service.outlines.curves import STRAIGHT, Complex, flattened, line, steps
 from service.outlines.faults import Unsuitable
 from service.outlines.limits import DEFAULT_TOLERANCE
@@ -39,11 +39,10 @@ class Points(NamedTuple):
     looked: int
 
 
-def of_pieces(pieces: Complex, closed: bool, asked: Asked, reach: float = 0.0) -> Points:
+def of_pieces(pieces: Complex, closed: bool, asked: Asked) -> Points:
     """Points of a curve that is stated by cubics, shape (n, 4), one after the other.
 
-    Corners, where a straight piece begins or ends, stay as they stand unless a tolerance is asked for. Ends that lie
-    within ``reach`` of one another are one point.
+    Corners, where a straight piece begins or ends, stay as they stand unless a tolerance is asked for.
 
     Raises
     ------
@@ -55,7 +54,7 @@ def of_pieces(pieces: Complex, closed: bool, asked: Asked, reach: float = 0.0) -
     pieces = pieces[np.ptp(pieces.real, axis=1) + np.ptp(pieces.imag, axis=1) > 0.0]
     if not len(pieces):
         raise ValueError("it has no length")
-    if closed and abs(pieces[-1, 3] - pieces[0, 0]) > reach:
+    if closed and pieces[-1, 3] != pieces[0, 0]:
         pieces = np.concatenate([pieces, line(pieces[-1, 3], pieces[0, 0])])
     extent = _extent(pieces.ravel())
     tolerance = DEFAULT_TOLERANCE * extent if asked.tolerance is None else asked.tolerance
@@ -66,12 +65,12 @@ def of_pieces(pieces: Complex, closed: bool, asked: Asked, reach: float = 0.0) -
             f"A curve has more than {MOST_POINTS} points at a tolerance of {tolerance:.4g}; give a larger one."
         )
     dense = flattened(pieces, chords)
-    straight = _straight(pieces)
+    lines = straight(pieces)
     kept = np.zeros(len(dense), bool)
     ends = np.concatenate([[0], np.cumsum(counts)])
-    kept[ends[:-1]] |= straight
-    kept[ends[1:]] |= straight
-    return _chosen(dense, kept, closed, tolerance - chords, asked, 0.0 if straight.all() else chords, reach)
+    kept[ends[:-1]] |= lines
+    kept[ends[1:]] |= lines
+    return _chosen(dense, kept, closed, tolerance - chords, asked, 0.0 if lines.all() else chords)
 
 
 def of_points(points: Complex, closed: bool, asked: Asked, tolerance: float = 0.0) -> Points:
@@ -91,10 +90,9 @@ def _chosen(
     tolerance: float,
     asked: Asked,
     chords: float = 0.0,
-    reach: float = 0.0,
 ) -> Points:
     """``tolerance`` is for the chords between the points that are left, ``chords`` for those between all of them."""
-    same = max(SAME * float(np.abs(dense).max()), reach)
+    same = SAME * float(np.abs(dense).max())
     new = np.append(True, np.abs(np.diff(dense)) > same)
     dense, kept = dense[new], kept[new]
     if closed:
@@ -111,9 +109,9 @@ def _chosen(
     chosen = thinned(dense, tolerance, kept) if tolerance > 0.0 else np.arange(len(dense))
     if len(chosen) - closed > asked.max_points:
         chosen = at_most(dense, asked.max_points + closed, tolerance)
-    elif closed and len(chosen) < 4:
+    while closed and len(chosen) < 4:
         # However large the tolerance, it goes around something.
-        chosen = at_most(dense, 4, tolerance)
+        chosen = with_farthest(dense, chosen)
     away = astray(dense, chosen)
     found = dense[chosen[:-1] if closed else chosen]
     return Points(found, away + chords, len(dense))
@@ -137,7 +135,7 @@ def length_of_points(points: Complex, closed: bool) -> float:
     return float(np.abs(np.diff(way)).sum())
 
 
-def _straight(pieces: Complex) -> NDArray[np.bool_]:
+def straight(pieces: Complex) -> NDArray[np.bool_]:
     """Which cubics are lines that run evenly from end to end."""
     bends = np.abs(pieces[:, :-2] - 2.0 * pieces[:, 1:-1] + pieces[:, 2:]).max(axis=1)
     return np.asarray(bends <= STRAIGHT * np.abs(np.diff(pieces, axis=1)).sum(axis=1))

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from service.imports.answer import Format, ImportedCurve, ImportedPoint, Imports
-from service.imports.curve_points import Asked, Points, length_of, length_of_points, of_pieces, of_points
+from service.imports.curve_points import Asked, Points, length_of, length_of_points, of_pieces, of_points, straight
 from service.imports.limits import DEFAULT_POINTS, MOST_CURVES, MOST_LOOKED, MOST_POINTS, PNG
 from service.imports.picture import COARSE, FINE, picture_of
 from service.imports.table import table_of
 from service.outlines.answer import DrawingUnit, sentence, short, told, told_left_out
-from service.outlines.curves import Complex, Curve, Source
+from service.outlines.curves import Complex, Curve, Source, line
 from service.outlines.drawing import Drawing
 from service.outlines.faults import ForeignFormat, NoOutline, Unsuitable
 from service.outlines.formats import MILLIMETRES, drawing_of, extent, placed
@@ -31,13 +31,12 @@ class Found:
     drawn: Complex
     closed: bool
     joined: int = 1
-    reach: float = 0.0
     tolerance: float = 0.0
 
     def chosen(self, asked: Asked) -> Points:
         """Its points as they are asked for."""
         if self.drawn.ndim == 2:
-            return of_pieces(self.drawn, self.closed, asked, self.reach)
+            return of_pieces(self.drawn, self.closed, asked)
         return of_points(self.drawn, self.closed, asked, self.tolerance)
 
     def length(self, points: Complex) -> float:
@@ -112,12 +111,10 @@ def _connected(curves: Sequence[Curve], reach: float) -> tuple[list[Found], Left
             open_.append(one)
         elif not one.closed:
             tiny.append((one.source, "it is no longer than the gap between ends that are joined"))
-    found = [([one], True, 0.0) for one in curves if one.closed]
-    found += [(chain.members, chain.closed, reach) for chain in chains(open_, reach)]
+    found = [([one], True) for one in curves if one.closed]
+    found += [(chain.members, chain.closed) for chain in chains(open_, reach)]
     found.sort(key=lambda one: min(place[id(each.source)] for each in one[0]))
-    return [
-        Found(members[0].source, _pieces(members), closed, len(members), near) for members, closed, near in found
-    ], tiny
+    return [Found(members[0].source, _pieces(members, closed), closed, len(members)) for members, closed in found], tiny
 
 
 def _picture(content: bytes, length_unit: DrawingUnit, pixel_size: float | None, asked: Asked) -> Imports:
@@ -222,8 +219,17 @@ def _largest(found: Sequence[Found]) -> tuple[Sequence[Found], LeftOut]:
     )
 
 
-def _pieces(members: Sequence[Curve]) -> Complex:
+def _pieces(members: Sequence[Curve], closed: bool) -> Complex:
+    """The cubics of curves in a row; where the next one begins near to the end of the one before, it begins there."""
     (first, *_) = members
     if first.circle is not None:
         return np.asarray(first.circle.centre + first.circle.radius * unit_arc(0.0, 2.0 * np.pi))
-    return np.concatenate([one.pieces for one in members])
+    parts = [one.pieces.copy() for one in members]
+    if not first.closed:
+        for before, after in zip(parts if closed else parts[:-1], [*parts[1:], parts[0]], strict=False):
+            gap = before[-1, 3] - after[0, 0]
+            if gap and straight(after[:1])[0]:
+                after[:1] = line(before[-1, 3], after[0, 3])
+            else:
+                after[0, :2] += gap
+    return np.concatenate(parts)

@@ -108,11 +108,21 @@ def at_most(points: Complex, count: int, tolerance: float) -> NDArray[np.int64]:
 
 def astray(points: Complex, chosen: NDArray[np.int64]) -> float:
     """The greatest distance of a point from the chord that passes it."""
-    if len(chosen) == len(points):
-        return 0.0
+    return 0.0 if len(chosen) == len(points) else float(_away(points, chosen).max())
+
+
+def with_farthest(points: Complex, chosen: NDArray[np.int64]) -> NDArray[np.int64]:
+    """One point more: of those that are not among them, the one that is farthest from its chord."""
+    away = _away(points, chosen)
+    away[chosen] = -1.0
+    return np.sort(np.append(chosen, np.argmax(away)))
+
+
+def _away(points: Complex, chosen: NDArray[np.int64]) -> NDArray[np.float64]:
+    """The distance of each point from the chord that passes it."""
     owner = np.searchsorted(chosen, np.arange(len(points)), side="right").clip(1, len(chosen) - 1)
     start, end = points[chosen[owner - 1]], points[chosen[owner]]
     along, away = end - start, points - start
     size = np.abs(along) ** 2
     share = np.divide((away * along.conj()).real, size, out=np.zeros(len(points)), where=size > 0.0)
-    return float(np.abs(away - np.clip(share, 0.0, 1.0) * along).max())
+    return np.asarray(np.abs(away - np.clip(share, 0.0, 1.0) * along))

@@ -163,6 +163,44 @@ def test_loose_pieces_become_one_curve_in_its_order(client):
     assert [one["joined"] for one in fork] == [1, 1, 1]
 
 
+def test_ends_that_nearly_meet_are_one_point_and_small_steps_within_a_curve_stay(client):
+    pieces = '<path d="M0 0h30"/><path d="M30.00001 0v40"/><path d="M30 40.00001L0 0.00001"/>'
+    steps = "".join(f"l0.001 {0.001 * (-1) ** k}" for k in range(99))
+    ring, fine = found(client, page(f'{pieces}<path d="M500 0{steps}"/>'))["curves"]
+    assert (ring["closed"], ring["joined"], len(ring["points"])) == (True, 3, 3)
+    assert ring["length"] == pytest.approx(120, rel=1e-5)
+    assert len(fine["points"]) == 100
+    assert fine["length"] == pytest.approx(0.099 * math.sqrt(2))
+
+
+def test_any_curve_lies_within_its_tolerance(client):
+    rng = np.random.default_rng(7)
+    for trial in range(40):
+        count = rng.integers(1, 5)
+        corners = rng.normal(size=(3 * count + 1, 2)) * 10 ** rng.uniform(-2, 2)
+        if trial % 3 == 0:
+            corners = np.round(corners)  # some fall together
+        if trial % 5 == 0:
+            corners[:, 1] *= 1e-3  # folded
+        z = corners @ np.array([1, 1j])
+        if not np.ptp(z.real):
+            continue
+        told = "".join(
+            "C" + " ".join(f"{x!r} {y!r}" for x, y in corners[k : k + 3].tolist()) for k in range(1, len(z), 3)
+        )
+        closed = trial % 4 == 0
+        drawing = page(f'<path d="M{corners[0, 0]} {corners[0, 1]}{told}{"Z" if closed else ""}"/>')
+        tolerance = float(np.ptp(corners) * 10 ** rng.uniform(-5, -0.5))
+        most = (3, 50, 1000)[trial % 3]
+        curve = only(client, drawing, tolerance=tolerance, max_points=most)
+        true = np.conj(np.concatenate([cubic(z[k : k + 4], T) for k in range(0, len(z) - 1, 3)]))
+        true = np.append(true, true[0]) if closed else true
+        assert away(curve, true) <= curve["tolerance"] * (1 + 1e-6) + 1e-9 * np.abs(z).max(), trial
+        assert len(curve["points"]) <= most
+        assert curve["tolerance"] <= tolerance or most < 1000
+        assert curve["length"] == pytest.approx(np.abs(np.diff(true)).sum(), rel=5e-3)
+
+
 def test_curves_of_a_dxf(client):
     spline = BSpline([(0, 30), (10, 50), (30, 25), (50, 40), (60, 30)], order=4)
 
@@ -222,7 +260,7 @@ def test_what_is_next_to_nothing_gives_no_curve_and_what_is_closed_stays_around_
         (disc,) = answer["curves"]
         assert disc["closed"]
         assert len(disc["points"]) >= 3
-        assert shapely.Polygon(chords(disc)).area > 90
+        assert shapely.Polygon(chords(disc)).area > 80
         reasons = {one["id"]: one["reason"] for one in answer["left_out"]}
         assert "fro" in reasons["fro"]
         assert "gap" in reasons["dot"]
