@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
+
+import numpy as np
 
 from synthesis.kinds.gear_train.stated_stages import GEARS, StatedStage
 from synthesis.kinds.gear_train.stated_train import StatedTrain
@@ -54,6 +57,8 @@ def _extent(stated: StatedTrain, widths: list[int]) -> tuple[int, int, str]:
         return _of_unlike_stages(stated, widths), most, what
     if stated.reverted:
         meshes = max(widths) * len(stated.exact_modules())
+        if not stated.is_fitted and stated.stages is None and not isinstance(stated.teeth, list):
+            return _of_shared_distances(stated), *COAXIAL
         if not stated.is_fitted:
             return 2 * meshes * math.comb(meshes + k - 2, k - 1), *COAXIAL
         # At one distance the sums of teeth that a shift takes up; at an open one all pairs.
@@ -62,6 +67,20 @@ def _extent(stated: StatedTrain, widths: list[int]) -> tuple[int, int, str]:
     if isinstance(stated.teeth, list):
         return max(math.prod(widths[0::2]), math.prod(widths[1::2])), *HALVES
     return math.comb(max(widths[:2]) + k - 1, k), *HALVES
+
+
+def _of_shared_distances(stated: StatedTrain) -> int:
+    """Choices of meshes for all stages but one, of each distance of pitch circles, where all have the same gears."""
+    low, high = stated.position_ranges()[0]
+    numbers = stated.stocked() if stated.stock is not None else range(low, high + 1)
+    present = np.zeros(max(numbers) + 1, np.int64)
+    present[list(numbers)] = 1
+    meshes: Counter[int] = Counter()
+    for total, pairs in enumerate(np.convolve(present, present).tolist()):
+        for pitch in stated.pitches() if pairs else []:
+            meshes[pitch * total] += pairs
+    others = stated.most_stages - 1
+    return sum(math.comb(count + others - 1, others) for count in meshes.values())
 
 
 def _is_given(stated: StatedTrain) -> bool:
