@@ -88,7 +88,7 @@ test-cad:
 	@$(MAKE) --no-print-directory VENV=.venv-cad cad-suite
 
 cad-suite: $(VENV)/.cad-tests
-	$(BIN)/pytest -m cad -q tests/cad
+	$(BIN)/pytest -m "cad or not slow" -q tests/cad tests/service/test_parts.py
 
 $(VENV)/.cad-tests: requirements-dev.lock requirements-cad.lock tests/cad/mesh.lock pyproject.toml
 	@echo "installing the locked packages and the extra cad (once; a minute or two)"

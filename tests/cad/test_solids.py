@@ -25,6 +25,7 @@ from service.parts.sizes import PartsQuery, Refused
 from service.stated import written
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
+from tests.service.stated.linkages import DWELL, LINE, STEERING
 from tests.service.test_parts import MOTION, SLIDER
 
 pytestmark = [pytest.mark.cad, pytest.mark.timeout(300)]
@@ -39,6 +40,9 @@ PROBLEMS: dict[str, dict[str, Any]] = {
     "drag_link_slider": {
         "kind": "quick_return", "time_ratio": 1.4, "stroke": 100, "mechanism": "drag_link_slider", "max_designs": 1,
     },
+    "peaucellier": {**LINE, "mechanism": "peaucellier"},
+    "dwell_slot": {**DWELL, "mechanism": "straight_slot"},
+    "davis": {**STEERING, "mechanism": "davis"},
 }  # fmt: skip
 TYPES = list(PROBLEMS)
 
