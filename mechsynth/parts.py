@@ -104,6 +104,7 @@ from synthesis.kinds.path.problem import (
     PathPivots,
     PathPoint,
 )
+from synthesis.kinds.path.stated_stance import Stance
 from synthesis.kinds.planetary_train.problem import PlanetaryTeeth
 from synthesis.kinds.quick_return.problem import RockerPosition
 from synthesis.kinds.spring_balancing.problem import Holding
@@ -280,6 +281,7 @@ __all__ = [
     "SpringEnd",
     "StageRatio",
     "StageTeethRange",
+    "Stance",
     "StatedBody",
     "StatedCouplerPoint",
     "StatedCrank",

@@ -107,7 +107,7 @@ def test_the_page_names_every_check_once_and_none_more() -> None:
 def test_every_kind_that_the_page_says_has_a_check_is_one() -> None:
     words = {name for cells in rows("check") for name in names_in(cells[1]) if name.isidentifier()}
     blocks = {"space", "layout", "manufacture", "dynamics", "constraints", "limits", "caps", "max_planes"}
-    assert words <= {*KINDS, *blocks, "closed", "shock_free", "counterweights"}
+    assert words <= {*KINDS, *blocks, "closed", "shock_free", "counterweights", "stance"}
 
 
 def test_the_page_names_every_field_that_kinds_have_in_common() -> None:
