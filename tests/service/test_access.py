@@ -12,6 +12,7 @@ import pytest
 from service.access.gate import Gate, NoKey
 from service.access.keys import KeyStore, TenantExists, digest
 from service.jobs.database import connect, upgrade
+from tests.campaign import further
 from tests.service.running import PROBLEM, REAL, SCRIPTED, RunningServer, environment, until
 from tests.service.scripted_server import GATED, INSTANT
 
@@ -214,7 +215,7 @@ def test_a_further_key_is_of_the_same_tenant_and_a_revoked_one_is_refused(shared
     assert shared.clients["acme"].get("/v1/jobs").status_code == 200
 
 
-@pytest.mark.parametrize("tenant", ["", "a b", "x" * 101, "a\nb", "é"])
+@pytest.mark.parametrize("tenant", further(["", "a b", "x" * 101, "a\nb", "é"], ["a b", "é"]))
 def test_a_tenant_has_a_plain_name(tmp_path, tenant):
     done = keys(tmp_path, "create", tenant)
     assert (done.returncode, done.stdout) == (1, "")
@@ -269,6 +270,7 @@ def test_web_pages_may_not_use_it_unless_told(scripted):
     assert scripted.client.options("/v1/jobs", headers={"Origin": ORIGIN}).status_code == 405
 
 
+@pytest.mark.campaign
 def test_without_keys_it_listens_on_this_machine_only(tmp_path):
     server = RunningServer(tmp_path, SCRIPTED, workers=1, host="0.0.0.0", cors_origins="*")
     try:

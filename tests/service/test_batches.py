@@ -6,6 +6,7 @@ import time
 import pytest
 
 from service.api.batch_schemas import EXAMPLE, MOST_SAMPLES
+from tests.campaign import further
 from tests.service.running import PROBLEM, SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import BRIEF, BROKEN, DIES_ONCE, GATED, GREEDY, INSTANT
 from tests.service.test_access import client_with
@@ -208,7 +209,7 @@ def test_a_broken_sample_fails_and_the_others_do_not(scripted):
     assert "secret" not in rows[1]["failure"]
 
 
-@pytest.mark.parametrize("moment", ["before", "after"])
+@pytest.mark.parametrize("moment", further(["before", "after"], ["after"]))
 @pytest.mark.parametrize("write", ["store", "begun"])
 def test_a_worker_may_die_at_any_write(scripted, moment, write):
     (scripted.folder / f"crash-{moment}-batch-{write}").touch()

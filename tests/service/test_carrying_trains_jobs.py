@@ -7,6 +7,7 @@ from typing import Any
 import httpx
 import pytest
 
+from tests.campaign import further
 from tests.service.answers import finished
 
 Statement = dict[str, Any]
@@ -118,7 +119,7 @@ def test_shifted_teeth_at_a_distance(client: httpx.Client) -> None:
     assert wide != narrow
 
 
-@pytest.mark.parametrize("hunting", ["prefer", "require"])
+@pytest.mark.parametrize("hunting", further(["prefer", "require"], ["require"]))
 def test_teeth_that_hunt(client: httpx.Client, hunting: str) -> None:
     """Of trains that carry as well those that hunt come first, or alone."""
     stated = {"tolerance": 0.003, "max_designs": 30}

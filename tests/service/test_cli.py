@@ -6,6 +6,7 @@ import sys
 
 import pytest
 
+from tests.campaign import further
 from tests.service.running import REAL, environment
 
 pytestmark = pytest.mark.slow
@@ -84,8 +85,11 @@ def test_a_data_folder_that_cannot_be(tmp_path):
 
 @pytest.mark.parametrize(
     "url",
-    ["nonsense", "martian://x", "sqlite:////proc/nowhere/x", "sqlite:////etc", "sqlite://", "sqlite:///:memory:",
-     "sqlite:///file:x?mode=memory&uri=true"],
+    further(
+        ["nonsense", "martian://x", "sqlite:////proc/nowhere/x", "sqlite:////etc", "sqlite://", "sqlite:///:memory:",
+         "sqlite:///file:x?mode=memory&uri=true"],
+        ["nonsense", "sqlite:////etc", "sqlite://"],
+    ),
 )  # fmt: skip
 def test_a_database_that_cannot_be(tmp_path, url):
     done = mechsynth(tmp_path, "serve", database_url=url)

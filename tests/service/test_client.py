@@ -13,6 +13,7 @@ import pytest
 
 from service.client import AsyncClient, Client, JobFailed, JobSummary, Progress, Refused, Unreachable
 from synthesis.registry import KINDS, example
+from tests.campaign import further
 from tests.service.running import PROBLEM, REAL, SCRIPTED, RunningServer, environment, until
 from tests.service.scripted_server import BROKEN, GATED, INSTANT, NATIVE, STEPS
 
@@ -272,7 +273,15 @@ def test_the_command_takes_the_body_of_a_request_from_standard_input(server, tmp
 
 @pytest.mark.parametrize(
     ("content", "says"),
-    [("{", "not JSON"), ("[]", "no JSON object"), ('{"kind": "motion"}', "/problem/positions"), (None, "cannot read")],
+    further(
+        [
+            ("{", "not JSON"),
+            ("[]", "no JSON object"),
+            ('{"kind": "motion"}', "/problem/positions"),
+            (None, "cannot read"),
+        ],
+        [('{"kind": "motion"}', "/problem/positions")],
+    ),
 )
 def test_the_command_says_what_is_wrong(server, tmp_path, content, says):
     if content is not None:

@@ -288,6 +288,7 @@ def test_a_killed_server_leaves_no_worker_and_loses_no_job(restarting, tmp_path)
 
 
 @pytest.mark.embedded
+@pytest.mark.campaign
 @pytest.mark.parametrize("begun", [True, False], ids=["in our lines", "before our lines"])
 def test_a_server_that_is_killed_leaves_no_worker_that_was_starting(tmp_path, begun):
     (tmp_path / "slow-start").touch()

@@ -74,6 +74,7 @@ def test_other_demands_are_kept_beside_the_room(client: Any, beside: str) -> Non
             assert design.layout.count <= 3
 
 
+@pytest.mark.campaign
 def test_a_beam_that_leaves_no_room_is_told_with_what_comes_nearest(client: Any) -> None:
     hatch, beam = stated()
     blocked = copy.deepcopy(hatch)

@@ -282,7 +282,7 @@ def desk(monkeypatch):
     desk.stop()
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_a_file_that_takes_too_much_is_given_up_and_the_next_one_is_read(desk, monkeypatch):
     line = page('<path d="M0 0h9"/>')
     assert b'"length":9' in asked(desk, line)

@@ -132,7 +132,7 @@ def until_closed(connection, began):
     return received, time.monotonic() - began
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_half_open_connections_end_while_honest_clients_are_served(server):
     """Nine hundred connections that send half a request, and one that sends a byte now and then."""
     (server.folder / "open").touch()
@@ -176,7 +176,7 @@ def unread(server):
         yield beside.submit(until_left, server)
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_each_sort_of_half_open_connection_ends_in_time(server, unread):
     before = server.sample("mechsynth_http_rejections_total", reason="request-timeout")
     connections = {name: connected(server) for name in HALVES}

@@ -15,7 +15,7 @@ TOLERATED = [THREE[0], *({**position, "tolerance": {"x": 2.0, "y": 2.0, "angle":
     ("positions", "link"),
     further(
         [(positions, link) for positions in (THREE, TOLERATED) for link in ("any", "output", "coupler")],
-        [(THREE, "output"), (TOLERATED, "any")],
+        [(THREE, "output")],
     ),
 )
 def test_a_zone_of_the_drivers_pivot_out_of_reach_is_told_with_what_comes_nearest(client, positions, link):

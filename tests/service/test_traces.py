@@ -80,6 +80,7 @@ def running(folder, monkeypatch, **telemetry):
     assert status == 0
 
 
+@pytest.mark.campaign
 def test_a_collector_gets_each_request_with_its_route(tmp_path, monkeypatch, collector):
     key = made(tmp_path, "acme")
     with (

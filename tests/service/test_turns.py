@@ -237,6 +237,7 @@ def gate(server):
     until(lambda: not server.client.get("/v1/jobs?status=running").json()["jobs"], SOON_S, "the end of all jobs")
 
 
+@pytest.mark.campaign
 def test_a_short_job_does_not_wait_for_long_ones(server, gate):
     long = [server.post(GATED, problem=LONG) for _ in range(5)]
     until(lambda: len(server.client.get("/v1/jobs?status=running").json()["jobs"]) == 2, SOON_S, "two long jobs")

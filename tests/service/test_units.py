@@ -65,6 +65,7 @@ PURE = {
     "StatedFlywheel": {"coefficient"},
     "IdleFlywheel": {"coefficient"},
     "Overbalance": {"share"},
+    "Stance": {"speed_tolerance"},
     "StatedGear": {"ratio"},
     "GearTrainUnit": {"max_stage_ratio", "min_contact_ratio", "min_tip_thickness"},
     "CarriedPower": CARRIED_POWER,  # kW, MPa
@@ -87,6 +88,7 @@ PURE = {
         "load_distribution",
         "load_sharing",
         "contact_geometry",
+        "sharing_ratio",
     },
     "StressedGear": {  # MPa
         "form",
@@ -124,7 +126,7 @@ PURE = {
     "ParetoSeries": {"error"},
     "ParetoTrain": {"relative_error"},
     "PathConstraints": {"max_link_ratio", "max_joint_force_index"},
-    "PathMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
+    "PathMetrics": {"link_ratio", "reach", "rms_residual", "quality", "stance_speed_deviation", *CARRIED},
     "PathProblem": {"gear_ratio"},
     "PinFriction": {"mu"},
     "PlanetaryMechanism": {"addendum"},  # in modules

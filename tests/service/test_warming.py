@@ -96,6 +96,7 @@ def test_what_is_compiled_is_known_once_somebody_has_looked():
     assert not state.has("path")
 
 
+@pytest.mark.campaign
 def test_what_cannot_be_compiled_keeps_nothing_else_from_it(tmp_path):
     script = tmp_path / "program.py"
     script.write_text(PROGRAM)

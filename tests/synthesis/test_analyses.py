@@ -11,7 +11,10 @@ from synthesis.analyses import family, parse_request
 from synthesis.dispatch import solve
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.mechanisms import MechanismError
+from tests.campaign import further
 from tests.kinematics.mechanism_sampling import EVERY, geared_fivebar, take
+
+DOCUMENTED = MotionProblem.model_config["json_schema_extra"]["examples"]
 
 KINDS = {
     "fourbar": "fourbar", "slider-crank": "slider_crank", "slider-crank driven by its slider": "slider_crank",
@@ -211,7 +214,7 @@ def test_a_run_in_time_that_turns_back_passes_the_same_positions_again(mechanism
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("example", MotionProblem.model_config["json_schema_extra"]["examples"])
+@pytest.mark.parametrize("example", further(DOCUMENTED, DOCUMENTED[::3]))
 def test_the_designs_of_the_documented_problems_move(example):
     """Whatever a solver gives as a mechanism can be stated as it is, with its skeleton beside its dimensions."""
     result = solve(MotionProblem.model_validate(example), lambda _fraction, _message: None)

@@ -218,6 +218,7 @@ def test_gyration_is_limited_where_the_inertia_does_not_count(disc: dict[str, fl
         assert about <= weight.mass * 20.0**2 * 1.002
 
 
+@pytest.mark.campaign
 def test_forces_that_redundant_constraints_leave_open_are_no_objective() -> None:
     joints = {"O2": [0, 0], "O4": [280, 0], "O6": [140, 0], "A": [60, 80], "B": [340, 80], "C": [200, 80]}
     links = {"ground": ["O2", "O4", "O6"], "input": ["O2", "A"], "coupler": ["A", "B", "C"]}

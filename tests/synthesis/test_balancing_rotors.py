@@ -195,6 +195,7 @@ def test_a_linkage_has_nothing_of_a_rotor(field: dict[str, Any]) -> None:
     assert [fault.path for fault in problem.contradictions()] == [f"/{next(iter(field))}"]
 
 
+@pytest.mark.campaign
 def test_planes_that_need_little_have_no_hole_where_few_are_wanted() -> None:
     """Against all pairs of the planes' own best: one hole in the plane that needs it keeps the grade."""
     holes = {"angles": 12, "radius": 100.0, "step": 0.001, "max_per_hole": 0.1}

@@ -36,7 +36,7 @@ LAWS = sorted({*AT_REST, *POLYNOMIALS, *FAMILY, *MIRRORED, *WAVES, "half_cycloid
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("name", further(LAWS, list(LAWS)[::2]))
 def test_the_laws_written_out_are_motions(name: str) -> None:
     """From nothing to one, without a jump, and each derivative that of the one before, between sixteenths."""
     ends = np.arange(17.0) / 16.0

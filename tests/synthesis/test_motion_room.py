@@ -128,7 +128,7 @@ def test_what_lacks_nothing_of_the_room_is_found_to_fit() -> None:
     assert np.isinf(room_left(linkages, rows, np.zeros(0))).all()
 
 
-@pytest.mark.parametrize("number", further(range(4, 27), [6, 8]))
+@pytest.mark.parametrize("number", further(range(4, 27), [8]))
 def test_a_planted_motion_is_answered_in_its_room(number: int) -> None:
     stated = {**statement(generator(1, number), *GROUPS[number % len(GROUPS)]), "max_designs": 2}
     result = solve(parse_problem(stated))
@@ -140,7 +140,7 @@ def test_a_planted_motion_is_answered_in_its_room(number: int) -> None:
     assert math.isfinite(passed[0].metrics.quality)
 
 
-@pytest.mark.parametrize("number", further(range(3, 30), [3, 13, 28]))
+@pytest.mark.parametrize("number", further(range(3, 30), [3]))
 def test_a_planted_slider_crank_is_answered_in_its_room(number: int) -> None:
     """Exact positions, of which the best slider-cranks without the room all meet what is in the way."""
     stated = sliders.statement(generator(1, number), sliders.GROUPS[number % len(sliders.GROUPS)])
@@ -153,7 +153,7 @@ def test_a_planted_slider_crank_is_answered_in_its_room(number: int) -> None:
         assert violations(stated, design) == []
 
 
-@pytest.mark.parametrize("over", ["used", "cycle"])
+@pytest.mark.parametrize("over", further(["used", "cycle"], ["cycle"]))
 def test_slider_cranks_that_are_left_out_of_a_room_would_fail_in_it(over: str) -> None:
     """The sweep says so too, and of the others that some fit."""
     stated = sliders.statement(generator(1, 3), 2)

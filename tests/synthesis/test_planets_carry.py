@@ -230,7 +230,7 @@ def test_the_smallest_of_each_size_that_carries() -> None:
 
 
 @pytest.mark.parametrize("rank_by", ["error", "size"])
-@pytest.mark.parametrize("modules", [[1.5], list(MODULES)])
+@pytest.mark.parametrize("modules", further([[1.5], list(MODULES)], [[1.5]]))
 def test_what_is_not_judged_is_told(monkeypatch: pytest.MonkeyPatch, rank_by: str, modules: list[float]) -> None:
     """With few trains judged the answer that calls itself complete is the one of all."""
     stated = {**SIMPLE, "modules": modules, "strength": POWER, "rank_by": rank_by}

@@ -11,6 +11,7 @@ from benchmarks.gears import Compared, compare_pair, compare_pairs
 from benchmarks.independent.cut_gears import external, involute_radius, rack
 from synthesis.analyses import parse_request
 from synthesis.mechanisms.base import MechanismError
+from tests.campaign import further
 
 
 def analysed(**fields: Any) -> dict[str, Any]:
@@ -36,7 +37,7 @@ PAIRS: list[dict[str, Any]] = [
 ]
 
 
-@pytest.mark.parametrize("pair", PAIRS)
+@pytest.mark.parametrize("pair", further(PAIRS, PAIRS[::3]))
 def test_cut_gears_show_the_same(pair: dict[str, Any]) -> None:
     stated = {"type": "gear_pair", "pressure_angle": 20.0, "internal": False, **pair}
     play = stated.pop("play", None)
