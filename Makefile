@@ -31,6 +31,9 @@ CAD    := $(VENV)/.cad
 
 # Files of tests are dealt out to two processes.
 SPREAD := -n 2 --dist loadfile
+# What has a target of its own is not even imported.
+APART := not campaign and not fuzz and not faults and not browser and not cluster and not site and not cad
+BESIDES := --ignore tests/browser --ignore tests/cad
 
 export PYTHONDONTWRITEBYTECODE :=
 
@@ -47,7 +50,7 @@ test: $(STAMP)
 	@$(MAKE) --no-print-directory -j2 check suite
 
 suite: $(STAMP)
-	$(BIN)/pytest -m "not campaign and not fuzz and not faults and not browser and not cluster and not site and not cad" $(SPREAD)
+	$(BIN)/pytest -m "$(APART)" $(SPREAD) $(BESIDES)
 
 # The same tests of the service on PostgreSQL and Celery with RabbitMQ, and with Redis, side by side: the real servers,
 # on free ports. What only PostgreSQL has a part in is tried beside one of the two brokers.
@@ -118,7 +121,7 @@ check: $(STAMP)
 
 # The inner loop: everything but the tests marked slow.
 quick: $(STAMP)
-	$(BIN)/pytest -m "not slow and not campaign and not fuzz and not faults and not browser and not cluster and not site and not cad" -q $(SPREAD)
+	$(BIN)/pytest -m "not slow and $(APART)" -q $(SPREAD) $(BESIDES)
 
 bench: $(STAMP)
 	$(BIN)/python -m benchmarks.analysis
