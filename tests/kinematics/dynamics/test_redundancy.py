@@ -50,12 +50,18 @@ def test_link_that_is_there_twice_changes_no_motion_and_no_unique_force(name: st
     """A copy without mass on the first two joints of a link, over a full turn or from toggle to toggle."""
     rng = np.random.default_rng([26, list(DYADIC | CHAIN).index(name)])
     designs = (DYADIC | CHAIN)[name](rng, 3)
+    built = 0
     for n in range(3):
         once = take(designs, n)
         link = str(rng.choice([link for link in once.links if link != "ground"]))
         links = {**once.links, "copy": once.links[link][:2]}
-        twice = Mechanism(once.joints, links, once.input, once.slides, once.gears)
         whole = machine(rng, once)
+        try:
+            twice = Mechanism(once.joints, links, once.input, once.slides, once.gears)
+        except TopologyError:  # a long chain may jam before it has moved far enough for the copy to be proven harmless
+            assert name in CHAIN
+            continue
+        built += 1
         at = np.asarray(once.reference_input) + np.linspace(-np.pi, np.pi, 25)
         plain, more = (drive(each, at, speed=2.0, acceleration=3.0, order=2) for each in (once, twice))
         np.testing.assert_array_equal(plain.smooth, more.smooth)
@@ -76,6 +82,7 @@ def test_link_that_is_there_twice_changes_no_motion_and_no_unique_force(name: st
             for of, force in on.items():
                 there = posed & np.isfinite(doubled.joints[joint][of])
                 assert np.abs(force - doubled.joints[joint][of])[there].max(initial=0.0) <= 1e-9 * largest
+    assert built >= 2
 
 
 def test_forces_that_redundancy_does_not_reach_stay() -> None:

@@ -93,7 +93,7 @@ TABLES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
             "constraints.link_length.max": Row(30.0, LENGTHS),
             "constraints.full_rotation": True,
             "layout.max_planes": Row(3, {"layout": LAYOUT}),
-            "space.link_width": Row(4e3, {"space": {"obstacles": [BESIDE]}}),
+            "space.link_width": Row(4e4, {"space": {"obstacles": [BESIDE]}}),
             "space.over": Row("cycle", {"space": {"box": [[-60.0, -60.0], [160.0, 60.0]]}}),
             "range_limits": Row([50.0, 60.0], {"output_range": None, "range_limits": [100.0, 110.0]}),
             "pairs": Row(PAIRS[:5], OF_PAIRS),
