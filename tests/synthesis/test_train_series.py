@@ -16,6 +16,7 @@ from synthesis.kinds.train_series import solver
 from synthesis.kinds.train_series.design import TrainSeriesMechanism
 from synthesis.kinds.train_series.verification import joined, verify
 from synthesis.registry import examples, parse_problem
+from tests.campaign import sampled
 
 SET: dict[str, Any] = {
     "type": "planetary_train",
@@ -50,7 +51,7 @@ def test_the_nearest_series_is_that_of_a_brute_force(seed: int) -> None:
 @pytest.mark.campaign
 @pytest.mark.timeout(600)
 def test_further_series_against_the_brute_force() -> None:
-    for statement in statements(12, Random(7)):
+    for statement in statements(sampled(40), Random(7)):
         assert same(solve(parse_problem(statement)), best_series(statement)), statement
 
 

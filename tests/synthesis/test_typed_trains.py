@@ -22,6 +22,7 @@ from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.kinds.gear_train.verification import verify
 from synthesis.mechanisms.base import MechanismError
 from synthesis.registry import parse_problem
+from tests.campaign import sampled
 
 Statement = dict[str, Any]
 
@@ -62,11 +63,12 @@ def test_a_brute_force_finds_the_same() -> None:
 
 @pytest.mark.campaign
 @pytest.mark.timeout(3600)
-def test_a_brute_force_finds_the_same_in_100_tasks() -> None:
-    found = compare_typed(typed_trains.statements(100, 0))
+def test_a_brute_force_finds_the_same_in_many_tasks() -> None:
+    count = sampled(200)
+    found = compare_typed(typed_trains.statements(count, 0))
     assert found.faults == []
-    assert found.some > 50
-    assert found.none > 10
+    assert found.some > 0.5 * count
+    assert found.none > 0
 
 
 def test_the_brute_force_tells_a_difference() -> None:
