@@ -131,6 +131,7 @@ def test_teeth_that_hunt(client: httpx.Client, hunting: str) -> None:
     assert all(told) == (hunting == "require")
 
 
+@pytest.mark.campaign
 def test_the_smallest_that_carries(client: httpx.Client) -> None:
     sizes, _ = solved(client, tolerance=0.01, rank_by="size", max_designs=4)
     teeth = [design["metrics"]["total_teeth"] for design in sizes["designs"]]

@@ -97,6 +97,7 @@ def test_the_cam_that_pushes_is_the_one_the_force_asks_for(client: httpx.Client)
     assert "pushing" not in designed(client, {"mass": 0.5}, closure="form", follower=SLIDE)["metrics"]["forces"]
 
 
+@pytest.mark.campaign
 def test_both_cams_are_in_every_file(client: httpx.Client) -> None:
     for changes in FOLLOWERS[::2]:
         job = finished(client, {**FAST, "closure": "conjugate", **changes})

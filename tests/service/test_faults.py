@@ -77,6 +77,7 @@ def restarting(tmp_path):
         running.kill()
 
 
+@pytest.mark.campaign
 def test_a_job_in_native_code_is_cancelled(server):
     job = server.post(NATIVE)
     server.reaches(job["id"], "running")

@@ -116,6 +116,7 @@ def test_auto_takes_the_fourbar_where_one_is_sound(client):
     assert {design["mechanism"]["type"] for design in auto["designs"]} == {"fourbar"}
 
 
+@pytest.mark.campaign
 def test_auto_takes_sixbars_where_no_fourbar_is_sound_and_says_so(client):
     result = answered(client, mechanisms="auto")["result"]
     assert {design["mechanism"]["type"] for design in result["designs"]} <= set(SIXBARS)

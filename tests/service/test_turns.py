@@ -249,6 +249,7 @@ def test_a_short_job_does_not_wait_for_long_ones(server, gate):
         server.reaches(job["id"], "succeeded")
 
 
+@pytest.mark.campaign
 def test_short_jobs_that_turn_out_to_be_long_do_not_block_others(server, gate):
     mistaken = [server.post(STEPS) for _ in range(4)]
     server.reaches(server.post(INSTANT)["id"], "succeeded")
@@ -257,6 +258,7 @@ def test_short_jobs_that_turn_out_to_be_long_do_not_block_others(server, gate):
         server.reaches(job["id"], "succeeded")
 
 
+@pytest.mark.campaign
 def test_a_batch_whose_samples_turn_out_to_be_long_does_not_block_others(server, gate):
     body = {"problem": PROBLEM, "vary": [{"field": "/seed", "values": [STEPS] * 6}], "reuse": False}
     place = server.client.post("/v1/batches", json=body).raise_for_status().headers["location"]
@@ -268,6 +270,7 @@ def test_a_batch_whose_samples_turn_out_to_be_long_does_not_block_others(server,
     assert (ended["status"], ended["succeeded"]) == ("succeeded", 6)
 
 
+@pytest.mark.campaign
 def test_a_flood_of_one_tenant_leaves_a_worker_to_the_others(server, gate):
     (server.folder / "patient").touch()  # nobody finds out that these are not short
     flood = [server.post(GATED)["id"] for _ in range(5)]
@@ -282,6 +285,7 @@ def test_a_flood_of_one_tenant_leaves_a_worker_to_the_others(server, gate):
 
 
 @pytest.mark.embedded
+@pytest.mark.campaign
 def test_a_cancelled_job_that_reports_progress_costs_no_worker(server, gate):
     def cancelled_attempts():
         return server.sample("mechsynth_job_attempts_total", outcome="cancelled")

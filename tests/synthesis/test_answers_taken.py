@@ -26,7 +26,7 @@ SLOW = {
 }
 """Examples whose search takes more than a second."""
 
-EXAMPLES = further(CASES, [case for case in CASES if case not in SLOW])
+EXAMPLES = further(CASES, [case for case in CASES if case not in SLOW and (case[1] == 0 or case[1] % 3 == 2)])
 
 
 def mechanisms_in(value: Any) -> Iterator[dict[str, Any]]:

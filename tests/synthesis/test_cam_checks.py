@@ -105,6 +105,7 @@ def test_two_demands_are_both_checked_under_a_face(pair: tuple[str, str]) -> Non
     assert not missing(FACE, *pair)
 
 
+@pytest.mark.campaign
 def test_all_demands_at_once_are_checked() -> None:
     assert not missing(ROLLER, *(name for name in DEMANDS if name not in ONLY_FACES))
     assert not missing(FACE, *(name for name in DEMANDS if name not in ONLY_ROLLERS))

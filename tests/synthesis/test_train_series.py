@@ -16,7 +16,7 @@ from synthesis.kinds.train_series import solver
 from synthesis.kinds.train_series.design import TrainSeriesMechanism
 from synthesis.kinds.train_series.verification import joined, verify
 from synthesis.registry import examples, parse_problem
-from tests.campaign import sampled
+from tests.campaign import further, sampled
 
 SET: dict[str, Any] = {
     "type": "planetary_train",
@@ -41,7 +41,7 @@ def series(seed: int) -> dict[str, Any]:
     return next(one for one in statements(50, rng) if len(one["units"]) == 2 and "max_stages" not in str(one))
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", further(range(6), [0, 3]))
 def test_the_nearest_series_is_that_of_a_brute_force(seed: int) -> None:
     statement = series(seed)
     result = solve(parse_problem(statement))
