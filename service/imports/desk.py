@@ -120,7 +120,7 @@ class _Hand(threading.Thread):
                 continue
             try:
                 call.future.set_result(self._answer(call))
-            except Exception as error:  # it is the caller's
+            except Exception as error:  # raised where the answer is awaited, as the future has it
                 call.future.set_exception(error)
         self._end()
 

@@ -70,7 +70,7 @@ def _answered(door: Any, content: bytes, asked: dict[str, Any]) -> bytes | str |
         return Fault.of(error)
     except MemoryError:
         return OUT_OF_MEMORY
-    except Exception as error:  # the boundary of the libraries: a defect of theirs ends this file only
+    except Exception as error:  # a defect: logged here with its trace, ReaderLost in the server, and so a 500
         log.exception("a file could not be read")
         return type(error).__name__
     return answer

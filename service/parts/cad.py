@@ -31,11 +31,6 @@ Solid = Any
 """A shape of build123d, which this module alone knows."""
 
 
-def load() -> None:
-    """Import the libraries, which takes seconds."""
-    import build123d  # noqa: F401
-
-
 def solid(part: Part) -> Solid:
     """A part at its place in the reference configuration, one solid without seams between its prisms."""
     import build123d as b3d

@@ -386,10 +386,9 @@ def _slots(motion: Motion) -> list[Slot]:
         # Between two inputs it goes farther by less than an eighth of the second difference.
         more = 0.25 * float(np.abs(np.diff(places, 2)).max()) if len(places) > 2 else 0.0
         direction = complex(np.exp(1j * slide.angle))
-        ends = float(places.min()) - more, float(places.max()) + more
-        found.append(
-            Slot(slide.joint, slide.link, direction, tuple(complex(slide.point) + end * direction for end in ends))  # type: ignore[arg-type]
-        )
+        point = complex(slide.point)
+        ends = point + (float(places.min()) - more) * direction, point + (float(places.max()) + more) * direction
+        found.append(Slot(slide.joint, slide.link, direction, ends))
     return found
 
 

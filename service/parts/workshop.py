@@ -15,8 +15,10 @@ import threading
 import time
 from collections import OrderedDict
 from collections.abc import Awaitable, Callable
-from concurrent.futures import CancelledError, Future
+from concurrent.futures import CancelledError, Future, wait
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
+from importlib import import_module
 from multiprocessing import get_context
 from typing import Any
 
@@ -55,6 +57,10 @@ log = structlog.get_logger(__name__)
 
 class Busy(Exception):
     """Other parts have kept these from being begun in time."""
+
+
+class Lost(Exception):
+    """There is no process to make parts, for a reason that is not theirs."""
 
 
 class GivenUp(Exception):
@@ -105,7 +111,8 @@ class Workshop:
 
         Raises
         ------
-        Busy, GivenUp, Gone
+        Busy, GivenUp, Gone, Lost
+            And what the function raises.
         """
         if self._thread is None:
             # The process dies with the thread that starts it, so this one lives as long as the workshop.
@@ -157,7 +164,7 @@ class Workshop:
                 continue
             try:
                 call.future.set_result(self._answer(call))
-            except BaseException as error:  # it is the caller's
+            except Exception as error:  # raised where the answer is awaited, as the future has it
                 call.future.set_exception(error)
         self._end()
 
@@ -177,17 +184,23 @@ class Workshop:
     def _waited(self, call: _Call, work: Callable[..., Any], args: tuple[Any, ...], limit_s: float) -> Any:
         try:
             running = self._pool.schedule(work, args=args)
-            latest = time.monotonic() + limit_s
-            while not running.done():
-                if call.abandoned.is_set() or self._stopping.is_set():
-                    self._end()
-                    raise Gone
-                if time.monotonic() > latest:
-                    self._end()
-                    raise GivenUp
-                time.sleep(_PERIOD_S)
+        except RuntimeError as error:  # the pool has broken since it was looked at
+            self._end()
+            raise Lost from error
+        latest = time.monotonic() + limit_s
+        while not wait([running], timeout=_PERIOD_S).done:
+            if call.abandoned.is_set() or self._stopping.is_set():
+                self._end()
+                raise Gone
+            if time.monotonic() > latest:
+                self._end()
+                raise GivenUp
+        try:
             return running.result()
-        except (MemoryError, pebble.ProcessExpired, RuntimeError, CancelledError) as error:
+        except (CancelledError, BrokenProcessPool) as error:  # the pool has no process
+            self._end()
+            raise Lost from error
+        except (MemoryError, pebble.ProcessExpired) as error:
             log.warning("parts were given up", error=type(error).__name__)
             self._end()
             raise GivenUp from None
@@ -202,10 +215,9 @@ class Workshop:
 def _start(server_pid: int, log_level: str, log_format: Format, memory_mb: int) -> None:
     """Prepare the process: its end, its limits, its libraries."""
     confine(server_pid, log_level, log_format)
-    from service.parts import cad, orders  # noqa: F401
-
+    import_module("service.parts.orders")
     if installed():
-        cad.load()
+        import_module("build123d")
     limit_memory(memory_mb + LIBRARIES_MB + CAD_MB)
 
 

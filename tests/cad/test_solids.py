@@ -103,8 +103,11 @@ def test_a_step_file_has_all_parts_by_name_with_holes_at_the_joints(kind: str) -
         joints = [complex(mechanism.joints[joint]) for joint in mechanism.links[part.carrier.link]]
         held = {hole.centre for hole in part.region.holes if isinstance(hole, Disc)}
         for a, b in combinations([z for z in joints if any(abs(z - w) < 1e-9 * whole.size for w in held)], 2):
-            near = [min(axes, key=lambda w, z=z: abs(w - z)) for z in (a, b)]  # type: ignore[misc]
-            assert abs(near[0] - near[1]) == pytest.approx(abs(a - b), rel=1e-6)
+            assert abs(nearest(axes, a) - nearest(axes, b)) == pytest.approx(abs(a - b), rel=1e-6)
+
+
+def nearest(places: set[complex], joint: complex) -> complex:
+    return min(places, key=lambda place: abs(place - joint))
 
 
 @pytest.mark.parametrize(("kind", "process"), [(kind, "laser") for kind in TYPES] + [("fourbar", "print")])

@@ -25,7 +25,7 @@ from service.parts.package import package
 from service.parts.shapes import Disc, area, extent, ring_of, widened
 from service.parts.sheet import assembly_sheet, layers
 from service.parts.sizes import PartsQuery
-from service.parts.workshop import GivenUp, Gone, Workshop
+from service.parts.workshop import GivenUp, Gone, Lost, Workshop
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.service.test_parts import MOTION, SLIDER
@@ -202,8 +202,24 @@ def test_a_request_that_is_left_or_takes_too_long_ends_its_process(bench: Worksh
         assert time.monotonic() - began < 25.0
         with pytest.raises(ZeroDivisionError):
             await bench.call(_never, operator.truediv, 1.0, 0.0)
+        with pytest.raises(RuntimeError, match="no running event loop"):  # a defect is not told as too slow
+            await bench.call(_never, asyncio.get_running_loop)
 
     asyncio.run(all_of_it())
+
+
+def _no_process(*_settings: Any) -> None:
+    raise ImportError("a library is missing")
+
+
+def test_a_process_that_cannot_start_is_no_fault_of_the_parts(monkeypatch: Any) -> None:
+    monkeypatch.setattr(workshop, "_start", _no_process)
+    bench = Workshop(memory_mb=100, timeout_s=1.0)
+    try:
+        with pytest.raises(Lost):
+            asyncio.run(bench.call(_never, math.hypot, 3.0, 4.0))
+    finally:
+        bench.stop()
 
 
 def test_what_was_made_is_kept_until_there_is_too_much(bench: Workshop, monkeypatch: Any) -> None:
