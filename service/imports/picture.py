@@ -6,7 +6,9 @@ A sample stands in the middle of its pixel; x and y begin at the lower left corn
 from __future__ import annotations
 
 import io
+import struct
 import warnings
+import zlib
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +19,11 @@ from service.imports.contours import TooMany, contours
 from service.imports.limits import MOST_CROSSINGS, MOST_PIXELS
 from service.outlines.curves import Complex
 from service.outlines.faults import Malformed, Unsuitable
+
+BROKEN = (
+    OSError, EOFError, SyntaxError, ValueError, IndexError, struct.error, zlib.error, Image.DecompressionBombError,
+)  # fmt: skip
+"""What the library raises of broken files, by its sources; anything else is a defect."""
 
 Samples = NDArray[np.uint8]
 """0 is black, or nothing; 255 is white, or opaque."""
@@ -82,22 +89,23 @@ def _samples(content: bytes) -> tuple[Samples, Samples | None, tuple[float, floa
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            with Image.open(io.BytesIO(content), formats=("PNG",)) as picture:
-                _bounded(*picture.size)
-                density = picture.info.get("dpi")
-                opacity = None
-                if picture.mode.startswith("I"):
-                    lightness = (np.asarray(picture) >> 8).astype(np.uint8)
-                elif "A" in picture.getbands() or "transparency" in picture.info:
-                    whole = picture.convert("RGBA")
-                    opacity = np.asarray(whole.getchannel("A"))
-                    lightness = np.asarray(whole.convert("L"))
-                else:
-                    lightness = np.asarray(picture.convert("L"))
-    except (Unsuitable, MemoryError):
+            picture = Image.open(io.BytesIO(content), formats=("PNG",))
+            _bounded(*picture.size)
+            picture.load()
+    except Unsuitable:
         raise
-    except Exception as error:  # what the library makes of a broken file is of any sort
+    except BROKEN as error:
         raise Malformed(f"The picture cannot be read as PNG ({type(error).__name__}).") from None
+    density = picture.info.get("dpi")
+    opacity = None
+    if picture.mode.startswith("I"):
+        lightness = (np.asarray(picture) >> 8).astype(np.uint8)
+    elif "A" in picture.getbands() or "transparency" in picture.info:
+        whole = picture.convert("RGBA")
+        opacity = np.asarray(whole.getchannel("A"))
+        lightness = np.asarray(whole.convert("L"))
+    else:
+        lightness = np.asarray(picture.convert("L"))
     millimetres = None
     if density and all(1e-3 < side < 1e9 for side in density):
         millimetres = (25.4 / float(density[0]), 25.4 / float(density[1]))

@@ -7,9 +7,9 @@ import pytest
 
 from tests.browser.test_accessibility import serious
 from tests.browser.test_studio import PLAIN, state, stated
+from tests.service.drawn_files import dxf
+from tests.service.drawn_files import page as svg
 from tests.service.test_imports import blob, picture
-from tests.service.test_outlines import dxf
-from tests.service.test_outlines import page as svg
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 

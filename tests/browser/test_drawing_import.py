@@ -7,8 +7,8 @@ import shapely
 from tests.browser.test_accessibility import serious
 from tests.browser.test_room import field
 from tests.browser.test_studio import PLAIN, state, stated
-from tests.service.test_outlines import dxf
-from tests.service.test_outlines import page as svg
+from tests.service.drawn_files import dxf
+from tests.service.drawn_files import page as svg
 from tests.synthesis.test_space import LID
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]

@@ -20,9 +20,11 @@ from service.imports import desk as desks
 from service.imports.desk import ImportDesk
 from service.outlines import DrawingError
 from service.outlines.faults import Malformed, NoOutline, Unsuitable
+from tests.service.drawn_files import dxf, page
 from tests.service.running import RunningServer, workers_of
+from tests.service.test_hostile_drawings import HOSTILE, everything, mutated
 from tests.service.test_imports import TABLES, blob, found, picture, read
-from tests.service.test_outlines import HOSTILE, SHAPES, dxf, everything, mutated, page
+from tests.service.test_outlines import SHAPES
 
 REFUSED = (400, 413, 415, 422)
 SOON_S = 30.0
@@ -67,6 +69,7 @@ PICTURES = {
     "a profile of 128 MiB": lambda: png(SMALL[0], (b"iCCP", b"a\0\0" + squeezed(1 << 27)), *SMALL[1:]),
     "many chunks": lambda: png(SMALL[0], *[(b"tEXt", b"a\0b")] * 60_000, *SMALL[1:]),
     "no pixels that can be unpacked": lambda: png(head(9, 9), (b"IDAT", b"junk"), (b"IEND", b"")),
+    "a second header": lambda: png(SMALL[0], head(100_000, 100_000), *SMALL[1:]),
     "a density of nothing": lambda: png(SMALL[0], (b"pHYs", struct.pack(">IIB", 0, 0, 1)), *SMALL[1:]),
     "a checkerboard": lambda: pattern(np.indices((4000, 4000)).sum(0) % 2 * 255),
     "stripes": lambda: pattern(np.tile(np.arange(4096) % 2 * 255, (4096, 1))),
@@ -102,7 +105,7 @@ SPOILT = {
 AT_ONCE = {
     "laughs", "deep groups", "no numbers", "far away", "a block within itself", "a block many times", "inf in a DXF",
     "a picture of 10^10 pixels", "more rows than it says", "a text of 128 MiB", "a density of nothing",
-    "no pixels that can be unpacked", "a checkerboard", "one row", "cut off", *TABLES_OF_ALL_SORTS,
+    "a second header", "no pixels that can be unpacked", "a checkerboard", "one row", "cut off", *TABLES_OF_ALL_SORTS,
 }  # fmt: skip
 """What takes no second to make and to read; the others are tried by the campaign."""
 

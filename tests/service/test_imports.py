@@ -13,7 +13,7 @@ from PIL import Image, ImageDraw
 from scipy.interpolate import CubicSpline
 
 from tests.service.answers import finished
-from tests.service.test_outlines import dxf, page
+from tests.service.drawn_files import dxf, page
 
 SVG = "image/svg+xml"
 DXF = "image/vnd.dxf"
