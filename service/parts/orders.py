@@ -15,6 +15,9 @@ from service.render.page.svg import clean
 from service.stated import read
 from synthesis.registry import KINDS
 
+ROUNDED = 1e-9
+"""Share of its range by which a stated input may lie outside: an answer's own first and last are at its ends."""
+
 
 def filled(
     kind: str, problem: str, label: str | None, result: str, number: int, query: dict[str, Any], file: File
@@ -57,8 +60,11 @@ def _input(assembly: Assembly, asked: AssemblyQuery) -> float:
     # Places are of the design, and the assembly may be larger.
     unit = assembly.unit if slides else math.pi / 180.0
     low, high = motion.low / unit, motion.high / unit
+    near = ROUNDED * (high - low)
     if not slides:
-        stated = low + (stated - low) % 360.0
-    if not motion.closed and not low <= stated <= high:
+        stated = low + (stated - low + near) % 360.0 - near
+    if motion.closed:
+        return float(stated * unit)
+    if not low - near <= stated <= high + near:
         raise NotMade(f"The input goes from {low:.5g} to {high:.5g}.", f"/query/{name}")
-    return float(stated * unit)
+    return float(min(max(stated, low), high) * unit)

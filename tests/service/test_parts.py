@@ -187,3 +187,45 @@ def test_the_block_of_the_problem_says_what_is_left_out(client: Any) -> None:
     assert (rows["link_input"]["width"], rows["link_input"]["thickness"]) == ("18", "7")
     assert rows["link_input"]["holes"] == "2 x 6.2"
     assert "second_base" in rows
+
+
+DRIVEN = {**MOTION, "input_side": {"dyad": "PR"}}
+
+
+@pytest.mark.cad
+@pytest.mark.parametrize(
+    ("name", "problem", "field", "other"),
+    [("crank", MOTION, "input_angle", "input_place"), ("slide", DRIVEN, "input_place", "input_angle")],
+)
+def test_an_assembly_stands_where_it_is_asked_to(client: Any, name: str, problem: Any, field: str, other: str) -> None:
+    """Files of the same input are alike, those of two inputs are not."""
+    job = finished(client, problem)
+    place = f"/v1/jobs/{job['id']}/designs/0"
+    inputs = [target[field] for target in job["result"]["designs"][0]["targets"]]
+
+    def shown(form: str, **query: Any) -> bytes:
+        answer = client.get(f"{place}.{form}", params=query)
+        assert answer.status_code == 200, answer.text
+        return bytes(answer.content)
+
+    at = [shown("glb", **{field: value}) for value in (inputs[0], inputs[-1])]
+    for off in (-1e-11, 1e-11):  # these inputs are the ends of the range, and who states them has rounded them
+        shown("glb", **{field: inputs[0] + off})
+        shown("glb", **{field: inputs[-1] + off})
+    assert shown("glb", **{field: inputs[0]}) == at[0]
+    assert at[0] != at[1]
+    assert shown("step", **{field: inputs[0]}) != shown("step", **{field: inputs[-1]})
+    for query, path in (({other: 1.0}, f"/query/{other}"), ({field: 1e12}, f"/query/{field}")):
+        answer = client.get(f"{place}.glb", params=query)
+        assert answer.status_code == 422, answer.text
+        assert [error["path"] for error in answer.json()["errors"]] == [path]
+
+
+@pytest.mark.cad
+@pytest.mark.parametrize(("field", "value"), [("width", 16), ("pin", 4), ("thickness", 6), ("clearance", 0.1),
+                                              ("shafts", "both_sides"), ("scale", 1.5)])  # fmt: skip
+def test_every_field_counts_in_an_assembly(client: Any, jobs: Any, field: str, value: Any) -> None:
+    base = {**SIZES, "shafts": "one_side", "over": "used", "scale": 1.0}
+    files = [client.get(f"{jobs['fourbar']}.glb", params=query) for query in (base, base | {field: value})]
+    assert [file.status_code for file in files] == [200, 200]
+    assert files[0].content != files[1].content
