@@ -16,6 +16,7 @@ from service.api.jobs import TAG
 from service.api.state import Bench, Desk
 from service.jobs.schema import JobRow
 from service.parts.extra import installed
+from service.parts.made import has_parts
 from service.parts.sizes import NEEDS_CAD, AssemblyQuery, File, PartsQuery, Refused
 from service.parts.workshop import MAX_PARTS_S, Busy, GivenUp, Gone, filled
 from service.telemetry import span
@@ -135,11 +136,11 @@ async def _made(
 
 
 def _checked(result: str, number: str) -> int:
-    """The index of a design of a stored result that is a linkage."""
+    """The index of a design of a stored result that parts are made of."""
     designs = from_json(result)["designs"]
     n = design_index(number, len(designs))
-    if "skeleton" not in designs[n]["mechanism"]:
-        raise not_found("There are no parts of this type of mechanism; linkages have them.")
+    if not has_parts(designs[n]["mechanism"]):
+        raise not_found("There are no parts of this type of mechanism.")
     return n
 
 

@@ -7,8 +7,11 @@ from collections.abc import Sequence
 
 from service.parts.items import Item
 from service.parts.model import Part
-from service.parts.shapes import Disc, Outline, extent
+from service.parts.shapes import Disc, Loop, Outline, extent
 from service.render.page.table import table
+
+SLOT_CORNERS = 4
+"""Of a slot with round ends."""
 
 HEADER = ("part", "quantity", "material", "length", "width", "thickness", "holes", "plane", "standard")
 
@@ -30,10 +33,10 @@ def row(item: Item) -> list[str]:
 
 
 def holes(part: Part) -> str:
-    """The holes of a part by their diameters, and its slots by width and length."""
+    """The holes of a part by their diameters, its slots by width and length, and other shapes by their extents."""
     round_ones = Counter(millimetres(2.0 * hole.radius) for hole in part.region.holes if isinstance(hole, Disc))
     told = [f"{count} x {diameter}" for diameter, count in round_ones.items()]
-    told += [_slot(hole) for hole in part.region.holes if not isinstance(hole, Disc)]
+    told += [_shaped(hole) for hole in part.region.holes if not isinstance(hole, Disc)]
     return "; ".join(told)
 
 
@@ -42,9 +45,10 @@ def millimetres(value: float) -> str:
     return f"{value:.3f}".rstrip("0").rstrip(".")
 
 
-def _slot(outline: Outline) -> str:
-    assert not isinstance(outline, Disc)
-    start, end, _ = max(outline.edges(), key=lambda edge: abs(edge[1] - edge[0]) if edge[2] == 0.0 else 0.0)
-    along = (end - start) / abs(end - start)
+def _shaped(outline: Outline) -> str:
+    along, what = 1.0 + 0.0j, "contour"
+    if isinstance(outline, Loop) and len(outline.corners) == SLOT_CORNERS:
+        start, end, _ = max(outline.edges(), key=lambda edge: abs(edge[1] - edge[0]) if edge[2] == 0.0 else 0.0)
+        along, what = (end - start) / abs(end - start), "slot"
     (low, high), (left, right) = extent(outline, along), extent(outline, 1j * along)
-    return f"slot {millimetres(right - left)} x {millimetres(high - low)}"
+    return f"{what} {millimetres(right - left)} x {millimetres(high - low)}"

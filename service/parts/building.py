@@ -16,8 +16,10 @@ from typing import NamedTuple
 import numpy as np
 
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
-from service.parts.model import Assembly, Carrier, Motion, Part, Prism, Sort
-from service.parts.shapes import Disc, Outline, Region, ring, widened
+from service.parts.bodies import Prism
+from service.parts.linkage_motion import LinkageMotion
+from service.parts.model import Assembly, Carrier, Part, Sort
+from service.parts.shapes import Disc, Loop, Outline, Region, ring, widened
 from service.parts.sizes import WALL, Sizes
 from service.parts.standards import bar, washer_for
 
@@ -63,13 +65,13 @@ class Slot(NamedTuple):
 
 
 def assembled(
-    motion: Motion, planes: Planes, slots: Sequence[Slot], sizes: Sizes, unit: float, scale: float
+    motion: LinkageMotion, planes: Planes, slots: Sequence[Slot], sizes: Sizes, unit: float, scale: float
 ) -> Assembly:
     """The assembly of a mechanism without gears.
 
     Parameters
     ----------
-    motion : Motion
+    motion : LinkageMotion
         In millimetres.
     planes : Planes
         With ``highest + 1`` for the second base.
@@ -137,7 +139,7 @@ class _Builder:
             described=link.replace("_", " "),
             sort="link",
             carrier=Carrier(link, first),
-            prisms=(Prism(region, *self._level(plane)),),
+            bodies=(Prism(region, *self._level(plane)),),
             along=direction / abs(direction),
             planes=(plane, plane),
             material=MATERIALS[self._sizes.process][0],
@@ -187,7 +189,7 @@ class _Builder:
                     described=f"block at {slot.joint}",
                     sort="block",
                     carrier=Carrier(slot.link, slot.joint),
-                    prisms=(Prism(Region(outer, (Disc(place, 0.5 * self._sizes.hole),)), *self._level(plane)),),
+                    bodies=(Prism(Region(outer, (Disc(place, 0.5 * self._sizes.hole),)), *self._level(plane)),),
                     along=slot.direction,
                     planes=(plane, plane),
                     material={"print": "PETG", "laser": "sheet", "mill": "bronze"}[self._sizes.process],
@@ -205,7 +207,7 @@ class _Builder:
 
     # Bases
 
-    def bases(self, motion: Motion) -> list[Part]:
+    def bases(self, motion: LinkageMotion) -> list[Part]:
         """The base, and the second one with the posts between."""
         grounded = {joint: reach for joint, reach in self._planes.pins.items() if self._stands(joint)}
         points = [self._at[joint] for joint in grounded if not self._slides_on_ground(joint)]
@@ -219,7 +221,7 @@ class _Builder:
         names = {0: "base"} | ({self._planes.highest + 1: "second_base"} if self.sides == 2 else {})
         return [self._base(name, plane, outer, self._held(grounded, plane)) for plane, name in names.items()]
 
-    def _corners(self, motion: Motion) -> dict[str, complex]:
+    def _corners(self, motion: LinkageMotion) -> dict[str, complex]:
         """Places of four posts beyond everything that moves."""
         driven = motion.at(motion.inputs(CORNER_INPUTS))
         swept = []
@@ -270,7 +272,7 @@ class _Builder:
             described=name.replace("_", " "),
             sort="base",
             carrier=Carrier(GROUND, None),
-            prisms=tuple(prisms),
+            bodies=tuple(prisms),
             along=_longest(points) if self.sides == 1 else 1.0 + 0.0j,
             planes=(plane, plane),
             material=MATERIALS[self._sizes.process][0],
@@ -399,6 +401,7 @@ def _distance(place: complex, outline: Outline) -> float:
     """How far a point lies from an outline that it is not in, about."""
     if isinstance(outline, Disc):
         return abs(place - outline.centre) - outline.radius
+    assert isinstance(outline, Loop)
     least = math.inf
     for start, end, _ in outline.edges():
         along = end - start

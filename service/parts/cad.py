@@ -1,7 +1,8 @@
 """The assembly as solids: STEP (AP242), STL, 3MF and glTF, by build123d on Open CASCADE.
 
 This is the only module that needs the extra ``cad``; :mod:`service.parts.extra` says whether it is there.
-Arcs stay arcs and holes cylinders; the mesh formats have them as polygons no farther than :data:`DEFLECTION` off.
+Arcs stay arcs, holes cylinders and curves B-splines; the mesh formats have them as polygons no farther than
+:data:`DEFLECTION` off. A twisted prism is swept along its axis, with a helix beside it; a mesh stays one of triangles.
 """
 
 from __future__ import annotations
@@ -14,8 +15,10 @@ from typing import Any
 
 import numpy as np
 
+from service.parts.bodies import Body, Mesh, Prism, Turned, Twisted
+from service.parts.curves import Curve
 from service.parts.items import Item
-from service.parts.model import Assembly, Part
+from service.parts.model import Assembly, Frame, Part
 from service.parts.shapes import Disc, Outline, Region, middle_of
 
 DEFLECTION, TURN = 0.02, 0.1
@@ -32,13 +35,10 @@ Solid = Any
 
 
 def solid(part: Part) -> Solid:
-    """A part at its place in the reference configuration, one solid without seams between its prisms."""
+    """A part at its place in the reference configuration, one solid without seams between its bodies."""
     import build123d as b3d
 
-    pieces = []
-    for prism in part.prisms:
-        face = _face(prism.region)
-        pieces.append(b3d.extrude(face, amount=prism.high - prism.low, dir=(0, 0, 1)).moved(_up(prism.low)))
+    pieces = [_piece(body) for body in part.bodies]
     whole = pieces[0].fuse(*pieces[1:]).clean() if len(pieces) > 1 else pieces[0]
     (made,) = whole.solids()
     made.label = part.name
@@ -50,12 +50,14 @@ def placed(assembly: Assembly, solids: Sequence[Solid], input_: float) -> list[S
     """The solids of all parts where they are at an input; they were made in the reference configuration."""
     import build123d as b3d
 
-    driven = assembly.motion.at(np.array([input_]))
+    state = assembly.motion.at(np.array([input_]))
     moved = []
     for part, shape in zip(assembly.parts, solids, strict=True):
-        at = assembly.motion.placed(part.carrier, driven)
+        at = assembly.motion.placed(part.carrier, state)
         turn, shift = complex(at.turn[0]), complex(at.shift[0])
         place = b3d.Location((shift.real, shift.imag, 0.0), (0.0, 0.0, float(np.degrees(np.angle(turn)))))
+        if at.frame is not None:
+            place = _standing(at.frame) * place
         one = shape.moved(place)
         one.label, one.color = shape.label, shape.color
         moved.append(one)
@@ -127,6 +129,42 @@ def _lying(shape: Solid, part: Part) -> Solid:
     return turned.moved(b3d.Location((-low.X, -low.Y, -low.Z)))
 
 
+def _standing(frame: Frame) -> Any:
+    """Where a frame is at the first input."""
+    import build123d as b3d
+
+    origin, axes = frame.origin.reshape(-1, 3)[0], frame.axes.reshape(-1, 3, 3)[0]
+    return b3d.Location(b3d.Plane(tuple(origin), x_dir=tuple(axes[:, 0]), z_dir=tuple(axes[:, 2])))
+
+
+def _piece(body: Body) -> Any:
+    """A body at its height."""
+    import build123d as b3d
+
+    if isinstance(body, Prism):
+        return b3d.extrude(_face(body.region), amount=body.high - body.low, dir=(0, 0, 1)).moved(_up(body.low))
+    if isinstance(body, Turned):
+        axis = b3d.Axis((body.centre.real, body.centre.imag, 0.0), (0, 0, 1))
+        corners = [(body.centre.real + z.real, body.centre.imag, z.imag) for z in body.profile]
+        return b3d.Solid.revolve(b3d.Face(b3d.Wire.make_polygon(corners)), 360.0, axis)
+    if isinstance(body, Twisted):
+        outer, *holes = (_wire(outline) for outline in (body.section.outer, *body.section.holes))
+        along = (0.0, 0.0, body.high - body.low)
+        middle = (body.centre.real, body.centre.imag, 0.0)
+        swept = b3d.Solid.extrude_linear_with_rotation(outer, middle, along, float(np.degrees(body.twist)), holes)
+        return swept.moved(_up(body.low))
+    return _sewn(body)
+
+
+def _sewn(body: Mesh) -> Any:
+    """The solid that the triangles of a mesh enclose."""
+    import build123d as b3d
+
+    corners = [b3d.Vector(*place) for place in body.corners.tolist()]
+    faces = [b3d.Face(b3d.Wire.make_polygon([corners[k] for k in three])) for three in body.triangles.tolist()]
+    return b3d.Solid(b3d.Shell(faces))
+
+
 def _up(height: float) -> Any:
     import build123d as b3d
 
@@ -145,6 +183,8 @@ def _wire(outline: Outline) -> Any:
     if isinstance(outline, Disc):
         centre = b3d.Plane((outline.centre.real, outline.centre.imag, 0.0))
         return b3d.Wire([b3d.Edge.make_circle(outline.radius, centre)])
+    if isinstance(outline, Curve):
+        return b3d.Wire([_spline(outline)])
     edges = []
     for start, end, bulge in outline.edges():
         a, b = (start.real, start.imag), (end.real, end.imag)
@@ -154,3 +194,11 @@ def _wire(outline: Outline) -> Any:
             half = middle_of(start, end, bulge)
             edges.append(b3d.Edge.make_three_point_arc(a, (half.real, half.imag), b))
     return b3d.Wire(edges)
+
+
+def _spline(outline: Curve) -> Any:
+    """A smooth outline as the B-spline that it is."""
+    import build123d as b3d
+
+    clamped = outline.clamped
+    return b3d.Edge.make_bspline(map(tuple, clamped.c.tolist()), clamped.t.tolist(), 3)

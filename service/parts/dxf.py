@@ -1,13 +1,14 @@
 """The outline of a flat part with its holes as a DXF drawing in millimetres, as a laser cutter or a router takes it.
 
 Everything is on the layer CUT: outlines and slots are closed polylines whose round ends are true arcs, holes are
-circles. The part lies along x, with its lowest and leftmost points on the axes.
+circles, smooth contours splines. The part lies along x, with its lowest and leftmost points on the axes.
 """
 
 from __future__ import annotations
 
 from ezdxf.layouts.layout import Modelspace
 
+from service.parts.curves import Curve
 from service.parts.model import Part
 from service.parts.shapes import Disc, Outline, extent
 from service.render.page import dxf
@@ -31,6 +32,13 @@ def _add(space: Modelspace, outline: Outline, along: complex, corner: complex) -
     back = along.conjugate()
     if isinstance(outline, Disc):
         dxf.add_circle(space, outline.centre * back - corner, outline.radius, "CUT")
+        return
+    if isinstance(outline, Curve):
+        clamped = outline.clamped
+        poles = (clamped.c @ (1.0, 1j)) * back - corner
+        spline = space.add_spline(degree=3, dxfattribs={"layer": "CUT"})
+        spline.control_points = [(z.real, z.imag, 0.0) for z in poles.tolist()]
+        spline.knots = clamped.t.tolist()
         return
     points = [
         (z.real, z.imag, bulge) for z, bulge in ((start * back - corner, bulge) for start, _, bulge in outline.edges())

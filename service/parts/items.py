@@ -42,7 +42,7 @@ def items(assembly: Assembly) -> list[Item]:
         numbers[kind] += 1
         name = kind if kinds.count(kind) == 1 and len(parts) > 1 else f"{kind}_{numbers[kind]}"
         found.append(Item(parts[0].name if len(parts) == 1 else name, tuple(parts)))
-    order = ("base", "link", "block", "pin", "ring", "washer", "spacer")
+    order = ("base", "link", "block", "gear", "cam", "pin", "key", "ring", "washer", "spacer")
     return sorted(found, key=lambda item: order.index(item.part.sort))
 
 
@@ -55,7 +55,8 @@ def _likeness(part: Part) -> Hashable:
     if part.sort in FLAT or not part.round:
         return part.name
     stack = []
-    for region, low, high in part.prisms:
+    for body in part.bodies:
+        region, low, high = body.region, body.low, body.high
         assert isinstance(region.outer, Disc)
         radii = [region.outer.radius, *(hole.radius for hole in region.holes if isinstance(hole, Disc))]
         stack.append(tuple(round(x, DIGITS) for x in (*radii, low - part.low, high - part.low)))

@@ -1,42 +1,111 @@
-"""What an assembly is: parts as stacks of prisms, and what each of them moves with."""
+"""What an assembly is: parts as stacks of bodies, what each of them moves with, and how that moves."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage.planar.drive import MechanismMotion, drive
-from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from service.parts.bodies import Body
 from service.parts.shapes import Region, area, extent
 
 Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
 
-Sort = Literal["base", "link", "block", "pin", "ring", "washer", "spacer"]
-"""What a part is."""
+Sort = Literal["base", "link", "block", "gear", "cam", "pin", "ring", "washer", "spacer", "key"]
+"""What a part is; shafts are pins."""
 
-FLAT: tuple[Sort, ...] = ("base", "link", "block")
-"""Parts that are cut from a sheet; all others are turned or bought."""
+FLAT: tuple[Sort, ...] = ("base", "link", "block", "gear", "cam")
+"""Parts that are cut from a sheet, where they are prisms; all others are turned or bought."""
+
+InputField = Literal["input_angle", "input_place"]
+"""By which field a request says where an assembly is shown."""
 
 
 class Carrier(NamedTuple):
-    """What a part moves with: it turns as a link does, and goes where a joint goes; the base goes nowhere."""
+    """What a part moves with: it turns as a link does, and goes where a joint goes; the base goes nowhere.
+
+    A motion that has no joints, such as that of a train, names its bodies as links, and no joint.
+    """
 
     link: str
     joint: str | None
 
 
-class Prism(NamedTuple):
-    """A region from one height to another."""
+class Frame(NamedTuple):
+    """A plane in space in which parts are drawn and move, and its normal, along which their heights are.
 
-    region: Region
-    low: float
-    high: float
+    Attributes
+    ----------
+    origin : Real
+        Shape (3,), or (n, 3) where it moves.
+    axes : Real
+        Shape (3, 3) or (n, 3, 3): x, y and the normal as columns, a rotation.
+    """
+
+    origin: Real
+    axes: Real
+
+
+class Placed(NamedTuple):
+    """Where parts are at n inputs: z ↦ ``turn`` · z + ``shift``, shapes (n,).
+
+    That is in the plane of the assembly, or in that of ``frame`` where the axis is not parallel to all others.
+    """
+
+    turn: Complex
+    shift: Complex
+    frame: Frame | None = None
+
+
+class Motion(Protocol):
+    """How what carries parts moves, in millimetres and radians, over the range of inputs that they were made for."""
+
+    @property
+    def low(self) -> float:
+        """The lowest input."""
+
+    @property
+    def high(self) -> float:
+        """The highest input."""
+
+    @property
+    def closed(self) -> bool:
+        """Whether the range is one whole cycle."""
+
+    @property
+    def reference(self) -> float:
+        """The input of the reference configuration, in which the parts are drawn."""
+
+    @property
+    def size(self) -> float:
+        """How large the mechanism is."""
+
+    @property
+    def input_field(self) -> InputField:
+        """By which field of a request its input is stated."""
+
+    def inputs(self, count: int) -> Real:
+        """So many inputs over the range, shape (count,), at which parts are looked at."""
+
+    def stated(self, value: float, scale: float) -> float:
+        """The input that a request states, in degrees, or in lengths of a design that is built so much larger.
+
+        Raises
+        ------
+        NotMade
+            Where it is not in the range.
+        """
+
+    def at(self, inputs: Real) -> Any:
+        """The state at inputs, shape (n,), for :meth:`placed` alone."""
+
+    def placed(self, carrier: Carrier, state: Any) -> Placed:
+        """How what a carrier carries has moved from the reference configuration."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +118,8 @@ class Part:
         Unique in its assembly, of lower-case letters, digits and underscores.
     described : str
         What it is, in words.
+    bodies : tuple of Body
+        That stand on one another, or beside one another without meeting.
     along : complex
         The direction in which its length is measured, of length 1.
     planes : pair of int
@@ -56,14 +127,14 @@ class Part:
     standard : str
         What it is bought as; empty where it is made.
     round : bool
-        Whether it is a body of revolution about its joint.
+        Whether it is a stack of rings about its joint.
     """
 
     name: str
     described: str
     sort: Sort
     carrier: Carrier
-    prisms: tuple[Prism, ...]
+    bodies: tuple[Body, ...]
     along: complex
     planes: tuple[int, int]
     material: str
@@ -74,17 +145,17 @@ class Part:
     @property
     def low(self) -> float:
         """Height of its lowest face."""
-        return min(prism.low for prism in self.prisms)
+        return min(body.low for body in self.bodies)
 
     @property
     def high(self) -> float:
         """Height of its uppermost face."""
-        return max(prism.high for prism in self.prisms)
+        return max(body.high for body in self.bodies)
 
     @property
     def region(self) -> Region:
         """What is cut from the sheet: its widest prism."""
-        return max((prism.region for prism in self.prisms), key=lambda region: area(region.outer))
+        return max((body.region for body in self.bodies), key=lambda region: area(region.outer))
 
     @property
     def length_and_width(self) -> tuple[float, float]:
@@ -95,65 +166,8 @@ class Part:
 
     @cached_property
     def volume(self) -> float:
-        """Cubic millimetres, of prisms that stand on one another."""
-        return math.fsum(
-            (area(region.outer) - math.fsum(area(hole) for hole in region.holes)) * (high - low)
-            for region, low, high in self.prisms
-        )
-
-
-class Placed(NamedTuple):
-    """Where parts are at n inputs: z ↦ ``turn`` · z + ``shift``, shapes (n,)."""
-
-    turn: Complex
-    shift: Complex
-
-
-@dataclass(frozen=True)
-class Motion:
-    """A mechanism in millimetres, the range of inputs that its parts were made for, and where it then is.
-
-    Attributes
-    ----------
-    low, high : float
-        Radians, or millimetres along the input slide.
-    closed : bool
-        Whether the range is one whole cycle.
-    """
-
-    mechanism: Mechanism
-    low: float
-    high: float
-    closed: bool
-
-    def inputs(self, count: int) -> Real:
-        """So many inputs, spread evenly over a whole cycle, or between the ends of the range and short of them."""
-        if self.closed:
-            return np.linspace(self.low, self.high, count, endpoint=False)
-        return np.linspace(self.low, self.high, count + 2)[1:-1]
-
-    def at(self, inputs: Real) -> MechanismMotion:
-        """The mechanism at inputs."""
-        return drive(self.mechanism, inputs, order=0)
-
-    def placed(self, carrier: Carrier, driven: MechanismMotion) -> Placed:
-        """How what a carrier carries has moved from the reference configuration."""
-        turn = self._turn(carrier.link, driven)
-        if carrier.joint is None:
-            return Placed(turn, np.zeros_like(turn))
-        shift = driven.joints[carrier.joint][0] - turn * complex(self.mechanism.joints[carrier.joint])
-        return Placed(turn, shift)
-
-    def _turn(self, link: str, driven: MechanismMotion) -> Complex:
-        if link == GROUND:
-            return np.ones(driven.valid.shape, np.complex128)
-        joints = self.mechanism.links[link]
-        first = joints[0]
-        far = max(joints, key=lambda name: abs(complex(self.mechanism.joints[name] - self.mechanism.joints[first])))
-        turn = (driven.joints[far][0] - driven.joints[first][0]) / complex(
-            self.mechanism.joints[far] - self.mechanism.joints[first]
-        )
-        return np.asarray(turn / np.abs(turn))
+        """Cubic millimetres."""
+        return math.fsum(body.volume for body in self.bodies)
 
 
 @dataclass(frozen=True)
@@ -170,6 +184,8 @@ class Assembly:
         Millimetres to a length unit of the design, as large as it is built.
     scale : float
         How much larger than the design that is.
+    notes : tuple of str
+        What else its maker has to say to who puts it together.
     """
 
     parts: tuple[Part, ...]
@@ -178,9 +194,9 @@ class Assembly:
     sides: int
     unit: float
     scale: float
+    notes: tuple[str, ...] = ()
 
     @property
     def size(self) -> float:
-        """The greatest distance of two joints."""
-        places = np.array([complex(z) for z in self.motion.mechanism.joints.values()])
-        return float(np.abs(places[:, None] - places).max())
+        """How large the mechanism is."""
+        return self.motion.size

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from service.parts import cad
-from service.parts.made import NotMade, made
-from service.parts.model import Assembly
+from service.parts.made import made
+from service.parts.model import Assembly, InputField
 from service.parts.package import package
-from service.parts.sizes import AssemblyQuery, File, Refused
+from service.parts.sizes import AssemblyQuery, File, NotMade, Refused
 from service.render import heading
 from service.render.page.svg import clean
 from service.stated import read
 from synthesis.registry import KINDS
-
-ROUNDED = 1e-9
-"""Share of its range by which a stated input may lie outside: an answer's own first and last are at its ends."""
 
 
 def filled(
@@ -50,21 +46,9 @@ def filled(
 def _input(assembly: Assembly, asked: AssemblyQuery) -> float:
     """The input at which the assembly is shown, in the range that its parts were made for."""
     motion = assembly.motion
-    slides = motion.mechanism.driven_by_slide
-    name, other = ("input_place", "input_angle") if slides else ("input_angle", "input_place")
+    name = motion.input_field
+    other: InputField = "input_angle" if name == "input_place" else "input_place"
     if getattr(asked, other) is not None:
         raise NotMade(f"The input of this mechanism is stated by {name}.", f"/query/{other}")
     stated = getattr(asked, name)
-    if stated is None:
-        return float(motion.mechanism.reference_input)
-    # Places are of the design, and the assembly may be larger.
-    unit = assembly.unit if slides else math.pi / 180.0
-    low, high = motion.low / unit, motion.high / unit
-    near = ROUNDED * (high - low)
-    if not slides:
-        stated = low + (stated - low + near) % 360.0 - near
-    if motion.closed:
-        return float(stated * unit)
-    if not low - near <= stated <= high + near:
-        raise NotMade(f"The input goes from {low:.5g} to {high:.5g}.", f"/query/{name}")
-    return float(min(max(stated, low), high) * unit)
+    return motion.reference if stated is None else motion.stated(stated, assembly.unit)

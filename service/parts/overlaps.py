@@ -1,23 +1,25 @@
 """Whether the parts of an assembly want one place at once, and whether enough is left of the plates around their holes.
 
-This knows the parts alone, not the planes that were found for them: it moves every part, takes all pairs of prisms that
-share some height, and intersects their regions as polygons. A polygon of what is solid lies outside of its arcs, one of
-a hole inside, so that what is free of overlaps here is so in truth at the inputs looked at. Bodies of revolution on one
-pin are compared by their radii.
+This knows the parts alone, not the planes that were found for them: it moves every part, takes all pairs of bodies that
+share some height, and intersects what they take of the plane there (:mod:`service.parts.bodies`) as polygons. A polygon
+of what is solid lies outside of its arcs, one of a hole inside, so that prisms that are free of overlaps here are so in
+truth at the inputs looked at. Stacks of rings on one pin are compared by their radii.
+
+Parts whose axes are not parallel move in planes of different frames. Such pairs are left to their maker.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import combinations
+from itertools import combinations, product
 from typing import NamedTuple
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from kinematics.linkage.planar.drive import MechanismMotion
-from service.parts.model import FLAT, Assembly, Carrier, Part, Prism
+from service.parts.bodies import slices
+from service.parts.model import FLAT, Assembly, Carrier, Part
 from service.parts.shapes import Disc, Outline, Region, ring_of
 
 POSITIONS = 144
@@ -53,15 +55,17 @@ def overlaps(assembly: Assembly, count: int = POSITIONS) -> list[Overlap]:
     """
     inputs = assembly.motion.inputs(count)
     size = assembly.size
-    moved = _Moved(assembly, assembly.motion.at(inputs))
+    moved = _Moved(assembly, inputs)
     found = []
     for one, other in combinations(assembly.parts, 2):
         most = np.zeros(count)
+        if not moved.in_one_frame(one.carrier, other.carrier):
+            continue
         for first, second in _meeting(one, other, ROUNDING * size):
             if one.round and other.round and one.carrier == other.carrier and _about_one_axis(first, second):
                 most = np.maximum(most, _on_one_pin(first, second, ROUNDING * size))
             else:
-                most = np.maximum(most, moved.shared((one.carrier, first.region), (other.carrier, second.region)))
+                most = np.maximum(most, moved.shared((one.carrier, first), (other.carrier, second)))
         worst = int(np.argmax(most))
         if most[worst] > (ROUNDING * size) ** 2:
             found.append(Overlap((one.name, other.name), float(inputs[worst]), float(most[worst])))
@@ -74,9 +78,9 @@ def too_thin(assembly: Assembly, wall: float) -> list[Thin]:
     for part in assembly.parts:
         if part.sort not in FLAT:
             continue
-        for prism in part.prisms[:1]:
-            holes = [shapely.Polygon(_pairs(ring_of(hole, beyond=True))) for hole in prism.region.holes]
-            edge = shapely.LinearRing(_pairs(ring_of(prism.region.outer, beyond=False)))
+        for region in (body.region for body in part.bodies[:1]):
+            holes = [shapely.Polygon(_pairs(ring_of(hole, beyond=True))) for hole in region.holes]
+            edge = shapely.LinearRing(_pairs(ring_of(region.outer, beyond=False)))
             inside = shapely.Polygon(edge)
             left = [edge.distance(hole) if inside.contains(hole) else 0.0 for hole in holes]
             left += [one.distance(other) for one, other in combinations(holes, 2)]
@@ -85,24 +89,23 @@ def too_thin(assembly: Assembly, wall: float) -> list[Thin]:
     return found
 
 
-def _meeting(one: Part, other: Part, rounding: float) -> Iterator[tuple[Prism, Prism]]:
-    """Prisms of two parts that share some height."""
+def _meeting(one: Part, other: Part, rounding: float) -> Iterator[tuple[Region, Region]]:
+    """Regions that bodies of two parts take between the same heights."""
     if min(one.high, other.high) - max(one.low, other.low) <= rounding:
         return
-    for first in one.prisms:
-        for second in other.prisms:
-            if min(first.high, second.high) - max(first.low, second.low) > rounding:
-                yield first, second
+    for first, second in product(one.bodies, other.bodies):
+        for low, high in slices(first, second, rounding):
+            yield from product(first.within(low, high), second.within(low, high))
 
 
-def _about_one_axis(first: Prism, second: Prism) -> bool:
-    one, other = first.region.outer, second.region.outer
+def _about_one_axis(first: Region, second: Region) -> bool:
+    one, other = first.outer, second.outer
     return isinstance(one, Disc) and isinstance(other, Disc) and one.centre == other.centre
 
 
-def _on_one_pin(first: Prism, second: Prism, rounding: float) -> float:
+def _on_one_pin(first: Region, second: Region, rounding: float) -> float:
     """The area that two rings about one centre share, by their radii."""
-    (low, high), (inner, outer) = (_radii(prism.region) for prism in (first, second))
+    (low, high), (inner, outer) = _radii(first), _radii(second)
     least, most = max(low, inner), min(high, outer)
     return float(np.pi * (most**2 - least**2)) if most - least > rounding else 0.0
 
@@ -120,11 +123,16 @@ Carried = tuple[Carrier, Region]
 class _Moved:
     """The regions of an assembly at all inputs, each made once."""
 
-    def __init__(self, assembly: Assembly, driven: MechanismMotion) -> None:
+    def __init__(self, assembly: Assembly, inputs: NDArray[np.float64]) -> None:
+        state = assembly.motion.at(inputs)
         carriers = {part.carrier for part in assembly.parts}
-        self._placed = {carrier: assembly.motion.placed(carrier, driven) for carrier in carriers}
+        self._placed = {carrier: assembly.motion.placed(carrier, state) for carrier in carriers}
         self._boxes: dict[Carried, NDArray[np.float64]] = {}
         self._polygons: dict[Carried, NDArray[np.object_]] = {}
+
+    def in_one_frame(self, one: Carrier, other: Carrier) -> bool:
+        """Whether what two carriers carry moves in parallel planes."""
+        return self._placed[one].frame is self._placed[other].frame
 
     def shared(self, first: Carried, second: Carried) -> NDArray[np.float64]:
         """The area that two regions share at each input."""

@@ -101,6 +101,7 @@ def _read_me(assembly: Assembly, listed: list[Item], process: Process, title: st
         *(f"  {_plane(plane, assembly)}: {', '.join(names)}" for plane, names in sorted(plates.items())),
         _HOLDING[process],
         "Washers and spacers fill the gaps between the planes; assembly.svg shows where they lie.",
+        *assembly.notes,
         "",
         "Files:",
         *(f"  {name}" for name in sorted(files)),
@@ -118,4 +119,4 @@ def _plane(plane: int, assembly: Assembly) -> str:
 
 def _thickness(assembly: Assembly) -> float:
     base = next(part for part in assembly.parts if part.sort == "base")
-    return base.prisms[0].high - base.prisms[0].low
+    return base.bodies[0].high - base.bodies[0].low

@@ -1,7 +1,8 @@
-"""Regions of the plane: outlines of straight lines and arcs, with holes.
+"""Regions of the plane: outlines of straight lines and arcs, or of a smooth curve, with holes.
 
 An outline is a :class:`Disc`, or a :class:`Loop`: corners counter-clockwise, from each to the next a line, or an arc of
-which the *bulge* is the tangent of a quarter of its angle (as DXF has it), positive where it turns to the left.
+which the *bulge* is the tangent of a quarter of its angle (as DXF has it), positive where it turns to the left; or a
+:class:`~service.parts.curves.Curve`.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from service.parts.curves import Curve
 
 Complex = NDArray[np.complex128]
 
@@ -38,7 +41,7 @@ class Loop(NamedTuple):
         yield from zip(self.corners, (*self.corners[1:], self.corners[0]), self.bulges, strict=True)
 
 
-Outline = Disc | Loop
+Outline = Disc | Loop | Curve
 
 
 class Region(NamedTuple):
@@ -46,6 +49,15 @@ class Region(NamedTuple):
 
     outer: Outline
     holes: tuple[Outline, ...] = ()
+
+
+def turned(outline: Outline, turn: complex, about: complex) -> Outline:
+    """An outline turned about a point by a direction of length 1."""
+    if isinstance(outline, Disc):
+        return Disc(about + turn * (outline.centre - about), outline.radius)
+    if isinstance(outline, Curve):
+        return Curve(tuple(about + turn * (z - about) for z in outline.points))
+    return Loop(tuple(about + turn * (z - about) for z in outline.corners), outline.bulges)
 
 
 def ring(centre: complex, outer: float, inner: float = 0.0) -> Region:
@@ -108,6 +120,8 @@ def hull(points: Sequence[complex]) -> list[complex]:
 
 def ring_of(outline: Outline, *, beyond: bool) -> Complex:
     """An outline as a polygon, whose arcs lie all outside of the true ones (``beyond``), or all inside."""
+    if isinstance(outline, Curve):
+        return outline.ring(beyond=beyond)
     if isinstance(outline, Disc):
         half = math.pi / SEGMENTS
         radius = outline.radius / math.cos(half) if beyond else outline.radius
@@ -120,9 +134,11 @@ def ring_of(outline: Outline, *, beyond: bool) -> Complex:
             continue
         centre, angle = arc(start, end, bulge)
         count = max(2, math.ceil(abs(angle) / (2.0 * math.pi) * SEGMENTS))
-        grown = 1.0 / math.cos(0.5 * angle / count) if beyond else 1.0
-        # Tangents from the middle of each step: none of them cuts the arc.
-        shares = (np.arange(count) + 0.5) if beyond else np.arange(1, count)
+        # Tangents from the middle of each step lie outside of the arc's circle, and its chords inside. What is enclosed
+        # is inside where the arc turns to the left.
+        tangent = beyond == (bulge > 0.0)
+        grown = 1.0 / math.cos(0.5 * angle / count) if tangent else 1.0
+        shares = (np.arange(count) + 0.5) if tangent else np.arange(1, count)
         turned = (start - centre) * np.exp(1j * angle / count * shares)
         pieces += (centre + grown * turned).tolist()
     return np.array(pieces)
@@ -142,6 +158,8 @@ def middle_of(start: complex, end: complex, bulge: float) -> complex:
 
 def extent(outline: Outline, along: complex) -> tuple[float, float]:
     """The least and the greatest place of an outline along a direction of length 1."""
+    if isinstance(outline, Curve):
+        return outline.extent(along)
     if isinstance(outline, Disc):
         at = (outline.centre * along.conjugate()).real
         return at - outline.radius, at + outline.radius
@@ -160,6 +178,8 @@ def extent(outline: Outline, along: complex) -> tuple[float, float]:
 
 def area(outline: Outline) -> float:
     """What an outline encloses."""
+    if isinstance(outline, Curve):
+        return outline.area
     if isinstance(outline, Disc):
         return math.pi * outline.radius**2
     total = 0.0

@@ -210,9 +210,10 @@ def _in_rows(pins: Sequence[Part], direction: complex) -> list[list[Part]]:
 
 
 def _pin(pin: Part, x: float, base: float, scale: float) -> list[Element]:
-    """A pin upright on a base line, from its prisms."""
+    """A pin upright on a base line, from its bodies."""
     shapes = []
-    for region, low, high in pin.prisms:
+    for body in pin.bodies:
+        region, low, high = body.region, body.low, body.high
         assert isinstance(region.outer, Disc)
         radius = scale * region.outer.radius
         shapes.append(
@@ -226,7 +227,8 @@ def _from_the_side(
 ) -> list[Element]:
     """A part as rectangles, with the hidden edges of its holes."""
     shapes = []
-    for region, low, high in part.prisms:
+    for body in part.bodies:
+        region, low, high = body.region, body.low, body.high
         left, right = (x0 + scale * end for end in extent(region.outer, direction))
         y, height = bottom - scale * (high - layer.low), scale * (high - low)
         shapes.append(_rectangle(left, y, right - left, height, part.colour))
@@ -249,7 +251,7 @@ def _told(layer: Layer) -> list[tuple[str, str]]:
         told = []
         for part in sorted(plates, key=lambda part: part.sort == "block"):
             where = "" if part.sort == "base" else f"{layer.name}: "
-            thickness = millimetres(part.prisms[0].high - part.prisms[0].low)
+            thickness = millimetres(part.bodies[0].high - part.bodies[0].low)
             told.append((f"{where}{part.described}, {thickness} thick", "bold" if part.sort != "block" else "normal"))
         return told
     counted = Counter(_bought(part) for part in layer.parts)

@@ -91,6 +91,14 @@ class AssemblyQuery(PartsQuery):
     )
 
 
+class NotMade(ValueError):
+    """There are no such parts; ``path`` is the field of the request whose fault it is, empty where it is none's."""
+
+    def __init__(self, detail: str, path: str = "") -> None:
+        super().__init__(detail)
+        self.path = path
+
+
 class Refused(NamedTuple):
     """Why there is no such file; ``path`` is the field whose fault it is, empty where it is none's."""
 

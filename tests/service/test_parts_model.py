@@ -17,9 +17,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from service.parts import workshop
+from service.parts.bodies import Prism
 from service.parts.items import items
 from service.parts.made import made
-from service.parts.model import Assembly, Prism
+from service.parts.model import Assembly
 from service.parts.overlaps import overlaps, too_thin
 from service.parts.package import package
 from service.parts.shapes import Disc, area, extent, ring_of, widened
@@ -62,7 +63,7 @@ def test_no_point_of_one_part_ever_lies_in_another(kind: str) -> None:
     drawn = []
     for part in whole.parts:
         placed = whole.motion.placed(part.carrier, driven)
-        for prism in part.prisms:
+        for prism in part.bodies:
             polygon = solid(prism)
             left, low, right, high = polygon.bounds
             points = rng.uniform((left, low), (right, high), (300, 2))
@@ -93,7 +94,7 @@ def test_a_part_that_is_out_of_its_plane_is_found(sort: str) -> None:
     whole = assembly("fourbar")
     assert overlaps(whole) == []
     part = next(part for part in whole.parts if part.sort == sort)
-    lifted = replace(part, prisms=tuple(Prism(p.region, p.low + 0.3, p.high + 0.3) for p in part.prisms))
+    lifted = replace(part, bodies=tuple(Prism(p.region, p.low + 0.3, p.high + 0.3) for p in part.bodies))
     moved = replace(whole, parts=tuple(lifted if one is part else one for one in whole.parts))
     # What lies on it, or what holds it, is now in its way.
     assert any(part.name in found.parts for found in overlaps(moved)), part.name
@@ -104,7 +105,7 @@ def test_parts_that_meet_at_one_input_are_found() -> None:
     by_plane = {part.planes[0]: part for part in whole.parts if part.sort == "link"}
     low, high = by_plane[1], by_plane[2]
     down = replace(
-        high, prisms=tuple(Prism(p.region, q.low, q.high) for p, q in zip(high.prisms, low.prisms, strict=True))
+        high, bodies=tuple(Prism(p.region, q.low, q.high) for p, q in zip(high.bodies, low.bodies, strict=True))
     )
     found = overlaps(replace(whole, parts=(low, down)))
     assert found
@@ -129,7 +130,7 @@ def test_pins_hold_what_they_join_and_end_within_the_gaps(process: str) -> None:
         stacked = sorted(
             (prism.low, prism.high)
             for part in whole.parts
-            for prism in part.prisms
+            for prism in part.bodies
             for hole in prism.region.holes
             if isinstance(hole, Disc) and abs(hole.centre - outer.centre) < 1e-9
         )

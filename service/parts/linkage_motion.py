@@ -1,0 +1,94 @@
+"""How the links of a planar linkage move."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinematics.linkage.planar.drive import MechanismMotion, drive
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from service.parts.model import Carrier, Complex, InputField, Placed, Real
+from service.parts.sizes import NotMade
+
+ROUNDED = 1e-9
+"""Share of its range by which a stated input may lie outside: an answer's own first and last are at its ends."""
+
+
+@dataclass(frozen=True)
+class LinkageMotion:
+    """A mechanism in millimetres, the range of inputs that its parts were made for, and where it then is.
+
+    Attributes
+    ----------
+    low, high : float
+        Radians, or millimetres along the input slide.
+    closed : bool
+        Whether the range is one whole cycle.
+    """
+
+    mechanism: Mechanism
+    low: float
+    high: float
+    closed: bool
+
+    @property
+    def reference(self) -> float:
+        """The input in which the joints are stated."""
+        return float(self.mechanism.reference_input)
+
+    @property
+    def size(self) -> float:
+        """The greatest distance of two joints."""
+        places = np.array([complex(z) for z in self.mechanism.joints.values()])
+        return float(np.abs(places[:, None] - places).max())
+
+    @property
+    def input_field(self) -> InputField:
+        """A slide drives by its place."""
+        return "input_place" if self.mechanism.driven_by_slide else "input_angle"
+
+    def stated(self, value: float, scale: float) -> float:
+        """The input that a request states, as a motion has it; angles by their whole turns."""
+        slides = self.mechanism.driven_by_slide
+        # Places are of the design, and the assembly may be larger.
+        unit = scale if slides else math.pi / 180.0
+        low, high = self.low / unit, self.high / unit
+        near = ROUNDED * (high - low)
+        if not slides:
+            value = low + (value - low + near) % 360.0 - near
+        if self.closed:
+            return float(value * unit)
+        if not low - near <= value <= high + near:
+            raise NotMade(f"The input goes from {low:.5g} to {high:.5g}.", f"/query/{self.input_field}")
+        return float(min(max(value, low), high) * unit)
+
+    def inputs(self, count: int) -> Real:
+        """So many inputs, spread evenly over a whole cycle, or between the ends of the range and short of them."""
+        if self.closed:
+            return np.linspace(self.low, self.high, count, endpoint=False)
+        return np.linspace(self.low, self.high, count + 2)[1:-1]
+
+    def at(self, inputs: Real) -> MechanismMotion:
+        """The mechanism at inputs."""
+        return drive(self.mechanism, inputs, order=0)
+
+    def placed(self, carrier: Carrier, state: MechanismMotion) -> Placed:
+        """How what a carrier carries has moved from the reference configuration."""
+        turn = self._turn(carrier.link, state)
+        if carrier.joint is None:
+            return Placed(turn, np.zeros_like(turn))
+        shift = state.joints[carrier.joint][0] - turn * complex(self.mechanism.joints[carrier.joint])
+        return Placed(turn, shift)
+
+    def _turn(self, link: str, state: MechanismMotion) -> Complex:
+        if link == GROUND:
+            return np.ones(state.valid.shape, np.complex128)
+        joints = self.mechanism.links[link]
+        first = joints[0]
+        far = max(joints, key=lambda name: abs(complex(self.mechanism.joints[name] - self.mechanism.joints[first])))
+        turn = (state.joints[far][0] - state.joints[first][0]) / complex(
+            self.mechanism.joints[far] - self.mechanism.joints[first]
+        )
+        return np.asarray(turn / np.abs(turn))

@@ -1,0 +1,117 @@
+"""Bodies and smooth outlines: their volumes, shadows and sections, by other routes than their own."""
+
+from __future__ import annotations
+
+import io
+import math
+from itertools import product
+
+import ezdxf
+import numpy as np
+import pytest
+import shapely
+from scipy.spatial import ConvexHull
+
+from service.parts.bodies import Mesh, Prism, Turned, Twisted, slices
+from service.parts.curves import Curve
+from service.parts.dxf import cutting
+from service.parts.model import Carrier, Part
+from service.parts.shapes import Disc, Loop, Region, area, extent, ring, ring_of, turned
+
+WAVE = 60
+"""Points of a contour of three lobes."""
+
+TURNS = np.exp(2j * math.pi * np.arange(WAVE) / WAVE)
+LOBES = Curve(tuple(((20.0 + 3.0 * (TURNS**3).real) * TURNS).tolist()))
+
+
+def polygon(points: np.ndarray) -> shapely.Polygon:
+    return shapely.Polygon(np.column_stack([points.real, points.imag]))
+
+
+def test_a_curve_is_the_smooth_line_through_its_points() -> None:
+    angles = np.linspace(0.0, 2.0 * math.pi, 4001)
+    true = (20.0 + 3.0 * np.cos(3.0 * angles)) * np.exp(1j * angles)
+    assert LOBES.area == pytest.approx(polygon(true).area, rel=2e-5)
+    assert extent(LOBES, 1.0 + 0j) == pytest.approx((true.real.min(), true.real.max()), abs=2e-3)
+    inner, outer = (polygon(LOBES.ring(beyond=beyond)) for beyond in (False, True))
+    dense = polygon(LOBES.spline(np.linspace(0.0, LOBES.spline.t[-4], 4000, endpoint=False)) @ (1.0, 1j))
+    assert outer.contains(dense)
+    assert dense.contains(inner)
+    assert outer.area - inner.area < 2e-3 * dense.area
+    at = np.linspace(0.0, LOBES.spline.t[-4], 101)
+    assert np.abs(LOBES.clamped(at) - LOBES.spline(at)).max() < 1e-12
+    quarter = turned(LOBES, 1j, 5.0 + 0j)
+    assert extent(quarter, 1j) == pytest.approx(np.add(extent(LOBES, 1.0 + 0j), -5.0), abs=1e-12)
+
+
+def test_a_drawing_has_a_curve_as_the_same_spline() -> None:
+    part = Part("cam", "cam", "cam", Carrier("cam", None), (Prism(Region(LOBES), 0.0, 1.0),), 1j, (1, 1), "", "#000000")
+    (drawn,) = ezdxf.read(io.StringIO(cutting(part, "A"))).modelspace().query("SPLINE")
+    found = np.array([p.x + 1j * p.y for p in drawn.construction_tool().points(np.linspace(0.0, drawn.knots[-1], 60))])
+    true = (LOBES.spline(np.linspace(0.0, LOBES.spline.t[-4], 60)) @ (1.0, 1j)) / 1j
+    corner = complex(extent(LOBES, 1j)[0], extent(LOBES, -1.0 + 0j)[0])
+    assert np.abs(found + corner - true).max() < 1e-9
+
+
+def test_arcs_that_turn_to_the_right_are_kept_on_the_right_side() -> None:
+    """Of a square with a bite out of one side the polygon beyond covers all of it, the other none of what is cut."""
+    bitten = Loop((0j, 3 + 0j, 7 + 0j, 10 + 0j, 10 + 10j, 10j), (0.0, -1.0, 0.0, 0.0, 0.0, 0.0))
+    true = shapely.box(0, 0, 10, 10).difference(shapely.Point(5, 0).buffer(2.0, quad_segs=4096))
+    assert area(bitten) == pytest.approx(true.area, rel=1e-6)
+    inner, outer = (polygon(ring_of(bitten, beyond=beyond)) for beyond in (False, True))
+    assert inner.area < area(bitten) < outer.area
+    assert true.difference(outer).area < 1e-5
+    assert inner.difference(true).area < 1e-5
+
+
+def test_a_cone_is_as_large_as_the_formula_says_and_its_slices_hold_it() -> None:
+    cone = Turned((0j, 5.0 + 0j, 2.0 + 6j, 6j), 1.0 + 1j)
+    assert cone.volume == pytest.approx(math.pi * 6.0 / 3.0 * (25.0 + 10.0 + 4.0))
+    assert (cone.low, cone.high) == (0.0, 6.0)
+    assert cone.within(2.0, 4.0)[0] == ring(1.0 + 1j, 4.0)
+    assert cone.within(7.0, 8.0) == ()
+    hollow = Turned((1.0 + 0j, 5.0 + 0j, 3.0 + 6j))
+    assert hollow.within(3.0, 6.0)[0] == ring(0j, 4.0, 2.0)
+
+
+def test_a_twisted_prism_turns_evenly() -> None:
+    bar = Region(Loop((4 - 1j, 4 + 1j, -4 + 1j, -4 - 1j), (0.0,) * 4), (Disc(0j, 0.5),))
+    body = Twisted(bar, 2.0, 10.0, math.pi, 0j)
+    assert body.volume == pytest.approx(8.0 * (16.0 - math.pi * 0.25))
+    (middle,) = body.within(5.0, 7.0)
+    assert extent(middle.outer, 1j)[1] == pytest.approx(4.0)
+    assert body.region == Region(Disc(0j, pytest.approx(abs(4 + 1j))), (Disc(0j, 0.5),))
+
+
+def test_a_mesh_of_a_prism_has_its_volume_and_its_sections() -> None:
+    corners = np.array(list(product((0.0, 2.0), (0.0, 3.0), (0.0, 4.0))))
+    found = ConvexHull(corners)
+    triangles = np.array(
+        [
+            (a, b, c) if np.cross(corners[b] - corners[a], corners[c] - corners[a]) @ normal[:3] > 0.0 else (a, c, b)
+            for (a, b, c), normal in zip(found.simplices, found.equations, strict=True)
+        ]
+    )
+    box = Mesh(corners, triangles)
+    assert box.volume == pytest.approx(24.0)
+    for low, high in ((1.0, 2.0), (0.0, 0.0)):
+        (region,) = box.within(low, high)
+        assert area(region.outer) == pytest.approx(6.0)
+    assert area(box.region.outer) == pytest.approx(6.0)
+    # Two boxes in one are a box with a hole in every section, where the inner one is turned inside out.
+    shell = Mesh(
+        np.concatenate([corners, 0.5 + 0.5 * corners]), np.concatenate([triangles, triangles[:, ::-1] + len(corners)])
+    )
+    assert shell.volume == pytest.approx(21.0)
+    (hollow,) = shell.within(2.0, 2.2)
+    assert area(hollow.outer) - sum(map(area, hollow.holes)) == pytest.approx(4.5)
+
+
+def test_bodies_are_compared_along_the_height_that_they_share() -> None:
+    low, high = Prism(ring(0j, 1.0), 0.0, 4.0), Prism(ring(0j, 1.0), 3.0, 5.0)
+    assert slices(low, high, 1e-9) == [(3.0, 4.0)]
+    assert slices(low, Prism(ring(0j, 1.0), 4.0, 5.0), 1e-9) == []
+    cone = Turned((0j, 5.0 + 0j, 6j))
+    assert slices(low, cone, 1e-9)[0][0] == 0.0
+    assert slices(low, cone, 1e-9)[-1][1] == 4.0
