@@ -88,9 +88,9 @@ class Turned(NamedTuple):
 
 
 class Twisted(NamedTuple):
-    """A prism whose region turns evenly about an upright axis as it goes up, as helical teeth do.
+    """A prism whose outline turns evenly about an upright axis as it goes up, as helical teeth do; holes go straight.
 
-    ``section`` is the region at ``low``, ``twist`` how far the one at ``high`` is turned against it, radians.
+    ``section`` is the region at ``low``, ``twist`` how far the outline at ``high`` is turned against it, radians.
     """
 
     section: Region
@@ -101,10 +101,9 @@ class Twisted(NamedTuple):
 
     @property
     def region(self) -> Region:
-        """Its shadow: a disc with the holes that are round about the axis."""
+        """Its shadow: a disc with its holes."""
         outer = ring_of(self.section.outer, beyond=True)
-        holes = (hole for hole in self.section.holes if isinstance(hole, Disc) and hole.centre == self.centre)
-        return Region(Disc(self.centre, float(np.abs(outer - self.centre).max())), tuple(holes))
+        return Region(Disc(self.centre, float(np.abs(outer - self.centre).max())), self.section.holes)
 
     @property
     def volume(self) -> float:
@@ -114,8 +113,7 @@ class Twisted(NamedTuple):
     def within(self, low: float, high: float) -> tuple[Region, ...]:
         """Its section half-way between two heights."""
         turn = cmath.rect(1.0, self.twist * (0.5 * (low + high) - self.low) / (self.high - self.low))
-        outer, *holes = (turned(outline, turn, self.centre) for outline in (self.section.outer, *self.section.holes))
-        return (Region(outer, tuple(holes)),)
+        return (Region(turned(self.section.outer, turn, self.centre), self.section.holes),)
 
 
 @dataclass(frozen=True, eq=False)

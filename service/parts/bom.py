@@ -11,7 +11,7 @@ from service.parts.shapes import Disc, Loop, Outline, extent
 from service.render.page.table import table
 
 SLOT_CORNERS = 4
-"""Of a slot with round ends."""
+"""Of a slot with round ends, and of a bore with a keyway."""
 
 HEADER = ("part", "quantity", "material", "length", "width", "thickness", "holes", "plane", "standard")
 
@@ -47,7 +47,10 @@ def millimetres(value: float) -> str:
 
 def _shaped(outline: Outline) -> str:
     along, what = 1.0 + 0.0j, "contour"
-    if isinstance(outline, Loop) and len(outline.corners) == SLOT_CORNERS:
+    arcs = sum(1 for _, _, bulge in outline.edges() if bulge) if isinstance(outline, Loop) else 0
+    if isinstance(outline, Loop) and len(outline.corners) == SLOT_CORNERS and arcs == 1:
+        what = "bore with keyway"
+    elif isinstance(outline, Loop) and len(outline.corners) == SLOT_CORNERS:
         start, end, _ = max(outline.edges(), key=lambda edge: abs(edge[1] - edge[0]) if edge[2] == 0.0 else 0.0)
         along, what = (end - start) / abs(end - start), "slot"
     (low, high), (left, right) = extent(outline, along), extent(outline, 1j * along)

@@ -17,23 +17,20 @@ import numpy as np
 
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from service.parts.bodies import Prism
+from service.parts.fasteners import MATERIALS, fillers, held_pin
 from service.parts.linkage_motion import LinkageMotion
-from service.parts.model import Assembly, Carrier, Part, Sort
+from service.parts.model import Assembly, Carrier, Part
 from service.parts.shapes import Disc, Loop, Outline, Region, ring, widened
 from service.parts.sizes import WALL, Sizes
-from service.parts.standards import bar, washer_for
 
 LINK_COLOURS = ("#1f5a9e", "#b8600b", "#22734a", "#5b3a8c", "#a3195b", "#1b7f86", "#8a6d1a", "#6b4b3a")
-BASE_COLOUR, PIN_COLOUR, FASTENER_COLOUR, BLOCK_COLOUR = "#76818c", "#c9ced4", "#3c444d", "#c2a14a"
+BASE_COLOUR, BLOCK_COLOUR = "#76818c", "#c2a14a"
 
 ONE_PLACE = 1e-9
 """Distance as a share of the mechanism's size below which joints of one link lie on each other."""
 
 CORNER_INPUTS = 361
 """Inputs at which it is seen how far the links reach, for posts beyond."""
-
-MATERIALS = {"print": ("PETG", "PETG"), "laser": ("sheet", "steel"), "mill": ("aluminium", "steel")}
-"""Of plates and of pins."""
 
 
 class Planes(NamedTuple):
@@ -314,81 +311,23 @@ class _Builder:
             if self._sizes.process == "print" and not self._slides_on_ground(joint):
                 # A printed base has bosses there.
                 spans = [(a, b) for a, b in spans if a != 0 and b <= self._planes.highest]
-            parts += self._pin(plain(joint), f"pin {joint}", Carrier(GROUND, joint), self._at[joint], levels)
-            parts += self._between(plain(joint), Carrier(GROUND, joint), self._at[joint], spans)
+            parts += self._pin(plain(joint), f"pin {joint}", Carrier(GROUND, joint), self._at[joint], levels, spans)
         for name, place in self._posts.items():
             levels = [0, self._planes.highest + 1]
-            parts += self._pin(name, name.replace("_", " "), Carrier(GROUND, None), place, levels)
-            parts += self._between(name, Carrier(GROUND, None), place, [(levels[0], levels[1])])
+            spans = [(levels[0], levels[1])]
+            parts += self._pin(name, name.replace("_", " "), Carrier(GROUND, None), place, levels, spans)
         return parts
 
-    def _pin(self, name: str, described: str, carrier: Carrier, place: complex, levels: Sequence[int]) -> list[Part]:
-        """A pin with its head and its cap, or with a retaining ring at either end."""
-        sizes = self._sizes
-        low, high = self._level(levels[0])[0], self._level(levels[-1])[1]
-        planes = levels[0], levels[-1]
-        shank, top = 0.5 * sizes.pin, high + sizes.play
-        steel = MATERIALS[sizes.process][1]
-
-        def turned(part: str, what: str, stack: list[tuple[float, float, float, float]], **more: str) -> Part:
-            prisms = tuple(Prism(ring(place, outer, inner), z, end) for outer, inner, z, end in stack)
-            return Part(
-                f"{part}_{name}", what, "pin" if part == "pin" else "ring", carrier, prisms, 1.0 + 0.0j, planes, steel,
-                more.pop("colour"), round=True, **more,
-            )  # fmt: skip
-
-        if sizes.process == "print":
-            head = 0.5 * sizes.collar
-            stack = [(head, 0.0, low - sizes.cap, low), (shank, 0.0, low, top + sizes.cap)]
-            cap = [(head, shank, top, top + sizes.cap)]
-            return [
-                turned("pin", described, stack, colour=PIN_COLOUR),
-                turned("cap", f"cap of {described}, pressed or glued on", cap, colour=FASTENER_COLOUR),
-            ]
-        held = sizes.ring
-        groove, bottom = 0.5 * held.groove, low - held.width
-        stack = [
-            (shank, 0.0, bottom - held.beyond, bottom),
-            (groove, 0.0, bottom, low),
-            (shank, 0.0, low, top),
-            (groove, 0.0, top, top + held.width),
-            (shank, 0.0, top + held.width, top + held.width + held.beyond),
-        ]
-        below = [(0.5 * held.diameter, groove, low - held.thickness, low)]
-        above = [(0.5 * held.diameter, groove, top, top + held.thickness)]
-        what = f"retaining ring of {described}"
-        return [
-            turned("pin", described, stack, colour=PIN_COLOUR, standard=bar(sizes.pin)),
-            turned("ring_below", what, below, colour=FASTENER_COLOUR, standard=held.standard),
-            turned("ring_above", what, above, colour=FASTENER_COLOUR, standard=held.standard),
-        ]
-
-    def _between(self, name: str, carrier: Carrier, place: complex, spans: Sequence[tuple[int, int]]) -> list[Part]:
-        """Washers in the gaps between neighbouring planes, and spacers through planes that are passed."""
-        sizes = self._sizes
-        washer = washer_for(sizes.pin, sizes.width)
-        parts = []
-        for lower, upper in spans:
-            floor, ceiling = self._level(lower)[1], self._level(upper)[0]
-            own = f"{name}_{lower}_{upper}"
-            pieces: list[tuple[str, float, float, str]] = []
-            if upper == lower + 1 and sizes.washers and washer is not None:
-                pieces = [
-                    (f"washer_{own}_{n + 1}", floor + n * washer.thickness, floor + (n + 1) * washer.thickness,
-                     washer.standard)
-                    for n in range(sizes.washers)
-                ]  # fmt: skip
-            else:
-                pieces = [(f"spacer_{own}", floor, ceiling - sizes.play, "")]
-            for called, low, high, standard in pieces:
-                sort: Sort = "washer" if standard else "spacer"
-                region = ring(place, 0.5 * sizes.collar, 0.5 * sizes.hole)
-                parts.append(
-                    Part(
-                        called, "washer" if standard else "spacer", sort, carrier, (Prism(region, low, high),),
-                        1.0 + 0.0j, (lower, upper), MATERIALS[sizes.process][1], FASTENER_COLOUR, standard, round=True,
-                    )
-                )  # fmt: skip
+    def _pin(
+        self, name: str, described: str, carrier: Carrier, place: complex, levels: Sequence[int],
+        spans: Sequence[tuple[int, int]],
+    ) -> list[Part]:  # fmt: skip
+        """A pin through its planes, with what fills the gaps between them."""
+        ends = self._level(levels[0])[0], self._level(levels[-1])[1]
+        parts = held_pin(name, described, carrier, place, ends, (levels[0], levels[-1]), self._sizes)
+        for span in spans:
+            gap = self._level(span[0])[1], self._level(span[1])[0]
+            parts += fillers(name, carrier, place, gap, span, self._sizes)
         return parts
 
 

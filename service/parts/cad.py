@@ -148,10 +148,12 @@ def _piece(body: Body) -> Any:
         corners = [(body.centre.real + z.real, body.centre.imag, z.imag) for z in body.profile]
         return b3d.Solid.revolve(b3d.Face(b3d.Wire.make_polygon(corners)), 360.0, axis)
     if isinstance(body, Twisted):
-        outer, *holes = (_wire(outline) for outline in (body.section.outer, *body.section.holes))
         along = (0.0, 0.0, body.high - body.low)
         middle = (body.centre.real, body.centre.imag, 0.0)
-        swept = b3d.Solid.extrude_linear_with_rotation(outer, middle, along, float(np.degrees(body.twist)), holes)
+        outer = _wire(body.section.outer)
+        swept = b3d.Solid.extrude_linear_with_rotation(outer, middle, along, float(np.degrees(body.twist)))
+        for hole in body.section.holes:
+            swept = swept.cut(b3d.extrude(_face(Region(hole)), amount=along[2], dir=(0, 0, 1)))
         return swept.moved(_up(body.low))
     return _sewn(body)
 

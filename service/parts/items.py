@@ -52,6 +52,8 @@ def _kind(part: Part) -> str:
 
 def _likeness(part: Part) -> Hashable:
     """What parts that are made alike have in common."""
+    if part.sort == "key":
+        return part.sort, part.standard, tuple(round(x, DIGITS) for x in (*part.length_and_width, part.high - part.low))
     if part.sort in FLAT or not part.round:
         return part.name
     stack = []

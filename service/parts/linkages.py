@@ -25,7 +25,9 @@ from service.parts.model import Assembly
 from service.parts.overlaps import overlaps, too_thin
 from service.parts.sizes import (
     CLEARANCES,
+    LARGEST_ASSEMBLY,
     LOOSEST,
+    MILLIMETRES,
     THINNEST_PIN,
     TIGHTEST,
     WALL,
@@ -34,17 +36,15 @@ from service.parts.sizes import (
     NotMade,
     PartsQuery,
     Sizes,
+    judged,
     pin_below,
+    rounded_down,
+    rounded_up,
     sheet_for,
 )
 from service.parts.standards import PINS
 from synthesis.analyses.cycle import branch_of, cycle_along
 from synthesis.proof.rebuilt import rebuilt
-
-MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
-
-LARGEST = 20_000.0
-"""Of an assembly, millimetres."""
 
 DRIVEN = 181
 """Inputs at which it is seen whether the mechanism can be driven through the motion at all."""
@@ -120,10 +120,11 @@ class _Task:
             default=self._size,
         )
         largest = self._size * unit * query.scale
-        if largest > LARGEST:
+        if largest > LARGEST_ASSEMBLY:
+            greatest = rounded_down(LARGEST_ASSEMBLY / (self._size * unit))
             raise NotMade(
                 f"The mechanism is {largest / 1000.0:.4g} m large at this scale, and parts are made up to "
-                f"{LARGEST / 1000.0:g} m; scale {_down(LARGEST / (self._size * unit)):g} is the greatest that works.",
+                f"{LARGEST_ASSEMBLY / 1000.0:g} m; scale {greatest:g} is the greatest that works.",
                 "/query/scale",
             )
 
@@ -165,24 +166,14 @@ class _Task:
     def _judged(self, sizes: Sizes) -> None:
         """Refuse sizes that contradict one another, whatever the mechanism is."""
         unit, words = self._unit, self._words
-        tight, loose = TIGHTEST * sizes.pin, LOOSEST * sizes.pin
-        if not tight <= sizes.clearance <= loose:
-            raise NotMade(
-                f"The clearance is to be from {tight / unit:.4g} to {loose / unit:.4g} {words} for pins of "
-                f"{sizes.pin / unit:.6g} {words}.", "/query/clearance",
-            )  # fmt: skip
-        if not 0.1 * sizes.pin <= sizes.thickness <= 20.0 * sizes.pin:
-            raise NotMade(
-                f"The thickness is to be from {0.1 * sizes.pin / unit:.4g} to {20.0 * sizes.pin / unit:.4g} {words} "
-                f"for pins of {sizes.pin / unit:.6g} {words}.", "/query/thickness",
-            )  # fmt: skip
+        judged(sizes, unit)
         hole = sizes.block[1] + 2.0 * sizes.clearance if self._mechanism.slides else sizes.hole
         least = hole + 2.0 * WALL * sizes.pin
         if sizes.width < least * (1.0 - 1e-9):
             what = "blocks on pins" if self._mechanism.slides else "pins"
             raise NotMade(
-                f"Links with {what} of {sizes.pin / unit:.6g} {words} are to be {_up(least / unit):g} {words} wide at "
-                "least, which leaves a wall of a quarter of the pin.",
+                f"Links with {what} of {sizes.pin / unit:.6g} {words} are to be {rounded_up(least / unit):g} {words} "
+                "wide at least, which leaves a wall of a quarter of the pin.",
                 "/query/pin" if self._query.width is None else "/query/width",
             )
 
@@ -299,8 +290,8 @@ class _Task:
         widest, thinner = sizes.width * scale / least, sizes.pin * scale / least
         if thinner >= THINNEST_PIN:
             words += (
-                f"; at scale {scale:g} a width of {_down(widest / unit):g} {self._words} does, with pin, thickness and "
-                "clearance in proportion"
+                f"; at scale {scale:g} a width of {rounded_down(widest / unit):g} {self._words} does, with pin, "
+                "thickness and clearance in proportion"
             )
         return NotMade(f"{words}.", path)
 
@@ -308,7 +299,7 @@ class _Task:
         """The least scale, up to a few hundredths, at which these sizes fit."""
         too_small, fits = scale, None
         factor = 2.0
-        while factor <= LEAST_FACTOR and self._size * self._unit * scale * factor <= LARGEST:
+        while factor <= LEAST_FACTOR and self._size * self._unit * scale * factor <= LARGEST_ASSEMBLY:
             if self.tried(sizes, scale * factor).assembly is not None:
                 fits = scale * factor
                 break
@@ -321,7 +312,7 @@ class _Task:
                 fits = middle
             else:
                 too_small = middle
-        rounded = _up(fits)
+        rounded = rounded_up(fits)
         return rounded if self.tried(sizes, rounded).assembly is not None else fits
 
 
@@ -388,15 +379,3 @@ def _slots(motion: LinkageMotion) -> list[Slot]:
 
 def _named(part: str) -> str:
     return "the " + part.replace("_", " ")
-
-
-def _up(value: float) -> float:
-    """Rounded upwards to three digits."""
-    step = 10.0 ** (math.floor(math.log10(value)) - 2)
-    return float(f"{math.ceil(value / step - 1e-9) * step:.3g}")
-
-
-def _down(value: float) -> float:
-    """Rounded downwards to three digits."""
-    step = 10.0 ** (math.floor(math.log10(value)) - 2)
-    return float(f"{math.floor(value / step + 1e-9) * step:.3g}")

@@ -34,10 +34,20 @@ def _linkages() -> Make:
     return linkage_parts
 
 
+def _trains() -> Make:
+    from service.parts.gears.ordinary import train_parts
+
+    return train_parts
+
+
+OF_GEARS = frozenset({"process", "thickness", "clearance", "bore", "face_width", "scale"})
+"""What is asked of trains of gears."""
+
 MAKERS: dict[str, Maker] = {
     LINKAGE: Maker(
         _linkages, frozenset({"process", "width", "pin", "thickness", "clearance", "shafts", "over", "scale"})
     ),
+    "gear_train": Maker(_trains, OF_GEARS),
 }
 """By type of mechanism."""
 

@@ -3,7 +3,7 @@
 This knows the parts alone, not the planes that were found for them: it moves every part, takes all pairs of bodies that
 share some height, and intersects what they take of the plane there (:mod:`service.parts.bodies`) as polygons. A polygon
 of what is solid lies outside of its arcs, one of a hole inside, so that prisms that are free of overlaps here are so in
-truth at the inputs looked at. Stacks of rings on one pin are compared by their radii.
+truth at the inputs looked at. Rings about one axis that go together are compared by their radii.
 
 Parts whose axes are not parallel move in planes of different frames. Such pairs are left to their maker.
 """
@@ -62,7 +62,7 @@ def overlaps(assembly: Assembly, count: int = POSITIONS) -> list[Overlap]:
         if not moved.in_one_frame(one.carrier, other.carrier):
             continue
         for first, second in _meeting(one, other, ROUNDING * size):
-            if one.round and other.round and one.carrier == other.carrier and _about_one_axis(first, second):
+            if one.carrier == other.carrier and _about_one_axis(first, second):
                 most = np.maximum(most, _on_one_pin(first, second, ROUNDING * size))
             else:
                 most = np.maximum(most, moved.shared((one.carrier, first), (other.carrier, second)))
@@ -99,8 +99,9 @@ def _meeting(one: Part, other: Part, rounding: float) -> Iterator[tuple[Region, 
 
 
 def _about_one_axis(first: Region, second: Region) -> bool:
-    one, other = first.outer, second.outer
-    return isinstance(one, Disc) and isinstance(other, Disc) and one.centre == other.centre
+    outlines = (first.outer, *first.holes, second.outer, *second.holes)
+    discs = [outline.centre for outline in outlines if isinstance(outline, Disc)]
+    return len(discs) == len(outlines) and all(centre == discs[0] for centre in discs)
 
 
 def _on_one_pin(first: Region, second: Region, rounding: float) -> float:
@@ -138,6 +139,8 @@ class _Moved:
         """The area that two regions share at each input."""
         a, b = self._box(first), self._box(second)
         near = np.asarray(np.concatenate([a[:, :2] < b[:, 2:], b[:, :2] < a[:, 2:]], axis=1).all(axis=1))
+        if first[0] == second[0]:
+            near[1:] = False  # they go together, so that one input says all
         areas = np.zeros(len(near))
         if near.any():
             areas[near] = shapely.area(shapely.intersection(self._solid(first)[near], self._solid(second)[near]))

@@ -97,7 +97,7 @@ def _read_me(assembly: Assembly, listed: list[Item], process: Process, title: st
         title,
         "",
         f"{len(assembly.parts)} parts of {len(listed)} kinds (bom.csv), all lengths in millimetres.",
-        f"Put together from below, a plate of {millimetres(_thickness(assembly))} mm in each plane:",
+        f"Put together from below{_thickness(assembly)}:",
         *(f"  {_plane(plane, assembly)}: {', '.join(names)}" for plane, names in sorted(plates.items())),
         _HOLDING[process],
         "Washers and spacers fill the gaps between the planes; assembly.svg shows where they lie.",
@@ -117,6 +117,7 @@ def _plane(plane: int, assembly: Assembly) -> str:
     return "second base" if plane > assembly.planes else f"plane {plane}"
 
 
-def _thickness(assembly: Assembly) -> float:
-    base = next(part for part in assembly.parts if part.sort == "base")
-    return base.bodies[0].high - base.bodies[0].low
+def _thickness(assembly: Assembly) -> str:
+    """What plates have in common, where they do."""
+    found = {millimetres(part.bodies[0].high - part.bodies[0].low) for part in assembly.parts if part.sort in FLAT}
+    return f", a plate of {found.pop()} mm in each plane" if len(found) == 1 else ""

@@ -99,11 +99,12 @@ def layers(assembly: Assembly) -> list[Layer]:
         if part.sort == "pin":
             continue
         plane, gap = part.planes[0], 1
-        if part.sort in FLAT:
+        if part.sort in FLAT or part.sort == "key":
             gap = 0
         elif part.sort == "ring":
             # Above the highest plane of its pin, or below the lowest.
-            plane = part.planes[1] if part.name.startswith(("ring_above", "cap")) else part.planes[0] - 1
+            above = part.name.startswith(("ring_above", "cap")) and not part.name.startswith("cap_below")
+            plane = part.planes[1] if above else part.planes[0] - 1
         found.setdefault((plane, gap), []).append(part)
     made = []
     for (plane, gap), parts in sorted(found.items()):
@@ -168,7 +169,7 @@ def _side_view(assembly: Assembly, top: float) -> tuple[list[Element], float]:
         needed = max(scale * layer.height, LEADING * len(told))
         y += SPACE
         bottom = y + 0.5 * (needed + scale * layer.height)
-        for part in sorted(layer.parts, key=lambda part: part.sort == "block"):
+        for part in sorted(layer.parts, key=lambda part: part.sort in ("block", "key")):
             views += _from_the_side(part, layer, direction, x0, bottom, scale)
             if part.round:
                 ends[_centre(part)] = bottom
@@ -214,8 +215,8 @@ def _pin(pin: Part, x: float, base: float, scale: float) -> list[Element]:
     shapes = []
     for body in pin.bodies:
         region, low, high = body.region, body.low, body.high
-        assert isinstance(region.outer, Disc)
-        radius = scale * region.outer.radius
+        low_end, high_end = extent(region.outer, 1.0 + 0.0j)
+        radius = scale * (region.outer.radius if isinstance(region.outer, Disc) else 0.5 * (high_end - low_end))
         shapes.append(
             _rectangle(x - radius, base - scale * (high - pin.low), 2.0 * radius, scale * (high - low), pin.colour)
         )

@@ -23,6 +23,11 @@ LARGEST = 1e6
 
 LARGEST_SCALE = 1e6
 
+LARGEST_ASSEMBLY = 20_000.0
+"""What is made at most, millimetres."""
+
+MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
+
 CLEARANCES: dict[Process, float] = {"print": 0.2, "laser": 0.1, "mill": 0.05}
 """By which a hole is wider than its pin on each side, where nothing is stated, millimetres."""
 
@@ -74,6 +79,13 @@ class PartsQuery(BaseModel):
         default=None,
         description="The motion that nothing may be in the way of: the used range or all of the cycle; if left out as "
         "the problem states, or the cycle of an input that turns fully.",
+    )
+    bore: Annotated[float, Field(gt=0.0, le=LARGEST)] | None = Field(
+        default=None,
+        description="Of gears: the diameter of their shafts; if left out the thickest that the smallest has room for.",
+    )
+    face_width: Annotated[float, Field(gt=0.0, le=LARGEST)] | None = Field(
+        default=None, description="Of gears; if left out as the answer has it, or six modules."
     )
     scale: Annotated[float, Field(gt=0.0, le=LARGEST_SCALE)] = Field(
         default=1.0, description="How much larger than the design it is built, as for a mechanism of unit size."
@@ -200,3 +212,37 @@ def sheet_for(pin: float) -> float:
 def pin_below(most: float) -> float:
     """The thickest pin that is sold and not thicker than ``most``; as thick where there is none so thin."""
     return max((one for one in PINS if one <= most * (1.0 + 1e-9)), default=most)
+
+
+def judged(sizes: Sizes, unit: float) -> None:
+    """Refuse a clearance or a thickness that does not go with the pins.
+
+    Parameters
+    ----------
+    unit : float
+        Millimetres to a length unit of the problem, in which the refusal is told.
+    """
+    words = {value: name for name, value in MILLIMETRES.items()}[unit]
+    tight, loose = TIGHTEST * sizes.pin, LOOSEST * sizes.pin
+    if not tight <= sizes.clearance <= loose:
+        raise NotMade(
+            f"The clearance is to be from {tight / unit:.4g} to {loose / unit:.4g} {words} for pins of "
+            f"{sizes.pin / unit:.6g} {words}.", "/query/clearance",
+        )  # fmt: skip
+    if not 0.1 * sizes.pin <= sizes.thickness <= 20.0 * sizes.pin:
+        raise NotMade(
+            f"The thickness is to be from {0.1 * sizes.pin / unit:.4g} to {20.0 * sizes.pin / unit:.4g} {words} "
+            f"for pins of {sizes.pin / unit:.6g} {words}.", "/query/thickness",
+        )  # fmt: skip
+
+
+def rounded_up(value: float) -> float:
+    """Upwards to three digits."""
+    step = 10.0 ** (math.floor(math.log10(value)) - 2)
+    return float(f"{math.ceil(value / step - 1e-9) * step:.3g}")
+
+
+def rounded_down(value: float) -> float:
+    """Downwards to three digits."""
+    step = 10.0 ** (math.floor(math.log10(value)) - 2)
+    return float(f"{math.floor(value / step + 1e-9) * step:.3g}")

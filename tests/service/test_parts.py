@@ -14,6 +14,7 @@ import pytest
 
 from service.parts.extra import installed
 from tests.service.answers import finished
+from tests.service.stated.shafts import FLYWHEEL
 
 THREE = [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 40.0, "y": 15.0, "angle": -25.0},
          {"x": 75.0, "y": 5.0, "angle": -60.0}]  # fmt: skip
@@ -123,6 +124,12 @@ def test_every_field_of_the_query_counts(client: Any, jobs: Any, field: str, val
         assert float(changed["link_input"]["length"]) - 15.0 == pytest.approx(1.5 * length, abs=2e-3)
 
 
+@pytest.mark.parametrize(("field", "value"), [("bore", 5.0), ("face_width", 5.0)])
+def test_fields_of_gears_are_none_of_linkages(client: Any, jobs: Any, field: str, value: Any) -> None:
+    answer = refused(client, jobs["fourbar"], 422, **(SIZES | {field: value}))
+    assert [fault["path"] for fault in answer["errors"]] == [f"/query/{field}"]
+
+
 @pytest.mark.parametrize(
     ("field", "value"),
     [
@@ -175,8 +182,8 @@ def test_without_the_extra_there_are_outlines_alone(client: Any, jobs: Any) -> N
 
 
 def test_there_are_no_parts_of_what_is_no_linkage_or_of_no_design(client: Any, jobs: Any) -> None:
-    train = finished(client, {"kind": "gear_train", "ratio": "7/3", "max_stages": 1})
-    assert client.get(f"/v1/jobs/{train['id']}/designs/0/parts").status_code == 404
+    wheel = finished(client, FLYWHEEL)
+    assert client.get(f"/v1/jobs/{wheel['id']}/designs/0/parts").status_code == 404
     assert client.get(f"{jobs['fourbar'][:-1]}7/parts").status_code == 404
 
 

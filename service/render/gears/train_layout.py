@@ -83,12 +83,12 @@ def placed_gears(mechanism: GearTrainMechanism, reverted: bool) -> list[TrainGea
             placed += _crossing(train, number, view)
             continue
         ahead = _direction(number, len(train.stages), coaxial)
-        placed += (replace(gear, view=view) for gear in _in_line(train, number, shaft, ahead))
+        placed += (replace(gear, view=view) for gear in in_line(train, number, shaft, ahead))
         shaft = placed[-1].centre
     return _side_by_side(placed)
 
 
-def _in_line(train: OrdinaryTrain, number: int, shaft: complex, ahead: complex) -> Iterator[TrainGear]:
+def in_line(train: OrdinaryTrain, number: int, shaft: complex, ahead: complex) -> Iterator[TrainGear]:
     """The gears of a stage of parallel shafts, from the driver's shaft on ahead."""
     stage, speeds, distance = train.stages[number], train.speeds[number], train.centre_distances[number]
     roles = ["driver", *("idler" for _ in stage.idlers), "driven"]

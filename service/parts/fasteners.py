@@ -1,0 +1,139 @@
+"""Pins and shafts with what holds and parts the plates on them: heads and caps, retaining rings, washers, spacers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from service.parts.bodies import Prism
+from service.parts.model import Carrier, Part, Sort
+from service.parts.shapes import Region, ring
+from service.parts.sizes import Process, Sizes
+from service.parts.standards import bar, washer_for
+
+PIN_COLOUR, FASTENER_COLOUR = "#c9ced4", "#3c444d"
+
+MATERIALS: dict[Process, tuple[str, str]] = {
+    "print": ("PETG", "PETG"),
+    "laser": ("sheet", "steel"),
+    "mill": ("aluminium", "steel"),
+}
+"""Of plates and of pins."""
+
+Stack = list[tuple[float, float, float, float]]
+"""Rings over one another: outer and inner radius, and the heights of their faces."""
+
+
+def held_pin(
+    name: str,
+    described: str,
+    carrier: Carrier,
+    place: complex,
+    ends: tuple[float, float],
+    planes: tuple[int, int],
+    sizes: Sizes,
+    *,
+    seats: Sequence[Prism] = (),
+    stub: float = 0.0,
+    upside_down: bool = False,
+) -> list[Part]:
+    """A pin with its head and its cap, or with a retaining ring at either end.
+
+    Parameters
+    ----------
+    ends : pair of float
+        Heights of the lowest and of the uppermost face that it holds together.
+    seats : sequence of Prism
+        What the shank is there instead of a cylinder, in the order of heights.
+    stub : float
+        By how much it stands out farther, beyond its cap or upper ring.
+    upside_down : bool
+        Whether head and cap, and the stub, change ends.
+    """
+    low, high = ends
+    shank, top = 0.5 * sizes.pin, high + sizes.play
+    steel = MATERIALS[sizes.process][1]
+
+    def prisms(stack: Stack, cut: Sequence[Prism] = ()) -> tuple[Prism, ...]:
+        found: list[Prism] = []
+        for outer, inner, z, end in stack:
+            if upside_down:
+                z, end = low + high - end, low + high - z
+            region = ring(place, outer, inner)
+            if outer == shank and inner == 0.0:
+                for seat in cut:
+                    if z < seat.low and seat.high < end:
+                        found += [Prism(region, z, seat.low), seat]
+                        z = seat.high
+            found.append(Prism(region, z, end))
+        return tuple(found)
+
+    def turned(part: str, what: str, bodies: tuple[Prism, ...], colour: str, standard: str = "") -> Part:
+        return Part(
+            f"{part}_{name}", what, "pin" if part == "pin" else "ring", carrier, bodies, 1.0 + 0.0j, planes, steel,
+            colour, standard, round=part != "pin" or not seats,
+        )  # fmt: skip
+
+    if sizes.process == "print":
+        head = 0.5 * sizes.collar
+        stack = [(head, 0.0, low - sizes.cap, low), (shank, 0.0, low, top + sizes.cap + stub)]
+        called = "cap_below" if upside_down else "cap"
+        cap = [(head, shank, top, top + sizes.cap)]
+        return [
+            turned("pin", described, prisms(stack, seats), PIN_COLOUR),
+            turned(
+                called,
+                f"cap of {described}, pressed or glued on",
+                prisms(cap),
+                FASTENER_COLOUR,
+            ),
+        ]
+    held = sizes.ring
+    groove, bottom = 0.5 * held.groove, low - held.width
+    stack = [
+        (shank, 0.0, bottom - held.beyond, bottom),
+        (groove, 0.0, bottom, low),
+        (shank, 0.0, low, top),
+        (groove, 0.0, top, top + held.width),
+        (shank, 0.0, top + held.width, top + held.width + held.beyond + stub),
+    ]
+    below = [(0.5 * held.diameter, groove, low - held.thickness, low)]
+    above = [(0.5 * held.diameter, groove, top, top + held.thickness)]
+    what = f"retaining ring of {described}"
+    rings = [
+        turned("ring_below", what, prisms(above if upside_down else below), FASTENER_COLOUR, held.standard),
+        turned("ring_above", what, prisms(below if upside_down else above), FASTENER_COLOUR, held.standard),
+    ]
+    return [turned("pin", described, prisms(stack, seats), PIN_COLOUR, bar(sizes.pin)), *rings]
+
+
+def fillers(
+    name: str,
+    carrier: Carrier,
+    place: complex,
+    gap: tuple[float, float],
+    planes: tuple[int, int],
+    sizes: Sizes,
+) -> list[Part]:
+    """Washers in the gap between neighbouring planes, or a spacer through planes that are passed."""
+    floor, ceiling = gap
+    washer = washer_for(sizes.pin, sizes.width)
+    own = f"{name}_{planes[0]}_{planes[1]}"
+    pieces: list[tuple[str, float, float, str]] = []
+    if planes[1] == planes[0] + 1 and sizes.washers and washer is not None:
+        pieces = [
+            (f"washer_{own}_{n + 1}", floor + n * washer.thickness, floor + (n + 1) * washer.thickness, washer.standard)
+            for n in range(sizes.washers)
+        ]
+    else:
+        pieces = [(f"spacer_{own}", floor, ceiling - sizes.play, "")]
+    parts = []
+    region: Region = ring(place, 0.5 * sizes.collar, 0.5 * sizes.hole)
+    for called, low, high, standard in pieces:
+        sort: Sort = "washer" if standard else "spacer"
+        parts.append(
+            Part(
+                called, "washer" if standard else "spacer", sort, carrier, (Prism(region, low, high),), 1.0 + 0.0j,
+                planes, MATERIALS[sizes.process][1], FASTENER_COLOUR, standard, round=True,
+            )
+        )  # fmt: skip
+    return parts

@@ -1,0 +1,88 @@
+"""Parallel keys by DIN 6885-1, and bores and shafts with their seats; lengths in millimetres.
+
+A key has the width b and the height h; its seat in the shaft is t₁ deep, the keyway in the hub t₂.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from service.parts.shapes import Loop
+
+
+class Key(NamedTuple):
+    """Width, height, depths in shaft and hub, and what the key is bought as; empty where the table has none."""
+
+    width: float
+    height: float
+    in_shaft: float
+    in_hub: float
+    standard: str = ""
+
+
+KEYS = (
+    (6.0, 2.0, 2.0, 1.2, 1.0),
+    (8.0, 3.0, 3.0, 1.8, 1.4),
+    (10.0, 4.0, 4.0, 2.5, 1.8),
+    (12.0, 5.0, 5.0, 3.0, 2.3),
+    (17.0, 6.0, 6.0, 3.5, 2.8),
+    (22.0, 8.0, 7.0, 4.0, 3.3),
+    (30.0, 10.0, 8.0, 5.0, 3.3),
+    (38.0, 12.0, 8.0, 5.0, 3.3),
+    (44.0, 14.0, 9.0, 5.5, 3.8),
+    (50.0, 16.0, 10.0, 6.0, 4.3),
+    (58.0, 18.0, 11.0, 7.0, 4.4),
+    (65.0, 20.0, 12.0, 7.5, 4.9),
+    (75.0, 22.0, 14.0, 9.0, 5.4),
+    (85.0, 25.0, 14.0, 9.0, 5.4),
+    (95.0, 28.0, 16.0, 10.0, 6.4),
+    (110.0, 32.0, 18.0, 11.0, 7.4),
+    (130.0, 36.0, 20.0, 12.0, 8.4),
+    (150.0, 40.0, 22.0, 13.0, 9.4),
+    (170.0, 45.0, 25.0, 15.0, 10.4),
+)
+"""DIN 6885-1: the diameter above which the row counts, up to the next row's; b, h, t₁ and t₂."""
+
+THICKEST = 200.0
+"""The greatest diameter that the table has a key for."""
+
+IN_PROPORTION = (0.3, 0.3, 0.18, 0.14)
+"""b, h, t₁ and t₂ as shares of a diameter that the table leaves out."""
+
+
+def key_for(diameter: float) -> Key:
+    """The key of a shaft: that of the standard, or one in proportion."""
+    rows = [row for row in KEYS if row[0] < diameter <= THICKEST]
+    if not rows:
+        b, h, t1, t2 = (share * diameter for share in IN_PROPORTION)
+        return Key(b, h, t1, t2)
+    _, b, h, t1, t2 = rows[-1]
+    return Key(b, h, t1, t2, f"DIN 6885 - {b:g} x {h:g}")
+
+
+def keyed_bore(centre: complex, diameter: float, key: Key, clearance: float) -> Loop:
+    """The hole of a hub, wider than shaft and key by a clearance on each side; the keyway points along x."""
+    radius, half = 0.5 * diameter + clearance, 0.5 * key.width + clearance
+    far = 0.5 * diameter + key.in_hub + clearance
+    a = math.asin(half / radius)
+    near = math.sqrt(radius**2 - half**2)
+    corners = (far - 1j * half, far + 1j * half, near + 1j * half, near - 1j * half)
+    return Loop(tuple(centre + z for z in corners), (0.0, 0.0, math.tan(0.5 * (math.pi - a)), 0.0))
+
+
+def keyed_shaft(centre: complex, diameter: float, key: Key) -> Loop:
+    """The section of a shaft through the seat of its key."""
+    radius, half = 0.5 * diameter, 0.5 * key.width
+    a = math.asin(half / radius)
+    near, floor = math.sqrt(radius**2 - half**2), radius - key.in_shaft
+    corners = (near + 1j * half, near - 1j * half, floor - 1j * half, floor + 1j * half)
+    return Loop(tuple(centre + z for z in corners), (math.tan(0.5 * (math.pi - a)), 0.0, 0.0, 0.0))
+
+
+def key_section(centre: complex, diameter: float, key: Key) -> Loop:
+    """The key as it lies in its seat, seen along the shaft."""
+    half, floor = 0.5 * key.width, 0.5 * diameter - key.in_shaft
+    top = floor + key.height
+    corners = (floor - 1j * half, top - 1j * half, top + 1j * half, floor + 1j * half)
+    return Loop(tuple(centre + z for z in corners), (0.0,) * 4)

@@ -1,0 +1,279 @@
+"""Parts of ordinary trains on parallel shafts: spur and helical gears, pinions in rings, idlers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from kinematics.errors import DimensionError
+from kinematics.gear.train import OrdinaryTrain, TrainStage
+from service.parts.bodies import Body, Prism, Twisted
+from service.parts.building import LINK_COLOURS
+from service.parts.fasteners import MATERIALS
+from service.parts.gears.housing import Housing, Level, Shaft, stacked
+from service.parts.gears.keys import key_for, keyed_bore
+from service.parts.gears.motion import TrainMotion, Turning
+from service.parts.gears.sizing import RIM, GearSizing
+from service.parts.gears.stand import Room, Stand, Wheel, stood
+from service.parts.gears.teeth import toothed
+from service.parts.model import Assembly, Carrier, Part
+from service.parts.overlaps import overlaps, too_thin
+from service.parts.shapes import Disc, Region
+from service.parts.sizes import WALL, NotMade, PartsQuery, Sizes
+from service.render.gears.train_layout import in_line
+from synthesis.kinds.gear_train.verification import driven_train
+
+MOST_TURNS = 400
+"""Turns of the input over which a train is looked at."""
+
+
+def train_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+    """The parts of an ordinary train.
+
+    Parameters
+    ----------
+    design : GearTrainDesign
+    problem : GearTrainProblem
+    query : PartsQuery
+        Lengths in the unit of the problem.
+
+    Raises
+    ------
+    NotMade
+        Where its shafts are not parallel, or there is no room for such shafts.
+    """
+    stages = driven_train(design.mechanism).stages
+    backlash = [mesh.backlash or 0.0 for mesh in design.metrics.meshes]
+    plays: list[float] = []
+    for stage in stages:
+        own, backlash = backlash[: len(stage.gears) - 1], backlash[len(stage.gears) - 1 :]
+        plays.append(min(own))
+    widths = [stage.face_width for stage in design.mechanism.stages]
+    made = OrdinaryParts(
+        stages, math.radians(design.mechanism.pressure_angle), plays, widths, problem.reverted, problem.length_unit
+    )
+    return made.assembly(query)
+
+
+@dataclass(frozen=True)
+class OrdinaryParts:
+    """A train that parts are asked of.
+
+    Attributes
+    ----------
+    stages : sequence of TrainStage
+    pressure_angle : float
+        Radians.
+    backlash : sequence of float
+        Of each stage, 0 where its teeth have none.
+    face_widths : sequence of float or None
+        Of each stage.
+    reverted : bool
+        Whether the output is on the input's axis.
+    length_unit : str
+    """
+
+    stages: Sequence[TrainStage]
+    pressure_angle: float
+    backlash: Sequence[float]
+    face_widths: Sequence[float | None]
+    reverted: bool
+    length_unit: str
+
+    def assembly(self, query: PartsQuery) -> Assembly:
+        """The parts, looked at in motion."""
+        if not all(stage.is_parallel for stage in self.stages):
+            raise NotMade("Parts are made of trains on parallel shafts; this one has bevel gears or a worm.")
+        sizing = GearSizing(query, self.length_unit)
+        train = self._scaled(sizing.factor)
+        smallest = min((gear for stage in train.stages for gear in stage.cut_gears(train.pressure_angle)
+                        if not gear.internal), key=lambda gear: gear.root_radius)  # fmt: skip
+        sizing.judge_size(2.0 * sum(train.centre_distances))
+        for sizes in sizing.offered(smallest):
+            task = _Task(self, train, sizes, sizing)
+            stand = task.stand()
+            if stand is not None:
+                return task.made(stand)
+        raise NotMade(
+            "There is no room for the shafts: in every stand one of them, or what is on it, would pass through a gear. "
+            "Thinner ones may do, or another scale.", sizing.path,
+        )  # fmt: skip
+
+    def _scaled(self, factor: float) -> OrdinaryTrain:
+        try:
+            return OrdinaryTrain(
+                tuple(replace(stage, module=factor * stage.module) for stage in self.stages), self.pressure_angle
+            )
+        except DimensionError as error:
+            raise NotMade(f"The gears cannot be cut: {error}.") from None
+
+
+@dataclass(frozen=True)
+class _Task:
+    """A train in millimetres and the sizes of what carries it."""
+
+    asked: OrdinaryParts
+    train: OrdinaryTrain
+    sizes: Sizes
+    sizing: GearSizing
+
+    @cached_property
+    def levels_of(self) -> list[tuple[int, int | None]]:
+        """The level of each stage, and that of its ring's web: on the side of the ring's shaft."""
+        found: list[tuple[int, int | None]] = []
+        level = 0
+        for stage in self.train.stages:
+            level += 1
+            web = None
+            if stage.kind == "internal":
+                if stage.driver > stage.driven:
+                    web, level = level, level + 1
+                    found.append((level, web))
+                else:
+                    found.append((level, level + 1))
+                    level += 1
+                continue
+            found.append((level, web))
+        return found
+
+    @property
+    def highest(self) -> int:
+        """The highest level of a wheel."""
+        return max(max(level, web or 0) for level, web in self.levels_of)
+
+    def stand(self) -> Stand | None:
+        """Where everything stands, if it can."""
+        room = Room(0.5 * self.sizes.pin, 0.5 * self.sizes.collar, self.sizes.apart)
+        return stood(self._stage, len(self.train.stages), self.highest, room, self.asked.reverted)
+
+    def _stage(self, number: int, axis: complex, ahead: complex) -> list[Wheel]:
+        """The wheels of a stage; shafts of idlers come after those of the train."""
+        level, web = self.levels_of[number]
+        before = sum(len(one.idlers) for one in self.train.stages[:number])
+        wheels = []
+        idler = len(self.train.stages) + 1 + before
+        play = 0.0 if self.asked.backlash[number] > 0.0 else 0.5 * self.sizes.clearance
+        for gear in in_line(self.train, number, axis, ahead):
+            shaft = number + (gear.role == "driven")
+            role: str = gear.role
+            if gear.role == "idler":
+                shaft = idler
+                role = f"idler_{idler - len(self.train.stages) - before}"
+                idler += 1
+            ring = gear.gear.internal
+            outer = gear.gear.root_radius + RIM * gear.gear.module if ring else gear.gear.tip_radius
+            helix = gear.helix_angle * (1.0 if gear.role == "driver" else -1.0)
+            what = "ring" if ring else "gear"
+            words = f"{what} of stage {number + 1}, {role.replace('_', ' ')}, {gear.count} teeth"
+            wheels.append(
+                Wheel(
+                    f"gear_{number + 1}_{role}", words, gear.gear, shaft, level, gear.centre, gear.tooth_at, outer,
+                    float(gear.speed), 2 * number + (role == "driven"), helix, web if ring else None, play,
+                )
+            )  # fmt: skip
+        return wheels
+
+    def made(self, stand: Stand) -> Assembly:
+        """The assembly on a stand, if no two parts of it meet."""
+        levels = self._heights()
+        shafts = [self._shaft(number, stand) for number in range(len(stand.axes))]
+        housing = Housing(
+            self.sizes, levels, tuple(shafts), tuple((wheel.centre, wheel.outer) for wheel in stand.wheels)
+        )
+        parts = [*(wheel_part(wheel, self._body(wheel.shaft), levels, self.sizes) for wheel in stand.wheels)]
+        assembly = Assembly(
+            (*parts, *housing.parts()), self._motion(stand), self.highest, 2, self.sizing.factor,
+            self.sizing.query.scale, self._notes(stand),
+        )  # fmt: skip
+        return looked_at(assembly, self.sizes, self.sizing)
+
+    def _body(self, shaft: int) -> str:
+        count = len(self.train.stages) + 1
+        return f"shaft_{shaft + 1}" if shaft < count else f"idler_{shaft - count + 1}"
+
+    def _shaft(self, number: int, stand: Stand) -> Shaft:
+        count = len(self.train.stages) + 1
+        name = self._body(number).replace("_", " ")
+        if number in (0, count - 1):
+            name = "input shaft" if number == 0 else "output shaft"
+        keyed = [wheel.level if wheel.web is None else wheel.web for wheel in stand.wheels if wheel.shaft == number]
+        return Shaft(
+            name, Carrier(self._body(number), None), stand.axes[number], stand.reaches[number], tuple(keyed),
+            ends=number in (0, count - 1), below=number == 0,
+        )  # fmt: skip
+
+    def _heights(self) -> tuple[Level, ...]:
+        heights = [self.sizes.thickness] * (self.highest + 2)
+        for number, (level, _) in enumerate(self.levels_of):
+            heights[level] = self.sizing.face_width(self.train.stages[number].module, self.asked.face_widths[number])
+        return stacked(heights, self.sizes)
+
+    def _motion(self, stand: Stand) -> TrainMotion:
+        bodies = {self._body(wheel.shaft): Turning(wheel.centre, wheel.speed) for wheel in stand.wheels}
+        passing = [abs(wheel.speed) * wheel.gear.teeth for wheel in stand.wheels]
+        size = max(
+            abs(one.centre - other.centre) + one.outer + other.outer for one in stand.wheels for other in stand.wheels
+        )
+        return TrainMotion(bodies, size, min(math.ceil(1.0 / min(passing)), MOST_TURNS))
+
+    def _notes(self, stand: Stand) -> tuple[str, ...]:
+        told = ["Wheels are held on their shafts by keys; the ends that stand out of the plates are input and output."]
+        for number, reach in enumerate(stand.reaches):
+            if reach != (0, self.highest + 1):
+                plate = "lower" if reach[0] == 0 else "upper"
+                told.append(f"The {self._shaft(number, stand).name} stands in the {plate} plate alone.")
+        return tuple(told)
+
+
+def wheel_part(wheel: Wheel, body: str, levels: Sequence[Level], sizes: Sizes, *, free: bool = False) -> Part:
+    """A wheel as a part: its teeth, its bore with a keyway, or without where it turns freely on its shaft."""
+    key = key_for(sizes.pin)
+    bore = Disc(wheel.centre, 0.5 * sizes.hole) if free else keyed_bore(wheel.centre, sizes.pin, key, sizes.clearance)
+    low, high = levels[wheel.level].low, levels[wheel.level].high
+    bodies: tuple[Body, ...]
+    twist = (high - low) * math.tan(wheel.helix_angle) / wheel.gear.pitch_radius
+    teeth = toothed(wheel.gear, wheel.centre, wheel.tooth_at - 0.5 * twist, abs(wheel.helix_angle), wheel.play)
+    if wheel.web is not None:
+        web, disc = levels[wheel.web], Disc(wheel.centre, wheel.outer)
+        # The ring stands on its web, through the gap between the two levels.
+        ends = (low, web.low) if web.low > low else (web.high, high)
+        bodies = (Prism(Region(disc, (teeth,)), *ends), Prism(Region(disc, (bore,)), web.low, web.high))
+    elif twist:
+        bodies = (Twisted(Region(teeth, (bore,)), low, high, twist, wheel.centre),)
+    else:
+        bodies = (Prism(Region(teeth, (bore,)), low, high),)
+    return Part(
+        name=wheel.name,
+        described=wheel.described,
+        sort="gear",
+        carrier=Carrier(body, None),
+        bodies=bodies,
+        along=1.0 + 0.0j,
+        planes=(wheel.level, wheel.level),
+        material=MATERIALS[sizes.process][0],
+        colour=LINK_COLOURS[wheel.tint % len(LINK_COLOURS)],
+    )
+
+
+def looked_at(assembly: Assembly, sizes: Sizes, sizing: GearSizing) -> Assembly:
+    """An assembly of which no two parts meet and enough is left around holes.
+
+    Raises
+    ------
+    NotMade
+        Otherwise.
+    """
+    thin = too_thin(assembly, 0.99 * WALL * sizes.pin)
+    if thin:
+        raise NotMade(f"The {thin[0].part.replace('_', ' ')} has too little left around its holes.", sizing.path)
+    meeting = overlaps(assembly)
+    if meeting:
+        one, other = (name.replace("_", " ") for name in meeting[0].parts)
+        raise NotMade(
+            f"There is no room: the {one} and the {other} meet at an input angle of "
+            f"{math.degrees(meeting[0].at):.1f}°.", sizing.path,
+        )  # fmt: skip
+    return assembly

@@ -1,0 +1,171 @@
+"""How thick and wide the parts of a train are: what a request states, and what follows from the gears; millimetres."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from kinematics.gear.teeth import Gear
+from service.parts.gears.keys import key_for
+from service.parts.sizes import (
+    CLEARANCES,
+    LARGEST_ASSEMBLY,
+    LOOSEST,
+    MILLIMETRES,
+    THINNEST_PIN,
+    TIGHTEST,
+    WALL,
+    WIDEST_PIN,
+    WIDTH,
+    NotMade,
+    PartsQuery,
+    Sizes,
+    judged,
+    rounded_down,
+    rounded_up,
+    sheet_for,
+)
+from service.parts.standards import PINS
+
+FACE = 6.0
+"""Face width where neither the answer nor the request has one, modules."""
+
+NARROWEST, WIDEST = 0.5, 100.0
+"""Face widths that are made, modules."""
+
+BORE_OF_ROOT = 0.5
+"""The thickest shaft where none is stated, as a share of the root circle of the smallest gear."""
+
+WALL_OF_TEETH = 1.0
+"""What is left between a keyway and the roots of the teeth at least, modules."""
+
+RIM = 2.5
+"""Width of a ring beyond its roots, modules."""
+
+PLAY_OF_TEETH, MOST_PLAY = 0.15, 0.3
+"""The greatest play of teeth in modules: where no clearance is stated, and that one may be."""
+
+TRIED = 6
+"""Bores that are tried where none is stated."""
+
+
+class GearSizing:
+    """What a request states of a train, and what follows.
+
+    Attributes
+    ----------
+    factor : float
+        Millimetres to a length unit of the design, as large as it is built.
+    path : str
+        The field whose fault it is where shafts find no room.
+    """
+
+    def __init__(self, query: PartsQuery, length_unit: str) -> None:
+        self.query = query
+        self._unit = MILLIMETRES[length_unit]
+        self._words = length_unit
+        self.factor = self._unit * query.scale
+        self.path = "/query/scale" if query.bore is None else "/query/bore"
+
+    def judge_size(self, size: float) -> None:
+        """Refuse what is larger than anything that is made."""
+        if size > LARGEST_ASSEMBLY:
+            most = rounded_down(self.query.scale * LARGEST_ASSEMBLY / size)
+            raise NotMade(
+                f"The train is about {size / 1000.0:.4g} m large at this scale, and parts are made up to "
+                f"{LARGEST_ASSEMBLY / 1000.0:g} m; scale {most:g} is the greatest that works.", "/query/scale",
+            )  # fmt: skip
+
+    def face_width(self, module: float, answered: float | None) -> float:
+        """Of a gear: as it is asked for, as the answer has it, or some modules.
+
+        Parameters
+        ----------
+        module : float
+            Millimetres.
+        answered : float or None
+            In the unit of the problem, at its own size.
+        """
+        stated = self.query.face_width
+        if stated is None:
+            return FACE * module if answered is None else answered * self.factor
+        width = stated * self._unit
+        least, most = NARROWEST * module, WIDEST * module
+        if not least <= width <= most:
+            raise NotMade(
+                f"The face width is to be from {rounded_up(least / self._unit):g} to "
+                f"{rounded_down(most / self._unit):g} {self._words} for a module of {module / self._unit:.4g}.",
+                "/query/face_width",
+            )
+        return width
+
+    def offered(self, smallest: Gear) -> Iterator[Sizes]:
+        """Sizes with the bore that is stated, or with such as the smallest gear has room for, the thickest first."""
+        query, unit = self.query, self._unit
+        if query.bore is not None:
+            yield self._stated(query.bore * unit, smallest)
+            return
+        most = 2.0 * BORE_OF_ROOT * smallest.root_radius
+        thinner = [self._with(bore, smallest) for bore in reversed(PINS) if bore <= most]
+        fits = [sizes for sizes in thinner if self._fits(sizes, smallest)]
+        if not fits:
+            thinnest = self._with(PINS[0], smallest)
+            needed = max(
+                _deep(thinnest) / (smallest.root_radius - WALL_OF_TEETH * smallest.module),
+                (_deep(thinnest) + WALL * thinnest.pin) / smallest.root_radius,
+                thinnest.pin / most,
+            )
+            raise NotMade(
+                f"The smallest gear has a root circle of {2.0 * smallest.root_radius / unit:.4g} {self._words} and no "
+                f"room for a shaft; scale {rounded_up(1.05 * query.scale * needed):g} does.", "/query/scale",
+            )  # fmt: skip
+        for sizes in fits[:TRIED]:
+            judged(sizes, unit)
+            yield sizes
+
+    def _stated(self, bore: float, smallest: Gear) -> Sizes:
+        unit = self._unit
+        if not THINNEST_PIN <= bore <= WIDEST_PIN:
+            raise NotMade(
+                f"Shafts of {bore / unit:.6g} {self._words} are none that are made; from {THINNEST_PIN / unit:g} to "
+                f"{WIDEST_PIN / unit:g} {self._words} they are.", "/query/bore",
+            )  # fmt: skip
+        sizes = self._with(bore, smallest)
+        judged(sizes, unit)
+        if not self._fits(sizes, smallest):
+            thinner = [one for one in PINS if one < bore and self._fits(self._with(one, smallest), smallest)]
+            works = f"; {thinner[-1] / unit:g} {self._words} do" if thinner else ""
+            raise NotMade(
+                f"A bore of {bore / unit:.6g} {self._words} with its keyway leaves too little below the teeth of "
+                f"the smallest gear, whose root circle is {2.0 * smallest.root_radius / unit:.4g} "
+                f"{self._words}{works}.",
+                "/query/bore",
+            )
+        return sizes
+
+    def _with(self, bore: float, smallest: Gear) -> Sizes:
+        """Sizes with what the request states of thickness and clearance."""
+        query, unit, module = self.query, self._unit, smallest.module
+        if query.clearance is None:
+            usual = min(CLEARANCES[query.process], PLAY_OF_TEETH * module)
+            clearance = min(max(usual, 2.0 * TIGHTEST * bore), 0.5 * LOOSEST * bore)
+        else:
+            clearance = query.clearance * unit
+            if clearance > MOST_PLAY * module:
+                raise NotMade(
+                    "The clearance is also the play of the teeth, and is to be "
+                    f"{rounded_down(MOST_PLAY * module / unit):g} {self._words} at most for the module "
+                    f"{module / unit:.4g}.", "/query/clearance",
+                )  # fmt: skip
+        thickness = sheet_for(bore) if query.thickness is None else query.thickness * unit
+        return Sizes(query.process, WIDTH * bore, bore, thickness, clearance)
+
+    def _fits(self, sizes: Sizes, smallest: Gear) -> bool:
+        wall = max(WALL_OF_TEETH * smallest.module, WALL * sizes.pin)
+        return _deep(sizes) + wall <= smallest.root_radius
+
+
+def _deep(sizes: Sizes) -> float:
+    """From the axis to the corners of the keyway."""
+    key = key_for(sizes.pin)
+    return math.hypot(0.5 * sizes.pin + key.in_hub + sizes.clearance, 0.5 * key.width + sizes.clearance)

@@ -1,0 +1,72 @@
+"""True profiles of teeth as outlines of arcs: the involute and the fillet of :mod:`kinematics.gear.profile`.
+
+Every tooth is made thinner by a play, as a tool does that is moved sideways: both flanks are turned about the axis, so
+that they stay the same involutes.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from kinematics.gear.profile import half_space
+from kinematics.gear.teeth import Gear
+from service.parts.arcs import Chain, fitted
+from service.parts.shapes import Loop
+
+NEAR_AXIS = 1e-6
+"""Share of a gear's radius within which an arc's centre is the axis."""
+
+
+def toothed(gear: Gear, centre: complex, tooth_at: float, helix_angle: float = 0.0, play: float = 0.0) -> Loop:
+    """The outline of all teeth, counter-clockwise; of an internal gear that of the hole.
+
+    Parameters
+    ----------
+    gear : Gear
+        In millimetres, in the plane of rotation.
+    centre : complex
+    tooth_at : float
+        Angle of a tooth's middle, radians.
+    helix_angle : float
+        Radians.
+    play : float
+        By which a tooth is thinner on the pitch circle, millimetres.
+
+    Raises
+    ------
+    DimensionError
+        Where the cutter would come to a point.
+    """
+    half = _half(gear, helix_angle, play)
+    # From the middle of a tooth through a space to the middle of the next.
+    space = half.reversed().mirrored().then(half)
+    space = space.joined(len(half.corners) - 1, 0j, NEAR_AXIS * gear.pitch_radius)
+    pitch = 2.0 * math.pi / gear.teeth
+    around = Chain([space.corners[0]], [])
+    for k in range(round(gear.teeth)):
+        turned = space.turned(complex(np.exp(1j * k * pitch)))
+        # The corner in the middle of a tip goes.
+        at = len(around.corners) - 1
+        around = around.then(turned)
+        if k:
+            around = around.joined(at, 0j, NEAR_AXIS * gear.pitch_radius)
+    turn = complex(np.exp(1j * (tooth_at + 0.5 * pitch)))
+    return Loop(tuple(centre + turn * z for z in around.corners[:-1]), tuple(around.bulges))
+
+
+def _half(gear: Gear, helix_angle: float, play: float) -> Chain:
+    """From the middle of a space along root, fillet and flank to the middle of a tip."""
+    points = half_space(gear, helix_angle)
+    if play > 0.0:
+        moved = points * np.exp(0.5j * play / gear.pitch_radius)
+        points = np.concatenate([[abs(points[0])], moved])
+    end = math.pi / gear.teeth
+    angles = np.angle(points)
+    beyond = int(np.searchsorted(angles > end, True))
+    if beyond < len(points):
+        # Flanks that meet below the tip leave a pointed tooth.
+        share = (end - angles[beyond - 1]) / (angles[beyond] - angles[beyond - 1])
+        points = np.append(points[:beyond], points[beyond - 1] + share * (points[beyond] - points[beyond - 1]))
+    return fitted(points)

@@ -1,0 +1,170 @@
+"""Parts of trains of gears through HTTP: teeth, bores, every field of the query, and what is refused."""
+
+from __future__ import annotations
+
+import io
+import math
+from typing import Any
+
+import ezdxf
+import numpy as np
+import pytest
+import shapely
+
+from kinematics.gear.teeth import involute
+from service.parts.extra import installed
+from tests.service.answers import finished
+from tests.service.test_parts import bill, parts, refused
+
+PAIR = {"kind": "gear_train", "ratio": "7/3", "max_stages": 1, "max_designs": 1, "module": 2.0}
+SIZES = {"bore": 10, "thickness": 5, "face_width": 14, "clearance": 0.1}
+
+
+@pytest.fixture(scope="module")
+def pair(server: Any) -> str:
+    """The place of two spur gears."""
+    return f"/v1/jobs/{finished(server.client, PAIR)['id']}/designs/0"
+
+
+def cut(files: dict[str, bytes], name: str) -> ezdxf.layouts.Modelspace:
+    document = ezdxf.read(io.StringIO(files[f"dxf/{name}.dxf"].decode()))
+    assert not document.audit().has_errors
+    assert document.units == ezdxf.units.MM
+    return document.modelspace()
+
+
+def corners(outline: Any) -> np.ndarray:
+    return np.array([complex(x, y) for x, y, *_ in outline.get_points("xyb")])
+
+
+def test_a_gear_is_cut_with_its_true_teeth_and_its_keyway(client: Any, pair: str) -> None:
+    files = parts(client, pair, **SIZES)
+    stage = client.get(pair.rsplit("/designs")[0]).json()["result"]["designs"][0]["mechanism"]["stages"][0]
+    for role in ("driver", "driven"):
+        teeth, module = stage[role], stage["module"]
+        outer, bore = sorted(
+            cut(files, f"gear_1_{role}").query("LWPOLYLINE"), key=lambda line: -np.ptp(corners(line).real)
+        )
+        assert outer.closed
+        middle = complex(np.mean(corners(outer)))
+        places = corners(outer) - middle
+        radii = np.abs(places)
+        pitch = 0.5 * module * teeth
+        assert radii.max() == pytest.approx(pitch + module, abs=1e-6)
+        assert radii.min() == pytest.approx(pitch - 1.25 * module, abs=1e-6)
+        # Every corner well above the fillet lies on an involute, half of the play behind that of a tooth without any.
+        phi = math.radians(20.0)
+        above = places[(radii > pitch - 0.6 * module) & (radii < pitch + 0.999 * module)]
+        there = np.arccos(pitch * math.cos(phi) / np.abs(above))
+        half = 0.5 * (0.5 * math.pi * module - 0.05) / pitch
+        off = half + involute(phi) - (np.tan(there) - there)
+        turns = np.angle(above) - middle_of_teeth(places, teeth)
+        away = np.abs(np.remainder(turns + math.pi / teeth, 2.0 * math.pi / teeth) - math.pi / teeth)
+        assert len(above) > 4 * teeth
+        assert (np.abs(away - off) * np.abs(above)).max() < 1e-9
+        # The bore is wider than the shaft by the clearance, and has the keyway of DIN 6885 for 10 mm: 3 wide, 1.4 deep.
+        hole = corners(bore)
+        assert np.ptp(hole.imag) == pytest.approx(3.2, abs=1e-9)
+        bulge = max(b for *_, b in bore.get_points("xyb"))
+        chord = 3.2
+        radius = chord * (1.0 + bulge**2) / (4.0 * bulge)
+        assert radius == pytest.approx(5.1, abs=1e-9)
+        assert hole.real.max() - (hole.real.min() - math.sqrt(radius**2 - 1.6**2)) == pytest.approx(5.0 + 1.4 + 0.1)
+
+
+def middle_of_teeth(places: np.ndarray, teeth: int) -> float:
+    """The angle of a tooth's middle, by the mean direction of all corners in the teeth's own turns."""
+    tips = places[np.abs(places) > np.abs(places).max() - 1e-6]
+    return float(np.angle((tips**teeth).sum()) / teeth)
+
+
+def test_shafts_stand_as_far_apart_as_the_answer_says(client: Any, pair: str) -> None:
+    files = parts(client, pair, **SIZES)
+    distance = client.get(pair.rsplit("/designs")[0]).json()["result"]["designs"][0]["metrics"]["centre_distances"][0]
+    for plate in ("base", "second_base"):
+        holes = [complex(one.dxf.center.x, one.dxf.center.y) for one in cut(files, plate).query("CIRCLE")]
+        found = [abs(a - b) for n, a in enumerate(holes) for b in holes[n + 1 :]]
+        assert len(holes) == 6
+        assert min(abs(one - distance) for one in found) < 1e-9
+
+
+def test_the_bill_of_a_pair_names_keys_and_shafts(client: Any, pair: str) -> None:
+    rows = bill(parts(client, pair, **SIZES))
+    assert rows["key"]["quantity"] == "2"
+    assert rows["key"]["standard"] == "DIN 6885 - 3 x 3 x 13.8"
+    assert rows["pin_input_shaft"]["standard"] == "EN 10278 - 10 h9"
+    assert rows["gear_1_driver"]["holes"] == "bore with keyway 10.2 x 11.6"
+    assert rows["gear_1_driver"]["thickness"] == "14"
+    assert rows["base"]["thickness"] == "5"
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [("bore", 8), ("thickness", 6), ("face_width", 20), ("clearance", 0.2), ("scale", 2.0), ("process", "print")],
+)
+def test_every_field_counts_for_gears(client: Any, pair: str, field: str, value: Any) -> None:
+    base = {**SIZES, "process": "laser", "scale": 1.0}
+    if field == "process" and not installed():
+        assert refused(client, pair, 501, **(base | {field: value}))["type"] == "/problems/no-cad"
+        return
+    files, others = parts(client, pair, **base), parts(client, pair, **(base | {field: value}))
+    rows, changed = bill(files), bill(others)
+    if field == "bore":
+        assert changed["pin_input_shaft"]["width"] == "8"
+    if field == "thickness":
+        assert changed["base"]["thickness"] == "6"
+    if field == "face_width":
+        assert changed["gear_1_driver"]["thickness"] == "20"
+    if field == "clearance":
+        # Teeth are thinner by half of it each, so that their outline encloses less.
+        areas = [shapely.Polygon([(z.real, z.imag) for z in corners(max(
+            cut(one, "gear_1_driven").query("LWPOLYLINE"), key=lambda line: np.ptp(corners(line).real)
+        ))]).area for one in (files, others)]  # fmt: skip
+        assert areas[0] > areas[1]
+    if field == "scale":
+        assert float(changed["gear_1_driver"]["length"]) == pytest.approx(
+            2.0 * float(rows["gear_1_driver"]["length"]), abs=0.2
+        )
+    if field == "process":
+        assert "cap_1" in changed or "cap" in changed
+        assert not any(row["standard"].startswith("DIN 471") for row in changed.values())
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("bore", 0), ("bore", 1000), ("bore", 40), ("bore", "nan"), ("face_width", 0), ("face_width", 0.1),
+        ("face_width", 1e5), ("thickness", 0.01), ("thickness", 1e5), ("clearance", 0.9), ("clearance", 1e-9),
+        ("scale", 0), ("scale", 1e5), ("scale", 1e-3), ("process", "cast"), ("width", 10), ("pin", 5), ("over", "used"),
+        ("shafts", "one_side"),
+    ],
+)  # fmt: skip
+def test_bad_values_of_gears_are_refused_by_their_path(client: Any, pair: str, field: str, value: Any) -> None:
+    sizes = {} if field == "scale" and value == 1e-3 else SIZES
+    answer = refused(client, pair, 422, **(sizes | {field: value}))
+    assert [fault["path"] for fault in answer["errors"]] == [f"/query/{field}"]
+
+
+def test_a_refusal_says_what_works(client: Any, pair: str) -> None:
+    (fault,) = refused(client, pair, 422, bore=40)["errors"]
+    words = fault["detail"].split()
+    works = float(words[-3])
+    assert parts(client, pair, bore=works)
+    (fault,) = refused(client, pair, 422, scale=1e-3)["errors"]
+    words = fault["detail"].split()
+    assert parts(client, pair, scale=float(words[words.index("scale") + 1]))
+
+
+def test_a_reverted_train_comes_back_to_its_axis(client: Any) -> None:
+    job = finished(
+        client, {"kind": "gear_train", "ratio": "6", "max_stages": 2, "max_designs": 1, "reverted": True,
+                 "teeth": {"min": 17, "max": 60}}
+    )  # fmt: skip
+    files = parts(client, f"/v1/jobs/{job['id']}/designs/0")
+    distance = job["result"]["designs"][0]["metrics"]["centre_distances"][0]
+    for plate in ("base", "second_base"):
+        holes = [complex(one.dxf.center.x, one.dxf.center.y) for one in cut(files, plate).query("CIRCLE")]
+        assert len(holes) == 6
+        assert min(abs(abs(a - b) - distance) for n, a in enumerate(holes) for b in holes[n + 1 :]) < 1e-9
+    assert b"stands in the lower plate alone" in files["README.txt"]
+    assert b"stands in the upper plate alone" in files["README.txt"]
