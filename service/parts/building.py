@@ -8,7 +8,6 @@ cap or another ring. The second base, where there is one, is above all planes.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 from itertools import combinations, pairwise
 from typing import NamedTuple
@@ -19,7 +18,7 @@ from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from service.parts.bodies import Prism
 from service.parts.fasteners import MATERIALS, fillers, held_pin
 from service.parts.linkage_motion import LinkageMotion
-from service.parts.model import Assembly, Carrier, Part
+from service.parts.model import Assembly, Carrier, Part, plain
 from service.parts.shapes import Disc, Loop, Outline, Region, ring, widened
 from service.parts.sizes import WALL, Sizes
 
@@ -329,11 +328,6 @@ class _Builder:
             gap = self._level(span[0])[1], self._level(span[1])[0]
             parts += fillers(name, carrier, place, gap, span, self._sizes)
         return parts
-
-
-def plain(name: str) -> str:
-    """A name as files and CAD programs take it."""
-    return re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_") or "part"
 
 
 def _distance(place: complex, outline: Outline) -> float:

@@ -113,13 +113,15 @@ def fillers(
     gap: tuple[float, float],
     planes: tuple[int, int],
     sizes: Sizes,
+    *,
+    washers: bool = True,
 ) -> list[Part]:
-    """Washers in the gap between neighbouring planes, or a spacer through planes that are passed."""
+    """Washers in the gap between neighbouring planes, or a spacer through planes that are passed, or without any."""
     floor, ceiling = gap
     washer = washer_for(sizes.pin, sizes.width)
     own = f"{name}_{planes[0]}_{planes[1]}"
     pieces: list[tuple[str, float, float, str]] = []
-    if planes[1] == planes[0] + 1 and sizes.washers and washer is not None:
+    if washers and planes[1] == planes[0] + 1 and sizes.washers and washer is not None:
         pieces = [
             (f"washer_{own}_{n + 1}", floor + n * washer.thickness, floor + (n + 1) * washer.thickness, washer.standard)
             for n in range(sizes.washers)

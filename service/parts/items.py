@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable
 from typing import NamedTuple
 
-from service.parts.model import FLAT, Assembly, Part
+from service.parts.model import FLAT, Assembly, Part, plain
 from service.parts.shapes import Disc
 
 DIGITS = 6
@@ -47,11 +47,13 @@ def items(assembly: Assembly) -> list[Item]:
 
 
 def _kind(part: Part) -> str:
-    return part.name.split("_")[0]
+    return f"{part.sort}_{plain(part.like)}" if part.like else part.name.split("_")[0]
 
 
 def _likeness(part: Part) -> Hashable:
     """What parts that are made alike have in common."""
+    if part.like:
+        return part.sort, part.like
     if part.sort == "key":
         return part.sort, part.standard, tuple(round(x, DIGITS) for x in (*part.length_and_width, part.high - part.low))
     if part.sort in FLAT or not part.round:

@@ -40,6 +40,12 @@ def _trains() -> Make:
     return train_parts
 
 
+def _planetary_trains() -> Make:
+    from service.parts.gears.planetary import planetary_parts
+
+    return planetary_parts
+
+
 OF_GEARS = frozenset({"process", "thickness", "clearance", "bore", "face_width", "scale"})
 """What is asked of trains of gears."""
 
@@ -48,6 +54,7 @@ MAKERS: dict[str, Maker] = {
         _linkages, frozenset({"process", "width", "pin", "thickness", "clearance", "shafts", "over", "scale"})
     ),
     "gear_train": Maker(_trains, OF_GEARS),
+    "planetary_train": Maker(_planetary_trains, OF_GEARS),
 }
 """By type of mechanism."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, NamedTuple, Protocol
@@ -128,6 +129,8 @@ class Part:
         What it is bought as; empty where it is made.
     round : bool
         Whether it is a stack of rings about its joint.
+    like : str
+        What parts that are made alike have in common, where that is not to be seen from their bodies; or empty.
     """
 
     name: str
@@ -141,6 +144,7 @@ class Part:
     colour: str
     standard: str = ""
     round: bool = False
+    like: str = ""
 
     @property
     def low(self) -> float:
@@ -200,3 +204,8 @@ class Assembly:
     def size(self) -> float:
         """How large the mechanism is."""
         return self.motion.size
+
+
+def plain(name: str) -> str:
+    """A name as files and CAD programs take it."""
+    return re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_") or "part"

@@ -143,6 +143,8 @@ class _Moved:
             near[1:] = False  # they go together, so that one input says all
         areas = np.zeros(len(near))
         if near.any():
+            # Most do not meet, which is seen sooner than what they share.
+            near[near] = shapely.intersects(self._solid(first)[near], self._solid(second)[near])
             areas[near] = shapely.area(shapely.intersection(self._solid(first)[near], self._solid(second)[near]))
         return areas
 

@@ -168,3 +168,78 @@ def test_a_reverted_train_comes_back_to_its_axis(client: Any) -> None:
         assert min(abs(abs(a - b) - distance) for n, a in enumerate(holes) for b in holes[n + 1 :]) < 1e-9
     assert b"stands in the lower plate alone" in files["README.txt"]
     assert b"stands in the upper plate alone" in files["README.txt"]
+
+
+SET = {"kind": "planetary_train", "ratio": "4", "max_designs": 1, "arrangement": "simple", "teeth": {"max": 80}}
+
+
+@pytest.fixture(scope="module")
+def trains(server: Any) -> dict[str, dict[str, Any]]:
+    """Simple sets by what is held, and where their first designs are."""
+    stated = {"ring": SET, "carrier": {**SET, "ratio": "-3"}, "sun": {**SET, "ratio": "4/3"}}
+    found = {}
+    for held, problem in stated.items():
+        job = finished(server.client, {**problem, "fixed": held})
+        found[held] = {
+            "place": f"/v1/jobs/{job['id']}/designs/0",
+            "mechanism": job["result"]["designs"][0]["mechanism"],
+        }
+    return found
+
+
+def centres(space: ezdxf.layouts.Modelspace) -> list[complex]:
+    return [complex(one.dxf.center.x, one.dxf.center.y) for one in space.query("CIRCLE")]
+
+
+@pytest.mark.parametrize("held", ["ring", "carrier", "sun"])
+def test_planets_stand_where_the_teeth_want_them(client: Any, trains: Any, held: str) -> None:
+    mechanism = trains[held]["mechanism"]
+    files = parts(client, trains[held]["place"])
+    rows = bill(files)
+    teeth = mechanism["teeth"]
+    away = 0.5 * (teeth["sun"] + teeth["planet"])
+    assert rows["gear_planet"]["quantity"] == "3"
+    pins = centres(cut(files, "base" if held == "carrier" else "carrier"))
+    middle = sum(pins) / len(pins)
+    around = [pin for pin in pins if abs(abs(pin - middle) - away) < 1e-6]
+    if held != "carrier":
+        assert len(around) == 3
+    apart = [abs(a - b) for n, a in enumerate(pins) for b in pins[n + 1 :]]
+    assert sum(abs(one - math.sqrt(3.0) * away) < 1e-9 for one in apart) == 3
+    ring = rows["gear_ring"]
+    assert "contour" in ring["holes"]
+    assert ring["holes"].startswith("4 x") == (held == "ring")
+    assert ("web_ring" in rows) == (held != "ring")
+    assert f"The {held} is held" in files["README.txt"].decode()
+    # A held sun is keyed to its plate, so that one key more is needed.
+    keys = sum(int(row["quantity"]) for name, row in rows.items() if name.startswith("key"))
+    assert keys == 2 + (held == "sun")
+
+
+def test_the_face_width_of_a_plane_is_that_of_the_answer(client: Any) -> None:
+    stage = {"type": "helical", "helix_angle": 15.0, "face_width": 21.0}
+    job = finished(client, {"kind": "gear_train", "ratio": "2", "stages": [stage], "max_designs": 1})
+    rows = bill(parts(client, f"/v1/jobs/{job['id']}/designs/0"))
+    assert rows["gear_1_driver"]["thickness"] == rows["gear_1_driven"]["thickness"] == "21"
+
+
+def test_a_ring_and_its_web_are_two_sheets_with_pins_through_the_rim(client: Any) -> None:
+    job = finished(client, {"kind": "gear_train", "ratio": "3", "stages": [{"type": "internal"}], "max_designs": 1})
+    place = f"/v1/jobs/{job['id']}/designs/0"
+    files = parts(client, place)
+    ring, web = (centres(cut(files, name)) for name in ("gear_1_driven", "web_1_driven"))
+    # The outer edge of both, and the pins.
+    assert len(ring) == len(web) == 7
+    assert np.allclose(ring, web, rtol=0.0, atol=1e-9)
+
+
+def test_trains_that_are_not_built_are_refused_with_the_reason(client: Any) -> None:
+    for problem, words in (
+        (
+            {"kind": "planetary_train", "ratio": "-1", "arrangement": "bevel_differential", "max_designs": 1},
+            "one carrier",
+        ),
+    ):
+        job = finished(client, problem)
+        answer = refused(client, f"/v1/jobs/{job['id']}/designs/0", 409)
+        assert words in answer["detail"]

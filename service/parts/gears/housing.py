@@ -7,15 +7,15 @@ that reaches one plate alone ends beyond its farthest wheel. Its ends are held a
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 
 from kinematics.linkage.planar.mechanism import GROUND
 from service.parts.bodies import Prism
-from service.parts.building import BASE_COLOUR, plain
+from service.parts.building import BASE_COLOUR
 from service.parts.fasteners import FASTENER_COLOUR, MATERIALS, fillers, held_pin
-from service.parts.gears.keys import key_for, key_section, keyed_shaft
-from service.parts.model import Carrier, Part
+from service.parts.gears.keys import key_for, key_section, keyed_bore, keyed_shaft
+from service.parts.model import Carrier, Part, plain
 from service.parts.shapes import Disc, Outline, Region, widened
 from service.parts.sizes import Sizes
 
@@ -50,6 +50,8 @@ class Shaft:
         Whether one end stands out of its plate, to be turned, or to turn something.
     below : bool
         Whether that is the lower end, where it reaches both plates.
+    towards : complex
+        Where its keys point.
     """
 
     name: str
@@ -60,6 +62,7 @@ class Shaft:
     free: tuple[int, ...] = ()
     ends: bool = False
     below: bool = False
+    towards: complex = 1.0 + 0.0j
 
 
 @dataclass(frozen=True)
@@ -76,13 +79,16 @@ class Housing:
         Centres and radii of all that turns, which the posts stand beyond.
     posts : tuple of complex
         Where they are to stand; in the corners around everything if empty.
+    standing : tuple of int
+        Levels of what stands on the posts.
     """
 
     sizes: Sizes
     levels: tuple[Level, ...]
     shafts: tuple[Shaft, ...]
     around: tuple[tuple[complex, float], ...]
-    posts: tuple[complex, ...] = field(default=())
+    posts: tuple[complex, ...] = ()
+    standing: tuple[int, ...] = ()
 
     @property
     def top(self) -> int:
@@ -100,7 +106,7 @@ class Housing:
             found += self._on(shaft)
         for number, place in enumerate(places, 1):
             name, carrier = f"post_{number}", Carrier(GROUND, None)
-            found += self._stack(name, f"post {number}", carrier, place, (0, self.top), (0, self.top))
+            found += self._stack(name, f"post {number}", carrier, place, (0, self.top), (0, *self.standing, self.top))
         return found
 
     def corners(self) -> tuple[complex, ...]:
@@ -112,8 +118,13 @@ class Housing:
 
     def _plate(self, name: str, level: int, posts: Iterable[complex]) -> Part:
         radius = 0.5 * self.sizes.hole
-        held = [shaft.axis for shaft in self.shafts if level in shaft.reach]
+        held = [shaft.axis for shaft in self.shafts if level in shaft.reach and level not in shaft.keyed]
         cuts: list[Outline] = [Disc(place, radius) for place in (*held, *posts)]
+        cuts += [
+            keyed_bore(shaft.axis, self.sizes.pin, key_for(self.sizes.pin), self.sizes.clearance)
+            for shaft in self.shafts
+            if level in shaft.keyed
+        ]
         outer = widened([*self.corners(), *posts], 0.5 * self.sizes.width)
         return Part(
             name=name,
@@ -134,15 +145,15 @@ class Housing:
         seats, keys = [], []
         for level in sorted(shaft.keyed):
             low, high = self.levels[level].low + sizes.play, self.levels[level].high - sizes.play
-            seats.append(Prism(Region(keyed_shaft(shaft.axis, sizes.pin, key)), low, high))
+            seats.append(Prism(Region(keyed_shaft(shaft.axis, sizes.pin, key, shaft.towards)), low, high))
             keys.append(
                 Part(
                     name=f"key_{name}_{level}",
                     described=f"key of the {shaft.name}",
                     sort="key",
                     carrier=shaft.carrier,
-                    bodies=(Prism(Region(key_section(shaft.axis, sizes.pin, key)), low, high),),
-                    along=1.0 + 0.0j,
+                    bodies=(Prism(Region(key_section(shaft.axis, sizes.pin, key, shaft.towards)), low, high),),
+                    along=shaft.towards,
                     planes=(level, level),
                     material=MATERIALS[sizes.process][1],
                     colour=FASTENER_COLOUR,

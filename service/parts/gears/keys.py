@@ -61,28 +61,28 @@ def key_for(diameter: float) -> Key:
     return Key(b, h, t1, t2, f"DIN 6885 - {b:g} x {h:g}")
 
 
-def keyed_bore(centre: complex, diameter: float, key: Key, clearance: float) -> Loop:
-    """The hole of a hub, wider than shaft and key by a clearance on each side; the keyway points along x."""
+def keyed_bore(centre: complex, diameter: float, key: Key, clearance: float, towards: complex = 1.0) -> Loop:
+    """The hole of a hub, wider than shaft and key by a clearance on each side; ``towards`` the keyway points."""
     radius, half = 0.5 * diameter + clearance, 0.5 * key.width + clearance
     far = 0.5 * diameter + key.in_hub + clearance
     a = math.asin(half / radius)
     near = math.sqrt(radius**2 - half**2)
     corners = (far - 1j * half, far + 1j * half, near + 1j * half, near - 1j * half)
-    return Loop(tuple(centre + z for z in corners), (0.0, 0.0, math.tan(0.5 * (math.pi - a)), 0.0))
+    return Loop(tuple(centre + towards * z for z in corners), (0.0, 0.0, math.tan(0.5 * (math.pi - a)), 0.0))
 
 
-def keyed_shaft(centre: complex, diameter: float, key: Key) -> Loop:
+def keyed_shaft(centre: complex, diameter: float, key: Key, towards: complex = 1.0) -> Loop:
     """The section of a shaft through the seat of its key."""
     radius, half = 0.5 * diameter, 0.5 * key.width
     a = math.asin(half / radius)
     near, floor = math.sqrt(radius**2 - half**2), radius - key.in_shaft
     corners = (near + 1j * half, near - 1j * half, floor - 1j * half, floor + 1j * half)
-    return Loop(tuple(centre + z for z in corners), (math.tan(0.5 * (math.pi - a)), 0.0, 0.0, 0.0))
+    return Loop(tuple(centre + towards * z for z in corners), (math.tan(0.5 * (math.pi - a)), 0.0, 0.0, 0.0))
 
 
-def key_section(centre: complex, diameter: float, key: Key) -> Loop:
+def key_section(centre: complex, diameter: float, key: Key, towards: complex = 1.0) -> Loop:
     """The key as it lies in its seat, seen along the shaft."""
     half, floor = 0.5 * key.width, 0.5 * diameter - key.in_shaft
     top = floor + key.height
     corners = (floor - 1j * half, top - 1j * half, top + 1j * half, floor + 1j * half)
-    return Loop(tuple(centre + z for z in corners), (0.0,) * 4)
+    return Loop(tuple(centre + towards * z for z in corners), (0.0,) * 4)

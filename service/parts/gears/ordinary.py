@@ -10,19 +10,13 @@ from typing import Any
 
 from kinematics.errors import DimensionError
 from kinematics.gear.train import OrdinaryTrain, TrainStage
-from service.parts.bodies import Body, Prism, Twisted
-from service.parts.building import LINK_COLOURS
-from service.parts.fasteners import MATERIALS
 from service.parts.gears.housing import Housing, Level, Shaft, stacked
-from service.parts.gears.keys import key_for, keyed_bore
 from service.parts.gears.motion import TrainMotion, Turning
-from service.parts.gears.sizing import RIM, GearSizing
+from service.parts.gears.sizing import GearSizing
 from service.parts.gears.stand import Room, Stand, Wheel, stood
-from service.parts.gears.teeth import toothed
+from service.parts.gears.wheels import looked_at, rim_radius, wheel_parts
 from service.parts.model import Assembly, Carrier, Part
-from service.parts.overlaps import overlaps, too_thin
-from service.parts.shapes import Disc, Region
-from service.parts.sizes import WALL, NotMade, PartsQuery, Sizes
+from service.parts.sizes import NotMade, PartsQuery, Sizes
 from service.render.gears.train_layout import in_line
 from synthesis.kinds.gear_train.verification import driven_train
 
@@ -164,7 +158,7 @@ class _Task:
                 role = f"idler_{idler - len(self.train.stages) - before}"
                 idler += 1
             ring = gear.gear.internal
-            outer = gear.gear.root_radius + RIM * gear.gear.module if ring else gear.gear.tip_radius
+            outer = rim_radius(gear.gear, self.sizes) if ring else gear.gear.tip_radius
             helix = gear.helix_angle * (1.0 if gear.role == "driver" else -1.0)
             what = "ring" if ring else "gear"
             words = f"{what} of stage {number + 1}, {role.replace('_', ' ')}, {gear.count} teeth"
@@ -183,7 +177,9 @@ class _Task:
         housing = Housing(
             self.sizes, levels, tuple(shafts), tuple((wheel.centre, wheel.outer) for wheel in stand.wheels)
         )
-        parts = [*(wheel_part(wheel, self._body(wheel.shaft), levels, self.sizes) for wheel in stand.wheels)]
+        parts: list[Part] = []
+        for wheel in stand.wheels:
+            parts += wheel_parts(wheel, Carrier(self._body(wheel.shaft), None), levels, self.sizes)
         assembly = Assembly(
             (*parts, *housing.parts()), self._motion(stand), self.highest, 2, self.sizing.factor,
             self.sizing.query.scale, self._notes(stand),
@@ -226,54 +222,3 @@ class _Task:
                 plate = "lower" if reach[0] == 0 else "upper"
                 told.append(f"The {self._shaft(number, stand).name} stands in the {plate} plate alone.")
         return tuple(told)
-
-
-def wheel_part(wheel: Wheel, body: str, levels: Sequence[Level], sizes: Sizes, *, free: bool = False) -> Part:
-    """A wheel as a part: its teeth, its bore with a keyway, or without where it turns freely on its shaft."""
-    key = key_for(sizes.pin)
-    bore = Disc(wheel.centre, 0.5 * sizes.hole) if free else keyed_bore(wheel.centre, sizes.pin, key, sizes.clearance)
-    low, high = levels[wheel.level].low, levels[wheel.level].high
-    bodies: tuple[Body, ...]
-    twist = (high - low) * math.tan(wheel.helix_angle) / wheel.gear.pitch_radius
-    teeth = toothed(wheel.gear, wheel.centre, wheel.tooth_at - 0.5 * twist, abs(wheel.helix_angle), wheel.play)
-    if wheel.web is not None:
-        web, disc = levels[wheel.web], Disc(wheel.centre, wheel.outer)
-        # The ring stands on its web, through the gap between the two levels.
-        ends = (low, web.low) if web.low > low else (web.high, high)
-        bodies = (Prism(Region(disc, (teeth,)), *ends), Prism(Region(disc, (bore,)), web.low, web.high))
-    elif twist:
-        bodies = (Twisted(Region(teeth, (bore,)), low, high, twist, wheel.centre),)
-    else:
-        bodies = (Prism(Region(teeth, (bore,)), low, high),)
-    return Part(
-        name=wheel.name,
-        described=wheel.described,
-        sort="gear",
-        carrier=Carrier(body, None),
-        bodies=bodies,
-        along=1.0 + 0.0j,
-        planes=(wheel.level, wheel.level),
-        material=MATERIALS[sizes.process][0],
-        colour=LINK_COLOURS[wheel.tint % len(LINK_COLOURS)],
-    )
-
-
-def looked_at(assembly: Assembly, sizes: Sizes, sizing: GearSizing) -> Assembly:
-    """An assembly of which no two parts meet and enough is left around holes.
-
-    Raises
-    ------
-    NotMade
-        Otherwise.
-    """
-    thin = too_thin(assembly, 0.99 * WALL * sizes.pin)
-    if thin:
-        raise NotMade(f"The {thin[0].part.replace('_', ' ')} has too little left around its holes.", sizing.path)
-    meeting = overlaps(assembly)
-    if meeting:
-        one, other = (name.replace("_", " ") for name in meeting[0].parts)
-        raise NotMade(
-            f"There is no room: the {one} and the {other} meet at an input angle of "
-            f"{math.degrees(meeting[0].at):.1f}°.", sizing.path,
-        )  # fmt: skip
-    return assembly

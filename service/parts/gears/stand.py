@@ -51,6 +51,8 @@ class Wheel(NamedTuple):
         The level of the disc that holds a ring.
     play : float
         By which a tooth is thinner on the pitch circle.
+    top : int or None
+        The uppermost level of one that goes through several.
     """
 
     name: str
@@ -66,6 +68,7 @@ class Wheel(NamedTuple):
     helix_angle: float = 0.0
     web: int | None = None
     play: float = 0.0
+    top: int | None = None
 
     @property
     def levels(self) -> tuple[int, ...]:

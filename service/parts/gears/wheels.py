@@ -1,0 +1,132 @@
+"""Wheels as parts: teeth, bores, rings with their webs; and an assembly of them looked at.
+
+A ring is one piece with its web where it is printed or milled. Cut from sheets they are two, with pins through the rim.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+
+from kinematics.gear.teeth import Gear
+from service.parts.bodies import Body, Prism, Twisted
+from service.parts.building import LINK_COLOURS
+from service.parts.fasteners import MATERIALS, fillers, held_pin
+from service.parts.gears.housing import Level
+from service.parts.gears.keys import key_for, keyed_bore
+from service.parts.gears.sizing import RIM, GearSizing
+from service.parts.gears.stand import Wheel
+from service.parts.gears.teeth import toothed
+from service.parts.model import Assembly, Carrier, Part
+from service.parts.overlaps import overlaps, too_thin
+from service.parts.shapes import Disc, Outline, Region
+from service.parts.sizes import LOOSEST, TIGHTEST, WALL, WIDTH, NotMade, Sizes, pin_below
+
+JOINTS, JOINT = 6, 0.4
+"""How many pins join a ring to its web, and their greatest diameter in bores."""
+
+ROOM = 1.05
+"""By how much more than the least wall is left beside them."""
+
+
+def rim_radius(ring: Gear, sizes: Sizes) -> float:
+    """Outer radius of a ring: some modules beyond its roots, and with room for what joins it to its web."""
+    rim = RIM * ring.module
+    if sizes.process == "laser":
+        rim = max(rim, 2.0 * _beyond(sizes))
+    return ring.root_radius + rim
+
+
+def _joint(sizes: Sizes) -> Sizes:
+    """The pins that join a ring to its web."""
+    pin = pin_below(JOINT * sizes.pin)
+    clearance = min(max(sizes.clearance, TIGHTEST * pin), LOOSEST * pin)
+    return Sizes(sizes.process, WIDTH * pin, pin, sizes.thickness, clearance)
+
+
+def _beyond(sizes: Sizes) -> float:
+    """From the roots of a ring to the middle of these pins at least."""
+    return ROOM * WALL * sizes.pin + 0.5 * _joint(sizes).hole
+
+
+def wheel_parts(
+    wheel: Wheel, carrier: Carrier, levels: Sequence[Level], sizes: Sizes, *, free: bool = False,
+    towards: complex = 1.0 + 0.0j, like: str = "",
+) -> list[Part]:  # fmt: skip
+    """A wheel with what it consists of: its teeth, its bore with a keyway, or without where it turns on its shaft.
+
+    Parameters
+    ----------
+    free : bool
+        Whether it turns on its shaft.
+    towards : complex
+        Where its keyway points.
+    like : str
+        What wheels that are made alike have in common.
+    """
+    key = key_for(sizes.pin)
+    bore: Outline = Disc(wheel.centre, 0.5 * sizes.hole)
+    if not free:
+        bore = keyed_bore(wheel.centre, sizes.pin, key, sizes.clearance, towards)
+    low, high = levels[wheel.level].low, levels[wheel.top or wheel.level].high
+    twist = (high - low) * math.tan(wheel.helix_angle) / wheel.gear.pitch_radius
+    teeth = toothed(wheel.gear, wheel.centre, wheel.tooth_at - 0.5 * twist, abs(wheel.helix_angle), wheel.play)
+
+    def made(name: str, described: str, bodies: tuple[Body, ...], level: int) -> Part:
+        return Part(
+            name, described, "gear", carrier, bodies, towards, (level, level), MATERIALS[sizes.process][0],
+            LINK_COLOURS[wheel.tint % len(LINK_COLOURS)], like=like,
+        )  # fmt: skip
+
+    if wheel.web is None:
+        body: Body = Prism(Region(teeth, (bore,)), low, high)
+        if twist:
+            body = Twisted(Region(teeth, (bore,)), low, high, twist, wheel.centre)
+        return [made(wheel.name, wheel.described, (body,), wheel.level)]
+    web, disc = levels[wheel.web], Disc(wheel.centre, wheel.outer)
+    if sizes.process != "laser":
+        # The ring stands on its web, through the gap between the two levels.
+        ends = (low, web.low) if web.low > low else (web.high, high)
+        bodies = (Prism(Region(disc, (teeth,)), *ends), Prism(Region(disc, (bore,)), web.low, web.high))
+        return [made(wheel.name, wheel.described, bodies, wheel.level)]
+    joint = _joint(sizes)
+    away = 0.5 * (wheel.gear.root_radius + wheel.outer)
+    places = [wheel.centre + cmath.rect(away, 2.0 * math.pi * k / JOINTS) for k in range(JOINTS)]
+    holes = tuple(Disc(place, 0.5 * joint.hole) for place in places)
+    parts = [
+        made(wheel.name, wheel.described, (Prism(Region(disc, (teeth, *holes)), low, high),), wheel.level),
+        made(
+            f"web_{wheel.name.split('_', 1)[1]}", f"web of the {wheel.described.split(' of ')[0]}",
+            (Prism(Region(disc, (bore, *holes)), web.low, web.high),), wheel.web,
+        ),
+    ]  # fmt: skip
+    lower, upper = sorted((wheel.level, wheel.web))
+    for number, place in enumerate(places, 1):
+        name = f"{wheel.name}_{number}"
+        ends = levels[lower].low, levels[upper].high
+        parts += held_pin(name, f"rim {number}", carrier, place, ends, (lower, upper), joint)
+        gap = levels[lower].high, levels[upper].low
+        parts += fillers(name, carrier, place, gap, (lower, upper), joint, washers=False)
+    return parts
+
+
+def looked_at(assembly: Assembly, sizes: Sizes, sizing: GearSizing) -> Assembly:
+    """An assembly of which no two parts meet and enough is left around holes.
+
+    Raises
+    ------
+    NotMade
+        Otherwise.
+    """
+    thin = too_thin(assembly, 0.99 * WALL * sizes.pin)
+    if thin:
+        raise NotMade(f"The {thin[0].part.replace('_', ' ')} has too little left around its holes.", sizing.path)
+    meeting = overlaps(assembly)
+    if meeting:
+        one, other = (name.replace("_", " ") for name in meeting[0].parts)
+        raise NotMade(
+            f"There is no room: the {one} and the {other} meet at an input angle of "
+            f"{math.degrees(meeting[0].at):.1f}°.", sizing.path,
+        )  # fmt: skip
+    return assembly
