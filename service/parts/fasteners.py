@@ -61,11 +61,11 @@ def held_pin(
             region = ring(place, outer, inner)
             if outer == shank and inner == 0.0:
                 for seat in cut:
-                    if z < seat.low and seat.high < end:
+                    if z <= seat.low and seat.high <= end:
                         found += [Prism(region, z, seat.low), seat]
                         z = seat.high
             found.append(Prism(region, z, end))
-        return tuple(found)
+        return tuple(body for body in found if body.high > body.low)
 
     def turned(part: str, what: str, bodies: tuple[Prism, ...], colour: str, standard: str = "") -> Part:
         return Part(

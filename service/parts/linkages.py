@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import combinations
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
 
@@ -20,29 +20,10 @@ from kinematics.linkage.layout import Layout, laid_out
 from kinematics.linkage.planar.branches import cycle
 from kinematics.linkage.planar.mechanism import Mechanism
 from service.parts.building import Planes, Slot, assembled
+from service.parts.fitting import Fitting, Trial, fault_of
 from service.parts.linkage_motion import LinkageMotion
 from service.parts.model import Assembly
-from service.parts.overlaps import overlaps, too_thin
-from service.parts.sizes import (
-    CLEARANCES,
-    LARGEST_ASSEMBLY,
-    LOOSEST,
-    MILLIMETRES,
-    THINNEST_PIN,
-    TIGHTEST,
-    WALL,
-    WIDEST_PIN,
-    WIDTH,
-    NotMade,
-    PartsQuery,
-    Sizes,
-    judged,
-    pin_below,
-    rounded_down,
-    rounded_up,
-    sheet_for,
-)
-from service.parts.standards import PINS
+from service.parts.sizes import MILLIMETRES, THINNEST_PIN, WIDEST_PIN, NotMade, PartsQuery, Sizes
 from synthesis.analyses.cycle import branch_of, cycle_along
 from synthesis.proof.rebuilt import rebuilt
 
@@ -55,17 +36,7 @@ TRAVELLED = 2881
 PIN_SHARE, PIN_OF_LINK = 0.04, 0.35
 """The thickest pin that is tried where none is stated: shares of the mechanism's size and of its shortest link."""
 
-LEAST_FACTOR, STEPS = 2.0**16, 7
-"""How much larger a mechanism is tried at most, and how finely the least factor is then found: steps of halving."""
-
 Shafts = Literal["one_side", "both_sides"]
-
-
-class _Trial(NamedTuple):
-    """An assembly, or why there is none."""
-
-    assembly: Assembly | None
-    reason: str
 
 
 def linkage_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
@@ -84,128 +55,50 @@ def linkage_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     NotMade
         Where the mechanism has gears, cannot be driven, or leaves no room for such parts.
     """
-    unit = MILLIMETRES[problem.length_unit]
-    task = _Task(design, problem, query, unit)
-    if query.width is None and query.pin is None:
-        return task.by_default()
-    sizes = task.stated()
-    trial = task.tried(sizes, query.scale)
-    if trial.assembly is None:
-        raise task.refusal(sizes, trial.reason)
-    return trial.assembly
+    return _Linkage(design, problem, query).assembly()
 
 
-class _Task:
+class _Linkage(Fitting):
     """One request: a mechanism, and what it says of its parts."""
 
-    def __init__(self, design: Any, problem: Any, query: PartsQuery, unit: float) -> None:
+    def __init__(self, design: Any, problem: Any, query: PartsQuery) -> None:
         mechanism = rebuilt(design.mechanism, from_skeleton=True)
         if mechanism is None:
             raise NotMade("The design is of a size that is not built.")
         if mechanism.gears:
             raise NotMade("Parts are made of linkages with pins and slides; this one has gears.")
-        self._mechanism, self._query, self._unit = mechanism, query, unit
+        self._mechanism = mechanism
         self._block = getattr(problem, "layout", None)
         over = query.over or getattr(self._block, "over", None)
         self._low, self._high, self._closed = _range(mechanism, design, over)
         places = [complex(z) for z in mechanism.joints.values()]
-        self._size = max(abs(z - w) for z, w in combinations(places, 2))
+        size = max(abs(z - w) for z, w in combinations(places, 2))
         self._shortest = min(
             (
                 length
                 for listed in mechanism.links.values()
                 for one, other in combinations(listed, 2)
-                if (length := abs(complex(mechanism.joints[one] - mechanism.joints[other]))) > 1e-9 * self._size
+                if (length := abs(complex(mechanism.joints[one] - mechanism.joints[other]))) > 1e-9 * size
             ),
-            default=self._size,
+            default=size,
         )
-        largest = self._size * unit * query.scale
-        if largest > LARGEST_ASSEMBLY:
-            greatest = rounded_down(LARGEST_ASSEMBLY / (self._size * unit))
-            raise NotMade(
-                f"The mechanism is {largest / 1000.0:.4g} m large at this scale, and parts are made up to "
-                f"{LARGEST_ASSEMBLY / 1000.0:g} m; scale {greatest:g} is the greatest that works.",
-                "/query/scale",
-            )
+        super().__init__(query, MILLIMETRES[problem.length_unit], size)
 
     # Sizes
 
-    def stated(self) -> Sizes:
-        """The sizes of a request that states the width or the pin; the other follows."""
-        query, unit = self._query, self._unit
-        width = None if query.width is None else query.width * unit
-        pin = None if query.pin is None else query.pin * unit
-        if pin is None:
-            assert width is not None
-            pin = pin_below(width / WIDTH)
-            path = "/query/width"
-        else:
-            path = "/query/pin"
-        if not THINNEST_PIN <= pin <= WIDEST_PIN:
-            raise NotMade(
-                f"Pins of {pin / unit:.6g} {self._words} are none that are made; from {THINNEST_PIN / unit:g} to "
-                f"{WIDEST_PIN / unit:g} {self._words} they are.", path,
-            )  # fmt: skip
-        sizes = self._with(WIDTH * pin if width is None else width, pin)
-        self._judged(sizes)
-        return sizes
-
     @property
-    def _words(self) -> str:
-        return {value: name for name, value in MILLIMETRES.items()}[self._unit]
+    def most(self) -> float:
+        """Shares of the mechanism's size and of its shortest link."""
+        return min(PIN_SHARE * self._size, PIN_OF_LINK * self._shortest)
 
-    def _with(self, width: float, pin: float) -> Sizes:
-        """Sizes with what the request states of thickness and clearance."""
-        query, unit = self._query, self._unit
-        clearance = CLEARANCES[query.process] if query.clearance is None else query.clearance * unit
-        if query.clearance is None:
-            clearance = min(max(clearance, 2.0 * TIGHTEST * pin), 0.5 * LOOSEST * pin)
-        thickness = sheet_for(pin) if query.thickness is None else query.thickness * unit
-        return Sizes(query.process, width, pin, thickness, clearance)
+    def opening(self, sizes: Sizes) -> tuple[float, str]:
+        """Slots of slides are wider than holes."""
+        if self._mechanism.slides:
+            return sizes.block[1] + 2.0 * sizes.clearance, "blocks on pins"
+        return sizes.hole, "pins"
 
-    def _judged(self, sizes: Sizes) -> None:
-        """Refuse sizes that contradict one another, whatever the mechanism is."""
-        unit, words = self._unit, self._words
-        judged(sizes, unit)
-        hole = sizes.block[1] + 2.0 * sizes.clearance if self._mechanism.slides else sizes.hole
-        least = hole + 2.0 * WALL * sizes.pin
-        if sizes.width < least * (1.0 - 1e-9):
-            what = "blocks on pins" if self._mechanism.slides else "pins"
-            raise NotMade(
-                f"Links with {what} of {sizes.pin / unit:.6g} {words} are to be {rounded_up(least / unit):g} {words} "
-                "wide at least, which leaves a wall of a quarter of the pin.",
-                "/query/pin" if self._query.width is None else "/query/width",
-            )
-
-    def by_default(self) -> Assembly:
-        """The assembly with the thickest pins that leave room, those of the problem's block first."""
-        scale = self._query.scale
-        for sizes in self._of_the_problem():
-            trial = self.tried(sizes, scale)
-            if trial.assembly is not None:
-                return trial.assembly
-        most = min(PIN_SHARE * self._size, PIN_OF_LINK * self._shortest) * self._unit * scale
-        offered = [self._with(WIDTH * pin, pin) for pin in PINS if pin <= most]
-        offered = offered or [self._with(WIDTH * THINNEST_PIN, THINNEST_PIN)]
-        last = ""
-        found = None
-        # What fits is nearly always a matter of size: the thickest, or else the thinnest, and then between them.
-        low, high, at = 0, len(offered), len(offered) - 1
-        while low < high:
-            self._judged(offered[at])
-            trial = self.tried(offered[at], scale)
-            if trial.assembly is not None:
-                found, low = trial.assembly, at + 1
-            else:
-                last, high = trial.reason, at
-            at = (low + high) // 2 if found else 0
-            if found is None and high == 0:
-                break
-        if found is not None:
-            return found
-        raise self.refusal(self._with(WIDTH * THINNEST_PIN, THINNEST_PIN), last, "/query/scale")
-
-    def _of_the_problem(self) -> Iterator[Sizes]:
+    def of_the_problem(self) -> Iterator[Sizes]:
+        """Those of its block, where they contradict nothing."""
         block, factor = self._block, self._unit
         if block is not None:
             pin, width = block.pin_diameter * factor, block.link_width * factor
@@ -222,7 +115,7 @@ class _Task:
 
     # Assemblies
 
-    def tried(self, sizes: Sizes, scale: float) -> _Trial:
+    def tried(self, sizes: Sizes, scale: float) -> Trial:
         """The assembly in these sizes, on the first choice of bases that can be built."""
         reason = ""
         for shafts in self._shafts():
@@ -230,13 +123,13 @@ class _Task:
             if trial.assembly is not None:
                 return trial
             reason = "; and between two bases ".join(filter(None, (reason, trial.reason)))
-        return _Trial(None, reason)
+        return Trial(None, reason)
 
     def _shafts(self) -> tuple[Shafts, ...]:
         stated = self._query.shafts or getattr(self._block, "shafts", None)
         return ("one_side", "both_sides") if stated is None else (stated,)
 
-    def _tried(self, sizes: Sizes, scale: float, shafts: Shafts) -> _Trial:
+    def _tried(self, sizes: Sizes, scale: float, shafts: Shafts) -> Trial:
         factor = self._unit * scale
         mechanism = _scaled(self._mechanism, factor)
         larger = factor if mechanism.driven_by_slide else 1.0
@@ -256,18 +149,12 @@ class _Task:
                 whole=True,
             )
         except MechanismError as error:
-            return _Trial(None, str(error))
+            return Trial(None, str(error))
         if layout.clashes:
-            return _Trial(None, self._clashing(layout))
+            return Trial(None, self._clashing(layout))
         assembly = assembled(motion, Planes(layout.planes, layout.pins), _slots(motion), sizes, factor, scale)
-        thin = too_thin(assembly, 0.99 * WALL * sizes.pin)
-        if thin:
-            return _Trial(None, f"{_named(thin[0].part)} has too little left around its holes")
-        meeting = overlaps(assembly)
-        if meeting:
-            one, other = (_named(name) for name in meeting[0].parts)
-            return _Trial(None, f"{one} and {other} meet at {self._input(meeting[0].at / larger)}")
-        return _Trial(assembly, "")
+        fault = fault_of(assembly, sizes)
+        return Trial(None, fault) if fault else Trial(assembly, "")
 
     def _clashing(self, layout: Layout) -> str:
         one, other = layout.clashes[0].parts
@@ -277,43 +164,6 @@ class _Task:
         if self._mechanism.driven_by_slide:
             return f"the input's place {at:.4g}"
         return f"an input angle of {math.degrees(at):.1f}°"
-
-    def refusal(self, sizes: Sizes, reason: str, path: str = "") -> NotMade:
-        """What is said where parts find no room: the least scale at which they do, and the greatest width at this."""
-        scale, unit = self._query.scale, self._unit
-        path = path or ("/query/pin" if self._query.width is None else "/query/width")
-        known = f"There is no room for links {sizes.width / unit:.4g} {self._words} wide: {reason}."
-        least = self._least_scale(sizes, scale)
-        if least is None:
-            return NotMade(f"{known} Nor is there for narrower ones: the mechanism cannot be built in planes.")
-        words = f"{known} These sizes fit from scale {least:.4g} on"
-        widest, thinner = sizes.width * scale / least, sizes.pin * scale / least
-        if thinner >= THINNEST_PIN:
-            words += (
-                f"; at scale {scale:g} a width of {rounded_down(widest / unit):g} {self._words} does, with pin, "
-                "thickness and clearance in proportion"
-            )
-        return NotMade(f"{words}.", path)
-
-    def _least_scale(self, sizes: Sizes, scale: float) -> float | None:
-        """The least scale, up to a few hundredths, at which these sizes fit."""
-        too_small, fits = scale, None
-        factor = 2.0
-        while factor <= LEAST_FACTOR and self._size * self._unit * scale * factor <= LARGEST_ASSEMBLY:
-            if self.tried(sizes, scale * factor).assembly is not None:
-                fits = scale * factor
-                break
-            too_small, factor = scale * factor, 2.0 * factor
-        if fits is None:
-            return None
-        for _ in range(STEPS):
-            middle = math.sqrt(too_small * fits)
-            if self.tried(sizes, middle).assembly is not None:
-                fits = middle
-            else:
-                too_small = middle
-        rounded = rounded_up(fits)
-        return rounded if self.tried(sizes, rounded).assembly is not None else fits
 
 
 def _range(mechanism: Mechanism, design: Any, over: str | None) -> tuple[float, float, bool]:
@@ -375,7 +225,3 @@ def _slots(motion: LinkageMotion) -> list[Slot]:
         ends = point + (float(places.min()) - more) * direction, point + (float(places.max()) + more) * direction
         found.append(Slot(slide.joint, slide.link, direction, ends))
     return found
-
-
-def _named(part: str) -> str:
-    return "the " + part.replace("_", " ")

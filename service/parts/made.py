@@ -8,14 +8,16 @@ are refused, so that none is stated in vain. Makers are imported when one is fir
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from service.parts.model import Assembly
 from service.parts.sizes import NotMade, PartsQuery
+
+if TYPE_CHECKING:
+    from service.parts.model import Assembly
 
 __all__ = ["NotMade", "has_parts", "made"]
 
-Make = Callable[[Any, Any, PartsQuery], Assembly]
+Make = Callable[[Any, Any, PartsQuery], "Assembly"]
 
 LINKAGE = "linkage"
 """The maker of every mechanism that has a skeleton."""
@@ -46,6 +48,27 @@ def _planetary_trains() -> Make:
     return planetary_parts
 
 
+def _cams() -> Make:
+    from service.parts.cams import cam_parts
+
+    return cam_parts
+
+
+def _genevas() -> Make:
+    from service.parts.geneva import geneva_parts
+
+    return geneva_parts
+
+
+def _ratchets() -> Make:
+    from service.parts.ratchets import ratchet_parts
+
+    return ratchet_parts
+
+
+ONE_CYCLE = frozenset({"process", "width", "pin", "thickness", "clearance", "scale"})
+"""What is stated of parts on shafts of one base that turn on and on."""
+
 OF_GEARS = frozenset({"process", "thickness", "clearance", "bore", "face_width", "scale"})
 """What is asked of trains of gears."""
 
@@ -55,6 +78,10 @@ MAKERS: dict[str, Maker] = {
     ),
     "gear_train": Maker(_trains, OF_GEARS),
     "planetary_train": Maker(_planetary_trains, OF_GEARS),
+    "cam": Maker(_cams, ONE_CYCLE),
+    "geneva_external": Maker(_genevas, ONE_CYCLE),
+    "geneva_internal": Maker(_genevas, ONE_CYCLE),
+    "ratchet": Maker(_ratchets, ONE_CYCLE),
 }
 """By type of mechanism."""
 

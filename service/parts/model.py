@@ -190,6 +190,8 @@ class Assembly:
         How much larger than the design that is.
     notes : tuple of str
         What else its maker has to say to who puts it together.
+    touching : frozenset of frozenset of str
+        Pairs of parts, by name, that slide or roll on each other: a cam and its roller.
     """
 
     parts: tuple[Part, ...]
@@ -199,6 +201,7 @@ class Assembly:
     unit: float
     scale: float
     notes: tuple[str, ...] = ()
+    touching: frozenset[frozenset[str]] = frozenset()
 
     @property
     def size(self) -> float:

@@ -28,6 +28,9 @@ POSITIONS = 144
 ROUNDING = 1e-9
 """Share of the assembly's size by which faces that touch may seem to overlap."""
 
+TOUCH = 2e-3
+"""How deep two parts may seem to be in each other that touch, such as a roller and its cam, millimetres."""
+
 
 class Overlap(NamedTuple):
     """Two parts that want one place, and the input at which they want the most of it."""
@@ -65,7 +68,8 @@ def overlaps(assembly: Assembly, count: int = POSITIONS) -> list[Overlap]:
             if one.carrier == other.carrier and _about_one_axis(first, second):
                 most = np.maximum(most, _on_one_pin(first, second, ROUNDING * size))
             else:
-                most = np.maximum(most, moved.shared((one.carrier, first), (other.carrier, second)))
+                touch = frozenset((one.name, other.name)) in assembly.touching
+                most = np.maximum(most, moved.shared((one.carrier, first), (other.carrier, second), touch=touch))
         worst = int(np.argmax(most))
         if most[worst] > (ROUNDING * size) ** 2:
             found.append(Overlap((one.name, other.name), float(inputs[worst]), float(most[worst])))
@@ -129,23 +133,27 @@ class _Moved:
         carriers = {part.carrier for part in assembly.parts}
         self._placed = {carrier: assembly.motion.placed(carrier, state) for carrier in carriers}
         self._boxes: dict[Carried, NDArray[np.float64]] = {}
-        self._polygons: dict[Carried, NDArray[np.object_]] = {}
+        self._polygons: dict[tuple[Carried, bool], NDArray[np.object_]] = {}
 
     def in_one_frame(self, one: Carrier, other: Carrier) -> bool:
         """Whether what two carriers carry moves in parallel planes."""
         return self._placed[one].frame is self._placed[other].frame
 
-    def shared(self, first: Carried, second: Carried) -> NDArray[np.float64]:
-        """The area that two regions share at each input."""
+    def shared(self, first: Carried, second: Carried, *, touch: bool) -> NDArray[np.float64]:
+        """The area that two regions share at each input, of those that touch each other what is beyond rounding."""
         a, b = self._box(first), self._box(second)
         near = np.asarray(np.concatenate([a[:, :2] < b[:, 2:], b[:, :2] < a[:, 2:]], axis=1).all(axis=1))
         if first[0] == second[0]:
-            near[1:] = False  # they go together, so that one input says all
+            # They do not move against each other.
+            near[1:] = False
         areas = np.zeros(len(near))
         if near.any():
+            one, other = (self._solid(carried, beyond=not touch)[near] for carried in (first, second))
+            if touch:
+                one = shapely.buffer(one, -TOUCH)
             # Most do not meet, which is seen sooner than what they share.
-            near[near] = shapely.intersects(self._solid(first)[near], self._solid(second)[near])
-            areas[near] = shapely.area(shapely.intersection(self._solid(first)[near], self._solid(second)[near]))
+            meets = shapely.intersects(one, other)
+            areas[np.flatnonzero(near)[meets]] = shapely.area(shapely.intersection(one[meets], other[meets]))
         return areas
 
     def _ring(self, carried: Carried, outline: Outline, *, beyond: bool) -> NDArray[np.float64]:
@@ -161,15 +169,16 @@ class _Moved:
             self._boxes[carried] = np.concatenate([outer.min(axis=1), outer.max(axis=1)], axis=1)
         return self._boxes[carried]
 
-    def _solid(self, carried: Carried) -> NDArray[np.object_]:
-        """A region as a polygon at each input."""
-        if carried not in self._polygons:
+    def _solid(self, carried: Carried, *, beyond: bool) -> NDArray[np.object_]:
+        """A region as a polygon at each input, which lies outside of it (``beyond``), or inside."""
+        key = carried, beyond
+        if key not in self._polygons:
             region = carried[1]
-            holes = [shapely.linearrings(self._ring(carried, hole, beyond=False)) for hole in region.holes]
-            outer = shapely.linearrings(self._ring(carried, region.outer, beyond=True))
+            holes = [shapely.linearrings(self._ring(carried, hole, beyond=not beyond)) for hole in region.holes]
+            outer = shapely.linearrings(self._ring(carried, region.outer, beyond=beyond))
             solid = shapely.polygons(outer, holes=np.stack(holes, axis=1)) if holes else shapely.polygons(outer)
-            self._polygons[carried] = solid
-        return self._polygons[carried]
+            self._polygons[key] = solid
+        return self._polygons[key]
 
 
 def _pairs(points: NDArray[np.complex128]) -> NDArray[np.float64]:

@@ -289,7 +289,7 @@ def _plan(assembly: Assembly, top: float) -> tuple[list[Element], float]:
         )  # fmt: skip
     names = []
     for part in assembly.parts:
-        if part.sort == "pin" and part.described.startswith("pin "):
+        if part.sort == "pin" and (part.described.startswith("pin ") or part.described.endswith("shaft")):
             at = view.point(_centre(part))
             words = part.described.removeprefix("pin ")
             radius = 0.5 * view.scale * part.length_and_width[0]

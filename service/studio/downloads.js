@@ -32,7 +32,7 @@ export function downloads(job, n, drawing) {
       const parts = [JSON.stringify({ problem: job.problem, result: job.result }, null, 1)];
       return URL.createObjectURL(new Blob(parts, { type: "application/json" }));
     }),
-    ...(job.result.designs[n].mechanism.skeleton ? made(job, n, button) : []),
+    ...(isBuilt(job.result.designs[n].mechanism) ? made(job, n, button) : []),
     button("Report", `${job.kind}.html`, () => api.report(job.id)),
     // A link cannot send a key.
     api.key() ? "" : el("a", { href: api.reportAt(job.id), target: "_blank", rel: "noopener" }, "Open the report"),
@@ -40,8 +40,16 @@ export function downloads(job, n, drawing) {
   return place;
 }
 
+/** Types of mechanisms that there are parts of, beside linkages. */
+const BUILT = ["cam", "gear_train", "geneva_external", "geneva_internal", "ratchet"];
+
+/** @param {any} mechanism */
+function isBuilt(mechanism) {
+  return mechanism.skeleton || BUILT.includes(mechanism.type);
+}
+
 /**
- * The parts of a linkage, to cut and to print.
+ * The parts of a design, to cut and to print.
  * @param {api.Job} job @param {number} n
  * @param {(title: string, name: string, make: () => Promise<string>) => HTMLElement} button
  */

@@ -37,7 +37,9 @@ def angle(degrees: float, decimals: int = 3) -> str:
     """An angle in degrees, with its sign."""
     if not math.isfinite(degrees):
         return NONE
-    text = f"{degrees:.{decimals}f}".rstrip("0").rstrip(".")
+    text = f"{degrees:.{decimals}f}"
+    if decimals:
+        text = text.rstrip("0").rstrip(".")
     return _signed("0" if text == "-0" else text) + "°"
 
 

@@ -1,0 +1,435 @@
+"""Radial cams as parts: the cam on its shaft, the follower with its guide or pivot, rollers, and the base.
+
+From below: the base; the cam, and over it what carries the roller, or beside it what has the flat face. The roller
+hangs in the plane of the cam. A groove is two walls over a back. Of conjugate cams one is below the follower and one
+above. An arm whose pivot would stand in the cam's way lies below the cam, whose shaft then passes it.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kinematics.cam.contact import Contour
+from kinematics.cam.follower import Flat, OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
+from kinematics.cam.pieces import Motion as CamState
+from service.parts.bodies import Prism
+from service.parts.building import BLOCK_COLOUR, LINK_COLOURS
+from service.parts.cam_contours import outline
+from service.parts.cam_motion import CAM, FOLLOWER, CamMotion, Displacement
+from service.parts.curves import Curve
+from service.parts.fasteners import MATERIALS
+from service.parts.fitting import Fitting, Trial, fault_of
+from service.parts.followers import bell_crank, faced_arm, faced_slide
+from service.parts.model import Assembly, Carrier, Part
+from service.parts.shapes import Disc, Loop, Outline, Region, ring, widened
+from service.parts.sizes import MILLIMETRES, PartsQuery, Sizes
+from service.parts.stack import STILL, Stack
+from synthesis.kinds.cam.design import CamMechanism
+from synthesis.kinds.cam.mechanism import core_follower, points_of, stretches_of, table_angles
+from synthesis.mechanisms.cam import follower_by_dimensions
+
+CAM_COLOURS = LINK_COLOURS[0], LINK_COLOURS[5]
+FOLLOWER_COLOUR, ROLLER_COLOUR = LINK_COLOURS[1], LINK_COLOURS[2]
+
+ON_CAM, ON_FOLLOWER = Carrier(CAM, None), Carrier(FOLLOWER, None)
+
+PIN_OF_ROLLER, PIN_OF_BASE = 0.8, 0.25
+"""The thickest pin that is tried where none is stated: shares of the radii of roller and base circle."""
+
+GUIDE = 4.0
+"""Distance of the two pins of a slide's runner, in diameters of a pin."""
+
+RIM = 0.25
+"""What a cam with a groove has beyond its outer wall, beside a collar, in diameters of a pin."""
+
+DOWELS = 3
+"""Pins that hold the outer wall of a groove that is cut from sheets."""
+
+
+class Planes(NamedTuple):
+    """In which planes a cam and its follower lie; ``back`` is that of a groove, ``second`` that of a second cam."""
+
+    cam: int
+    follower: int
+    back: int | None = None
+    second: int | None = None
+
+    @property
+    def highest(self) -> int:
+        """The highest of them."""
+        return max(plane for plane in self if plane is not None)
+
+
+def cam_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+    """The parts of a radial cam.
+
+    Parameters
+    ----------
+    design : CamDesign
+    problem : CamProblem
+    query : PartsQuery
+        Lengths in the unit of the problem.
+
+    Raises
+    ------
+    NotMade
+        Where the contour is not one that is cut, or leaves no room for such parts.
+    """
+    return _Cams(design.mechanism, query, MILLIMETRES[problem.length_unit]).assembly()
+
+
+class _Cams(Fitting):
+    """One request for the parts of a cam."""
+
+    def __init__(self, mechanism: CamMechanism, query: PartsQuery, unit: float) -> None:
+        self._mechanism = mechanism
+        self._core = core_follower(mechanism)
+        far = max(float(np.abs(points_of(curve)).max()) for curve in (mechanism.profile, mechanism.pitch_curve))
+        super().__init__(query, unit, 2.0 * max(far, getattr(self._core, "pivot_distance", 0.0)))
+
+    @property
+    def most(self) -> float:
+        """A share of the roller, or of the base circle that a face touches; and of that which is left of a cam."""
+        mechanism = self._mechanism
+        if mechanism.base_radius is not None:
+            return PIN_OF_BASE * mechanism.base_radius
+        assert mechanism.prime_radius is not None
+        radius = mechanism.follower.roller_radius
+        assert radius is not None
+        return min(PIN_OF_ROLLER * radius, PIN_OF_BASE * 2.0 * (mechanism.prime_radius - radius))
+
+    def opening(self, sizes: Sizes) -> tuple[float, str]:
+        """A bar holds pins."""
+        return sizes.hole, "pins"
+
+    def tried(self, sizes: Sizes, scale: float) -> Trial:
+        """The assembly in the first arrangement that has room."""
+        reasons = []
+        for planes in arrangements(self._mechanism):
+            assembly = CamBuilder(self._mechanism, sizes, self._unit * scale, planes).assembled(scale)
+            reason = fault_of(assembly, sizes)
+            if not reason:
+                return Trial(assembly, "")
+            reasons.append(reason)
+        return Trial(None, "; and with the follower below the cam ".join(reasons))
+
+
+def arrangements(mechanism: CamMechanism) -> Iterator[Planes]:
+    """The planes that are tried, the first choice first."""
+    if mechanism.follower.type.endswith("flat"):
+        yield Planes(1, 1)
+        return
+    if mechanism.second is not None:
+        yield Planes(1, 2, second=3)
+        return
+    groove = mechanism.outer_wall is not None
+    yield Planes(2, 3, back=1) if groove else Planes(1, 2)
+    if mechanism.follower.type.startswith("oscillating"):
+        yield Planes(2, 1, back=3) if groove else Planes(2, 1)
+
+
+@dataclass(frozen=True)
+class _Roller:
+    """A roller of the follower: its centre at cam angle 0, its radius, and the plane of its cam."""
+
+    name: str
+    centre: complex
+    radius: float
+    plane: int
+
+
+class CamBuilder:
+    """Makes the assembly of a cam in given sizes.
+
+    Parameters
+    ----------
+    mechanism : CamMechanism
+        Of an answer.
+    sizes : Sizes
+    factor : float
+        Millimetres to a unit of length of the design, as large as it is built.
+    planes : Planes
+    """
+
+    def __init__(self, mechanism: CamMechanism, sizes: Sizes, factor: float, planes: Planes) -> None:
+        self._mechanism, self._sizes, self._factor, self._planes = mechanism, sizes, factor, planes
+        self._core = core_follower(mechanism)
+        self._sense = 1.0 if mechanism.rotation == "ccw" else -1.0
+        swings = isinstance(self._core, OscillatingRoller | OscillatingFlat)
+        self._unit = math.radians(1.0) if swings else factor
+        self._displacement = Displacement.of(mechanism.program, self._unit)
+        self._first = float(self._displacement(np.zeros(1))[0])
+        self._stack = Stack(sizes, ())
+        self._pivot: complex | None = None
+        self._way = 0.0
+        if isinstance(self._core, OscillatingRoller | OscillatingFlat):
+            self._pivot = complex(factor * self._core.pivot_distance)
+            # The arm lies above the line of centres where the cam turns clockwise and it swings outward with it.
+            self._way = -self._sense * self._core.sense
+
+    def assembled(self, scale: float) -> Assembly:
+        """All parts."""
+        rollers = self._rollers()
+        contours = [self._contour(self._mechanism.profile, self._inward)]
+        if self._mechanism.second is not None:
+            contours.append(self._contour(self._mechanism.second.profile, 0.0))
+        cams = self._cams(contours)
+        self._reach = max(_radii(part.region.outer)[1] for part in cams if part.sort == "cam")
+        follower, cuts, points = self._follower(rollers)
+        parts = [*cams, *self._shaft(), *follower]
+        for roller in rollers:
+            parts += self._roller(roller)
+        outer = widened([0j, *points], 0.5 * self._sizes.width)
+        bosses = [(0j, self._sizes.pin, self._first_plane)]
+        if self._pivot is not None:
+            bosses.append((self._pivot, self._sizes.pin, self._planes.follower))
+        parts.append(self._stack.base("base", outer, [Disc(0j, 0.5 * self._sizes.hole), *cuts], bosses))
+        motion = CamMotion(self._size(points), self._displacement, self._sense,
+                           complex(-self._way) if self._pivot is not None else 1.0 + 0.0j, self._pivot)  # fmt: skip
+        return Assembly(
+            tuple(parts), motion, self._planes.highest, 1, self._factor, scale, self._notes(),
+            frozenset(self._touching(rollers)),
+        )  # fmt: skip
+
+    # The cam
+
+    @property
+    def _inward(self) -> float:
+        """By how much the inner wall of a groove is off its profile."""
+        return -self._sizes.clearance if self._mechanism.outer_wall is not None else 0.0
+
+    @property
+    def _first_plane(self) -> int:
+        """The lowest plane of a cam."""
+        planes = self._planes
+        return min(plane for plane in (planes.cam, planes.back, planes.second) if plane is not None)
+
+    def _contour(self, curve: Any, offset: float) -> Curve:
+        program = self._mechanism.program
+        if list(curve.angle) == list(program.angle):
+            breaks = stretches_of(program).breaks
+            contour = Contour(points_of(curve), table_angles(program), breaks)
+        else:
+            contour = Contour(points_of(curve))
+        return outline(contour, self._factor, offset)
+
+    def _bore(self) -> Outline:
+        return self._stack.bore(0j)
+
+    def _cams(self, contours: list[Curve]) -> list[Part]:
+        planes, stack, hole = self._planes, self._stack, (self._bore(),)
+        if planes.back is None:
+            names = ["cam"] if len(contours) == 1 else ["cam_1", "cam_2"]
+            at = [planes.cam, planes.second or 0]
+            return [
+                stack.plate(name, name.replace("_", " "), "cam", ON_CAM, Region(contour, hole), plane, colour)
+                for name, contour, plane, colour in zip(names, contours, at, CAM_COLOURS, strict=False)
+            ]
+        wall = self._contour(self._mechanism.outer_wall, self._sizes.clearance)
+        rim = self._sizes.collar + RIM * self._sizes.pin
+        disc = Disc(0j, max(_radii(wall)) + rim)
+        if self._sizes.process != "laser":
+            return [self._milled(contours[0], wall, disc)]
+        places = [cmath.rect(disc.radius - 0.5 * rim, 2.0 * math.pi * n / DOWELS) for n in range(DOWELS)]
+        dowels = [Disc(z, 0.5 * self._sizes.hole) for z in places]
+        levels = min(planes.back, planes.cam), max(planes.back, planes.cam)
+        held: list[Part] = []
+        for n, z in enumerate(places, 1):
+            held += stack.pin(f"dowel_{n}", f"pin dowel {n}", ON_CAM, z, levels)
+            held += stack.between(f"dowel_{n}", ON_CAM, z, [levels])
+        back = Region(disc, (*hole, *dowels))
+        return [
+            stack.plate("cam_back", "back of the cam", "cam", ON_CAM, back, planes.back, CAM_COLOURS[1]),
+            stack.plate("cam", "cam, inner wall of the groove", "cam", ON_CAM, Region(contours[0], hole), planes.cam,
+                        CAM_COLOURS[0]),
+            stack.plate("cam_wall", "outer wall of the groove", "cam", ON_CAM, Region(disc, (wall, *dowels)),
+                        planes.cam, CAM_COLOURS[0]),
+            *held,
+        ]  # fmt: skip
+
+    def _milled(self, inner: Curve, wall: Curve, disc: Disc) -> Part:
+        """A cam with its groove in one piece."""
+        planes, hole = self._planes, (self._bore(),)
+        assert planes.back is not None
+        (low, high), (bottom, top) = self._stack.level(planes.back), self._stack.level(planes.cam)
+        walls = (high, top) if bottom > high else (bottom, low)
+        bodies = (
+            Prism(Region(disc, hole), low, high),
+            Prism(Region(inner, hole), *walls),
+            Prism(Region(disc, (wall,)), *walls),
+        )
+        span = (min(planes.back, planes.cam), max(planes.back, planes.cam))
+        material = MATERIALS[self._sizes.process][0]
+        return Part("cam", "cam with its groove", "cam", ON_CAM, bodies, 1.0 + 0.0j, span, material, CAM_COLOURS[0])
+
+    def _shaft(self) -> list[Part]:
+        planes = self._planes
+        keyed = sorted(plane for plane in (planes.cam, planes.back, planes.second) if plane is not None)
+        parts = self._stack.pin("cam", "camshaft", ON_CAM, 0j, (0, keyed[-1]), keyed=keyed, stub=-1)
+        spans = [(0, keyed[0])] if self._sizes.process != "print" else []
+        if planes.back is None or self._sizes.process == "laser":
+            spans += pairwise(keyed)
+        return parts + self._stack.between("cam", ON_CAM, 0j, spans)
+
+    # The follower
+
+    def _rollers(self) -> list[_Roller]:
+        core, factor, second = self._core, self._factor, self._mechanism.second
+        if isinstance(core, TranslatingRoller):
+            centre = complex(factor * core.height + self._first, -self._sense * factor * core.offset)
+        elif isinstance(core, OscillatingRoller):
+            assert self._pivot is not None
+            swung = core.start_angle + self._first
+            centre = self._pivot - factor * core.arm * complex(np.exp(-1j * self._way * swung))
+        else:
+            return []
+        found = [_Roller("roller", centre, factor * core.roller_radius, self._planes.cam)]
+        if second is not None:
+            assert self._planes.second is not None
+            other = follower_by_dimensions(second.follower.type, second.prime_radius, second.follower)
+            assert isinstance(other, TranslatingRoller | OscillatingRoller)
+            if isinstance(core, TranslatingRoller):
+                opposite = centre - factor * second.roller_distance
+            else:
+                assert isinstance(other, OscillatingRoller)
+                assert self._pivot is not None
+                assert second.arm_angle is not None
+                turn = complex(np.exp(1j * self._way * math.radians(second.arm_angle)))
+                opposite = self._pivot + (centre - self._pivot) * other.arm / core.arm * turn
+            found.append(_Roller("roller_2", opposite, factor * other.roller_radius, self._planes.second))
+        return found
+
+    def _follower(self, rollers: list[_Roller]) -> tuple[list[Part], list[Outline], list[complex]]:
+        """Its parts, what is cut into the base for them, and points that the base reaches to."""
+        core = self._core
+        if isinstance(core, TranslatingRoller | TranslatingFlat):
+            return self._slide(core, rollers)
+        assert self._pivot is not None
+        plane, radius = self._planes.follower, 0.5 * self._sizes.width
+        shape: Outline
+        if isinstance(core, OscillatingFlat):
+            shape = self._swung_face(core)
+        elif len(rollers) == 1:
+            shape = widened([self._pivot, rollers[0].centre], radius)
+        else:
+            arms = [roller.centre - self._pivot for roller in rollers][:: 1 if self._way > 0.0 else -1]
+            crank = bell_crank(arms[0], arms[1], radius)
+            shape = Loop(tuple(self._pivot + z for z in crank.corners), crank.bulges)
+        holes = [Disc(z, 0.5 * self._sizes.hole) for z in (self._pivot, *(roller.centre for roller in rollers))]
+        along = _direction((rollers[0].centre if rollers else 0j) - self._pivot)
+        arm = self._stack.plate("follower", "arm", "link", ON_FOLLOWER, Region(shape, tuple(holes)), plane,
+                                FOLLOWER_COLOUR, along)  # fmt: skip
+        on_pivot = self._stack.pin("pivot", "pin pivot", STILL, self._pivot, (0, plane))
+        if self._sizes.process != "print":
+            on_pivot += self._stack.between("pivot", STILL, self._pivot, [(0, plane)])
+        return [arm, *on_pivot], [Disc(self._pivot, 0.5 * self._sizes.hole)], [self._pivot]
+
+    def _swung_face(self, core: OscillatingFlat) -> Loop:
+        assert self._pivot is not None
+        reach = self._factor * core.reach(self._state())
+        shape = faced_arm(self._factor * core.face_offset, (float(reach.min()), float(reach.max())), self._sizes.width)
+        along = 1j * self._way * complex(np.exp(1j * self._way * (0.5 * math.pi - core.start_angle - self._first)))
+        corners, bulges = shape.corners, shape.bulges
+        if self._way < 0.0:
+            corners = tuple(z.conjugate() for z in (corners[0], *corners[:0:-1]))
+            bulges = bulges[::-1]
+        return Loop(tuple(self._pivot + along * z for z in corners), bulges)
+
+    def _state(self) -> CamState:
+        """The program's table as the core has motions, in radians or the design's unit."""
+        program, unit = self._mechanism.program, self._unit if self._pivot is not None else 1.0
+        return CamState(unit * np.array(program.s), *(np.array(x) for x in (program.v, program.a, program.j)))
+
+    def _slide(
+        self, core: TranslatingRoller | TranslatingFlat, rollers: list[_Roller]
+    ) -> tuple[list[Part], list[Outline], list[complex]]:
+        sizes, stack, plane = self._sizes, self._stack, self._planes.follower
+        least, most = (end - self._first for end in self._displacement.extremes)
+        line = -self._sense * self._factor * core.offset
+        half = 0.5 * sizes.width
+        if isinstance(core, TranslatingFlat):
+            begin = self._factor * core.base_radius + self._first
+            guide = begin + 2.0 * sizes.width
+        else:
+            # Its pins pass the plane of the cam, beyond all that turns there.
+            begin = rollers[0].centre.real
+            guide = max(begin + sizes.width + sizes.collar, self._reach + 0.5 * sizes.collar + sizes.apart - least)
+        ends = [complex(guide, line), complex(guide + GUIDE * sizes.pin, line)]
+        holes: list[Outline] = [Disc(z, 0.5 * sizes.hole) for z in (*ends, *(roller.centre for roller in rollers))]
+        if isinstance(core, TranslatingFlat):
+            contact = -self._sense * self._factor * np.array(self._mechanism.program.v)
+            shape: Outline = faced_slide(
+                begin, line, (float(contact.min()), float(contact.max())), sizes.width, ends[1].real
+            )
+        else:
+            if len(rollers) > 1:
+                # The shaft passes the yoke.
+                around = 0.5 * sizes.collar + sizes.clearance
+                holes.append(widened([complex(-most), complex(-least)], around))
+                half = max(half, abs(line) + around + 0.5 * sizes.pin)
+            shape = widened([rollers[-1].centre, ends[1]], half)
+        stem = stack.plate("follower", "follower", "link", ON_FOLLOWER, Region(shape, tuple(holes)), plane,
+                           FOLLOWER_COLOUR)  # fmt: skip
+        wide = 0.5 * sizes.block[1]
+        runner = stack.plate(
+            "runner", "runner in the guide", "block", ON_FOLLOWER,
+            Region(widened(ends, wide), tuple(Disc(z, 0.5 * sizes.hole) for z in ends)), 0, BLOCK_COLOUR,
+        )  # fmt: skip
+        parts = [stem, runner]
+        for n, z in enumerate(ends, 1):
+            parts += stack.pin(f"guide_{n}", f"pin guide {n}", ON_FOLLOWER, z, (0, plane))
+            parts += stack.between(f"guide_{n}", ON_FOLLOWER, z, [(0, plane)])
+        way = [ends[0] + least, ends[1] + most]
+        return parts, [widened(way, wide + sizes.clearance)], way
+
+    def _roller(self, roller: _Roller) -> list[Part]:
+        sizes, stack, plane = self._sizes, self._stack, self._planes.follower
+        levels = min(roller.plane, plane), max(roller.plane, plane)
+        region = ring(roller.centre, roller.radius, 0.5 * sizes.hole)
+        body = Prism(region, *stack.level(roller.plane))
+        material = {"print": "PETG", "laser": "sheet", "mill": "steel"}[sizes.process]
+        part = Part(roller.name, roller.name.replace("_", " "), "block", ON_FOLLOWER, (body,), 1.0 + 0.0j,
+                    (roller.plane, roller.plane), material, ROLLER_COLOUR, round=True)  # fmt: skip
+        pin = stack.pin(roller.name, f"pin {roller.name.replace('_', ' ')}", ON_FOLLOWER, roller.centre, levels)
+        return [part, *pin, *stack.between(roller.name, ON_FOLLOWER, roller.centre, [levels])]
+
+    # The whole
+
+    def _touching(self, rollers: list[_Roller]) -> Iterator[frozenset[str]]:
+        """Parts that touch each other all the time."""
+        if isinstance(self._core, Flat):
+            yield frozenset(("cam", "follower"))
+        elif len(rollers) > 1:
+            yield from (frozenset(pair) for pair in (("cam_1", "roller"), ("cam_2", "roller_2")))
+        elif self._planes.back is None:
+            yield frozenset(("cam", "roller"))
+
+    def _size(self, points: list[complex]) -> float:
+        """From the far side of the cam to the far end of the base."""
+        return self._reach + max(abs(z) for z in points)
+
+    def _notes(self) -> tuple[str, ...]:
+        notes = ["The camshaft stands out below the base, where it is driven; keys join it to what turns with it."]
+        if self._planes.back is None and self._planes.second is None:
+            notes.append("A spring or a weight holds the follower to the cam; it is not among the parts.")
+        return tuple(notes)
+
+
+def _radii(outer: Outline) -> tuple[float, float]:
+    """The least and the greatest distance from the origin of an outline about it."""
+    if isinstance(outer, Curve):
+        far = np.abs(outer.ring(beyond=True))
+        return float(far.min()), float(far.max())
+    assert isinstance(outer, Disc)
+    return outer.radius, outer.radius
+
+
+def _direction(z: complex) -> complex:
+    return z / abs(z)

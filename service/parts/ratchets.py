@@ -1,0 +1,200 @@
+"""Ratchets as parts: the toothed wheel on its shaft, pawls on their pivots beside it, and the base.
+
+Wheel and pawls lie in one plane. A pawl has a nose between the face that it holds and a line that stays clear of the
+tooth behind, whatever the lift; its body stays outside of the circle of the tips.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from kinematics.indexing.ratchet import Ratchet
+from kinematics.linkage.planar.mechanism import GROUND
+from service.parts.building import LINK_COLOURS
+from service.parts.cam_motion import TURN, Turning, still, turned
+from service.parts.fitting import Fitting, Trial, fault_of
+from service.parts.model import Assembly, Carrier, Part, Placed, Real
+from service.parts.shapes import Disc, Loop, Region, widened
+from service.parts.sizes import MILLIMETRES, WIDTH, NotMade, PartsQuery, Sizes
+from service.parts.stack import STILL, Stack
+from synthesis.kinds.indexing.design import RatchetMechanism
+
+WHEEL, PAWL = "wheel", "pawl"
+ON_WHEEL = Carrier(WHEEL, None)
+WHEEL_COLOUR, PAWL_COLOUR = LINK_COLOURS[1], LINK_COLOURS[0]
+
+PIN_OF_WHEEL = 0.15
+"""The thickest pin that is tried where none is stated, in radii of the wheel."""
+
+NOSE = 1.5
+"""Length of a pawl's face, in lengths of a tooth's."""
+
+SLACK, SHARPEST = 2.0, 8.0
+"""Between the nose and the tooth behind where they come nearest, and of the sharpest nose, degrees."""
+
+LOOKED_AT = 721
+"""Positions of a pitch in which it is seen how far a pawl turns against the wheel."""
+
+
+@dataclass(frozen=True)
+class RatchetMotion(Turning):
+    """Wheel and pawls over a turn of the wheel, from where the first pawl holds it.
+
+    Attributes
+    ----------
+    ratchet : Ratchet
+        In millimetres.
+    pivots : tuple of complex
+        Of the pawls.
+    stops : tuple of float
+        By how much the wheel is beyond its first stop where each pawl holds it, radians.
+    """
+
+    ratchet: Ratchet
+    pivots: tuple[complex, ...]
+    stops: tuple[float, ...]
+
+    def inputs(self, count: int) -> Real:
+        """So many inputs over a turn and a pitch, so that they are spread over a pitch too."""
+        return (TURN + self.ratchet.pitch) / count * np.arange(count, dtype=np.float64)
+
+    def placed(self, carrier: Carrier, state: Real) -> Placed:
+        """How what a carrier carries has moved since the first pawl held the wheel."""
+        if carrier.link == GROUND:
+            return still(state)
+        if carrier.link == WHEEL:
+            return turned(state)
+        number = int(carrier.link.removeprefix(PAWL)) - 1
+        return turned(self.lift(number, np.zeros(1)) - self.lift(number, state), self.pivots[number])
+
+    def lift(self, number: int, state: Real) -> Real:
+        """By how much a pawl is lifted, radians."""
+        return self.ratchet.lifted(state - self.stops[number])
+
+
+def ratchet_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+    """The parts of a ratchet.
+
+    Parameters
+    ----------
+    design : RatchetDesign
+    problem : IndexingProblem
+    query : PartsQuery
+        Lengths in the unit of the problem.
+
+    Raises
+    ------
+    NotMade
+        Where the teeth leave no room for a nose, or there is none for such parts.
+    """
+    return _Ratchet(design.mechanism, query, MILLIMETRES[problem.length_unit]).assembly()
+
+
+class _Ratchet(Fitting):
+    """One request for the parts of a ratchet."""
+
+    def __init__(self, mechanism: RatchetMechanism, query: PartsQuery, unit: float) -> None:
+        self._mechanism = mechanism
+        far = max(abs(complex(*pawl.pivot)) for pawl in mechanism.pawls)
+        super().__init__(query, unit, 2.0 * max(far, mechanism.wheel_radius))
+
+    @property
+    def most(self) -> float:
+        """A share of the wheel."""
+        return PIN_OF_WHEEL * self._mechanism.wheel_radius
+
+    def tried(self, sizes: Sizes, scale: float) -> Trial:
+        """The assembly in these sizes."""
+        assembly = _Builder(self._mechanism, sizes, self._unit * scale).assembled(scale, self._size)
+        fault = fault_of(assembly, sizes)
+        return Trial(None, fault) if fault else Trial(assembly, "")
+
+
+class _Builder:
+    """Makes the parts of a ratchet in given sizes; lengths in millimetres."""
+
+    def __init__(self, mechanism: RatchetMechanism, sizes: Sizes, factor: float) -> None:
+        self._sizes, self._factor = sizes, factor
+        self._ratchet = Ratchet(
+            mechanism.teeth,
+            factor * mechanism.wheel_radius,
+            factor * mechanism.tooth_height,
+            math.radians(mechanism.face_angle),
+            factor * mechanism.pawl_length,
+        )
+        self._shaft = factor * mechanism.bore or sizes.pin
+        self._stack = Stack(sizes, (self._shaft,))
+        self._pawls = mechanism.pawls
+        self._pivots = tuple(factor * complex(*pawl.pivot) for pawl in mechanism.pawls)
+
+    def assembled(self, scale: float, size: float) -> Assembly:
+        """All parts."""
+        stops = tuple(math.radians(pawl.stop) for pawl in self._pawls)
+        motion = RatchetMotion(self._factor * size, self._ratchet, self._pivots, stops)
+        stack, sizes = self._stack, self._sizes
+        corners = tuple(self._ratchet.outline.tolist())
+        wheel = Region(Loop(corners, (0.0,) * len(corners)), (stack.bore(0j, self._shaft),))
+        names = ["pawl"] if len(self._pawls) == 1 else [f"pawl_{n}" for n in range(1, len(self._pawls) + 1)]
+        parts = [
+            stack.plate("wheel", "ratchet wheel", "link", ON_WHEEL, wheel, 1, WHEEL_COLOUR),
+            *stack.pin("wheel", "wheel shaft", ON_WHEEL, 0j, (0, 1), diameter=self._shaft, keyed=(1,), stub=-1),
+        ]
+        for number, name in enumerate(names):
+            parts += self._pawl(name, number, float(motion.lift(number, np.zeros(1))[0]))
+        if sizes.process != "print":
+            parts += stack.between("wheel", ON_WHEEL, 0j, [(0, 1)], self._shaft)
+        half = 0.5 * max(sizes.width, sizes.width if self._shaft == sizes.pin else WIDTH * self._shaft)
+        holes = [Disc(0j, 0.5 * stack.of(self._shaft).hole), *(Disc(z, 0.5 * sizes.hole) for z in self._pivots)]
+        bosses = [(0j, self._shaft, 1), *((z, sizes.pin, 1) for z in self._pivots)]
+        parts.append(stack.base("base", widened([0j, *self._pivots], half), holes, bosses))
+        notes = ("The input is the wheel's angle, counter-clockwise, from where the first pawl holds it.",
+                 "Springs or weights lay the pawls on the teeth; they are not among the parts.",
+                 "A key joins the wheel to its shaft, which stands out below the base.")  # fmt: skip
+        touching = frozenset(frozenset(("wheel", name)) for name in names)
+        return Assembly(tuple(parts), motion, 1, 1, self._factor, scale, notes, touching)
+
+    def _pawl(self, name: str, number: int, lift: float) -> list[Part]:
+        stack, pivot = self._stack, self._pivots[number]
+        # From the first pawl, as it holds the wheel, to this one where it is then.
+        turn = pivot / self._ratchet.pivot * cmath.exp(-1j * lift)
+        shape = self._outline()
+        corners = tuple(pivot + turn * (z - self._ratchet.pivot) for z in shape.corners)
+        region = Region(Loop(corners, shape.bulges), (Disc(pivot, 0.5 * self._sizes.hole),))
+        along = turn * (self._ratchet.foot - self._ratchet.pivot)
+        carrier = Carrier(f"{PAWL}{number + 1}", None)
+        parts = [stack.plate(name, name.replace("_", " "), "link", carrier, region, 1, PAWL_COLOUR, along / abs(along))]
+        parts += stack.pin(name, f"pin {name.replace('_', ' ')}", STILL, pivot, (0, 1))
+        if self._sizes.process != "print":
+            parts += stack.between(name, STILL, pivot, [(0, 1)])
+        return parts
+
+    def _outline(self) -> Loop:
+        """The first pawl, as it holds the wheel: its nose, and round its pivot."""
+        ratchet, radius = self._ratchet, 0.5 * self._sizes.width
+        foot, pivot = ratchet.foot, ratchet.pivot
+        face = (ratchet.tip - foot) / abs(ratchet.tip - foot)
+        back = ratchet.tip * cmath.exp(-1j * ratchet.pitch) - foot
+        # By how much the pawl turns against the wheel, towards the tooth behind, until it falls in again.
+        wheel = np.linspace(0.0, ratchet.pitch + ratchet.overtravel, LOOKED_AT)[:-1]
+        closing = float((wheel + ratchet.lifted(wheel)).max()) + math.radians(SLACK)
+        inner = back / abs(back) * cmath.exp(1j * closing)
+        if cmath.phase(face / inner) < math.radians(SHARPEST):
+            raise NotMade("The teeth are too few for a pawl of one piece: its nose would meet the tooth behind.")
+        # Out of the circle of the tips, and on to the pivot.
+        out = ratchet.radius + self._sizes.apart
+        along = (foot * inner.conjugate()).real
+        beyond = foot + inner * (-along + math.sqrt(along**2 + out**2 - abs(foot) ** 2))
+        end = foot + NOSE * abs(ratchet.tip - foot) * face
+        if abs(end) < out:
+            end = foot + face * (abs(ratchet.tip - foot) + self._sizes.apart + 0.5 * ratchet.height)
+        first = cmath.phase(beyond - pivot) + math.acos(min(1.0, radius / abs(beyond - pivot)))
+        last = cmath.phase(end - pivot) - math.acos(min(1.0, radius / abs(end - pivot)))
+        turn = (last - first) % (2.0 * math.pi)
+        around = [pivot + radius * cmath.exp(1j * (first + share * turn)) for share in (0.0, 0.5, 1.0)]
+        bulge = math.tan(0.125 * turn)
+        return Loop((foot, beyond, *around, end), (0.0, 0.0, bulge, bulge, 0.0, 0.0))

@@ -1,0 +1,136 @@
+"""Plates in planes, and what stands on the pins and shafts that join them.
+
+Plane k, a plate thick, lies from k pitches less a thickness to k pitches; the base is plane 0. A shaft turns with the
+plates that are keyed to it, and stands out below the base, where it is driven or drives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from service.parts.bodies import Prism
+from service.parts.building import BASE_COLOUR
+from service.parts.fasteners import FASTENER_COLOUR, MATERIALS, fillers, held_pin
+from service.parts.gears.keys import key_for, key_section, keyed_bore, keyed_shaft
+from service.parts.model import Carrier, Part, Sort
+from service.parts.shapes import Outline, Region, ring
+from service.parts.sizes import Sizes
+
+COLLAR = 1.4
+"""Diameter of rings and spacers on a shaft that is thicker or thinner than the pins, in its own."""
+
+STUB = 1.5
+"""By how much a shaft stands out below what holds it, in its diameters."""
+
+STILL = Carrier("ground", None)
+"""What carries the base."""
+
+
+class Stack:
+    """Planes of one pitch for pins and shafts of given sizes.
+
+    Parameters
+    ----------
+    sizes : Sizes
+        Of plates and pins.
+    shafts : sequence of float
+        Diameters of shafts, where they differ from the pins.
+    """
+
+    def __init__(self, sizes: Sizes, shafts: Sequence[float]) -> None:
+        self.sizes = sizes
+        self._gap = max([sizes.gap, *(self.of(diameter).gap for diameter in shafts)])
+
+    def of(self, diameter: float) -> Sizes:
+        """The sizes of what stands on a pin or shaft of a diameter."""
+        if diameter == self.sizes.pin:
+            return self.sizes
+        return replace(self.sizes, pin=diameter, width=COLLAR * diameter)
+
+    def level(self, plane: int) -> tuple[float, float]:
+        """The heights between which a plane lies."""
+        top = plane * (self.sizes.thickness + self._gap)
+        return top - self.sizes.thickness, top
+
+    def plate(
+        self, name: str, described: str, sort: Sort, carrier: Carrier, region: Region, plane: int, colour: str,
+        along: complex = 1.0 + 0.0j,
+    ) -> Part:  # fmt: skip
+        """A plate in a plane."""
+        material = MATERIALS[self.sizes.process][0]
+        body = Prism(region, *self.level(plane))
+        return Part(name, described, sort, carrier, (body,), along, (plane, plane), material, colour)
+
+    def base(
+        self, name: str, outer: Outline, cuts: Sequence[Outline], bosses: Sequence[tuple[complex, float, int]],
+        plane: int = 0, along: complex = 1.0 + 0.0j,
+    ) -> Part:  # fmt: skip
+        """A base; a printed one has bosses around its shafts, given by place, diameter and the nearest plane."""
+        low, high = self.level(plane)
+        bodies = [Prism(Region(outer, tuple(cuts)), low, high)]
+        if self.sizes.process == "print":
+            for place, diameter, nearest in bosses:
+                sizes = self.of(diameter)
+                region = ring(place, 0.5 * sizes.collar, 0.5 * sizes.hole)
+                if nearest > plane:
+                    bodies.append(Prism(region, high, self.level(nearest)[0] - sizes.play))
+                else:
+                    bodies.append(Prism(region, self.level(nearest)[1] + sizes.play, low))
+        material = MATERIALS[self.sizes.process][0]
+        return Part(
+            name, name.replace("_", " "), "base", STILL, tuple(bodies), along, (plane, plane), material, BASE_COLOUR
+        )
+
+    def pin(
+        self, name: str, described: str, carrier: Carrier, place: complex, levels: Sequence[int], *,
+        diameter: float | None = None, keyed: Sequence[int] = (), stub: int = 0,
+    ) -> list[Part]:  # fmt: skip
+        """A pin with what holds it at either end; a shaft with its keys.
+
+        Parameters
+        ----------
+        levels : sequence of int
+            The lowest and the highest plane of what it holds.
+        keyed : sequence of int
+            Planes of the plates that a key joins to it.
+        stub : {-1, 0, 1}
+            Whether it stands out below or above, to be driven.
+        """
+        sizes = self.of(self.sizes.pin if diameter is None else diameter)
+        key = key_for(sizes.pin)
+        ends = self.level(min(levels))[0], self.level(max(levels))[1]
+        section = Region(keyed_shaft(place, sizes.pin, key))
+        seats = [Prism(section, *self.level(plane)) for plane in sorted(keyed)]
+        length = STUB * sizes.pin if stub else 0.0
+        parts = held_pin(
+            name, described, carrier, place, ends, (min(levels), max(levels)), sizes, seats=seats, stub=length,
+            upside_down=stub < 0,
+        )  # fmt: skip
+        steel, seated = MATERIALS[self.sizes.process][1], Region(key_section(place, sizes.pin, key))
+        for plane in keyed:
+            bodies = (Prism(seated, *self.level(plane)),)
+            told = key.standard and f"{key.standard} x {self.sizes.thickness:g}"
+            parts.append(Part(f"key_{name}_{plane}", "key", "key", carrier, bodies, 1.0 + 0.0j, (plane, plane), steel,
+                              FASTENER_COLOUR, told))  # fmt: skip
+        return parts
+
+    def between(
+        self, name: str, carrier: Carrier, place: complex, spans: Sequence[tuple[int, int]],
+        diameter: float | None = None,
+    ) -> list[Part]:  # fmt: skip
+        """Washers in the gaps between neighbouring planes, and spacers through planes that are passed."""
+        sizes, parts = self.of(self.sizes.pin if diameter is None else diameter), []
+        for lower, upper in spans:
+            gap = self.level(lower)[1], self.level(upper)[0]
+            parts += fillers(name, carrier, place, gap, (lower, upper), sizes, washers=sizes.gap == self._gap)
+        return parts
+
+    def bore(self, place: complex, diameter: float | None = None) -> Outline:
+        """What a plate is cut out for, that a key holds on a shaft."""
+        pin = self.sizes.pin if diameter is None else diameter
+        return keyed_bore(place, pin, key_for(pin), self.sizes.clearance)
+
+    def hub(self, diameter: float) -> float:
+        """How far from its axis a plate is cut out for a shaft and its key."""
+        return 0.5 * diameter + key_for(diameter).in_hub + self.sizes.clearance

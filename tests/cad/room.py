@@ -1,0 +1,50 @@
+"""Whether solids of an assembly share room: boxes first, then the kernel's own intersections."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.parts import cad
+from service.parts.model import Assembly
+
+FLAT = 1e-4
+"""Millimetres of height or width that two boxes may share: the kernel's boxes are a little too large."""
+
+
+def shared_room(whole: Assembly, solids: list[Any], inputs: NDArray[np.float64]) -> tuple[int, dict[str, float]]:
+    """How many pairs were intersected, and the greatest volume that each pair shares that shares any."""
+    resting: dict[tuple[int, int], tuple[complex, complex]] = {}
+    found: dict[str, float] = {}
+    tried = 0
+    for input_ in inputs:
+        driven = whole.motion.at(np.array([input_]))
+        placed = cad.placed(whole, solids, float(input_))
+        boxes = [one.bounding_box(optimal=False) for one in placed]
+        for n, m in combinations(range(len(placed)), 2):
+            one, other = boxes[n], boxes[m]
+            if any(
+                min(getattr(one.max, axis), getattr(other.max, axis))
+                - max(getattr(one.min, axis), getattr(other.min, axis)) < FLAT
+                for axis in "XYZ"
+            ):  # fmt: skip
+                continue
+            # Two that have not moved towards each other since need not be tried again.
+            a, b = (whole.motion.placed(whole.parts[k].carrier, driven) for k in (n, m))
+            towards = complex((b.shift[0] - a.shift[0]) / a.turn[0]), complex(b.turn[0] / a.turn[0])
+            if (
+                resting.get((n, m)) is not None
+                and max(abs(x - y) for x, y in zip(resting[n, m], towards, strict=True)) < 1e-9 * whole.size
+            ):
+                continue
+            resting[n, m] = towards
+            tried += 1
+            common = placed[n].intersect(placed[m])
+            volume = sum(getattr(body, "volume", 0.0) for body in ([] if common is None else list(common)))
+            if volume > 0.0:
+                pair = f"{whole.parts[n].name} {whole.parts[m].name}"
+                found[pair] = max(found.get(pair, 0.0), volume)
+    return tried, found

@@ -1,0 +1,271 @@
+"""Parts of cams and indexing drives through HTTP: contours, slots and teeth, every field, and what is refused."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import ezdxf
+import numpy as np
+import pytest
+import shapely
+from ezdxf.math import bulge_center
+
+import service
+from service.parts.extra import installed
+from service.parts.made import LINKAGE, MAKERS
+from tests.service.answers import finished
+from tests.service.test_parts import bill, parts, refused
+
+CAM: dict[str, Any] = {
+    "kind": "cam",
+    "segments": [
+        {"motion": "rise", "angle": 120.0, "lift": 20.0, "law": "modified_sine"},
+        {"motion": "dwell", "angle": 60.0},
+        {"motion": "return", "angle": 120.0, "law": "cycloidal"},
+        {"motion": "dwell", "angle": 60.0},
+    ],
+    "follower": {"type": "translating_roller", "roller_radius": 10.0, "offset": 4.0},
+    "profile_points": 360,
+}
+SWUNG = [{**CAM["segments"][0], "lift": 12.0}, *CAM["segments"][1:]]
+ARM = {"type": "oscillating_roller", "roller_radius": 10.0, "arm": 90.0, "pivot_distance": 110.0}
+FACED = {"type": "oscillating_flat", "pivot_distance": 200.0, "face_offset": 5.0}
+DRIVE: dict[str, Any] = {
+    "kind": "indexing", "drive": "geneva_external", "stations": 5, "rollers": 1, "center_distance": 80.0,
+    "roller_diameter": 12.0, "speed_rpm": 60.0,
+}  # fmt: skip
+RATCHET = {
+    "kind": "indexing", "drive": "ratchet", "stations": 24, "wall_thickness": 6.0, "wheel_shaft_diameter": 20.0,
+    "load_torque": 40.0, "pawls": {"count": 2},
+}  # fmt: skip
+PROBLEMS: dict[str, dict[str, Any]] = {
+    "roller": CAM,
+    "arm": {**CAM, "segments": SWUNG, "follower": ARM, "rotation": "cw"},
+    "flat": {**CAM, "follower": {"type": "translating_flat", "offset": 3.0}},
+    "flat_arm": {**CAM, "segments": SWUNG, "follower": FACED},
+    "groove": {**CAM, "closure": "form"},
+    "conjugate": {**CAM, "closure": "conjugate"},
+    "external": DRIVE,
+    "internal": {**DRIVE, "drive": "geneva_internal", "stations": 4},
+    "ratchet": RATCHET,
+}
+SIZES = {"width": 16, "pin": 6, "thickness": 4, "clearance": 0.1, "process": "laser", "scale": 1.0}
+THIN = {"pin": 4, "width": 10}
+"""Pins that a roller of 12 and a wheel of a ratchet have room for."""
+
+
+@pytest.fixture(scope="module")
+def jobs(server: Any) -> dict[str, Any]:
+    """Places and mechanisms of the first designs."""
+    found = {}
+    for name, problem in PROBLEMS.items():
+        job = finished(server.client, problem)
+        found[name] = f"/v1/jobs/{job['id']}/designs/0", job["result"]["designs"][0]["mechanism"]
+    return found
+
+
+def drawn(files: dict[str, bytes], name: str) -> Any:
+    document = ezdxf.read(io.StringIO(files[f"dxf/{name}.dxf"].decode()))
+    assert not document.audit().has_errors
+    assert document.units == ezdxf.units.MM
+    return document.modelspace()
+
+
+def bored(space: Any) -> tuple[complex, float]:
+    """Centre and radius of the bore with a keyway."""
+    for line in space.query("LWPOLYLINE"):
+        points = list(line.get_points("xyb"))
+        arcs = [k for k, (*_, bulge) in enumerate(points) if bulge]
+        if len(points) == 4 and len(arcs) == 1:
+            start, end = points[arcs[0]], points[(arcs[0] + 1) % 4]
+            centre = bulge_center(start[:2], end[:2], start[2])
+            return complex(centre.x, centre.y), math.dist(centre[:2], start[:2])
+    raise AssertionError("there is no bore")
+
+
+def contour(space: Any, longest: bool = True) -> np.ndarray:
+    """Points of a spline of a drawing, a thousandth of a millimetre apart from it at most."""
+    splines = [np.array([(p.x, p.y) for p in one.flattening(5e-4, 8)]) for one in space.query("SPLINE")]
+    splines.sort(key=lambda points: float(np.ptp(points[:, 0])))
+    points = splines[-1 if longest else 0]
+    return np.asarray(points[:-1, 0] + 1j * points[:-1, 1])
+
+
+def analysed(client: Any, mechanism: dict[str, Any], points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Cam angles, and what the follower does on a contour by its points alone."""
+    given = {name: mechanism[name] for name in ("type", "follower", "rotation", "prime_radius", "base_radius")
+             if mechanism.get(name) is not None}  # fmt: skip
+    given["profile"] = {"x": points.real.tolist(), "y": points.imag.tolist()}
+    answer = client.post("/v1/analyses", json={"mechanism": given, "samples": 72})
+    assert answer.status_code == 200, answer.text
+    told = answer.json()
+    motion = told.get("motion", told)
+    return np.array(motion["angle"]), np.array(motion["s"])
+
+
+@pytest.mark.parametrize("name", ["roller", "arm", "flat", "flat_arm", "conjugate"])
+def test_a_follower_on_the_contour_that_is_cut_does_what_the_program_says(client: Any, jobs: Any, name: str) -> None:
+    """The analysis lays the follower against points of the drawing's spline."""
+    place, mechanism = jobs[name]
+    files = parts(client, place, **SIZES)
+    space = drawn(files, "cam_1" if name == "conjugate" else "cam")
+    centre, radius = bored(space)
+    assert radius == pytest.approx(3.1, abs=1e-9)
+    points = contour(space) - centre
+    even = np.linspace(0.0, 1.0, 1500, endpoint=False)
+    along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(np.append(points, points[0]))))])
+    closed = np.append(points, points[0])
+    points = np.interp(even * along[-1], along, closed.real) + 1j * np.interp(even * along[-1], along, closed.imag)
+    at, s = analysed(client, mechanism, points)
+    program = mechanism["program"]
+    expected = np.interp(at, [*program["angle"], 360.0], [*program["s"], program["s"][0]])
+    # Millimetres, or degrees of an arm of 90 mm; between the program's angles it is interpolated linearly.
+    assert np.abs(s - expected).max() < 6e-3
+
+
+def test_a_groove_is_wider_than_its_roller_by_the_clearance(client: Any, jobs: Any) -> None:
+    place, mechanism = jobs["groove"]
+    files = parts(client, place, **SIZES)
+    centre, _ = bored(drawn(files, "cam"))
+    inner = contour(drawn(files, "cam")) - centre
+    space = drawn(files, "cam_wall")
+    (outside,) = (circle for circle in space.query("CIRCLE") if circle.dxf.radius > 20.0)
+    outer = contour(space) - complex(outside.dxf.center.x, outside.dxf.center.y)
+    walls = [shapely.LinearRing(np.column_stack([line.real, line.imag])) for line in (inner, outer)]
+    for x, y in zip(mechanism["pitch_curve"]["x"][::20], mechanism["pitch_curve"]["y"][::20], strict=True):
+        for wall in walls:
+            assert wall.distance(shapely.Point(x, y)) == pytest.approx(10.1, abs=3e-3)
+
+
+def test_a_geneva_wheel_has_slots_for_its_roller_and_arcs_for_its_disc(client: Any, jobs: Any) -> None:
+    place, mechanism = jobs["external"]
+    files = parts(client, place, **(SIZES | THIN))
+    wheel, disc = drawn(files, "wheel"), drawn(files, "locking_disc")
+    points = max(([*line.get_points("xyb")] for line in wheel.query("LWPOLYLINE")), key=len)
+    ends = [bulge for *_, bulge in points if bulge == pytest.approx(-1.0)]
+    assert len(ends) == mechanism["stations"] == 5
+    for k, (x, y, bulge) in enumerate(points):
+        if bulge == pytest.approx(-1.0):
+            assert math.dist((x, y), points[(k + 1) % len(points)][:2]) == pytest.approx(12.2, abs=1e-9)
+    around = max(([*line.get_points("xyb")] for line in disc.query("LWPOLYLINE")), key=len)
+    centre, _ = bored(disc)
+    far = max(abs(complex(x, y) - centre) for x, y, _ in around)
+    assert far == pytest.approx(mechanism["locking_arc_radius"] - 0.1, abs=1e-9)
+    shafts = [complex(c.dxf.center.x, c.dxf.center.y) for c in drawn(files, "base").query("CIRCLE")]
+    assert abs(shafts[0] - shafts[1]) == pytest.approx(mechanism["center_distance"], rel=1e-12)
+
+
+def test_a_ratchet_has_its_teeth_and_pawls_on_their_pivots(client: Any, jobs: Any) -> None:
+    place, mechanism = jobs["ratchet"]
+    files = parts(client, place, **(SIZES | THIN))
+    space = drawn(files, "wheel")
+    centre, radius = bored(space)
+    assert radius == pytest.approx(10.1)
+    (teeth,) = (line for line in space.query("LWPOLYLINE") if len(line) > 4)
+    far = [abs(complex(x, y) - centre) for x, y in teeth.get_points("xy")]
+    assert len(far) == 2 * mechanism["teeth"]
+    assert max(far) == pytest.approx(mechanism["wheel_radius"], rel=1e-9)
+    holes = [(c.dxf.radius, complex(c.dxf.center.x, c.dxf.center.y)) for c in drawn(files, "base").query("CIRCLE")]
+    (shaft,) = (z for r, z in holes if r == pytest.approx(10.1))
+    found = sorted(abs(z - shaft) for r, z in holes if r == pytest.approx(2.1))
+    assert found == pytest.approx([math.hypot(*pawl["pivot"]) for pawl in mechanism["pawls"]], rel=1e-9)
+    assert {"pawl_1", "pawl_2"} <= bill(files).keys()
+
+
+CHANGED = [
+    ("width", 20, ("follower", "width", "20")),
+    ("pin", 5, ("follower", "holes", "3 x 5.2")),
+    ("thickness", 6, ("cam", "thickness", "6")),
+    ("clearance", 0.2, ("roller", "holes", "1 x 6.4")),
+    ("scale", 1.5, ("roller", "width", "30")),
+    ("process", "print", None),
+]
+
+
+@pytest.mark.parametrize(("field", "value", "cell"), CHANGED)
+def test_every_field_counts_for_a_cam(client: Any, jobs: Any, field: str, value: Any, cell: Any) -> None:
+    place, _ = jobs["roller"]
+    if field == "process" and not installed():
+        assert refused(client, place, 501, **(SIZES | {field: value}))["type"] == "/problems/no-cad"
+        return
+    rows, others = bill(parts(client, place, **SIZES)), bill(parts(client, place, **(SIZES | {field: value})))
+    assert rows != others
+    if cell:
+        name, column, told = cell
+        assert rows[name][column] != told
+        assert others[name][column] == told
+
+
+@pytest.mark.parametrize("field", ["width", "pin", "thickness", "clearance", "scale"])
+@pytest.mark.parametrize("name", ["external", "ratchet"])
+def test_every_field_counts_for_an_indexing_drive(client: Any, jobs: Any, name: str, field: str) -> None:
+    place, base = jobs[name][0], SIZES | THIN
+    value = {"width": 12, "pin": 3, "thickness": 5, "clearance": 0.2, "scale": 1.2}[field]
+    rows, others = bill(parts(client, place, **base)), bill(parts(client, place, **(base | {field: value})))
+    plate, column = {
+        "width": ("crank" if name == "external" else "pawl_1", "width"),
+        "pin": ("crank" if name == "external" else "pawl_1", "holes"),
+        "thickness": ("wheel", "thickness"),
+        "clearance": ("wheel", "holes"),
+        "scale": ("wheel", "length"),
+    }[field]
+    assert rows[plate][column] != others[plate][column]
+
+
+@pytest.mark.parametrize(
+    ("field", "value"), [("shafts", "both_sides"), ("over", "cycle"), ("bore", 8), ("face_width", 8)]
+)
+@pytest.mark.parametrize("name", ["roller", "external", "ratchet"])
+def test_what_means_nothing_here_is_refused_by_its_path(
+    client: Any, jobs: Any, name: str, field: str, value: Any
+) -> None:
+    answer = refused(client, jobs[name][0], 422, **{field: value})
+    assert [fault["path"] for fault in answer["errors"]] == [f"/query/{field}"]
+
+
+@pytest.mark.parametrize("name", ["roller", "external", "ratchet"])
+def test_too_thick_pins_are_refused_with_the_scale_that_works(client: Any, jobs: Any, name: str) -> None:
+    (fault,) = refused(client, jobs[name][0], 422, pin=25)["errors"]
+    assert fault["path"] == "/query/pin"
+    words = fault["detail"].split()
+    scale = float(words[words.index("scale") + 1])
+    assert scale > 1.0
+    assert parts(client, jobs[name][0], pin=25, scale=scale)
+
+
+@pytest.mark.parametrize(("field", "value"), [("clearance", 5.0), ("thickness", 1e4), ("width", 3), ("pin", 0.1)])
+def test_sizes_that_contradict_one_another_are_refused(client: Any, jobs: Any, field: str, value: float) -> None:
+    answer = refused(client, jobs["roller"][0], 422, **(SIZES | {field: value}))
+    assert [fault["path"] for fault in answer["errors"]] == [f"/query/{field}"]
+
+
+def test_sizes_are_found_where_none_are_stated(client: Any, jobs: Any) -> None:
+    for name in PROBLEMS:
+        files = parts(client, jobs[name][0])
+        rows = bill(files)
+        assert "base" in rows
+        assert any(row["standard"].startswith("DIN 6885") or row["part"].startswith("key") for row in rows.values())
+        assert b"shaft" in files["README.txt"]
+
+
+def test_an_edge_and_a_drag_link_are_not_built(client: Any) -> None:
+    jump = [{"motion": "dwell", "angle": 120.0}, {"motion": "constant_velocity", "angle": 120.0, "lift": 10.0},
+            {"motion": "return", "angle": 120.0, "law": "cycloidal"}]  # fmt: skip
+    edged = {**CAM, "segments": jump, "accept_discontinuity": True, "follower": {"type": "translating_flat"}}
+    linked = {**DRIVE, "driver": "drag_link", "stations": 4}
+    del linked["rollers"]
+    for problem, word in ((edged, "edge"), (linked, "drag link")):
+        job = finished(client, problem)
+        answer = refused(client, f"/v1/jobs/{job['id']}/designs/0", 409)
+        assert word in answer["detail"]
+
+
+def test_the_studio_has_buttons_for_all_that_has_makers() -> None:
+    script = (Path(service.__file__).parent / "studio" / "downloads.js").read_text("utf-8")
+    (listed,) = re.findall(r"const BUILT = (\[.*?\]);", script, re.DOTALL)
+    assert set(json.loads(listed)) == MAKERS.keys() - {LINKAGE}
