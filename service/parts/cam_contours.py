@@ -20,6 +20,9 @@ Real = NDArray[np.float64]
 TOLERANCE = 1e-3
 """Greatest distance of an outline from the contour of the analysis, millimetres: less than a cam is ground to."""
 
+SHARE = 1e-5
+"""The same as a share of the contour's greatest radius, where that is more."""
+
 FIRST_STRIDE = 16
 """Points of the contour of which one is taken at first; half as many until the outline is near enough."""
 
@@ -48,7 +51,7 @@ def outline(contour: Contour, factor: float, offset: float = 0.0) -> Curve:
     Raises
     ------
     NotMade
-        Where the contour has an edge, which happens where the follower's velocity jumps.
+        Where the contour has an edge, which happens where the follower's velocity jumps, or no outline is near enough.
     """
     share = np.arange(2 * PARTS) / (2 * PARTS)
     found = contour.along(np.arange(len(contour.points))[:, None], share)
@@ -58,13 +61,15 @@ def outline(contour: Contour, factor: float, offset: float = 0.0) -> Curve:
     if not contour.turns_ccw:
         places = np.roll(places[::-1], 1)
     # Half-way between two points that an outline may have there is always another one, to measure it at.
+    allowed = max(TOLERANCE, SHARE * float(np.abs(places).max()))
     stride = 2 * PARTS * FIRST_STRIDE
-    while True:
+    while stride > 1:
         kept = np.arange(0, len(places), stride)
         curve = Curve(tuple(places[kept].tolist()))
-        if stride == 2 or deviation(curve, places, kept) <= TOLERANCE:
+        if deviation(curve, places, kept) <= allowed:
             return curve
         stride //= 2
+    raise NotMade(f"The cam has a bend that no curve comes nearer to than {allowed:.2g} mm.")
 
 
 def deviation(curve: Curve, places: Complex, kept: NDArray[np.int64]) -> float:

@@ -86,9 +86,18 @@ MAKERS: dict[str, Maker] = {
 """By type of mechanism."""
 
 
+NOT_BUILT = {
+    "barrel_cam": "the groove of a barrel is no contour of a plate, and what slides along its axis stands square: "
+    "parts are made of radial cams",
+    "geneva_spherical": "a hemisphere and its cap are cut from solids along crossing axes, not from plates; parts are "
+    "made of Geneva drives in the plane",
+}
+"""Types of mechanism of kinds that have parts otherwise, and why these have none."""
+
+
 def has_parts(mechanism: Mapping[str, Any]) -> bool:
-    """Whether there is a maker for a mechanism, as an answer has it."""
-    return _maker("skeleton" in mechanism, mechanism["type"]) is not None
+    """Whether there is a maker for a mechanism, as an answer has it, or a word why there is none."""
+    return mechanism["type"] in NOT_BUILT or _maker("skeleton" in mechanism, mechanism["type"]) is not None
 
 
 def made(design: Any, problem: Any, query: PartsQuery) -> Assembly:
@@ -109,7 +118,8 @@ def made(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     mechanism = design.mechanism
     maker = _maker(hasattr(mechanism, "skeleton"), mechanism.type)
     if maker is None:
-        raise NotMade("There are no parts of this type of mechanism.")
+        reason = NOT_BUILT.get(mechanism.type)
+        raise NotMade(f"There are no parts of this type of mechanism{f': {reason}' if reason else ''}.")
     for field in PartsQuery.model_fields:
         if field in query.model_fields_set and getattr(query, field) is not None and field not in maker.fields:
             raise NotMade(f"Parts of this type of mechanism have no {field}.", f"/query/{field}")

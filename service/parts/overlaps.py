@@ -28,8 +28,14 @@ POSITIONS = 144
 ROUNDING = 1e-9
 """Share of the assembly's size by which faces that touch may seem to overlap."""
 
+SAG = 5e-3
+"""How far polygons are from the arcs that they stand for, millimetres: less than the clearances of large bores."""
+
 TOUCH = 2e-3
 """How deep two parts may seem to be in each other that touch, such as a roller and its cam, millimetres."""
+
+TOUCH_SHARE = 2e-5
+"""The same as a share of the assembly's size, where that is more."""
 
 
 class Overlap(NamedTuple):
@@ -132,6 +138,7 @@ class _Moved:
         state = assembly.motion.at(inputs)
         carriers = {part.carrier for part in assembly.parts}
         self._placed = {carrier: assembly.motion.placed(carrier, state) for carrier in carriers}
+        self._touch = max(TOUCH, TOUCH_SHARE * assembly.size)
         self._boxes: dict[Carried, NDArray[np.float64]] = {}
         self._polygons: dict[tuple[Carried, bool], NDArray[np.object_]] = {}
 
@@ -150,7 +157,7 @@ class _Moved:
         if near.any():
             one, other = (self._solid(carried, beyond=not touch)[near] for carried in (first, second))
             if touch:
-                one = shapely.buffer(one, -TOUCH)
+                one = shapely.buffer(one, -self._touch)
             # Most do not meet, which is seen sooner than what they share.
             meets = shapely.intersects(one, other)
             areas[np.flatnonzero(near)[meets]] = shapely.area(shapely.intersection(one[meets], other[meets]))
@@ -159,7 +166,7 @@ class _Moved:
     def _ring(self, carried: Carried, outline: Outline, *, beyond: bool) -> NDArray[np.float64]:
         """An outline at each input, shape (n, m, 2)."""
         placed = self._placed[carried[0]]
-        places = placed.turn[:, None] * ring_of(outline, beyond=beyond) + placed.shift[:, None]
+        places = placed.turn[:, None] * ring_of(outline, beyond=beyond, sag=SAG) + placed.shift[:, None]
         return np.stack([places.real, places.imag], axis=-1)
 
     def _box(self, carried: Carried) -> NDArray[np.float64]:

@@ -192,9 +192,20 @@ class _Builder:
         end = foot + NOSE * abs(ratchet.tip - foot) * face
         if abs(end) < out:
             end = foot + face * (abs(ratchet.tip - foot) + self._sizes.apart + 0.5 * ratchet.height)
-        first = cmath.phase(beyond - pivot) + math.acos(min(1.0, radius / abs(beyond - pivot)))
-        last = cmath.phase(end - pivot) - math.acos(min(1.0, radius / abs(end - pivot)))
+        inside = [beyond]
+        tangent = -1j * beyond / abs(beyond)
+        first = _tangent(beyond - pivot, radius, 1.0)
+        if ((pivot + cmath.rect(radius, first) - beyond) * beyond.conjugate()).real < 0.0:
+            # Straight to the pivot's round end it would come back into the circle.
+            inside.append(beyond + tangent * max(((pivot - beyond) * tangent.conjugate()).real - radius, 0.0))
+            first = _tangent(inside[1] - pivot, radius, 1.0)
+        last = _tangent(end - pivot, radius, -1.0)
         turn = (last - first) % (2.0 * math.pi)
         around = [pivot + radius * cmath.exp(1j * (first + share * turn)) for share in (0.0, 0.5, 1.0)]
         bulge = math.tan(0.125 * turn)
-        return Loop((foot, beyond, *around, end), (0.0, 0.0, bulge, bulge, 0.0, 0.0))
+        return Loop((foot, *inside, *around, end), (*(0.0,) * (1 + len(inside)), bulge, bulge, 0.0, 0.0))
+
+
+def _tangent(point: complex, radius: float, side: float) -> float:
+    """Direction, from the origin, of the place where a tangent from a point touches a circle about it."""
+    return cmath.phase(point) + side * math.acos(min(1.0, radius / abs(point)))

@@ -118,14 +118,21 @@ def hull(points: Sequence[complex]) -> list[complex]:
             return found
 
 
-def ring_of(outline: Outline, *, beyond: bool) -> Complex:
-    """An outline as a polygon, whose arcs lie all outside of the true ones (``beyond``), or all inside."""
+def ring_of(outline: Outline, *, beyond: bool, sag: float = math.inf) -> Complex:
+    """An outline as a polygon, whose arcs lie all outside of the true ones (``beyond``), or all inside.
+
+    Parameters
+    ----------
+    sag : float
+        How far the polygon may be from arcs; :data:`SEGMENTS` edges stand for a whole circle at least.
+    """
     if isinstance(outline, Curve):
         return outline.ring(beyond=beyond)
     if isinstance(outline, Disc):
-        half = math.pi / SEGMENTS
+        edges = _edges(outline.radius, sag)
+        half = math.pi / edges
         radius = outline.radius / math.cos(half) if beyond else outline.radius
-        turns = np.exp(2j * half * np.arange(SEGMENTS))
+        turns = np.exp(2j * half * np.arange(edges))
         return np.asarray(outline.centre + radius * turns)
     pieces: list[complex] = []
     for start, end, bulge in outline.edges():
@@ -133,7 +140,7 @@ def ring_of(outline: Outline, *, beyond: bool) -> Complex:
         if bulge == 0.0:
             continue
         centre, angle = arc(start, end, bulge)
-        count = max(2, math.ceil(abs(angle) / (2.0 * math.pi) * SEGMENTS))
+        count = max(2, math.ceil(abs(angle) / (2.0 * math.pi) * _edges(abs(start - centre), sag)))
         # Tangents from the middle of each step lie outside of the arc's circle, and its chords inside. What is enclosed
         # is inside where the arc turns to the left.
         tangent = beyond == (bulge > 0.0)
@@ -142,6 +149,11 @@ def ring_of(outline: Outline, *, beyond: bool) -> Complex:
         turned = (start - centre) * np.exp(1j * angle / count * shares)
         pieces += (centre + grown * turned).tolist()
     return np.array(pieces)
+
+
+def _edges(radius: float, sag: float) -> int:
+    """Of a polygon that stands for a circle."""
+    return max(SEGMENTS, math.ceil(math.pi / math.sqrt(2.0 * sag / radius)))
 
 
 def arc(start: complex, end: complex, bulge: float) -> tuple[complex, float]:

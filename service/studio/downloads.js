@@ -41,7 +41,7 @@ export function downloads(job, n, drawing) {
 }
 
 /** Types of mechanisms that there are parts of, beside linkages. */
-const BUILT = ["cam", "gear_train", "geneva_external", "geneva_internal", "ratchet"];
+const BUILT = ["cam", "gear_train", "geneva_external", "geneva_internal", "planetary_train", "ratchet"];
 
 /** @param {any} mechanism */
 function isBuilt(mechanism) {

@@ -10,7 +10,7 @@ from pydantic import BaseModel
 
 from service.render import NoSuchExport, exported
 from service.render.outline import MOST_NUMBERS, words, written
-from service.render.page.numbers import length
+from service.render.page.numbers import angle, length
 from service.render.report import Occasion, report
 from service.units import symbols
 from synthesis.dispatch import solve
@@ -310,3 +310,11 @@ def test_quantities_on_a_sheet_are_those_of_the_answer_with_their_units(kind, n)
                 unit = "" if dimension is None else units[dimension]
                 blank = "" if unit in ("", "°") else " "
                 assert f"{written(value)}{blank}{unit}" in shown, name
+
+
+@pytest.mark.parametrize(
+    ("degrees", "decimals", "told"),
+    [(0.0, 0, "0°"), (30.0, 0, "30°"), (-100.2, 0, "−100°"), (30.0, 3, "30°"), (0.25, 3, "0.25°")],
+)
+def test_angles_keep_their_own_zeros(degrees: float, decimals: int, told: str) -> None:
+    assert angle(degrees, decimals) == told

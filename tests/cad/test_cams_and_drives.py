@@ -1,0 +1,160 @@
+"""Solids of cams and indexing drives: valid, of the right volume, on their axes, in touch and never in one another."""
+
+from __future__ import annotations
+
+import io
+import tempfile
+import zipfile
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from service.parts import cad
+from service.parts.curves import Curve
+from service.parts.items import items
+from service.parts.made import made
+from service.parts.model import Assembly, Part
+from service.parts.orders import filled
+from service.parts.package import package
+from service.parts.shapes import Disc
+from service.parts.sizes import PartsQuery
+from service.stated import written
+from synthesis.dispatch import solve
+from synthesis.registry import parse_problem
+from tests.cad.room import shared_room
+from tests.service.test_parts_of_cams import PROBLEMS
+
+pytestmark = [pytest.mark.cad, pytest.mark.timeout(600)]
+
+TYPES = list(PROBLEMS)
+
+IN_TOUCH = 0.02
+"""Cubic millimetres by which the kernel may see parts in each other that touch."""
+
+
+@cache
+def solved(name: str) -> tuple[Any, Any, Any]:
+    problem = parse_problem(PROBLEMS[name])
+    result = solve(problem, lambda _fraction, _message: None)
+    return problem, result, result.designs[0]
+
+
+@cache
+def assembly(name: str, process: str = "laser") -> Assembly:
+    problem, _, design = solved(name)
+    return made(design, problem, PartsQuery(process=process))
+
+
+@cache
+def solids(name: str, process: str = "laser") -> list[Any]:
+    return [cad.solid(part) for part in assembly(name, process).parts]
+
+
+def curved(part: Part) -> bool:
+    return any(isinstance(one, Curve) for body in part.bodies for one in (body.region.outer, *body.region.holes))
+
+
+def volume(shape: Any) -> float:
+    """By a fine mesh: what the kernel integrates over a face with a long spline is off by a thousandth."""
+    corners, triangles = shape.tessellate(0.002, 0.05)
+    places = np.array([(p.X, p.Y, p.Z) for p in corners])
+    a, b, c = (places[np.array(triangles)[:, k]] for k in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
+
+
+@pytest.mark.parametrize("name", TYPES)
+def test_solids_are_valid_and_as_large_as_the_model_says(name: str) -> None:
+    processes = ("laser", "print") if name == "groove" else ("laser",)
+    for process in processes:
+        for part, solid in zip(assembly(name, process).parts, solids(name, process), strict=True):
+            assert solid.is_valid
+            if curved(part):
+                assert volume(solid) == pytest.approx(part.volume, rel=2e-4)
+            else:
+                assert solid.volume == pytest.approx(part.volume, rel=1e-6)
+            box = solid.bounding_box()
+            assert pytest.approx((part.low, part.high), abs=1e-5) == (box.min.Z, box.max.Z)
+
+
+@pytest.mark.parametrize("name", ["roller", "external", "ratchet"])
+def test_a_step_file_has_all_parts_by_name_and_its_shafts_on_their_axes(name: str) -> None:
+    from build123d import GeomType, import_step
+
+    whole = assembly(name)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "a.step"
+        path.write_bytes(cad.step(solids(name), "assembly"))
+        found = {child.label: child for child in import_step(path).children}
+    assert found.keys() == {part.name for part in whole.parts}
+    base = next(part for part in whole.parts if part.name == "base")
+    stated = [hole.centre for hole in base.region.holes if isinstance(hole, Disc)]
+    bores = [face for face in found["base"].faces() if face.geom_type == GeomType.CYLINDER]
+    axes = [complex(face.axis_of_rotation.position.X, face.axis_of_rotation.position.Y) for face in bores]
+    assert stated
+    for place in stated:
+        assert min(abs(axis - place) for axis in axes) < 1e-6
+    mechanism = solved(name)[2].mechanism
+    if name == "external":
+        assert abs(stated[0] - stated[1]) == pytest.approx(mechanism.center_distance, rel=1e-9)
+    if name == "ratchet":
+        expected = sorted(abs(complex(*pawl.pivot)) for pawl in mechanism.pawls)
+        assert sorted(abs(place - stated[0]) for place in stated[1:]) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["roller", "arm", "flat", "flat_arm", "conjugate"])
+def test_a_follower_stays_in_touch_with_its_cam(name: str) -> None:
+    """The kernel's own distances, at places that no equal steps of the check came to."""
+    whole = assembly(name)
+    at = {part.name: k for k, part in enumerate(whole.parts)}
+    for input_ in (0.3, 1.1, 2.9, 4.4):
+        shown = cad.placed(whole, solids(name), input_)
+        for pair in whole.touching:
+            one, other = (shown[at[part]] for part in pair)
+            assert one.distance_to(other) < 3e-3
+
+
+@pytest.mark.parametrize("name", ["roller", "groove", "external", "ratchet"])
+def test_no_two_solids_share_room_at_72_inputs(name: str) -> None:
+    whole = assembly(name)
+    tried, found = shared_room(whole, solids(name), whole.motion.inputs(72))
+    assert tried > 0
+    for pair, shared in found.items():
+        assert frozenset(pair.split()) in whole.touching
+        assert shared < IN_TOUCH
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("name", ["arm", "flat", "flat_arm", "conjugate", "internal"])
+def test_no_two_solids_of_the_others_share_room(name: str) -> None:
+    test_no_two_solids_share_room_at_72_inputs(name)
+
+
+@pytest.mark.parametrize("name", ["roller", "groove"])
+def test_printed_parts_are_watertight_meshes_on_the_plate(name: str) -> None:
+    import trimesh
+
+    problem, _, design = solved(name)
+    with zipfile.ZipFile(io.BytesIO(package(design, problem, PartsQuery(process="print"), "A"))) as archive:
+        files = {file: archive.read(file) for file in archive.namelist()}
+    for item in items(assembly(name, "print")):
+        mesh = trimesh.load_mesh(io.BytesIO(files[f"stl/{item.name}.stl"]), file_type="stl")
+        assert mesh.is_watertight
+        assert mesh.volume == pytest.approx(item.part.volume, rel=0.02)
+        assert mesh.bounds[0][2] == pytest.approx(0.0, abs=1e-6)
+        assert f"3mf/{item.name}.3mf" in files
+
+
+def test_an_assembly_is_shown_at_the_input_that_is_asked_for() -> None:
+    problem, result, _ = solved("external")
+
+    def shown(degrees: float) -> Any:
+        query = {"input_angle": degrees}
+        content = filled(problem.kind, written(problem), None, result.model_dump_json(), 0, query, "glb")
+        assert isinstance(content, bytes)
+        return content
+
+    assert shown(40.0) == shown(400.0)
+    assert shown(40.0) != shown(60.0)
