@@ -48,7 +48,7 @@ class Export(NamedTuple):
 
 
 _AS_IT_IS_SAID = {"X-Content-Type-Options": "nosniff"}
-_HEADERS: dict[Form, dict[str, str]] = {
+HEADERS: dict[Form, dict[str, str]] = {
     # A drawing is opened as a page of its own, too, and then it may do nothing.
     "svg": {**_AS_IT_IS_SAID, "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; sandbox"},
 }
@@ -90,7 +90,7 @@ def _offer(form: Form, export: Export) -> None:
         job, result = await solved(desk, tenant, job_id)
         with span("drawing"):
             content = await _drawn(board, _file, job, result, number, form)
-        return Response(content, media_type=export.media_type, headers=_HEADERS.get(form, _AS_IT_IS_SAID))
+        return Response(content, media_type=export.media_type, headers=HEADERS.get(form, _AS_IT_IS_SAID))
 
     router.add_api_route(
         f"/{{job_id}}/designs/{{number}}.{form}",

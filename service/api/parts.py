@@ -1,40 +1,58 @@
-"""``/v1/jobs/{id}/designs/{n}/parts``, ``.step`` and ``.glb``: a design as parts that can be made."""
+"""``/v1/jobs/{id}/designs/{n}/parts``, ``/assembly``, ``.step``, ``.glb``: a design as parts that can be made."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from collections.abc import Callable
+from typing import Annotated, Any, get_args
 
 from fastapi import APIRouter, Query, Request, Response
 from pydantic_core import from_json
 from starlette.concurrency import run_in_threadpool
 
 from service.api import errors
-from service.api.designs import design_index, solved
+from service.api.designs import HEADERS, design_index, solved
 from service.api.errors import Refusal, busy, invalid_request, not_found
 from service.api.guard import GuardedRoute, Tenant
 from service.api.jobs import TAG
 from service.api.state import Bench, Desk
-from service.jobs.schema import JobRow
+from service.parts.answer import AssemblyView
 from service.parts.extra import installed
 from service.parts.made import has_parts
-from service.parts.sizes import NEEDS_CAD, AssemblyQuery, File, PartsQuery, Refused
-from service.parts.workshop import MAX_PARTS_S, Busy, GivenUp, Gone, filled
+from service.parts.sizes import NEEDS_CAD, SOLID, AssemblyQuery, File, PartFile, PartsQuery, Refused, ViewQuery
+from service.parts.workshop import MAX_PARTS_S, Busy, GivenUp, Gone, filled, part_filled
 from service.telemetry import span
 
 router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRoute)
 
 _BINARY = {"type": "string", "format": "binary"}
-_MEDIA: dict[File, str] = {"zip": "application/zip", "step": "model/step", "glb": "model/gltf-binary"}
+_TEXT = {"type": "string"}
+_MEDIA: dict[File | PartFile, str] = {
+    "zip": "application/zip",
+    "step": "model/step",
+    "glb": "model/gltf-binary",
+    "json": "application/json",
+    "svg": "image/svg+xml",
+    "dxf": "image/vnd.dxf",
+    "stl": "model/stl",
+    "3mf": "model/3mf",
+}
+_TEXTS = ("svg", "dxf")
 
 
-def _responses(file: File) -> dict[int | str, dict[str, Any]]:
+def _responses(file: File | PartFile) -> dict[int | str, dict[str, Any]]:
+    schema = _TEXT if file in _TEXTS else _BINARY
+    given: dict[str, Any] = {"content": {_MEDIA[file]: {"schema": schema}}}
+    if file == "json":
+        given = {"model": AssemblyView}
+    solid = file == "zip" or file in SOLID
+    cad = {"e501": "The service runs without its extra `cad`, which this file needs."} if solid else {}
     return {
-        200: {"description": "The file.", "content": {_MEDIA[file]: {"schema": _BINARY}}},
+        200: {"description": "The assembly." if file == "json" else "The file.", **given},
         **errors.responses(
             e404="There is no such job or design, or no parts of its type of mechanism.",
             e409="The job has no result (yet), or the design cannot be built of parts; `detail` says why.",
             e422="A parameter is not valid, or leaves no room for the parts; `errors` says which, and what would.",
-            e501="The service runs without its extra `cad`, which this file needs.",
+            **cad,
             e503="Other parts have kept these from being begun.",
         ),
     }
@@ -91,36 +109,107 @@ async def export_assembly_glb(
     return await _answered(request, desk, bench, tenant, job_id, number, query, "glb")
 
 
+@router.get(
+    "/{job_id}/designs/{number}/assembly",
+    operation_id="view_assembly",
+    summary="Show a design's assembly in three dimensions",
+    response_class=Response,
+    responses=_responses("json"),
+)
+async def view_assembly(
+    request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str,
+    query: Annotated[ViewQuery, Query()],
+) -> Response:  # fmt: skip
+    """The parts of design ``number`` as stacks of prisms in millimetres, and where they are at inputs of the motion.
+
+    What each part moves with is told once, as a turn about a pivot and the place of that. `lift` says how far a part
+    goes up where the planes are drawn apart. It needs no CAD, and is refused for the same reasons as `parts`.
+    """
+    return await _answered(request, desk, bench, tenant, job_id, number, query, "json")
+
+
+@router.get(
+    "/{job_id}/designs/{number}/assembly.svg",
+    operation_id="draw_assembly",
+    summary="Draw a design's assembly",
+    response_class=Response,
+    responses=_responses("svg"),
+)
+async def draw_assembly(
+    request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str,
+    query: Annotated[AssemblyQuery, Query()],
+) -> Response:  # fmt: skip
+    """A picture of the parts of design ``number``, isometric, as they are built and with their planes drawn apart."""
+    return await _answered(request, desk, bench, tenant, job_id, number, query, "svg")
+
+
+_FORMS: dict[PartFile, str] = {
+    "dxf": "The outline of one plate or block with its holes, as it is cut.",
+    "stl": "One part as a mesh, lying as it is printed.",
+    "step": "One part as a solid (AP242), lying as it is printed.",
+    "3mf": "One part as a mesh with its unit, lying as it is printed.",
+}
+
+
+def _offer(form: PartFile) -> None:
+    """Add the operation that gives the files of one form of single parts."""
+
+    async def part(
+        request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str, name: str,
+        query: Annotated[PartsQuery, Query()],
+    ) -> Response:  # fmt: skip
+        return await _answered(request, desk, bench, tenant, job_id, number, query, form, name)
+
+    router.add_api_route(
+        f"/{{job_id}}/designs/{{number}}/parts/{{name}}.{form}",
+        part,
+        operation_id=f"export_part_{form}",
+        summary=f"Export a part of a design as {form.upper()}",
+        description=f"{_FORMS[form]} ``name`` is its name in the bill, or the `item` of a part of the assembly.",
+        response_class=Response,
+        responses=_responses(form),
+    )
+
+
+for _form in get_args(PartFile):
+    _offer(_form)
+
+
 async def _answered(
-    request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str, query: PartsQuery, file: File
-) -> Response:
+    request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str, query: PartsQuery,
+    file: File | PartFile, part: str | None = None,
+) -> Response:  # fmt: skip
     job, result = await solved(desk, tenant, job_id)
     n = await run_in_threadpool(_checked, result, number)
-    if (file != "zip" or query.process in NEEDS_CAD) and not installed():
+    if (file in SOLID or (file == "zip" and query.process in NEEDS_CAD)) and not installed():
         raise Refusal(
             501, "no-cad", "No CAD",
             "The service runs without its extra `cad`, which makes solids; `process=laser` has outlines without it.",
         )  # fmt: skip
-    stated = query.model_dump(exclude_unset=True)
+    order = {
+        "kind": job.kind, "problem": job.problem, "label": job.label, "result": result, "number": n,
+        "query": query.model_dump(exclude_unset=True),
+    }  # fmt: skip
+    asked = (filled, order, file) if part is None else (part_filled, order, part, file)
 
     async def make() -> bytes:
-        return await _made(request, bench, job, result, n, stated, file)
+        return await _made(request, bench, *asked)
 
     with span("parts"):
-        of = repr((job.kind, job.problem, job.label, result, n, sorted(stated.items()), file))
-        content = await bench.kept(of, make)
-    name = f"{job.kind}-{n}-parts.zip" if file == "zip" else f"{job.kind}-{n}.{file}"
-    headers = {"X-Content-Type-Options": "nosniff", "Content-Disposition": f'attachment; filename="{name}"'}
+        content = await bench.kept(repr(asked[1:]), make)
+    names = {"zip": f"{job.kind}-{n}-parts.zip", "svg": f"{job.kind}-{n}-assembly.svg"}
+    name = names.get(file, f"{job.kind}-{n}.{file}") if part is None else f"{part}.{file}"
+    headers = {"X-Content-Type-Options": "nosniff"}
+    if file == "svg":
+        headers |= HEADERS["svg"]
+    elif file != "json":
+        headers["Content-Disposition"] = f'attachment; filename="{name}"'
     return Response(content, media_type=_MEDIA[file], headers=headers)
 
 
-async def _made(
-    request: Request, bench: Bench, job: JobRow, result: str, number: int, stated: dict[str, Any], file: File
-) -> bytes:
+async def _made(request: Request, bench: Bench, work: Callable[..., Any], *args: Any) -> bytes:
     try:
-        made = await bench.call(
-            request.is_disconnected, filled, job.kind, job.problem, job.label, result, number, stated, file
-        )
+        made = await bench.call(request.is_disconnected, work, *args)
     except Busy:
         raise busy("parts") from None
     except Gone:
@@ -130,6 +219,8 @@ async def _made(
             f"The parts were given up: they took more than {MAX_PARTS_S:g} seconds, or more memory than a job may."
         ) from None
     if isinstance(made, Refused):
+        if not made.known:
+            raise not_found(made.detail)
         raise invalid_request([(made.path, made.detail)]) if made.path else _refused(made.detail)
     assert isinstance(made, bytes)
     return made

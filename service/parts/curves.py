@@ -51,6 +51,11 @@ class Curve:
         shares = np.arange(STEPS) / STEPS
         return np.asarray((knots[:-1, None] + np.diff(knots)[:, None] * shares).ravel())
 
+    @property
+    def through(self) -> Complex:
+        """Points on the curve, :data:`STEPS` for each of those that it was made of."""
+        return np.asarray(self.spline(self._steps) @ (1.0, 1j))
+
     def ring(self, *, beyond: bool) -> Complex:
         """A polygon that lies outside of the curve (``beyond``), or inside of it.
 

@@ -157,6 +157,12 @@ class Part:
         return max(body.high for body in self.bodies)
 
     @property
+    def headed(self) -> bool:
+        """Whether it is a pin whose lowest end is wider than its shank: it is put in from below."""
+        first, *_ = areas = [area(body.region.outer) for body in sorted(self.bodies, key=lambda body: body.low)]
+        return self.sort == "pin" and first > 1.2 * min(areas)
+
+    @property
     def region(self) -> Region:
         """What is cut from the sheet: its widest prism."""
         return max((body.region for body in self.bodies), key=lambda region: area(region.outer))

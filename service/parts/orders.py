@@ -2,45 +2,116 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
+from pydantic import BaseModel
+
 from service.parts import cad
+from service.parts.isometric import drawable, isometric_sheet
+from service.parts.items import items
 from service.parts.made import made
 from service.parts.model import Assembly, InputField
-from service.parts.package import package
-from service.parts.sizes import AssemblyQuery, File, NotMade, Refused
+from service.parts.package import package, part_file
+from service.parts.sizes import AssemblyQuery, File, NotMade, PartFile, PartsQuery, Process, Refused, ViewQuery
+from service.parts.viewed import files_of, viewed
 from service.render import heading
 from service.render.page.svg import clean
 from service.stated import read
 from synthesis.registry import KINDS
 
+KEPT = 4
+"""Assemblies that are kept: whoever looks at one asks for its parts next."""
 
-def filled(
-    kind: str, problem: str, label: str | None, result: str, number: int, query: dict[str, Any], file: File
-) -> bytes | Refused:
+
+class Order(BaseModel):
+    """A design of a job, as it is stored, and what its parts are to be."""
+
+    kind: str
+    problem: str
+    label: str | None
+    result: str
+    number: int
+    query: dict[str, Any]
+
+
+def filled(order: dict[str, Any], file: File) -> bytes | Refused:
     """A file of a design, as the process gives it back.
 
     Parameters
     ----------
-    kind, problem, label, result : str
-        Of the job, as they are stored.
-    number : int
-        The design's.
-    query : dict
-        Of an :class:`AssemblyQuery`.
-    file : {"zip", "step", "glb"}
+    order : dict
+        Of an :class:`Order`, whose query is that of the file.
+    file : {"zip", "step", "glb", "json", "svg"}
     """
-    statement = read(kind, problem)
-    design = KINDS[kind].result.model_validate_json(result).designs[number]
-    asked = AssemblyQuery.model_validate(query)
+    asked = Order.model_validate(order)
     try:
-        if file == "zip":
-            return package(design, statement, asked, clean(heading(statement, label, number)))
-        assembly = made(design, statement, asked)
-        solids = cad.placed(assembly, [cad.solid(part) for part in assembly.parts], _input(assembly, asked))
+        return _file(asked, file)
     except NotMade as error:
         return Refused(str(error), error.path)
+
+
+def _file(order: Order, file: File) -> bytes:
+    assembly = _assembly(order)
+    if file == "zip":
+        return package(assembly, _process(order), _title(order), _input(assembly, AssemblyQuery()))
+    if file == "json":
+        query = ViewQuery.model_validate(order.query)
+        return viewed(assembly, query.positions).model_dump_json().encode()
+    at = _input(assembly, AssemblyQuery.model_validate(order.query))
+    if file == "svg":
+        if not drawable(assembly):
+            raise NotMade("Assemblies are drawn whose shafts are parallel; the axes of this one are not.")
+        return isometric_sheet(assembly, _title(order), at).encode()
+    solids = cad.placed(assembly, [cad.solid(part) for part in assembly.parts], at)
     return cad.step(solids, "assembly") if file == "step" else cad.glb(solids, "assembly")
+
+
+def part_filled(order: dict[str, Any], name: str, form: PartFile) -> bytes | Refused:
+    """A file of one kind of part of a design.
+
+    Parameters
+    ----------
+    order : dict
+        Of an :class:`Order`, whose query is a :class:`PartsQuery`.
+    name : str
+        Of the item.
+    form : {"dxf", "stl", "step", "3mf"}
+    """
+    asked = Order.model_validate(order)
+    try:
+        listed = items(_assembly(asked))
+    except NotMade as error:
+        return Refused(str(error), error.path)
+    item = next((item for item in listed if item.name == name), None)
+    if item is None:
+        return Refused(f"There is no such part; there are {', '.join(item.name for item in listed)}.", "", known=False)
+    if form not in files_of(item.part):
+        return Refused(f"There is no {form} file of {name}.", "", known=False)
+    return part_file(item, form, _title(asked))
+
+
+def _title(order: Order) -> str:
+    return clean(heading(read(order.kind, order.problem), order.label, order.number))
+
+
+def _process(order: Order) -> Process:
+    return PartsQuery.model_validate(_sizes(order)).process
+
+
+def _sizes(order: Order) -> dict[str, Any]:
+    """What the query says of the parts themselves, and not of how they are shown."""
+    return {name: value for name, value in order.query.items() if name in PartsQuery.model_fields}
+
+
+def _assembly(order: Order) -> Assembly:
+    return _made(order.kind, order.problem, order.result, order.number, tuple(sorted(_sizes(order).items())))
+
+
+@lru_cache(maxsize=KEPT)
+def _made(kind: str, problem: str, result: str, number: int, query: tuple[tuple[str, Any], ...]) -> Assembly:
+    design = KINDS[kind].result.model_validate_json(result).designs[number]
+    return made(design, read(kind, problem), PartsQuery.model_validate(dict(query)))
 
 
 def _input(assembly: Assembly, asked: AssemblyQuery) -> float:

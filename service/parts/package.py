@@ -6,6 +6,7 @@ file              what it is                                               for w
 README.txt        what is in it, and how it is put together                all
 bom.csv           what is made and bought                                  all
 assembly.svg      the planes as an exploded side view, to scale            all
+isometric.svg     a picture of it, as built and with its planes apart      all whose shafts are parallel
 dxf/NAME.dxf      outlines of plates and blocks, with their holes          all
 assembly.step     all parts at their places, with names and colours        all, where CAD is installed
 step/NAME.step    each item that is not bought                             mill
@@ -17,43 +18,59 @@ from __future__ import annotations
 
 import io
 import zipfile
-from typing import Any
 
 from service.parts import cad
 from service.parts.bom import bill, millimetres
 from service.parts.dxf import cutting
 from service.parts.extra import installed
+from service.parts.isometric import drawable, isometric_sheet
 from service.parts.items import Item, items
-from service.parts.made import made
 from service.parts.model import FLAT, Assembly
 from service.parts.sheet import assembly_sheet
-from service.parts.sizes import PartsQuery, Process
+from service.parts.sizes import PartFile, Process
+from service.parts.viewed import files_of
 
 MADE_AT = (2000, 1, 1, 0, 0, 0)
 """Stands in the zip as the time of its making: what is in it depends on the design alone."""
 
 
-def package(design: Any, problem: Any, query: PartsQuery, title: str) -> bytes:
-    """The zip of a design's parts.
+def package(assembly: Assembly, process: Process, title: str, at: float) -> bytes:
+    """The zip of an assembly's parts.
 
-    Raises
-    ------
-    NotMade
-        Where there are no such parts.
+    Parameters
+    ----------
+    assembly : Assembly
+    process : {"print", "laser", "mill"}
+        For which it was made.
+    title : str
+        Without characters that XML forbids.
+    at : float
+        Input at which its picture shows it, radians or millimetres along the slide.
     """
-    assembly = made(design, problem, query)
     listed = items(assembly)
     files: dict[str, bytes] = {
         "bom.csv": bill(listed).encode(),
         "assembly.svg": assembly_sheet(assembly, listed, title).encode(),
     }
+    if drawable(assembly):
+        files["isometric.svg"] = isometric_sheet(assembly, title, at).encode()
     for item in listed:
-        if item.part.sort in FLAT:
-            files[f"dxf/{item.name}.dxf"] = cutting(item.part, f"{title}: {item.name}").encode()
+        if "dxf" in files_of(item.part):
+            files[f"dxf/{item.name}.dxf"] = part_file(item, "dxf", title)
     if installed():
-        files |= _solids(assembly, listed, query.process)
-    files = {"README.txt": _read_me(assembly, listed, query.process, title, files).encode()} | files
+        files |= _solids(assembly, listed, process)
+    files = {"README.txt": _read_me(assembly, listed, process, title, files).encode()} | files
     return zipped(files)
+
+
+def part_file(item: Item, form: PartFile, title: str) -> bytes:
+    """A file of one item: the outline that is cut, or the solid as it is printed; all but ``dxf`` need the extra."""
+    if form == "dxf":
+        return cutting(item.part, f"{title}: {item.name}").encode()
+    lying = cad.lying(item)
+    if form == "step":
+        return cad.step([lying], item.name)
+    return cad.stl(lying) if form == "stl" else cad.three_mf(lying, item.name)
 
 
 def zipped(files: dict[str, bytes]) -> bytes:

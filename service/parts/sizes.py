@@ -12,8 +12,14 @@ from service.parts.standards import PINS, SHEETS, RetainingRing, retaining_ring_
 
 Process = Literal["print", "laser", "mill"]
 
-File = Literal["zip", "step", "glb"]
-"""What a design's parts are had as."""
+File = Literal["zip", "step", "glb", "json", "svg"]
+"""What a design's parts are had as: ``json`` is what shows them in three dimensions, ``svg`` a picture of them."""
+
+PartFile = Literal["dxf", "stl", "step", "3mf"]
+"""What one part is had as."""
+
+SOLID: tuple[File | PartFile, ...] = ("step", "glb", "stl", "3mf")
+"""Files that need the extra ``cad`` whatever the process is."""
 
 NEEDS_CAD: tuple[Process, ...] = ("print", "mill")
 """Processes whose files are solids."""
@@ -27,6 +33,9 @@ LARGEST_ASSEMBLY = 20_000.0
 """What is made at most, millimetres."""
 
 MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
+
+MOST_POSITIONS = 720
+"""At which an assembly is shown."""
 
 CLEARANCES: dict[Process, float] = {"print": 0.2, "laser": 0.1, "mill": 0.05}
 """By which a hole is wider than its pin on each side, where nothing is stated, millimetres."""
@@ -111,11 +120,21 @@ class NotMade(ValueError):
         self.path = path
 
 
+class ViewQuery(PartsQuery):
+    """The same, and at how many inputs the assembly is shown."""
+
+    positions: Annotated[int, Field(ge=1, le=MOST_POSITIONS)] = Field(
+        default=72, description="Inputs, spread evenly over the motion that the parts were made for."
+    )
+
+
 class Refused(NamedTuple):
     """Why there is no such file; ``path`` is the field whose fault it is, empty where it is none's."""
 
     detail: str
     path: str
+    known: bool = True
+    """Whether there is a part of this name, and a file of this form of it."""
 
 
 @dataclass(frozen=True)

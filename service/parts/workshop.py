@@ -228,6 +228,13 @@ def filled(*args: Any) -> Any:
     return orders.filled(*args)
 
 
+def part_filled(*args: Any) -> Any:
+    """:func:`service.parts.orders.part_filled`, likewise."""
+    from service.parts import orders
+
+    return orders.part_filled(*args)
+
+
 def _hello() -> int:
     """The answer shows that the process has started."""
     return os.getpid()

@@ -161,10 +161,11 @@ def test_two_solids_in_one_place_are_seen_to_share_room() -> None:
 def test_printed_parts_are_watertight_meshes_that_lie_on_the_plate(kind: str) -> None:
     import trimesh
 
-    problem, _, design = solved(kind)
-    with zipfile.ZipFile(io.BytesIO(package(design, problem, PartsQuery(process="print"), "A"))) as archive:
+    whole = assembly(kind, "print")
+    at = float(whole.motion.mechanism.reference_input)
+    with zipfile.ZipFile(io.BytesIO(package(whole, "print", "A", at))) as archive:
         files = {name: archive.read(name) for name in archive.namelist()}
-    listed = items(assembly(kind, "print"))
+    listed = items(whole)
     assert {name for name in files if name.startswith("stl/")} == {f"stl/{item.name}.stl" for item in listed}
     for item in listed:
         mesh = trimesh.load_mesh(io.BytesIO(files[f"stl/{item.name}.stl"]), file_type="stl")

@@ -168,9 +168,8 @@ def test_alike_parts_are_one_item_and_every_part_is_in_one() -> None:
 
 def test_the_same_design_gives_the_same_files(monkeypatch: Any) -> None:
     monkeypatch.setattr("service.parts.package.installed", lambda: False)
-    problem = parse_problem(MOTION)
-    design = solve(problem, lambda _fraction, _message: None).designs[0]
-    first, second = (package(design, problem, PartsQuery(), "A") for _ in range(2))
+    whole = assembly("fourbar")
+    first, second = (package(whole, "laser", "A", whole.motion.inputs(1)[0]) for _ in range(2))
     assert first == second
 
 

@@ -1,0 +1,405 @@
+"""A picture of an assembly in isometric projection, as it is built and with its planes drawn apart.
+
+Everything is made of prisms upright on one plane, so that no general removal of hidden lines is needed. All prisms are
+cut at all heights at which one of them begins or ends. What lies in a lower slab never hides what lies in a higher one;
+within a slab the walls of holes are drawn first, then the outer walls from back to front, and at last the upper faces,
+which do not hide one another. Circles and arcs become arcs of ellipses, whose axes are level, as their planes are.
+
+Glossary:
+
+view     the plane of the picture: x to the right, y upwards, millimetres;
+toward   the horizontal direction to the viewer;
+band     a piece of a wall that is drawn in one shade.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterator, Sequence
+from itertools import combinations, groupby, pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from service.parts.bodies import Prism
+from service.parts.curves import Curve
+from service.parts.exploded import lifts
+from service.parts.model import FLAT, Assembly, Part, Placed
+from service.parts.shapes import Disc, Loop, Outline, Region, arc
+from service.render.page.sheet import EDGE, FULL, TOP, caption, framed, sheet
+from service.render.page.svg import Box, Element, Viewport, element, line, number, text, text_width
+from service.render.page.symbols import GREY, INK, scale_bar
+
+ALONG = cmath.exp(0.25j * math.pi)
+"""The horizontal direction that goes to the right in the view."""
+
+TOWARD = -1j * ALONG
+SINE, COSINE = math.sqrt(1.0 / 3.0), math.sqrt(2.0 / 3.0)
+"""Of the elevation at which all three axes are shortened alike."""
+
+LIGHT = cmath.exp(math.radians(-38.0) * 1j)
+"""Where the light comes from, seen from above, as a turn from the direction to the viewer."""
+
+BANDS = ((20.0, math.radians(15.0)), (7.0, math.radians(30.0)), (0.0, math.radians(45.0)))
+"""Turn of the normal within one band, of arcs whose radius in pixels is larger than so much."""
+
+SHADES = 16
+"""Of a wall."""
+
+CREASE = math.radians(50.0)
+"""Turn of the normal from which on an edge is drawn."""
+
+FULL_OF = 0.8
+"""Radius of what fills a hole, as a share of the hole's."""
+
+SECTIONS = 8
+"""Prisms that stand for a body that is none."""
+
+HEIGHT, SHARE, MARGIN = 470.0, 0.46, 22.0
+"""Height of the picture, share of its width that shows the assembly as built, and what is left free; pixels."""
+
+SMALL, LEADING = 10.5, 14.0
+"""Size of the names beside the plates, and between two of them at least, pixels."""
+
+THIN: dict[str, str | float] = {
+    "stroke": INK,
+    "stroke_width": 0.6,
+    "stroke_linejoin": "round",
+    "stroke_linecap": "round",
+}
+
+
+class Piece(NamedTuple):
+    """What a part has of a slab: a placed region from one height to another; ``ends`` where it goes no higher.
+
+    Of bodies that are no prisms only the first section ``begins`` and the last one ``ends``: there are no lines between.
+    """
+
+    part: Part
+    region: Region
+    low: float
+    high: float
+    begins: bool
+    ends: bool
+
+
+class Stretch(NamedTuple):
+    """A part of an outline from ``start`` to ``end`` in one band: ``bulge`` of an arc, ``normal`` of its wall there."""
+
+    start: complex
+    end: complex
+    bulge: float
+    normal: float
+
+    @property
+    def seen(self) -> bool:
+        """Whether its wall faces the viewer."""
+        return math.cos(self.normal) > 1e-9
+
+
+def isometric_sheet(assembly: Assembly, title: str, at: float) -> str:
+    """The picture as an SVG document.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    title : str
+        Without characters that XML forbids.
+    at : float
+        Input at which it is shown, radians or millimetres along the slide.
+    """
+    width = SHARE * FULL
+    together = Box(EDGE, TOP, EDGE + width, TOP + HEIGHT)
+    apart = Box(EDGE + width + 12.0, TOP, EDGE + FULL, TOP + HEIGHT)
+    lifted = lifts(assembly)
+    parts = [
+        *_panel(assembly, at, dict.fromkeys(lifted, 0.0), together, "As it is built", named=False),
+        *_panel(assembly, at, lifted, apart, "Its planes apart", named=True),
+    ]
+    words = f"{len(assembly.parts)} parts, isometric; lengths in millimetres"
+    if assembly.scale != 1.0:
+        words += f"; {assembly.scale:g} times the design"
+    described = f"An assembly of {len(assembly.parts)} parts from above at an angle, as it is built and drawn apart."
+    return sheet(title, words, described, parts, TOP + HEIGHT)
+
+
+def _panel(
+    assembly: Assembly, at: float, lifted: dict[str, float], panel: Box, words: str, *, named: bool
+) -> list[Element]:
+    pieces = placed_pieces(assembly, at, lifted)
+    names = [part for part in assembly.parts if part.sort in FLAT] if named else []
+    room = max((text_width(part.described, SMALL) for part in names), default=0.0)
+    box = Box.around(np.concatenate([_outline_points(piece) for piece in pieces]))
+    shown = Viewport.fit(box, Box(panel.left, panel.low, panel.right - room, panel.high), MARGIN, 22.0)
+    scene = _Scene(shown)
+    drawn = element("g", *(one for slab in slabs(pieces) for one in scene.drawn(slab)), **THIN)
+    bar, _ = scale_bar(Viewport(panel, 0j, 0j, shown.scale), "mm")
+    labels = _names(pieces, names, shown, panel.right - room - 12.0)
+    return [framed(panel, "isometric"), caption(panel, words), drawn, *labels, bar]
+
+
+# What is drawn
+
+
+def placed_pieces(assembly: Assembly, at: float, lifted: dict[str, float]) -> list[Piece]:
+    """All bodies of an assembly where they are at an input, each part lifted by so much.
+
+    What is no prism is a stack of its sections.
+    """
+    state = assembly.motion.at(np.array([at]))
+    found = []
+    for part in assembly.parts:
+        placed = assembly.motion.placed(part.carrier, state)
+        for body in part.bodies:
+            heights = [body.low, body.high]
+            if not isinstance(body, Prism):
+                heights = np.linspace(body.low, body.high, SECTIONS + 1).tolist()
+            for low, high in pairwise(heights):
+                for region in body.within(low, high):
+                    moved = Region(_moved(region.outer, placed), tuple(_moved(hole, placed) for hole in region.holes))
+                    up = lifted[part.name]
+                    found.append(Piece(part, moved, low + up, high + up, low == body.low, high == body.high))
+    return found
+
+
+def drawable(assembly: Assembly) -> bool:
+    """Whether all parts stand upright on one plane."""
+    motion = assembly.motion
+    state = motion.at(np.array([motion.reference]))
+    return all(motion.placed(part.carrier, state).frame is None for part in assembly.parts)
+
+
+def _moved(outline: Outline, placed: Placed) -> Outline:
+    turn, shift = (complex(np.ravel(values)[0]) for values in (placed.turn, placed.shift))
+    if isinstance(outline, Disc):
+        return Disc(turn * outline.centre + shift, outline.radius)
+    if isinstance(outline, Curve):
+        places = turn * outline.through + shift
+        return Loop(tuple(places.tolist()), (0.0,) * places.size)
+    return outline._replace(corners=tuple(turn * corner + shift for corner in outline.corners))
+
+
+def slabs(pieces: Sequence[Piece]) -> Iterator[list[Piece]]:
+    """The pieces cut at all heights at which one begins or ends, from below."""
+    size = max(piece.high for piece in pieces) - min(piece.low for piece in pieces)
+    heights: list[float] = []
+    for height in sorted(z for piece in pieces for z in (piece.low, piece.high)):
+        if not heights or height - heights[-1] > 1e-6 * size:
+            heights.append(height)
+    near = 1e-6 * size
+    for low, high in pairwise(heights):
+        yield [
+            _cut(piece, low, high, near) for piece in pieces if piece.low <= low + near and piece.high >= high - near
+        ]
+
+
+def _cut(piece: Piece, low: float, high: float, near: float) -> Piece:
+    begins = piece.begins and abs(piece.low - low) <= near
+    ends = piece.ends and abs(piece.high - high) <= near
+    return piece._replace(low=low, high=high, begins=begins, ends=ends)
+
+
+def view(place: complex, height: float) -> complex:
+    """Where a point appears in the view."""
+    across = place * ALONG.conjugate()
+    return complex(across.real, SINE * across.imag + COSINE * height)
+
+
+def stretches(outline: Outline, *, hole: bool = False, scale: float = 0.0) -> list[Stretch]:
+    """An outline in bands, counter-clockwise; normals lead out of what is solid, as turns from :data:`TOWARD`."""
+    found = []
+    for start, end, bulge in _edges(outline):
+        turned = 4.0 * math.atan(bulge)
+        tangent = cmath.phase((end - start) / TOWARD) - 0.5 * turned
+        first = tangent + (0.5 if hole else -0.5) * math.pi
+        if bulge == 0.0:
+            found.append(Stretch(start, end, 0.0, first))
+            continue
+        centre, _ = arc(start, end, bulge)
+        band = next(turn for least, turn in BANDS if scale * abs(start - centre) >= least)
+        low, high = sorted((first, first + turned))
+        crossed = [k * band for k in range(math.ceil(low / band), math.floor(high / band) + 1)]
+        shares = sorted({0.0, 1.0, *((angle - first) / turned for angle in crossed)})
+        for one, other in pairwise(share for share in shares if 0.0 <= share <= 1.0):
+            if other - one < 1e-9:
+                continue
+            a, b = (centre + (start - centre) * cmath.exp(1j * turned * share) for share in (one, other))
+            part = math.tan(0.25 * turned * (other - one))
+            found.append(Stretch(a, b, part, first + 0.5 * (one + other) * turned))
+    return found
+
+
+def _edges(outline: Outline) -> Iterator[tuple[complex, complex, float]]:
+    if isinstance(outline, Disc):
+        one, other = outline.centre - outline.radius, outline.centre + outline.radius
+        yield from ((one, other, 1.0), (other, one, 1.0))
+    else:
+        assert isinstance(outline, Loop)
+        yield from outline.edges()
+
+
+def _outline_points(piece: Piece) -> np.ndarray[tuple[int], np.dtype[np.complex128]]:
+    ends = [one for stretch in stretches(piece.region.outer) for one in (stretch.start, stretch.end)]
+    return np.array([view(end, height) for end in ends for height in (piece.low, piece.high)])
+
+
+def behind_first(pieces: Sequence[Piece]) -> list[Piece]:
+    """Pieces of one slab in the order in which their outer walls are drawn.
+
+    Two that share a vertical of the view are compared in the middle of what they share: what stands in another's hole
+    has its nearest point farther away than that, and comes first.
+    """
+    spans = [_across(piece) for piece in pieces]
+    before: dict[int, set[int]] = {k: set() for k in range(len(pieces))}
+    for i, j in combinations(range(len(pieces)), 2):
+        low, high = max(spans[i][0], spans[j][0]), min(spans[i][1], spans[j][1])
+        if high <= low:
+            continue
+        middle = 0.5 * (low + high)
+        if _nearest(pieces[i], middle) < _nearest(pieces[j], middle):
+            before[j].add(i)
+        else:
+            before[i].add(j)
+    left = sorted(before, key=lambda k: _nearest(pieces[k], 0.5 * sum(spans[k])))
+    order: list[int] = []
+    while left:
+        # Where three hide one another in a circle, the farthest is drawn.
+        at = next((k for k in left if not before[k] & set(left)), left[0])
+        left.remove(at)
+        order.append(at)
+    return [pieces[k] for k in order]
+
+
+def _across(piece: Piece) -> tuple[float, float]:
+    xs = [(s.start * ALONG.conjugate()).real for s in stretches(piece.region.outer)]
+    return min(xs), max(xs)
+
+
+def _nearest(piece: Piece, across: float) -> float:
+    """How near to the viewer a piece comes on a vertical of the view."""
+    found = -math.inf
+    for stretch in stretches(piece.region.outer):
+        a, b = (z * ALONG.conjugate() for z in (stretch.start, stretch.end))
+        if min(a.real, b.real) <= across <= max(a.real, b.real) and a.real != b.real:
+            share = (across - a.real) / (b.real - a.real)
+            found = max(found, -(a.imag + share * (b.imag - a.imag)))
+    return found
+
+
+# How it is drawn
+
+
+def _filled(slab: Sequence[Piece]) -> Iterator[tuple[Outline, Piece]]:
+    """Round holes with the pieces that fill them, so that neither has a wall that can be seen."""
+    for hole in (hole for piece in slab for hole in piece.region.holes if isinstance(hole, Disc)):
+        for piece in slab:
+            outer = piece.region.outer
+            if not isinstance(outer, Disc) or abs(outer.centre - hole.centre) > (1.0 - FULL_OF) * hole.radius:
+                continue
+            if FULL_OF <= outer.radius / hole.radius < 1.0 + 1e-9:
+                yield hole, piece
+
+
+class _Scene:
+    def __init__(self, shown: Viewport) -> None:
+        self._shown = shown
+
+    def drawn(self, slab: Sequence[Piece]) -> list[Element]:
+        """The pieces of a slab."""
+        filled = {hole for hole, _ in _filled(slab)}
+        within = {piece for _, piece in _filled(slab)}
+        found: list[Element] = []
+        for piece in slab:
+            for hole in piece.region.holes:
+                if hole not in filled:
+                    found += self._walls(piece, hole, hole=True)
+        for piece in behind_first([piece for piece in slab if piece not in within]):
+            found += self._walls(piece, piece.region.outer, hole=False)
+        found += [self._top(piece) for piece in slab if piece.ends]
+        return found
+
+    def _at(self, place: complex, height: float) -> str:
+        z = self._shown.point(view(place, height))
+        return f"{number(z.real)} {number(z.imag)}"
+
+    def _to(self, stretch: Stretch, height: float, *, back: bool = False) -> str:
+        """The command that draws a stretch from where the pen is."""
+        end = stretch.start if back else stretch.end
+        if stretch.bulge == 0.0:
+            return f"L{self._at(end, height)}"
+        centre, turned = arc(stretch.start, stretch.end, stretch.bulge)
+        radius = self._shown.scale * abs(stretch.start - centre)
+        sweep = int((turned < 0.0) != back)
+        return f"A{number(radius)} {number(SINE * radius)} 0 0 {sweep} {self._at(end, height)}"
+
+    def _top(self, piece: Piece) -> Element:
+        d = ""
+        for outline in (piece.region.outer, *piece.region.holes):
+            own = stretches(outline)
+            d += f"M{self._at(own[0].start, piece.high)}" + "".join(self._to(one, piece.high) for one in own) + "Z"
+        fill = shaded(piece.part.colour, 1.0)
+        return element("path", d=d, fill=fill, fill_rule="evenodd", data_part=piece.part.name)
+
+    def _walls(self, piece: Piece, outline: Outline, *, hole: bool) -> list[Element]:
+        low, high = piece.low, piece.high
+        own = stretches(outline, hole=hole, scale=self._shown.scale)
+        found: list[Element] = []
+        edges = ""
+        for fill, run in _runs(own, piece.part.colour, 0.8 if hole else 1.0):
+            there = "".join(self._to(stretch, high) for stretch in run)
+            back = "".join(self._to(stretch, low, back=True) for stretch in reversed(run))
+            d = f"M{self._at(run[0].start, high)}{there}L{self._at(run[-1].end, low)}{back}Z"
+            # The stroke closes the seams between bands.
+            found.append(element("path", d=d, fill=fill, stroke=fill))
+            if piece.begins and not hole:
+                edges += f"M{self._at(run[0].start, low)}" + "".join(self._to(stretch, low) for stretch in run)
+        for before, after in zip(own, own[1:] + own[:1], strict=True):
+            bent = abs(cmath.phase(cmath.exp(1j * (after.normal - before.normal))))
+            if before.seen != after.seen or (before.seen and bent > CREASE):
+                edges += f"M{self._at(after.start, high)}L{self._at(after.start, low)}"
+        if edges:
+            found.append(element("path", d=edges, fill="none"))
+        return found
+
+
+def _runs(own: Sequence[Stretch], colour: str, lit: float) -> Iterator[tuple[str, list[Stretch]]]:
+    """The stretches that are seen, those together that follow one another in one shade."""
+
+    def shade(stretch: Stretch) -> str:
+        if not stretch.seen:
+            return ""
+        steps = round(SHADES * max(0.0, (cmath.exp(1j * stretch.normal) * LIGHT.conjugate()).real))
+        return shaded(colour, lit * (0.52 + 0.3 * steps / SHADES))
+
+    for fill, run in groupby(own, key=shade):
+        if fill:
+            yield fill, list(run)
+
+
+def shaded(colour: str, lit: float) -> str:
+    """A colour in so much light: 1 of an upper face, which is a little paler than the part."""
+    channels = [int(colour[k : k + 2], 16) for k in (1, 3, 5)]
+    return "#" + "".join(f"{round(min(255.0, lit * (channel + 0.22 * (255 - channel)))):02x}" for channel in channels)
+
+
+def _names(pieces: Sequence[Piece], named: Sequence[Part], shown: Viewport, left: float) -> list[Element]:
+    """The names of plates at the right, each with a line to its plate."""
+    anchors = []
+    for part in named:
+        ends = [
+            shown.point(view(stretch.start, piece.high))
+            for piece in pieces
+            if piece.part is part
+            for stretch in stretches(piece.region.outer)
+        ]
+        anchors.append((max(ends, key=lambda z: z.real), part))
+    anchors.sort(key=lambda anchor: anchor[0].imag)
+    found: list[Element] = []
+    y = -math.inf
+    for end, part in anchors:
+        y = max(end.imag, y + LEADING)
+        beside = complex(left, y)
+        found.append(line(end + 3.0, beside - 4.0, stroke=GREY, stroke_width=0.6))
+        found.append(text(left, y + 0.35 * SMALL, part.described, SMALL, fill=INK))
+    return found

@@ -1,0 +1,182 @@
+"""An assembly as it is told to those who show it: :mod:`service.parts.answer` says how."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.parts.answer import (
+    AssemblyView,
+    Carried,
+    Circle,
+    Corners,
+    Driven,
+    MeshShape,
+    Point,
+    PrismShape,
+    Shape,
+    Standing,
+    TurnedShape,
+    TwistedShape,
+    ViewedPart,
+)
+from service.parts.bodies import Body, Mesh, Prism, Turned, Twisted
+from service.parts.curves import Curve
+from service.parts.exploded import lifts
+from service.parts.extra import installed
+from service.parts.items import items
+from service.parts.model import FLAT, Assembly, Carrier, Frame, Part
+from service.parts.shapes import Disc, Outline
+from service.parts.sizes import PartFile
+
+FINE = 720
+"""Inputs at least between which an angle is followed, so that it is known how often something has turned."""
+
+
+def viewed(assembly: Assembly, positions: int) -> AssemblyView:
+    """The assembly at so many inputs.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    positions : int
+        At least 1.
+    """
+    carriers = list(dict.fromkeys(part.carrier for part in assembly.parts))
+    names = {part.name: item.name for item in items(assembly) for part in item.parts}
+    lifted = lifts(assembly)
+    return AssemblyView(
+        unit=assembly.unit,
+        scale=assembly.scale,
+        planes=assembly.planes,
+        bases=assembly.sides,
+        low=min(part.low for part in assembly.parts),
+        high=max(part.high for part in assembly.parts),
+        notes=list(assembly.notes),
+        input=_driven(assembly, positions),
+        carriers=_carried(assembly, carriers, positions),
+        parts=[
+            _part(part, carriers.index(part.carrier), names[part.name], lifted[part.name]) for part in assembly.parts
+        ],
+    )
+
+
+def files_of(part: Part) -> list[PartFile]:
+    """The files that there are of a part here: outlines of what is cut from a sheet, solids where they can be made."""
+    flat = part.sort in FLAT and all(isinstance(body, Prism) for body in part.bodies)
+    cut: list[PartFile] = ["dxf"] if flat else []
+    return cut + (["stl", "step", "3mf"] if installed() else [])
+
+
+def _driven(assembly: Assembly, positions: int) -> Driven:
+    motion = assembly.motion
+    slides = motion.input_field == "input_place"
+    unit = assembly.unit if slides else math.pi / 180.0
+    return Driven(
+        quantity="place" if slides else "angle",
+        reference=motion.reference / unit,
+        low=motion.low / unit,
+        high=motion.high / unit,
+        closed=motion.closed,
+        values=(motion.inputs(positions) / unit).tolist(),
+    )
+
+
+def _carried(assembly: Assembly, carriers: list[Carrier], positions: int) -> list[Carried]:
+    motion = assembly.motion
+    inputs = motion.inputs(positions)
+    # An angle is followed through as many inputs as are needed, and told at those that are asked for.
+    steps = max(1, math.ceil(FINE / positions))
+    between = inputs
+    if positions > 1:
+        between = np.interp(np.arange((positions - 1) * steps + 1) / steps, np.arange(positions), inputs)
+    state = motion.at(between)
+    found = []
+    for carrier in carriers:
+        placed = motion.placed(carrier, state)
+        turn, shift = (np.broadcast_to(values, between.shape) for values in (placed.turn, placed.shift))
+        pivot = _pivot(turn, shift)
+        places = (turn * pivot + shift)[::steps]
+        angles = np.degrees(np.unwrap(np.angle(turn)))[::steps]
+        found.append(
+            Carried(
+                link=carrier.link,
+                joint=carrier.joint,
+                pivot=_pair(pivot),
+                angles=angles.tolist(),
+                places=[_pair(place) for place in places.tolist()],
+                frame=None if placed.frame is None else _standing(placed.frame, steps),
+            )
+        )
+    return found
+
+
+def _pivot(turn: NDArray[np.complex128], shift: NDArray[np.complex128]) -> complex:
+    """The point that goes about the least, so that what lies between two inputs is well told by both.
+
+    It is the p for which turn · p + shift varies least, by least squares about the mean.
+    """
+    turned, moved = turn - turn.mean(), shift - shift.mean()
+    spread = float(np.vdot(turned, turned).real)
+    return 0j if spread < 1e-12 * turn.size else complex(-np.vdot(turned, moved) / spread)
+
+
+def _standing(frame: Frame, steps: int) -> Standing:
+    origins, axes = frame.origin.reshape(-1, 3), frame.axes.reshape(-1, 3, 3)
+    step = slice(None, None, steps)
+    return Standing(
+        origins=[(x, y, z) for x, y, z in origins[step].tolist()],
+        along=[(x, y, z) for x, y, z in axes[step, :, 0].tolist()],
+        normals=[(x, y, z) for x, y, z in axes[step, :, 2].tolist()],
+    )
+
+
+def _part(part: Part, carrier: int, item: str, lift: float) -> ViewedPart:
+    return ViewedPart(
+        name=part.name,
+        described=part.described,
+        sort=part.sort,
+        material=part.material,
+        colour=part.colour,
+        standard=part.standard,
+        planes=part.planes,
+        lift=lift,
+        carrier=carrier,
+        shapes=[_shape(body) for body in part.bodies],
+        item=item,
+        files=files_of(part),
+    )
+
+
+def _shape(body: Body) -> Shape:
+    if isinstance(body, Turned):
+        return TurnedShape(centre=_pair(body.centre), profile=[_pair(corner) for corner in body.profile])
+    if isinstance(body, Mesh):
+        corners: Any = body.corners.tolist()
+        return MeshShape(corners=corners, triangles=body.triangles.tolist())
+    region = body.section if isinstance(body, Twisted) else body.region
+    upright: dict[str, Any] = {
+        "low": body.low,
+        "high": body.high,
+        "outer": _edge(region.outer),
+        "holes": [_edge(hole) for hole in region.holes],
+    }
+    if isinstance(body, Twisted):
+        return TwistedShape(centre=_pair(body.centre), twist=math.degrees(body.twist), **upright)
+    return PrismShape(**upright)
+
+
+def _edge(outline: Outline) -> Circle | Corners:
+    if isinstance(outline, Disc):
+        return Circle(centre=_pair(outline.centre), radius=outline.radius)
+    if isinstance(outline, Curve):
+        places = outline.through
+        return Corners(corners=[_pair(place) for place in places.tolist()], bulges=[0.0] * places.size, smooth=True)
+    return Corners(corners=[_pair(corner) for corner in outline.corners], bulges=list(outline.bulges), smooth=False)
+
+
+def _pair(z: complex) -> Point:
+    return z.real, z.imag
