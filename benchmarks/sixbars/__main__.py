@@ -7,8 +7,9 @@ import importlib
 import pkgutil
 
 import benchmarks.sixbars as package
+from benchmarks.sixbars.spread import Spread
 
-NO_ROWS = {"__main__"}
+NO_ROWS = {"__main__", "spread"}
 """Modules of the package that are no rows."""
 
 
@@ -18,7 +19,9 @@ def main() -> None:
     parser.add_argument("row", choices=names)
     parser.add_argument("--tasks", type=int)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--processes", type=int, default=1, help="how many tasks are worked on at once")
     asked = parser.parse_args()
+    Spread.processes = asked.processes
     row = importlib.import_module(f"{package.__name__}.{asked.row}")
     row.table(row.TASKS if asked.tasks is None else asked.tasks, asked.seed)
 

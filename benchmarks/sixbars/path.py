@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.closed_shapes import SHAPES, outline
+from benchmarks.sixbars.spread import each
 from benchmarks.walking_legs import LEGS, foot
 from kinematics.linkage.planar.drive import drive
 from synthesis.dispatch import solve
@@ -90,25 +91,30 @@ def least(result: Any, points: Complex, angle: float = 0.0) -> Any:
     return min(errors, key=lambda one: one[0], default=(math.inf, None))
 
 
+def tried(name: str, points: Complex, length: float, seed: int) -> tuple[bool, str]:
+    """Whether a curve is drawn well enough, and its row."""
+    fourbars, _, _ = solved(points, seed=seed)
+    sixbars, processor, wall = solved(points, seed=seed, mechanisms=["watt_1", "stephenson_1", "stephenson_3"])
+    simple, plain = least(fourbars, points)
+    error, best = least(sixbars, points, SOUND)
+    simple, error = 100.0 * simple / length, 100.0 * error / length
+    angles = [0.0 if one is None else one.metrics.min_transmission_angle for one in (plain, best)]
+    kind, link = ("none", "") if best is None else (best.mechanism.type, best.point_link)
+    row = (
+        f"{name:<20}{simple:>10.3f}{angles[0]:>6.0f}°{error:>10.3f}{angles[1]:>6.0f}°{error / simple:>8.2f}  "
+        f"{kind:<14}{link:<8}{processor:>6.1f}{wall:>7.1f}"
+    )
+    return error <= max(SHARE * simple, ENOUGH), row
+
+
 def table(tasks: int, seed: int) -> None:
     print(
         f"{'curve':<20}{'fourbar %':>10}{'at':>7}{'sixbar %':>10}{'at':>7}{'share':>8}  "
         f"{'type':<14}{'P on':<8}{'CPU s':>6}{'wall s':>7}"
     )
     met = 0
-    listed = list(targets().items())[:tasks]
-    for name, (points, length) in listed:
-        fourbars, _, _ = solved(points, seed=seed)
-        sixbars, processor, wall = solved(points, seed=seed, mechanisms=["watt_1", "stephenson_1", "stephenson_3"])
-        simple, plain = least(fourbars, points)
-        error, best = least(sixbars, points, SOUND)
-        simple, error = 100.0 * simple / length, 100.0 * error / length
-        met += error <= max(SHARE * simple, ENOUGH)
-        angles = [0.0 if one is None else one.metrics.min_transmission_angle for one in (plain, best)]
-        kind, link = ("none", "") if best is None else (best.mechanism.type, best.point_link)
-        print(
-            f"{name:<20}{simple:>10.3f}{angles[0]:>6.0f}°{error:>10.3f}{angles[1]:>6.0f}°{error / simple:>8.2f}  "
-            f"{kind:<14}{link:<8}{processor:>6.1f}{wall:>7.1f}",
-            flush=True,
-        )
+    listed = [(name, *target, seed) for name, target in targets().items()][:tasks]
+    for enough, row in each(tried, listed):
+        met += enough
+        print(row, flush=True)
     print(f"{met} of {len(listed)}: at most {SHARE:g} of the best fourbar's error, or {ENOUGH:g} %")

@@ -12,8 +12,8 @@ from kinematics.linkage.planar.drive import drive
 from synthesis.kinds.function import sixbar_kernels as kernels
 from synthesis.kinds.function import sixbar_rows as fit
 from synthesis.kinds.function.sixbar_build import built
+from synthesis.kinds.function.sixbar_descents import KINDS, Found
 from synthesis.kinds.function.sixbar_followers import followed
-from synthesis.kinds.function.sixbar_search import KINDS, Found
 from synthesis.kinds.function.task import function_task
 from synthesis.numerics.geodesic import follow_valley
 from synthesis.numerics.levenberg import descend

@@ -19,9 +19,9 @@ from kinematics.linkage.planar.catalogue import SIXBAR_LINKS
 from kinematics.linkage.planar.mechanism import GROUND
 from synthesis.kinds.function.design import Dials
 from synthesis.kinds.function.problem import FunctionProblem
+from synthesis.kinds.function.sixbar_descents import KINDS, Found
 from synthesis.kinds.function.sixbar_followers import followed
 from synthesis.kinds.function.sixbar_kernels import NUMBERS, START, STEPHENSON_2, STEPHENSON_3, A, B, C, K
-from synthesis.kinds.function.sixbar_search import KINDS, Found
 from synthesis.kinds.function.task import USUAL_GROUND, FunctionTask, dials_of
 from synthesis.model.linkage_answer import SixbarMechanism
 from synthesis.model.linkages import to_complex

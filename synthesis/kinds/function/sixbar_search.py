@@ -6,6 +6,9 @@
    squares lie (:mod:`synthesis.numerics.geodesic`).
 3. The best of them are improved by the criterion under all limits, as fourbars are
    (:mod:`~synthesis.kinds.function.descent`).
+
+Of stated pairs that are to be followed, more are drawn and chosen in more steps
+(:mod:`~synthesis.kinds.function.sixbar_pairs`).
 """
 
 from __future__ import annotations
@@ -16,40 +19,36 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.function import sixbar_rows as fit
 from synthesis.kinds.function.descent import Descent
-from synthesis.kinds.function.sixbar_followers import SixbarFollower, SixbarLimits, followed, greatest_cosine
-from synthesis.kinds.function.sixbar_kernels import LOGARITHMIC, NUMBERS, OWN, STEPHENSON_2, STEPHENSON_3, WATT_2, K, L
-from synthesis.kinds.function.sixbar_starts import starts
+from synthesis.kinds.function.sixbar_descents import KINDS, Descents, Found, best, best_starts
+from synthesis.kinds.function.sixbar_followers import SixbarFollower, SixbarLimits, followed
+from synthesis.kinds.function.sixbar_kernels import OWN, K, L
+from synthesis.kinds.function.sixbar_pairs import EFFORTS as FOR_PAIRS
+from synthesis.kinds.function.sixbar_pairs import PairSearch
+from synthesis.kinds.function.sixbar_starts import Starts, starts
 from synthesis.kinds.function.stated_mechanisms import Sixbar
 from synthesis.kinds.function.task import FunctionTask
 from synthesis.model.kind import Progress
-from synthesis.numerics.geodesic import follow_valley
-from synthesis.numerics.levenberg import descend
-from synthesis.outcome.ranking import distinct
 from synthesis.outcome.simplest import SOUND
 
 Real = NDArray[np.float64]
-
-KINDS: dict[Sixbar, int] = {"watt_2": WATT_2, "stephenson_3": STEPHENSON_3, "stephenson_2": STEPHENSON_2}
 
 DRAWN: dict[Sixbar, int] = {"watt_2": 4000, "stephenson_3": 6000, "stephenson_2": 40_000}
 """Sixbars that are drawn of each type."""
 
 
 class Effort(NamedTuple):
-    """Of a type: sixbars that descend by least squares, of a function and of pairs, those of them that go on along
-    valleys, and steps of the last ones where pairs may be met by nothing but them."""
+    """Of a type: sixbars that descend by least squares, of a function and of pairs that are to be met exactly, and
+    those of them that go on along valleys."""
 
     descended: int
-    for_pairs: int
+    for_exact: int
     valleys: int
-    to_the_end: int
 
 
-MUCH = Effort(150, 400, 40, 1500)
+MUCH = Effort(150, 400, 40)
 
-EFFORTS: dict[Sixbar, Effort] = {"watt_2": MUCH, "stephenson_3": MUCH, "stephenson_2": Effort(100, 120, 16, 500)}
+EFFORTS: dict[Sixbar, Effort] = {"watt_2": MUCH, "stephenson_3": MUCH, "stephenson_2": Effort(100, 120, 16)}
 """A Stephenson II, whose place is a root, takes three times as long as the others."""
 
 IMPROVED, ALONG = 8, 150
@@ -76,20 +75,8 @@ EXACT_STEPS, EXACT_TOLERANCE = 200, 1e-13
 ROUNDS, ROUNDS_OF_SQUARES = 60, 15
 """Steps by the criterion at most: linear programs, and as many times three quadratic ones."""
 
-APART = 0.05
-"""Sixbars differ by this much in the logarithm of a length, an angle or a coordinate."""
-
 MET = 1e-10
 """Greatest error, radians, that is rounding: nothing is left to improve."""
-
-
-class Found(NamedTuple):
-    """A sixbar of the search: its type, assembly and numbers, and its error in the criterion's norm, radians."""
-
-    type: Sixbar
-    assembly: int
-    at: Real
-    error: float
 
 
 class Places(NamedTuple):
@@ -144,75 +131,43 @@ class SixbarSearch:
         self.least = least if least is not None else SOUND if demanded is None else demanded
         self.task, self.places = task, places_of(task)
         self.exact, self.square = task.problem.aim == "precision", task.problem.aim == "least_squares"
+        limits = self.least, task.problem.constraints.max_link_ratio
+        self._descents = Descents(self.places.points, *limits)
+        self._pairs = PairSearch(self.places.points, *limits, MET)
         self.weighed = 0
 
     def of_type(self, name: Sixbar, rng: np.random.Generator, progress: Progress) -> list[Found]:
         """The best sixbars of a type that were found, the best first."""
-        kind, points = KINDS[name], self.places.points
-        drawn = starts(kind, self.task, points[0], points[1], DRAWN[name], rng)
-        costs = np.empty(len(drawn.at))
-        fit.weigh(kind, drawn.assemblies, drawn.at, points, greatest_cosine(self.least), costs)
-        self.weighed += len(costs)
-        order = np.argsort(costs, kind="stable")
-        order = order[np.isfinite(costs[order])]
-        effort, few = EFFORTS[name], self.task.problem.function is not None and not self.exact
-        chosen = order[distinct(_features(kind, drawn.at[order]), effort.descended if few else effort.for_pairs, APART)]
-        progress(0.2, f"{len(costs)} sixbars of type {name}")
-        begun = [Found(name, int(drawn.assemblies[j]), drawn.at[j], math.inf) for j in chosen]
-        reached = _best([self._descended(one) for one in begun], effort.valleys)
-        progress(0.6, f"improving the best of {len(begun)} sixbars of type {name}")
-        if self.exact:
-            # Those that have arrived are left as they are.
-            reached = _best([self._along(one, 2 * ALONG) for one in reached], effort.valleys)
+        pairs = self.task.problem.function is None and not self.exact
+        count = FOR_PAIRS[name].drawn if pairs else DRAWN[name]
+        drawn = starts(KINDS[name], self.task, self.places.points[0], self.places.points[1], count, rng)
+        self.weighed += len(drawn.at)
+        progress(0.1, f"{len(drawn.at)} sixbars of type {name}")
+        if pairs:
+            reached = self._pairs.arrived(name, drawn, IMPROVED, rng, progress)
         else:
-            reached = _best([self._along(one, ALONG) for one in reached], IMPROVED)
-        if not few and not self.exact:
-            reached = _best([self._along(one, effort.to_the_end) for one in reached], IMPROVED)
+            reached = self._descended(name, drawn, progress)
         improved = [self._improved(one) for one in reached]
         improved.sort(key=lambda one: one.error)
         return [one for one in improved if math.isfinite(one.error)]
 
-    def _setting(self, one: Found, weight: float) -> tuple[Real, Real]:
-        """The unknowns of a sixbar and the setting of its rows, limits having this weight beside errors."""
-        kind = KINDS[one.type]
-        logs = LOGARITHMIC[kind]
-        x = one.at.copy()
-        x[logs] = np.log(np.abs(x[logs]))
-        setting = np.zeros(fit.SETTING)
-        setting[[fit.KIND, fit.ASSEMBLY, fit.SIGN_K, fit.SIGN_L]] = kind, one.assembly, *np.sign(one.at[[K, L]])
-        setting[[fit.COSINE, fit.STRICT]] = greatest_cosine(self.least), weight
-        ratio = self.task.problem.constraints.max_link_ratio
-        setting[fit.RATIO] = math.log(fit.WIDEST if ratio is None else ratio) - fit.INSIDE
-        setting[fit.FREE :] = OWN[kind]
-        setting[[fit.FREE + K, fit.FREE + L]] = 0.0
-        return x, setting
-
-    def _descended(self, one: Found) -> Found:
-        """The least squares from a start, with its error and what is lacking of the limits."""
-        x, setting = self._setting(one, 0.0)
-        state, none, points = one.at[-1:].copy(), np.zeros(1), self.places.points
-        most = fit.most_rows(points.shape[1])
-        cost = math.inf
-        for weight in WEIGHTS:
-            setting[fit.STRICT] = weight
-            cost, _ = descend(fit.rows, x, points, setting, none, state, most, STEPS, TOLERANCE)
+    def _descended(self, name: Sixbar, drawn: Starts, progress: Progress) -> list[Found]:
+        """The least squares that starts lead to: of a function, or of pairs that are to be met exactly."""
+        effort, descents = EFFORTS[name], self._descents
+        begun = best_starts(
+            name, drawn, descents.costs(name, drawn), effort.for_exact if self.exact else effort.descended
+        )
+        found = []
+        for one in begun:
+            for weight in WEIGHTS:
+                one = descents.descended(one, weight, STEPS, TOLERANCE)
+            found.append(descents.descended(one, 0.0, EXACT_STEPS, EXACT_TOLERANCE) if self.exact else one)
+        reached = best(found, effort.valleys)
+        progress(0.6, f"improving the best of {len(begun)} sixbars of type {name}")
         if self.exact:
-            setting[fit.STRICT] = 0.0
-            cost, _ = descend(fit.rows, x, points, setting, none, state, most, EXACT_STEPS, EXACT_TOLERANCE)
-        return self._reached(one, x, setting, state, cost)
-
-    def _along(self, one: Found, steps: int) -> Found:
-        """A sixbar farther along the valley that it is in."""
-        x, setting = self._setting(one, 0.0 if self.exact else WEIGHTS[-1])
-        state, points = one.at[-1:].copy(), self.places.points
-        most = fit.most_rows(points.shape[1])
-        cost = follow_valley(fit.rows, x, points, setting, np.zeros(1), state, most, steps)
-        return self._reached(one, x, setting, state, cost)
-
-    def _reached(self, one: Found, x: Real, setting: Real, state: Real, cost: float) -> Found:
-        at = np.empty(NUMBERS)
-        fit.unlogged(KINDS[one.type], x, setting, state, at)
-        return one._replace(at=at, error=math.sqrt(2.0 * cost))
+            # Those that have arrived are left as they are.
+            return best([descents.along(one, 0.0, 2 * ALONG) for one in reached], effort.valleys)
+        return best([descents.along(one, WEIGHTS[-1], ALONG) for one in reached], IMPROVED)
 
     def _improved(self, one: Found) -> Found:
         """A sixbar improved by the criterion, under all limits."""
@@ -228,20 +183,3 @@ class SixbarSearch:
         improve = descent.least_squares if self.square else descent.minimax
         done = improve(one.at, 1.0, ROUNDS_OF_SQUARES if self.square else ROUNDS)
         return one._replace(at=done.generator, error=done.error)
-
-
-def _best(found: list[Found], most: int) -> list[Found]:
-    """The best of some that differ, of one type."""
-    ordered = sorted((one for one in found if math.isfinite(one.error)), key=lambda one: one.error)
-    if not ordered:
-        return []
-    table = np.array([one.at for one in ordered])
-    return [ordered[n] for n in distinct(_features(KINDS[ordered[0].type], table), most, APART)]
-
-
-def _features(kind: int, at: Real) -> NDArray[np.complex128]:
-    """What tells sixbars of a type apart, as :func:`~synthesis.outcome.ranking.distinct` takes it."""
-    logs = LOGARITHMIC[kind]
-    features = at[:, :-1].copy()
-    features[:, logs[:-1]] = np.log(np.abs(features[:, logs[:-1]]))
-    return features.astype(np.complex128)
