@@ -17,7 +17,6 @@ import numpy as np
 
 from service.parts.bodies import Body, Mesh, Prism, Turned, Twisted
 from service.parts.curves import Curve
-from service.parts.items import Item
 from service.parts.model import Assembly, Frame, Part
 from service.parts.shapes import Disc, Outline, Region, middle_of
 
@@ -114,13 +113,8 @@ def glb(solids: Sequence[Solid], name: str) -> bytes:
         return path.read_bytes()
 
 
-def lying(item: Item) -> Solid:
-    """A solid of an item as it is printed: along x, on the plate, its lowest face down."""
-    part = item.part
-    return _lying(solid(part), part)
-
-
-def _lying(shape: Solid, part: Part) -> Solid:
+def lying(shape: Solid, part: Part) -> Solid:
+    """The solid of a part as it is printed: along x, on the plate, its lowest face down."""
     import build123d as b3d
 
     back = float(np.degrees(np.angle(part.along.conjugate())))

@@ -83,16 +83,16 @@ def zipped(files: dict[str, bytes]) -> bytes:
 
 
 def _solids(assembly: Assembly, listed: list[Item], process: Process) -> dict[str, bytes]:
-    solids = [cad.solid(part) for part in assembly.parts]
-    files = {"assembly.step": cad.step(solids, "assembly")}
+    solids = {part.name: cad.solid(part) for part in assembly.parts}
+    files = {"assembly.step": cad.step([*solids.values()], "assembly")}
+    lying = {item.name: cad.lying(solids[item.part.name], item.part) for item in listed}
     if process == "mill":
         files |= {
-            f"step/{item.name}.step": cad.step([cad.lying(item)], item.name)
+            f"step/{item.name}.step": cad.step([lying[item.name]], item.name)
             for item in listed
             if not item.part.standard or item.part.sort == "pin"
         }
     if process == "print":
-        lying = {item.name: cad.lying(item) for item in listed}
         files |= {f"stl/{name}.stl": cad.stl(shape) for name, shape in lying.items()}
         files |= {f"3mf/{name}.3mf": cad.three_mf(shape, name) for name, shape in lying.items()}
     return files

@@ -149,7 +149,8 @@ class _Task:
         before = sum(len(one.idlers) for one in self.train.stages[:number])
         wheels = []
         idler = len(self.train.stages) + 1 + before
-        play = 0.0 if self.asked.backlash[number] > 0.0 else 0.5 * self.sizes.clearance
+        # The answer's own backlash counts, and is made up to the clearance.
+        play = 0.5 * max(self.sizes.clearance - self.sizing.factor * self.asked.backlash[number], 0.0)
         for gear in in_line(self.train, number, axis, ahead):
             shaft = number + (gear.role == "driven")
             role: str = gear.role
