@@ -67,7 +67,7 @@ def part_file(item: Item, form: PartFile, title: str) -> bytes:
     """A file of one item: the outline that is cut, or the solid as it is printed; all but ``dxf`` need the extra."""
     if form == "dxf":
         return cutting(item.part, f"{title}: {item.name}").encode()
-    lying = cad.lying(item)
+    lying = cad.lying(cad.solid(item.part), item.part)
     if form == "step":
         return cad.step([lying], item.name)
     return cad.stl(lying) if form == "stl" else cad.three_mf(lying, item.name)

@@ -86,15 +86,20 @@ def test_bores_are_as_far_apart_as_the_answer_says(name: str) -> None:
         path.write_bytes(cad.step([*solids(name).values()], "assembly"))
         found = {child.label: child for child in import_step(path).children}
     assert found.keys() == {part.name for part in whole.parts}
+    outer = next(part for part in whole.parts if part.name == "pin_input_shaft").region.outer
+    assert isinstance(outer, Disc)
+    shaft = outer.radius
     for number, distance in enumerate(design.metrics.centre_distances, 1):
         axes = []
         for role in ("driver", "driven"):
             webbed = f"web_{number}_{role}"
             one = found[webbed if webbed in found else f"gear_{number}_{role}"]
-            # The cylinder about the axis that goes round nearly wholly is the bore.
-            bores = [face for face in one.faces() if face.geom_type == GeomType.CYLINDER]
-            bore = max(bores, key=lambda face: face.area / face.radius if face.radius < 0.3 * one.bounding_box().size.X
-                       else 0.0)  # fmt: skip
+            bores = [
+                face
+                for face in one.faces()
+                if face.geom_type == GeomType.CYLINDER and shaft < face.radius < 1.1 * shaft
+            ]
+            bore = max(bores, key=lambda face: face.area)
             axes.append(complex(bore.axis_of_rotation.position.X, bore.axis_of_rotation.position.Y))
         assert abs(axes[0] - axes[1]) == pytest.approx(distance, rel=1e-6)
 
@@ -196,9 +201,10 @@ def test_printed_gears_are_watertight_meshes(name: str) -> None:
     import trimesh
 
     problem, design = solved(name)
-    with zipfile.ZipFile(io.BytesIO(package(design, problem, PartsQuery(process="print"), "A"))) as archive:
+    whole = made(design, problem, PartsQuery(process="print"))
+    with zipfile.ZipFile(io.BytesIO(package(whole, "print", "A", whole.motion.reference))) as archive:
         files = {one: archive.read(one) for one in archive.namelist()}
-    listed = items(made(design, problem, PartsQuery(process="print")))
+    listed = items(whole)
     assert {one for one in files if one.startswith("stl/")} == {f"stl/{item.name}.stl" for item in listed}
     for item in listed:
         mesh = trimesh.load_mesh(io.BytesIO(files[f"stl/{item.name}.stl"]), file_type="stl")
