@@ -62,8 +62,8 @@ class Turning:
         return "input_angle"
 
     def stated(self, value: float, scale: float) -> float:
-        """The input that a request states in degrees."""
-        return math.radians(value)
+        """The input that a request states in degrees, without whole turns."""
+        return math.radians(value % 360.0)
 
     def inputs(self, count: int) -> Real:
         """So many inputs, spread evenly over a turn."""

@@ -29,7 +29,7 @@ from service.parts.fitting import Fitting, Trial, fault_of
 from service.parts.followers import bell_crank, faced_arm, faced_slide
 from service.parts.model import Assembly, Carrier, Part
 from service.parts.shapes import Disc, Loop, Outline, Region, ring, widened
-from service.parts.sizes import MILLIMETRES, PartsQuery, Sizes
+from service.parts.sizes import MILLIMETRES, NotMade, PartsQuery, Sizes
 from service.parts.stack import STILL, Stack
 from synthesis.kinds.cam.design import CamMechanism
 from synthesis.kinds.cam.mechanism import core_follower, points_of, stretches_of, table_angles
@@ -48,6 +48,9 @@ GUIDE = 4.0
 
 RIM = 0.25
 """What a cam with a groove has beyond its outer wall, beside a collar, in diameters of a pin."""
+
+WIDEST = math.radians(170.0)
+"""Angle between the two arms of a follower of conjugate cams, from which they are no plate with an inner corner."""
 
 DOWELS = 3
 """Pins that hold the outer wall of a groove that is cut from sheets."""
@@ -106,7 +109,9 @@ class _Cams(Fitting):
         return min(PIN_OF_ROLLER * radius, PIN_OF_BASE * 2.0 * (mechanism.prime_radius - radius))
 
     def opening(self, sizes: Sizes) -> tuple[float, str]:
-        """A bar holds pins."""
+        """The base has a slot for the runner of a slide."""
+        if isinstance(self._core, TranslatingRoller | TranslatingFlat):
+            return sizes.block[1] + 2.0 * sizes.clearance, "a runner on pins"
         return sizes.hole, "pins"
 
     def tried(self, sizes: Sizes, scale: float) -> Trial:
@@ -320,6 +325,9 @@ class CamBuilder:
             shape = widened([self._pivot, rollers[0].centre], radius)
         else:
             arms = [roller.centre - self._pivot for roller in rollers][:: 1 if self._way > 0.0 else -1]
+            apart = cmath.phase(arms[1] / arms[0])
+            if not 0.0 < apart < WIDEST or radius / math.tan(0.5 * apart) > min(abs(arm) for arm in arms):
+                raise NotMade("The two arms of the follower stand too wide or too near for a plate of one piece.")
             crank = bell_crank(arms[0], arms[1], radius)
             shape = Loop(tuple(self._pivot + z for z in crank.corners), crank.bulges)
         holes = [Disc(z, 0.5 * self._sizes.hole) for z in (self._pivot, *(roller.centre for roller in rollers))]
