@@ -148,13 +148,15 @@ def test_printed_parts_are_watertight_meshes_on_the_plate(name: str) -> None:
 
 
 def test_an_assembly_is_shown_at_the_input_that_is_asked_for() -> None:
+    import trimesh
+
     problem, result, _ = solved("external")
 
     def shown(degrees: float) -> Any:
         query = {"input_angle": degrees}
         content = filled(problem.kind, written(problem), None, result.model_dump_json(), 0, query, "glb")
         assert isinstance(content, bytes)
-        return content
+        return trimesh.load(io.BytesIO(content), file_type="glb").bounds
 
-    assert shown(40.0) == shown(400.0)
-    assert shown(40.0) != shown(60.0)
+    assert shown(40.0) == pytest.approx(shown(400.0), abs=1e-9)
+    assert np.abs(shown(40.0) - shown(60.0)).max() > 1e-3
