@@ -233,7 +233,12 @@ def test_what_means_nothing_here_is_refused_by_its_path(
     assert [fault["path"] for fault in answer["errors"]] == [f"/query/{field}"]
 
 
-@pytest.mark.parametrize("name", ["roller", "external", "ratchet"])
+def also(*names: str) -> list[Any]:
+    """Names whose tests take longer."""
+    return [pytest.param(name, marks=pytest.mark.campaign) for name in names]
+
+
+@pytest.mark.parametrize("name", ["roller", *also("external", "ratchet")])
 def test_too_thick_pins_are_refused_with_the_scale_that_works(client: Any, jobs: Any, name: str) -> None:
     (fault,) = refused(client, jobs[name][0], 422, pin=25)["errors"]
     assert fault["path"] == "/query/pin"
@@ -249,13 +254,13 @@ def test_sizes_that_contradict_one_another_are_refused(client: Any, jobs: Any, f
     assert [fault["path"] for fault in answer["errors"]] == [f"/query/{field}"]
 
 
-def test_sizes_are_found_where_none_are_stated(client: Any, jobs: Any) -> None:
-    for name in PROBLEMS:
-        files = parts(client, jobs[name][0])
-        rows = bill(files)
-        assert "base" in rows
-        assert any(row["standard"].startswith("DIN 6885") or row["part"].startswith("key") for row in rows.values())
-        assert b"shaft" in files["README.txt"]
+@pytest.mark.parametrize("name", ["roller", "external", *also("arm", "flat", "groove", "internal", "ratchet")])
+def test_sizes_are_found_where_none_are_stated(client: Any, jobs: Any, name: str) -> None:
+    files = parts(client, jobs[name][0])
+    rows = bill(files)
+    assert "base" in rows
+    assert any(part.startswith("key") for part in rows)
+    assert b"shaft" in files["README.txt"]
 
 
 def test_what_is_not_built_says_why(client: Any) -> None:
