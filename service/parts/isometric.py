@@ -73,7 +73,7 @@ THIN: dict[str, str | float] = {
 class Piece(NamedTuple):
     """What a part has of a slab: a placed region from one height to another; ``ends`` where it goes no higher.
 
-    Of bodies that are no prisms only the first section ``begins`` and the last one ``ends``: there are no lines between.
+    Of bodies that are no prisms only the first section ``begins`` and the last ``ends``: there are no lines between.
     """
 
     part: Part
