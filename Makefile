@@ -13,6 +13,7 @@
 # make docs    the site, in var/site: all pages, the references, and a gallery of machines that are solved for it
 # make test-docs  make the site, and see that every link holds and that what it shows has run
 # make package  a wheel, in dist/
+# make vendor  fetch three.js, which the studio shows assemblies with, as it is published
 # make openapi  rewrite docs/openapi.json after a change of the API or of a kind of problem
 # make lock    resolve the dependencies of pyproject.toml anew
 
@@ -37,7 +38,7 @@ BESIDES := --ignore tests/browser --ignore tests/cad
 
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: serve test fuzz test-cluster engines test-faults test-browser chromium campaign demo check quick bench openapi lock package docs \
+.PHONY: vendor serve test fuzz test-cluster engines test-faults test-browser chromium campaign demo check quick bench openapi lock package docs \
     test-docs clean suite test-cad cad-suite cluster-rabbitmq cluster-redis
 
 serve: $(SERVING) $(if $(filter-out 0 false no,$(MECHSYNTH_CAD)),$(CAD))
@@ -160,6 +161,21 @@ package: $(STAMP)
 	    --wheel-dir dist .
 	@rm -rf build
 	@ls dist/*.whl
+
+# As it is published, but for the name by which its controls find it: a page whose policy allows no inline script has no
+# import map. This is the last release with files made small for browsers.
+THREE := 0.185.1
+THREE_SUM := a2143f5bf978bd3470a51024b2b6bdd581913ba8f36ff1538d433f3a95adf2df
+FOR_STUDIO := service/studio/vendor
+
+vendor:
+	@rm -rf var/vendor && mkdir -p var/vendor $(FOR_STUDIO)
+	@cd var/vendor && npm pack --silent three@$(THREE) && echo "$(THREE_SUM)  three-$(THREE).tgz" | sha256sum --check --quiet \
+	    && tar xzf three-$(THREE).tgz
+	@cp var/vendor/package/build/three.core.min.js var/vendor/package/build/three.module.min.js $(FOR_STUDIO)/
+	@cp var/vendor/package/LICENSE $(FOR_STUDIO)/three.LICENSE
+	@sed "s#} from 'three';#} from './three.module.min.js';#" var/vendor/package/examples/jsm/controls/OrbitControls.js \
+	    > $(FOR_STUDIO)/OrbitControls.js
 
 # The virtual environment is made without ensurepip, which some systems leave out. The system's pip puts uv and setuptools
 # beside it, which those who only serve do not keep: uv installs the rest in a tenth of pip's time. Where there is no uv,

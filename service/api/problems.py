@@ -10,6 +10,7 @@ from fastapi import APIRouter
 from service.api.guard import GuardedRoute
 from service.api.schemas import ProblemKind, ProblemKinds
 from service.parts.extra import installed
+from service.parts.made import LINKAGE, MAKERS
 from service.render import forms
 from synthesis.registry import KINDS, example
 
@@ -28,6 +29,7 @@ async def list_problems() -> ProblemKinds:
 def _kinds() -> ProblemKinds:
     return ProblemKinds(
         solids=installed(),
+        parts=sorted(MAKERS.keys() - {LINKAGE}),
         problems=[
             ProblemKind(
                 kind=name,

@@ -121,6 +121,9 @@ class ProblemKinds(BaseModel):
         description="Whether parts of designs are had as solids too: printed, milled, as STEP and glTF. Without the "
         "extra `cad` there are outlines alone."
     )
+    parts: list[str] = Field(
+        description="Types of mechanism, beside those that have a `skeleton`, whose designs are had as parts."
+    )
 
 
 class Health(BaseModel):

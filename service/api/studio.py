@@ -13,6 +13,9 @@ from service.api import etag
 
 PAGE = "index.html"
 
+VENDOR = "vendor/"
+"""Where modules of others are, as they were published; `make vendor` has them."""
+
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
@@ -24,6 +27,7 @@ _TYPES = {
     "html": "text/html; charset=utf-8",
     "js": "text/javascript; charset=utf-8",
     "svg": "image/svg+xml",
+    "LICENSE": "text/plain; charset=utf-8",
 }
 
 
@@ -37,16 +41,19 @@ class StudioFile(NamedTuple):
 
 def _read() -> dict[str, StudioFile]:
     files_by_name = {}
-    for entry in files("service").joinpath("studio").iterdir():
-        media_type = _TYPES.get(entry.name.rpartition(".")[2])
-        if media_type is not None:
-            content = entry.read_bytes()
-            files_by_name[entry.name] = StudioFile(content, media_type, f'"{hashlib.sha256(content).hexdigest()[:16]}"')
+    studio = files("service").joinpath("studio")
+    for folder, prefix in ((studio, ""), (studio.joinpath("vendor"), VENDOR)):
+        for entry in folder.iterdir():
+            media_type = _TYPES.get(entry.name.rpartition(".")[2])
+            if media_type is not None:
+                content = entry.read_bytes()
+                etag_ = f'"{hashlib.sha256(content).hexdigest()[:16]}"'
+                files_by_name[prefix + entry.name] = StudioFile(content, media_type, etag_)
     return files_by_name
 
 
 FILES = _read()
-"""All files of the page by name; they are few and small, and no request can name another."""
+"""All files of the page by name; they are few, and no request can name another."""
 
 router = APIRouter(include_in_schema=False)
 
@@ -57,7 +64,7 @@ async def studio(request: Request) -> Response:
     return _served(request, PAGE)
 
 
-@router.get("/studio/{name}")
+@router.get("/studio/{name:path}")
 async def studio_file(request: Request, name: str) -> Response:
     """A module, the style sheet or the icon of the page."""
     if name not in FILES or name == PAGE:

@@ -80,11 +80,15 @@ let told = [];
 
 let solids = false;
 
+/** @type {string[]} */
+let built = [];
+
 /** @returns {Promise<Kind[]>} */
 export async function kinds() {
   const answer = await (await ask("/v1/problems")).json();
   told = answer.problems;
   solids = answer.solids;
+  built = answer.parts;
   return told;
 }
 
@@ -93,13 +97,37 @@ export function makesSolids() {
   return solids;
 }
 
+/** Whether designs of a mechanism are had as parts. @param {any} mechanism */
+export function hasParts(mechanism) {
+  return Boolean(mechanism.skeleton) || built.includes(mechanism.type);
+}
+
 /**
- * The parts of a design of linkages as a zip, as something that a download can refer to; whoever gets it revokes it.
- * @param {string} id @param {number} design @param {"laser" | "print"} process
+ * The parts of a design as a zip, as something that a download can refer to; whoever gets it revokes it.
+ * @param {string} id @param {number} design @param {Record<string, string>} sizes what they are made of
  */
-export async function parts(id, design, process) {
-  const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/parts?process=${process}`;
+export async function parts(id, design, sizes) {
+  const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/parts?${new URLSearchParams(sizes)}`;
   return URL.createObjectURL(await (await patiently(() => ask(path))).blob());
+}
+
+/**
+ * A file of one part of a design, likewise.
+ * @param {string} id @param {number} design @param {string} item @param {string} form @param {Record<string, string>} sizes
+ */
+export async function part(id, design, item, form, sizes) {
+  const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/parts/${encodeURIComponent(item)}.${form}?${new URLSearchParams(sizes)}`;
+  return URL.createObjectURL(await (await patiently(() => ask(path))).blob());
+}
+
+/**
+ * The parts of a design and how they move.
+ * @param {string} id @param {number} design @param {Record<string, string>} query sizes and positions @param {AbortSignal} signal
+ * @returns {Promise<import("./assembly_view.js").Assembly>}
+ */
+export async function assembly(id, design, query, signal) {
+  const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/assembly?${new URLSearchParams(query)}`;
+  return (await patiently(() => ask(path, { signal }), signal)).json();
 }
 
 /** The forms of files that there are of a type of mechanism. @param {string} kind @param {string} mechanism @returns {string[]} */

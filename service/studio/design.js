@@ -1,6 +1,7 @@
 /** One design in full: its motion, its numbers, its checks, its drawing and its files. */
 
 import * as api from "./api.js";
+import { AssemblyView } from "./assembly_view.js";
 import { Barrel } from "./barrel.js";
 import { Disc } from "./cam.js";
 import { Burmester } from "./burmester.js";
@@ -50,6 +51,9 @@ export class Shown {
     /** @type {Forces | null} */
     this.forces = null;
     this.forced = el("div", {});
+    /** @type {AssemblyView | null} */
+    this.assembly = null;
+    this.built = el("div", {});
     this.title = el("h3", {});
     this.before = el("div", {});
     this.stage = el("div", { class: "moving" });
@@ -59,7 +63,7 @@ export class Shown {
     this.job = job;
     this.n = n;
     this.design = job.result.designs[n];
-    place.replaceChildren(this.title, this.before, this.stage, this.forced, ...this.burmester(job, n), this.exploring, this.numbers);
+    place.replaceChildren(this.title, this.before, this.stage, this.forced, this.built, ...this.burmester(job, n), this.exploring, this.numbers);
     this.present(job, n, `Design ${n + 1}`);
   }
 
@@ -75,6 +79,7 @@ export class Shown {
     this.before.replaceChildren();
     this.exploring.replaceChildren(...this.explored(this.design));
     this.forced.replaceChildren(...this.borne());
+    this.built.replaceChildren(...this.assembled());
     this.numbers.replaceChildren(...this.tabulated());
     this.move(this.gone.signal);
     this.draw(this.gone.signal);
@@ -193,6 +198,18 @@ export class Shown {
     return [details];
   }
 
+  /** The place of a design's parts in three dimensions; they are made when it is opened. */
+  assembled() {
+    const { design, job, n } = this;
+    if (!api.hasParts(design.mechanism)) return [];
+    const inside = el("div");
+    const details = el("details", { id: "assembly", ontoggle: () => {
+      this.assembly?.stop();
+      this.assembly = details.open && details.isConnected ? new AssemblyView(inside, job, n, () => (this.forced.hidden ? null : this.moving)) : null;
+    } }, el("summary", {}, "Assembly: its parts in three dimensions"), inside);
+    return [details];
+  }
+
   /** Burmester's curves, where the job has them. @param {api.Job} job @param {number} n */
   burmester(job, n) {
     const { mechanism } = job.result.designs[n];
@@ -218,6 +235,8 @@ export class Shown {
     this.leaveExplorer();
     this.forces?.stop();
     this.forces = null;
+    this.assembly?.stop();
+    this.assembly = null;
     if (this.url) URL.revokeObjectURL(this.url);
     this.url = "";
   }

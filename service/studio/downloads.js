@@ -13,7 +13,7 @@ export function downloads(job, n, drawing) {
       pressed.disabled = true;
       fault.replaceChildren();
       try {
-        save(await make(), name);
+        saved(await make(), name);
       } catch (error) {
         const reasons = error instanceof api.Refused ? error.errors.map((one) => one.detail) : [];
         fault.replaceChildren(reasons.join(" ") || /** @type {Error} */ (error).message);
@@ -32,20 +32,12 @@ export function downloads(job, n, drawing) {
       const parts = [JSON.stringify({ problem: job.problem, result: job.result }, null, 1)];
       return URL.createObjectURL(new Blob(parts, { type: "application/json" }));
     }),
-    ...(isBuilt(job.result.designs[n].mechanism) ? made(job, n, button) : []),
+    ...(api.hasParts(job.result.designs[n].mechanism) ? made(job, n, button) : []),
     button("Report", `${job.kind}.html`, () => api.report(job.id)),
     // A link cannot send a key.
     api.key() ? "" : el("a", { href: api.reportAt(job.id), target: "_blank", rel: "noopener" }, "Open the report"),
     fault);
   return place;
-}
-
-/** Types of mechanisms that there are parts of, beside linkages. */
-const BUILT = ["cam", "gear_train", "geneva_external", "geneva_internal", "planetary_train", "ratchet"];
-
-/** @param {any} mechanism */
-function isBuilt(mechanism) {
-  return mechanism.skeleton || BUILT.includes(mechanism.type);
 }
 
 /**
@@ -54,9 +46,9 @@ function isBuilt(mechanism) {
  * @param {(title: string, name: string, make: () => Promise<string>) => HTMLElement} button
  */
 function made(job, n, button) {
-  const cut = button("Parts", `${job.kind}-${n}-parts.zip`, () => api.parts(job.id, n, "laser"));
+  const cut = button("Parts", `${job.kind}-${n}-parts.zip`, () => api.parts(job.id, n, { process: "laser" }));
   cut.title = "Plates to be cut, with what joins them, a drawing of the assembly and a bill";
-  const printed = button("Printed parts", `${job.kind}-${n}-printed.zip`, () => api.parts(job.id, n, "print"));
+  const printed = button("Printed parts", `${job.kind}-${n}-printed.zip`, () => api.parts(job.id, n, { process: "print" }));
   printed.title = "STL and 3MF files of all parts, and their assembly";
   if (!api.makesSolids()) {
     printed.setAttribute("disabled", "");
@@ -78,8 +70,8 @@ async function raster(image) {
   return URL.createObjectURL(blob);
 }
 
-/** @param {string} url @param {string} name */
-function save(url, name) {
+/** Hand a file over to who looks at the page. @param {string} url @param {string} name */
+export function saved(url, name) {
   el("a", { href: url, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }

@@ -12,6 +12,9 @@ from tests.service.running import ROOT
 HERE = Path(__file__).parent
 MODULES = HERE / "node_modules"
 
+# What the page has of three.js, with the types that are published beside it.
+VENDORED = {"three.module.min.d.ts": "three", "OrbitControls.d.ts": "three/addons/controls/OrbitControls.js"}
+
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(400)]
 
 
@@ -19,6 +22,10 @@ def test_the_studio_is_well_typed(tmp_path):
     assert (MODULES / ".installed").exists(), "make test-browser installs what this needs of node"
     for module in (ROOT / "service" / "studio").glob("*.js"):
         shutil.copy(module, tmp_path)
+    (tmp_path / "vendor").mkdir()
+    (tmp_path / "node_modules").symlink_to(MODULES)
+    for name, module in VENDORED.items():
+        (tmp_path / "vendor" / name).write_text(f'export * from "{module}";\n')
     # What must be refused, so that nothing passes because nothing is looked at.
     (tmp_path / "mistaken.js").write_text(
         'import { View } from "./view.js";\n/** @param {View} view */\nexport const wrong = (view) => view.at("one");\n'

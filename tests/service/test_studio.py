@@ -9,9 +9,13 @@ import service
 from service.api.studio import FILES, POLICY
 
 FOLDER = Path(service.__file__).parent / "studio"
-NAMES = sorted(path.name for path in FOLDER.iterdir())
+OWN = sorted(path.name for path in FOLDER.iterdir() if path.is_file())
+VENDORED = sorted(f"vendor/{path.name}" for path in (FOLDER / "vendor").iterdir())
+NAMES = sorted(OWN + VENDORED)
 NAMESPACE = "http://www.w3.org/2000/svg"
-TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
+IMPORTED = re.compile(r'(?:from ?|import\()"\./([^"]+)"')
+TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml",
+         ".LICENSE": "text/plain"}  # fmt: skip
 
 
 def path_of(name):
@@ -43,16 +47,16 @@ def test_the_policy_allows_nothing_inline_and_no_other_host():
     assert "http" not in POLICY
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", OWN)
 def test_no_file_names_another_host(name):
     text = (FOLDER / name).read_text().replace(NAMESPACE, "")
     assert not re.findall(r"(?:https?:)?//[\w-]+\.\w+", text)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", OWN)
 def test_every_file_that_is_referred_to_exists(client, name):
     text = (FOLDER / name).read_text()
-    imported = re.findall(r'from "\./([^"]+)"', text)
+    imported = IMPORTED.findall(text)
     linked = re.findall(r'(?:src|href)="(/[^"]*)"', text)
     for target in (*(f"/studio/{one}" for one in imported), *linked):
         assert client.get(target).status_code == 200, target
@@ -66,8 +70,19 @@ def test_every_module_is_needed():
     while new:
         seen |= new
         texts = [(FOLDER / name).read_text() for name in new]
-        new = {one for text in texts for one in re.findall(r'from "\./([^"]+)"', text)} - seen
+        new = {one for text in texts for one in IMPORTED.findall(text)} - seen
+        new = {f"vendor/{one}" if one not in OWN and f"vendor/{one}" in VENDORED else one for one in new} - seen
     assert seen == {name for name in NAMES if name.endswith(".js")}
+
+
+def test_what_is_of_others_has_its_licence_and_only_its_names_are_ours():
+    """As `make vendor` has it: its modules import one another by file, and nothing else."""
+    assert "MIT License" in (FOLDER / "vendor" / "three.LICENSE").read_text()
+    modules = {name.removeprefix("vendor/") for name in VENDORED if name.endswith(".js")}
+    for name in modules:
+        text = re.sub(r"/\*.*?\*/", "", (FOLDER / "vendor" / name).read_text(), flags=re.DOTALL)
+        assert set(re.findall(r'from ?["\']([^"\']+)["\']', text)) <= {f"./{one}" for one in modules}
+        assert not re.search(r"\beval\(|new Function\(|import\(", text)
 
 
 @pytest.mark.parametrize("path", ["/studio/", "/studio/nope.js", "/studio/index.html", "/studio/..%2fapp.py"])

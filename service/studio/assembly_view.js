@@ -1,0 +1,325 @@
+/** The assembly of a design: its parts in three dimensions, moving with the drawing, drawn apart, hidden and taken home. */
+
+import * as api from "./api.js";
+import { el, shown } from "./dom.js";
+import { saved } from "./downloads.js";
+import { between } from "./player.js";
+import { symbolOf } from "./units.js";
+
+/** @typedef {{name: string, described: string, sort: string, material: string, colour: string, standard: string, lift: number, carrier: number, shapes: import("./solids.js").Shape[], item: string, files: string[]}} Part */
+/** @typedef {{length_unit: string, unit: number, scale: number, low: number, high: number, notes: string[], input: import("./assembly_motion.js").Inputs, carriers: import("./assembly_motion.js").Carrier[], parts: Part[]}} Assembly */
+/** @typedef {{player: import("./player.js").Player, motion: {input_angle: (number | null)[]}}} Led what moves in the drawing */
+
+/** Inputs that are asked for. */
+const POSITIONS = 144;
+
+/** The scale that a refusal says will do. */
+const SCALE = /fit from scale ([\d.e+]+) on|; scale ([\d.e+-]+) is the greatest/;
+
+const PROCESSES = { laser: "cut by laser", print: "printed", mill: "milled" };
+
+export class AssemblyView {
+  /** @param {HTMLElement} place @param {api.Job} job @param {number} n @param {() => any} moving what moves in the drawing now, if anything does */
+  constructor(place, job, n, moving) {
+    this.job = job;
+    this.n = n;
+    this.moving = moving;
+    this.gone = new AbortController();
+    /** @type {AbortController | null} */
+    this.asked = null;
+    /** @type {Assembly | null} */
+    this.assembly = null;
+    /** @type {import("./assembly_scene.js").AssemblyScene | null} */
+    this.scene = null;
+    /** What is in the picture, if it can be. @type {typeof import("./assembly_scene.js") | null} */
+    this.drawing = null;
+    /** @type {Set<string>} */
+    this.hidden = new Set();
+    /** @type {string | null} */
+    this.chosen = null;
+    this.explosion = 0;
+    this.frame = 0;
+    /** The place of the drawing's motion that is shown. @type {number} */
+    this.seen = NaN;
+    this.list = el("div");
+    this.fileFault = el("p", { class: "error", role: "alert" });
+    this.beyond = el("p", { class: "note", hidden: true });
+    /** By kind of part. @type {Map<string, any>} */
+    this.boxes = new Map();
+    this.play = el("button");
+    this.scrub = el("input");
+    this.motionRow = el("div");
+    this.words = el("p", { class: "note", role: "status" });
+    this.fault = el("div", { class: "fault", role: "alert" });
+    this.body = el("div", { class: "assembly", hidden: true });
+    this.form = this.sizes();
+    styled();
+    place.replaceChildren(this.form, this.fault, this.words, this.body);
+    this.load();
+    const step = () => {
+      this.frame = requestAnimationFrame(step);
+      this.follow();
+    };
+    this.frame = requestAnimationFrame(step);
+  }
+
+  /** What the parts are made of, as the files are asked for. */
+  sizes() {
+    const unit = symbolOf("length", this.job.problem);
+    const field = (/** @type {string} */ name, /** @type {string} */ title, /** @type {HTMLElement} */ box) => {
+      box.id = `assembly-${name}`;
+      box.setAttribute("name", name);
+      box.setAttribute("aria-describedby", "assembly-fault");
+      return el("span", { class: "field" }, el("label", { for: box.id }, title), box);
+    };
+    const number = (/** @type {string} */ hint) => el("input", { type: "number", min: 0, step: "any", inputmode: "decimal", placeholder: hint });
+    const form = el("form", { class: "row sizes", "aria-label": "What the parts are made of", novalidate: true,
+      onsubmit: (/** @type {Event} */ event) => {
+        event.preventDefault();
+        this.load();
+      } },
+    field("process", "Made", el("select", { onchange: () => this.load() },
+      ...Object.entries(PROCESSES).map(([value, title]) => el("option", { value }, title)))),
+    field("pin", `Pin (${unit})`, number("what fits")), field("width", `Width (${unit})`, number("2.5 pins")), field("scale", "Scale", number("1")),
+    el("button", { type: "submit", class: "small" }, "Make them so"));
+    this.fault.id = "assembly-fault";
+    return form;
+  }
+
+  /** The fields that are filled in. @returns {Record<string, string>} */
+  stated() {
+    const boxes = /** @type {HTMLInputElement[]} */ ([...this.form.querySelectorAll("[name]")]);
+    return Object.fromEntries(boxes.filter(({ value }) => value.trim() !== "").map(({ name, value }) => [name, value.trim()]));
+  }
+
+  async load() {
+    this.asked?.abort();
+    const asked = (this.asked = new AbortController());
+    this.words.textContent = "The parts are being made …";
+    this.body.setAttribute("aria-busy", "true");
+    this.clear();
+    try {
+      const query = this.stated();
+      const [assembly, drawing] = await Promise.all([api.assembly(this.job.id, this.n, { ...query, positions: String(POSITIONS) }, asked.signal),
+        import("./assembly_scene.js")]);
+      if (asked.signal.aborted || this.gone.signal.aborted) return;
+      this.drawing = drawing.drawable() ? drawing : null;
+      this.present(assembly, query);
+    } catch (error) {
+      if (asked.signal.aborted || this.gone.signal.aborted) return;
+      this.words.replaceChildren();
+      this.body.hidden = true;
+      this.scene?.stop();
+      this.scene = null;
+      this.refused(error);
+    }
+    this.body.removeAttribute("aria-busy");
+  }
+
+  /** Nothing is wrong any more. */
+  clear() {
+    this.fault.replaceChildren();
+    for (const box of this.form.querySelectorAll("[aria-invalid]")) box.removeAttribute("aria-invalid");
+  }
+
+  /** Say why there are no such parts, and offer what works. @param {any} error */
+  refused(error) {
+    const faults = error instanceof api.Refused ? error.errors : [];
+    const reason = faults.map((one) => one.detail).join(" ") || error.message;
+    this.fault.replaceChildren(el("p", { class: "error" }, reason));
+    for (const { path } of faults) this.form.querySelector(`[name="${path.replace("/query/", "")}"]`)?.setAttribute("aria-invalid", "true");
+    const [, least, greatest] = SCALE.exec(reason) ?? [];
+    const scale = least ?? greatest;
+    if (scale === undefined) return;
+    this.fault.append(el("button", { type: "button", class: "small", onclick: () => {
+      this.form.querySelector('[name="scale"]').value = String(Number(scale));
+      this.load();
+    } }, `Build it at scale ${Number(scale)}`));
+  }
+
+  /** @param {Assembly} assembly @param {Record<string, string>} query by which it was asked for */
+  present(assembly, query) {
+    this.scene?.stop();
+    this.scene = null;
+    this.assembly = assembly;
+    const kinds = new Set(assembly.parts.map(({ item }) => item));
+    this.hidden = new Set([...this.hidden].filter((item) => kinds.has(item)));
+    this.chosen = null;
+    this.words.textContent = [`${assembly.parts.length} parts of ${kinds.size} kinds`, assembly.scale !== 1 && `${shown(assembly.scale)} times the design`]
+      .filter(Boolean).join(", ") + ".";
+    this.list = this.listed(assembly, query);
+    this.body.hidden = false;
+    if (!this.drawing) {
+      const reason = "This browser does not draw in three dimensions (WebGL 2 is missing or switched off). The parts are listed, and their files are there.";
+      this.body.replaceChildren(el("p", { class: "note" }, reason), this.list);
+      return;
+    }
+    const canvas = el("canvas", { class: "canvas solid", tabindex: 0, role: "application", "aria-describedby": "assembly-keys",
+      "aria-label": `The assembly in three dimensions, ${assembly.parts.length} parts`,
+      onkeydown: (/** @type {KeyboardEvent} */ event) => {
+        if (!event.ctrlKey && !event.metaKey && !event.altKey && this.scene?.key(event)) event.preventDefault();
+      } });
+    this.body.replaceChildren(el("figure", { class: "solids" }, this.tools(), canvas, this.sliders(),
+      el("p", { class: "note", id: "assembly-keys" }, "Drag to turn, with the right button or two fingers to move, the wheel or + and − to zoom; arrow keys turn, with Shift they move; Home shows all."),
+      this.beyond, ...assembly.notes.map((note) => el("p", { class: "note" }, note))), this.list);
+    this.scene = new this.drawing.AssemblyScene(canvas, assembly, { hover: (item) => this.hover(item), choose: (item) => this.choose(item) });
+    for (const item of this.hidden) this.scene.hide(item, false);
+    this.scene.explode(this.explosion);
+    this.scene.fit(false);
+    this.seen = NaN;
+    this.follow();
+  }
+
+  /** Where it is looked at from, and its picture. */
+  tools() {
+    const button = (/** @type {string} */ title, /** @type {() => void} */ does) => el("button", { type: "button", class: "small", onclick: does }, title);
+    return el("div", { class: "row", role: "toolbar", "aria-label": "View of the assembly" },
+      ...Object.keys(this.drawing?.VIEWS ?? {}).map((name) => button(name, () => this.scene?.look(name))),
+      button("Fit", () => this.scene?.fit()),
+      button("Save picture", async () => this.scene && saved(URL.createObjectURL(await this.scene.picture()), `${this.job.kind}-${this.n}-assembly.png`)));
+  }
+
+  /** How far its planes are apart, and the motion: that of the drawing above. */
+  sliders() {
+    const apart = el("input", { type: "range", id: "explode", min: 0, max: 1, step: 0.01, value: this.explosion, oninput: () => {
+      this.explosion = apart.valueAsNumber;
+      apart.setAttribute("aria-valuetext", `${Math.round(100 * this.explosion)} %`);
+      this.scene?.explode(this.explosion);
+    } });
+    apart.setAttribute("aria-valuetext", `${Math.round(100 * this.explosion)} %`);
+    this.play = el("button", { type: "button", class: "small", onclick: () => {
+      const player = this.led()?.player;
+      if (player?.playing) player.stop();
+      else player?.play();
+    } }, "Play");
+    this.scrub = el("input", { type: "range", id: "assembly-input", min: 0, max: 1, step: "any", oninput: () => {
+      const player = this.led()?.player;
+      if (player) player.lead(this.scrub.valueAsNumber * player.last);
+    } });
+    this.motionRow = el("div", { class: "row" }, this.play, el("label", { for: "assembly-input" }, "Input"), this.scrub);
+    return el("div", {}, el("div", { class: "row" }, el("label", { for: "explode" }, "Apart"), apart,
+      el("button", { type: "button", class: "small", onclick: () => {
+        apart.value = this.explosion > 0 ? 0 : 1;
+        apart.dispatchEvent(new Event("input"));
+        this.scene?.fit();
+      } }, "Together / apart")), this.motionRow);
+  }
+
+  /** The parts by kind: shown or hidden, chosen, and their files. @param {Assembly} assembly @param {Record<string, string>} query */
+  listed(assembly, query) {
+    /** @type {Map<string, Part[]>} */
+    const kinds = new Map();
+    for (const part of assembly.parts) kinds.set(part.item, [...(kinds.get(part.item) ?? []), part]);
+    this.fileFault.replaceChildren();
+    this.boxes.clear();
+    const all = el("div", { class: "row" },
+      el("button", { type: "button", class: "small", onclick: () => this.shown([...kinds.keys()], true) }, "Show all"),
+      el("button", { type: "button", class: "small", onclick: () => this.shown([...kinds.keys()], false) }, "Hide all"),
+      this.file("All files", "Everything as a zip", `${this.job.kind}-${this.n}-parts.zip`, () => api.parts(this.job.id, this.n, query)));
+    const rows = [...kinds].map(([item, [part, ...others]]) => {
+      const called = others.length ? item.replaceAll("_", " ") : part.described;
+      const box = el("input", { type: "checkbox", id: `show-${item}`, "aria-label": `Show ${called}`, onchange: () => this.shown([item], box.checked) });
+      box.checked = !this.hidden.has(item);
+      this.boxes.set(item, box);
+      const swatch = el("span", { class: "swatch", "aria-hidden": "true" });
+      swatch.style.backgroundColor = part.colour;
+      return el("li", { "data-item": item, onpointerenter: () => this.scene?.hover(item), onpointerleave: () => this.scene?.hover(null) },
+        box, swatch,
+        el("button", { type: "button", class: "called", "aria-pressed": "false", onclick: () => this.choose(this.chosen === item ? null : item) },
+          called, others.length > 0 && ` × ${others.length + 1}`),
+        el("span", { class: "note" }, part.standard || part.material),
+        el("span", { class: "files" }, ...part.files.map((form) => this.file(form.toUpperCase(), `${called} as ${form.toUpperCase()}`, `${item}.${form}`,
+          () => api.part(this.job.id, this.n, item, form, query)))));
+    });
+    return el("div", { class: "parts" }, el("h4", { id: "assembly-parts" }, "Parts"), all, this.fileFault,
+      el("ul", { "aria-labelledby": "assembly-parts" }, ...rows),
+      !api.makesSolids() && el("p", { class: "note" }, "Outlines of plates are there. For solids the service needs its extra cad."));
+  }
+
+  /** @param {string} title @param {string} described @param {string} name @param {() => Promise<string>} make */
+  file(title, described, name, make) {
+    const button = el("button", { type: "button", class: "small", "aria-label": described, title: described, onclick: async () => {
+      button.disabled = true;
+      this.fileFault.replaceChildren();
+      try {
+        saved(await make(), name);
+      } catch (error) {
+        const reasons = error instanceof api.Refused ? error.errors.map((one) => one.detail) : [];
+        this.fileFault.replaceChildren(reasons.join(" ") || /** @type {Error} */ (error).message);
+      }
+      button.disabled = false;
+    } }, title);
+    return button;
+  }
+
+  /** @param {string[]} items @param {boolean} visible */
+  shown(items, visible) {
+    for (const item of items) {
+      if (visible) this.hidden.delete(item);
+      else this.hidden.add(item);
+      this.boxes.get(item).checked = visible;
+      this.scene?.hide(item, visible);
+    }
+  }
+
+  /** @param {string | null} item */
+  hover(item) {
+    this.scene?.hover(item);
+    for (const row of this.list.querySelectorAll("li")) row.classList.toggle("hovered", row.dataset.item === item);
+  }
+
+  /** @param {string | null} item */
+  choose(item) {
+    this.chosen = item;
+    this.scene?.choose(item);
+    for (const row of this.list.querySelectorAll("li")) {
+      const chosen = row.dataset.item === item;
+      row.querySelector(".called").setAttribute("aria-pressed", String(chosen));
+      if (chosen) row.scrollIntoView({ block: "nearest" });
+    }
+  }
+
+  /** What moves in the drawing, where it has a player. @returns {Led | null} */
+  led() {
+    const moving = this.moving();
+    return moving?.player && moving.motion?.input_angle?.length > 1 ? moving : null;
+  }
+
+  /** Go where the drawing is. */
+  follow() {
+    if (!this.scene || !this.assembly) return;
+    const led = this.led();
+    this.motionRow.hidden = !led;
+    if (!led) return;
+    const { player, motion } = led;
+    this.play.textContent = player.playing ? "Pause" : "Play";
+    if (player.at === this.seen) return;
+    this.seen = player.at;
+    const turns = Math.floor(player.at / player.last);
+    const rest = player.at - turns * player.last;
+    this.scrub.value = String((turns > 0 && rest === 0 ? player.last : rest) / player.last);
+    this.scrub.setAttribute("aria-valuetext", player.moved.reading(player.at));
+    const [begin, end] = [Number(motion.input_angle[0]), Number(motion.input_angle[player.last])];
+    const input = Number(between(motion.input_angle, rest)) + turns * (end - begin);
+    const { at, within } = this.scene.motion.place(input);
+    this.scene.show(at);
+    const { low, high, quantity } = this.assembly.input;
+    const unit = quantity === "angle" ? "°" : ` ${symbolOf("length", this.job.problem)}`;
+    this.beyond.hidden = within;
+    this.beyond.textContent = `The parts are made for inputs from ${shown(Number(low.toFixed(2)))}${unit} to ${shown(Number(high.toFixed(2)))}${unit}; the drawing is beyond, and they wait at the end.`;
+  }
+
+  stop() {
+    this.gone.abort();
+    this.asked?.abort();
+    cancelAnimationFrame(this.frame);
+    this.scene?.stop();
+    this.scene = null;
+  }
+}
+
+/** The style sheet of the view comes with the first of them. */
+function styled() {
+  if (document.querySelector('link[href="/studio/assembly.css"]')) return;
+  document.head.append(el("link", { rel: "stylesheet", href: "/studio/assembly.css" }));
+}
