@@ -31,6 +31,7 @@ from service.api import (
     outlines,
     parts,
     problems,
+    reports,
     studio,
 )
 from service.drawings import Drawings
@@ -142,6 +143,7 @@ def application(lifespan: Lifespan[FastAPI]) -> FastAPI:
     routers = (
         jobs.router,
         designs.router,
+        reports.router,
         forces.reading,
         forces.stating,
         parts.router,

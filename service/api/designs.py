@@ -1,10 +1,9 @@
-"""``/v1/jobs/{id}/designs/{n}``: the files and the motion of a design; and the report on the whole job."""
+"""``/v1/jobs/{id}/designs/{n}``: the files and the motion of a design."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from importlib.metadata import version
 from typing import Annotated, NamedTuple, ParamSpec, TypeVar
 
 from fastapi import APIRouter, Query, Response
@@ -15,12 +14,11 @@ from service.api import errors
 from service.api.analyses import analysis_responses, answered
 from service.api.errors import Refusal, busy, not_found
 from service.api.guard import GuardedRoute, Tenant
-from service.api.jobs import NO_JOB, TAG, job_of
+from service.api.jobs import TAG, job_of
 from service.api.state import Board, Core, Desk
 from service.drawings import Busy, Drawings
 from service.jobs.desk import JobDesk
 from service.jobs.schema import JobRow
-from service.loading import IMPORTS
 from service.render import Form
 from service.stated import read
 from service.telemetry import span
@@ -89,7 +87,7 @@ def _offer(form: Form, export: Export) -> None:
     async def file(desk: Desk, board: Board, tenant: Tenant, job_id: str, number: str) -> Response:
         job, result = await solved(desk, tenant, job_id)
         with span("drawing"):
-            content = await _drawn(board, _file, job, result, number, form)
+            content = await drawn(board, _file, job, result, number, form)
         return Response(content, media_type=export.media_type, headers=HEADERS.get(form, _AS_IT_IS_SAID))
 
     router.add_api_route(
@@ -114,7 +112,8 @@ for _form, _export in EXPORTS.items():
     _offer(_form, _export)
 
 
-async def _drawn(board: Drawings, draw: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+async def drawn(board: Drawings, draw: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+    """What ``draw`` makes when its turn has come; 503 where that is not in time."""
     try:
         return await board.call(draw, *args, **kwargs)
     except Busy:
@@ -135,69 +134,6 @@ def _file(job: JobRow, result: str, number: str, form: Form) -> str | bytes:
         raise not_found(f"There is no .{form} file of this type of mechanism.") from None
     except render.NotBuilt:
         raise Refusal(409, "no-drawing", "No drawing", "This design is of a size that is not drawn.") from None
-
-
-class ReportScope(BaseModel):
-    """How much of a job is reported."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    designs: int = Field(
-        default=5, ge=0, le=20, description="Designs shown in full, the best first; all of them are listed."
-    )
-
-
-@router.get(
-    "/{job_id}/report.html",
-    operation_id="report_job",
-    summary="Report a job",
-    response_class=Response,
-    responses={
-        200: {
-            "description": "The page.",
-            "content": {"text/html; charset=utf-8": {"schema": _TEXT}},
-            "headers": {
-                "Content-Security-Policy": {
-                    "description": "Nothing but the page's own style sheet, by its hash.",
-                    "schema": _TEXT,
-                }
-            },
-        },
-        **errors.responses(
-            e404=NO_JOB,
-            e409="The job has no result (yet).",
-            e422="A parameter is not valid; `errors` says which.",
-            e503=OTHER_DRAWINGS,
-        ),
-    },
-)
-async def report_job(
-    desk: Desk, board: Board, tenant: Tenant, job_id: str, query: Annotated[ReportScope, Query()]
-) -> Response:
-    """The job as one self-contained page for paper.
-
-    The problem, what was searched and what is proven; the designs with drawings, checks, and dimensions with units.
-    """
-    job, result = await solved(desk, tenant, job_id)
-    with span("report"):
-        page, policy = await _drawn(board, _report, job, result, query.designs)
-    headers = {
-        "Content-Security-Policy": policy,
-        "X-Content-Type-Options": "nosniff",
-        "Referrer-Policy": "no-referrer",
-        "Content-Disposition": f'inline; filename="{job.kind}-{job.id}.html"',
-    }
-    return Response(page, media_type="text/html", headers=headers)
-
-
-def _report(job: JobRow, result: str, most: int) -> tuple[str, str]:
-    with IMPORTS:
-        from service.render.report import POLICY, Occasion, report
-
-    kind = KINDS[job.kind]
-    occasion = Occasion(job.id, job.kind, job.label, job.created_at, job.finished_at, version("mechsynth"))
-    problem = read(job.kind, job.problem)
-    return report(problem, kind.result.model_validate_json(result), occasion, most), POLICY
 
 
 class MotionSteps(BaseModel):

@@ -15,11 +15,12 @@ from service.api.errors import Refusal, busy, invalid_request, not_found
 from service.api.guard import GuardedRoute, Tenant
 from service.api.jobs import TAG
 from service.api.state import Bench, Desk
+from service.jobs.schema import JobRow
 from service.parts.answer import AssemblyView
 from service.parts.extra import installed
 from service.parts.made import has_parts
 from service.parts.sizes import NEEDS_CAD, SOLID, AssemblyQuery, File, PartFile, PartsQuery, Refused, ViewQuery
-from service.parts.workshop import MAX_PARTS_S, Busy, GivenUp, Gone, filled, part_filled
+from service.parts.workshop import MAX_PARTS_S, Busy, GivenUp, Gone, Workshop, filled, part_filled
 from service.telemetry import span
 
 router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRoute)
@@ -175,6 +176,33 @@ for _form in get_args(PartFile):
     _offer(_form)
 
 
+async def assemblies_of(request: Request, bench: Workshop, job: JobRow, result: str, most: int) -> dict[int, str]:
+    """Pictures of the first designs that parts are made of, as SVG; or a sentence that says why there is none.
+
+    Raises
+    ------
+    Refusal
+        503 or 499, where that is no fault of the parts.
+    """
+    designs = from_json(result)["designs"][:most]
+    found = {}
+    for n, design in enumerate(designs):
+        if has_parts(design["mechanism"]):
+            try:
+                found[n] = (await _made(request, bench, filled, _order(job, result, n, {}), "svg")).decode()
+            except Refusal as refusal:
+                if refusal.status not in (409, 422):
+                    raise
+                found[n] = " ".join(detail for _, detail in refusal.errors) or refusal.detail
+    return found
+
+
+def _order(job: JobRow, result: str, number: int, query: dict[str, Any]) -> dict[str, Any]:
+    """What the process is asked for."""
+    stored = {"kind": job.kind, "problem": job.problem, "label": job.label, "result": result}
+    return stored | {"number": number, "query": query}
+
+
 async def _answered(
     request: Request, desk: Desk, bench: Bench, tenant: Tenant, job_id: str, number: str, query: PartsQuery,
     file: File | PartFile, part: str | None = None,
@@ -186,17 +214,12 @@ async def _answered(
             501, "no-cad", "No CAD",
             "The service runs without its extra `cad`, which makes solids; `process=laser` has outlines without it.",
         )  # fmt: skip
-    order = {
-        "kind": job.kind, "problem": job.problem, "label": job.label, "result": result, "number": n,
-        "query": query.model_dump(exclude_unset=True),
-    }  # fmt: skip
-    asked = (filled, order, file) if part is None else (part_filled, order, part, file)
-
-    async def make() -> bytes:
-        return await _made(request, bench, *asked)
-
+    order = _order(job, result, n, query.model_dump(exclude_unset=True))
     with span("parts"):
-        content = await bench.kept(repr(asked[1:]), make)
+        if part is None:
+            content = await _made(request, bench, filled, order, file)
+        else:
+            content = await _made(request, bench, part_filled, order, part, file)
     names = {"zip": f"{job.kind}-{n}-parts.zip", "svg": f"{job.kind}-{n}-assembly.svg"}
     name = names.get(file, f"{job.kind}-{n}.{file}") if part is None else f"{part}.{file}"
     headers = {"X-Content-Type-Options": "nosniff"}
@@ -207,7 +230,16 @@ async def _answered(
     return Response(content, media_type=_MEDIA[file], headers=headers)
 
 
-async def _made(request: Request, bench: Bench, work: Callable[..., Any], *args: Any) -> bytes:
+async def _made(request: Request, bench: Workshop, work: Callable[..., Any], *args: Any) -> bytes:
+    """What the process makes, or has made of the same."""
+
+    async def make() -> bytes:
+        return await _making(request, bench, work, *args)
+
+    return await bench.kept(repr(args), make)
+
+
+async def _making(request: Request, bench: Workshop, work: Callable[..., Any], *args: Any) -> bytes:
     try:
         made = await bench.call(request.is_disconnected, work, *args)
     except Busy:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any
@@ -77,17 +78,21 @@ class Checked:
 
 @dataclass(frozen=True)
 class Sheet:
-    """A design in full: its drawing, its checks, and its numbers by heading."""
+    """A design in full: its drawing, its assembly or why there is none, its checks, and its numbers by heading."""
 
     number: int
     name: str
     passed: bool
     drawing: str
+    assembly: str
+    unbuilt: str
     checks: list[Checked]
     parts: list[tuple[str, Outline]]
 
 
-def report(problem: StatedProblem, result: Result[Any], occasion: Occasion, most: int) -> str:
+def report(
+    problem: StatedProblem, result: Result[Any], occasion: Occasion, most: int, assemblies: Mapping[int, str] = {}
+) -> str:
     """The page.
 
     Parameters
@@ -98,6 +103,8 @@ def report(problem: StatedProblem, result: Result[Any], occasion: Occasion, most
         The job.
     most : int
         Designs that are shown in full, the best first; all are listed.
+    assemblies : mapping of int to str
+        By number of a design, the SVG of its parts put together, or a sentence that says why there is none.
 
     Returns
     -------
@@ -107,8 +114,9 @@ def report(problem: StatedProblem, result: Result[Any], occasion: Occasion, most
     units = symbols(problem)
     title = problem.model_config.get("title") or words(occasion.kind)
     heading = clean(occasion.label or "") or title
-    sheets = [_sheet(design, n, problem, f"{heading}, design {n}", units) for n, design in enumerate(result.designs)][
-        :most
+    sheets = [
+        _sheet(design, n, problem, f"{heading}, design {n}", units, assemblies.get(n, ""))
+        for n, design in enumerate(result.designs[:most])
     ]
     return _PAGE.render(
         title=title,
@@ -128,7 +136,9 @@ def report(problem: StatedProblem, result: Result[Any], occasion: Occasion, most
     )
 
 
-def _sheet(design: Any, n: int, problem: StatedProblem, title: str, units: dict[Dimension, str]) -> Sheet:
+def _sheet(
+    design: Any, n: int, problem: StatedProblem, title: str, units: dict[Dimension, str], assembly: str
+) -> Sheet:
     try:
         drawing = exported(design, problem, title, "svg")
         assert isinstance(drawing, str)
@@ -150,11 +160,17 @@ def _sheet(design: Any, n: int, problem: StatedProblem, title: str, units: dict[
         number=n,
         name=words(design.mechanism.type),
         passed=design.verification.passed,
-        # The writers of drawings escape what they are given; a declaration has no place inside a page.
-        drawing=Markup(drawing[drawing.index("<svg") :]) if drawing else "",
+        drawing=_inside(drawing) if drawing else "",
+        assembly=_inside(assembly) if assembly.startswith("<") else "",
+        unbuilt="" if assembly.startswith("<") else assembly,
         checks=[_checked(check, units) for check in design.verification.checks],
         parts=[(heading, part) for heading, part in parts if part.rows or part.lists],
     )
+
+
+def _inside(drawing: str) -> str:
+    """A drawing inside the page, without the declaration before it: who writes drawings escapes what they are given."""
+    return Markup(drawing[drawing.index("<svg") :])
 
 
 def _checked(check: Check, units: dict[Dimension, str]) -> Checked:

@@ -135,14 +135,14 @@ export function files(kind, mechanism) {
   return told.find((one) => one.kind === kind)?.files[mechanism] ?? [];
 }
 
-/** Where the report of a job is. @param {string} id */
+/** Where the report of a job is, with its assemblies. @param {string} id */
 export function reportAt(id) {
-  return `/v1/jobs/${encodeURIComponent(id)}/report.html`;
+  return `/v1/jobs/${encodeURIComponent(id)}/report.html?assemblies=true`;
 }
 
 /** The report of a job, as something that a download can refer to; whoever gets it revokes it. @param {string} id */
 export async function report(id) {
-  return URL.createObjectURL(await (await ask(reportAt(id))).blob());
+  return URL.createObjectURL(await (await patiently(() => ask(reportAt(id)))).blob());
 }
 
 /** @param {any} problem @param {string | null} label @returns {Promise<Job>} */

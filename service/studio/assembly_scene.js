@@ -6,13 +6,16 @@ import { AssemblyMotion } from "./assembly_motion.js";
 import { Surface } from "./solids.js";
 
 /** @typedef {import("./assembly_view.js").Assembly} Assembly */
-/** @typedef {{item: string, group: THREE.Group, mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>, lift: number, low: number}} Solid */
+/** @typedef {{item: string, colour: string, group: THREE.Group, mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>, lift: number, low: number}} Solid */
 
 /** Field of view, degrees. */
 const FIELD = 30;
 
 /** Milliseconds in which the camera goes to another place. */
 const TRAVEL_MS = 350;
+
+/** Inputs at which it is seen how far it reaches. */
+const SEEN_AT = 12;
 
 /** Directions from which it is looked at. @type {Record<string, [number, number, number]>} */
 export const VIEWS = { Isometric: [1, -1, 0.9], Top: [0, -1e-4, 1], Front: [0, -1, 0], Side: [1, 0, 0] };
@@ -104,18 +107,18 @@ export class AssemblyScene {
     group.add(mesh, edges);
     this.carriers[part.carrier].add(group);
     geometry.computeBoundingBox();
-    return { item: part.item, group, mesh, lift: part.lift, low: geometry.boundingBox?.min.z ?? 0 };
+    return { item: part.item, colour: part.colour, group, mesh, lift: part.lift, low: geometry.boundingBox?.min.z ?? 0 };
   }
 
   /** Light from above at the left, and from all around; shadows reach as far as the assembly goes. */
   lit() {
     const { centre, radius } = this.reach;
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0xb9c2cc, 1.7));
-    const sun = new THREE.DirectionalLight(0xffffff, 1.9);
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0xc9d1da, 2.1));
+    const sun = new THREE.DirectionalLight(0xffffff, 2.1);
     sun.position.copy(centre).add(new THREE.Vector3(-0.7, -0.9, 2.2).multiplyScalar(radius));
     sun.target.position.copy(centre);
     sun.castShadow = true;
-    sun.shadow.mapSize.set(2048, 2048);
+    sun.shadow.mapSize.set(1024, 1024);
     sun.shadow.radius = 3;
     sun.shadow.normalBias = 0.002 * radius;
     Object.assign(sun.shadow.camera, { left: -1.6 * radius, right: 1.6 * radius, top: 1.6 * radius, bottom: -1.6 * radius, near: 0.05 * radius, far: 6 * radius });
@@ -146,15 +149,23 @@ export class AssemblyScene {
 
   /** What the assembly reaches over its whole motion. */
   around() {
-    const box = new THREE.Box3();
     const count = this.motion.inputs.values.length;
-    for (let k = 0; k < 12; k++) {
-      this.show(((count - 1) * k) / 11);
-      box.expandByObject(this.root);
+    /** Corners of the boxes of all parts, and how far they go up. @type {{place: THREE.Vector3, lift: number}[]} */
+    const corners = [];
+    for (let k = 0; k < SEEN_AT; k++) {
+      this.show(((count - 1) * k) / (SEEN_AT - 1));
+      this.root.updateMatrixWorld(true);
+      for (const { mesh, lift } of this.solids) {
+        const { min, max } = /** @type {THREE.Box3} */ (mesh.geometry.boundingBox);
+        for (let n = 0; n < 8; n++) {
+          const place = new THREE.Vector3(n & 1 ? max.x : min.x, n & 2 ? max.y : min.y, n & 4 ? max.z : min.z);
+          corners.push({ place: place.applyMatrix4(mesh.matrixWorld), lift });
+        }
+      }
     }
     this.show(0);
-    const sphere = box.getBoundingSphere(new THREE.Sphere());
-    return { box, centre: sphere.center, radius: sphere.radius || 1 };
+    const sphere = new THREE.Box3().setFromPoints(corners.map(({ place }) => place)).getBoundingSphere(new THREE.Sphere());
+    return { corners, centre: sphere.center, radius: sphere.radius || 1 };
   }
 
   /** The colours of the page. */
@@ -162,13 +173,17 @@ export class AssemblyScene {
     const style = getComputedStyle(document.documentElement);
     const colour = (/** @type {string} */ name) => new THREE.Color(style.getPropertyValue(name).trim());
     this.scene.background = colour("--sheet");
-    const [line, ink] = [colour("--line"), colour(this.schemes.matches ? "--page" : "--ink")];
+    const dark = this.schemes.matches;
+    const [line, ink] = [colour("--line"), colour("--ink")];
     this.ground.grid.material.dispose();
     this.ground.grid.geometry.deleteAttribute("color");
     this.ground.grid.material = new THREE.LineBasicMaterial({ color: line });
-    for (const { group } of this.solids) {
+    for (const { group, mesh, colour: own } of this.solids) {
+      // On a dark ground dark parts would not be seen.
+      mesh.material.color.set(own).lerp(new THREE.Color(0xffffff), dark ? 0.05 : 0.015);
       const edges = /** @type {THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial>} */ (group.children[1]);
       edges.material.color = ink;
+      edges.material.opacity = dark ? 0.35 : 0.6;
     }
     this.accent = colour("--accent");
     this.marked();
@@ -248,22 +263,24 @@ export class AssemblyScene {
 
   /** @param {THREE.Vector3} direction @param {boolean} animated */
   go(direction, animated) {
-    const box = this.reach.box.clone();
-    box.max.z += this.explosion * Math.max(0, ...this.solids.map(({ lift }) => lift));
-    box.min.z += this.explosion * Math.min(0, ...this.solids.map(({ lift }) => lift));
-    const aim = box.getCenter(new THREE.Vector3());
+    const corners = this.reach.corners.map(({ place, lift }) => place.clone().setZ(place.z + this.explosion * lift));
     const toward = direction.clone().normalize();
-    // The distance at which all corners of the box lie in the picture.
     const right = new THREE.Vector3(0, 0, 1).cross(toward).normalize();
     const up = toward.clone().cross(right);
+    const middle = (/** @type {THREE.Vector3} */ way) => {
+      const along = corners.map((corner) => corner.dot(way));
+      return (along.reduce((a, b) => Math.min(a, b)) + along.reduce((a, b) => Math.max(a, b))) / 2;
+    };
+    const aim = new THREE.Vector3();
+    for (const way of [right, up, toward]) aim.addScaledVector(way, middle(way));
+    // The distance at which all corners lie in the picture.
     const high = Math.tan((FIELD * Math.PI) / 360);
     const wide = high * this.camera.aspect;
-    let away = 0;
-    for (let k = 0; k < 8; k++) {
-      const corner = new THREE.Vector3(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z).sub(aim);
-      away = Math.max(away, corner.dot(toward) + Math.max(Math.abs(corner.dot(right)) / wide, Math.abs(corner.dot(up)) / high));
-    }
-    const to = aim.clone().addScaledVector(toward, 1.08 * away);
+    const away = corners.reduce((most, corner) => {
+      const from = corner.clone().sub(aim);
+      return Math.max(most, from.dot(toward) + Math.max(Math.abs(from.dot(right)) / wide, Math.abs(from.dot(up)) / high));
+    }, 0);
+    const to = aim.clone().addScaledVector(toward, 1.06 * away);
     this.camera.near = Math.max(0.02 * this.reach.radius, 0.01);
     this.camera.far = 80 * this.reach.radius;
     this.camera.updateProjectionMatrix();

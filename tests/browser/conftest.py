@@ -40,8 +40,9 @@ def server(tmp_path_factory):
 def chromium():
     assert Path(CHROMIUM).exists(), "make test-browser installs chromium, or says how"
     with sync_playwright() as playwright:
-        # Without its sandbox, which needs a user other than root; it sees our own page only.
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        # Without its sandbox, which needs a user other than root; it sees our own page only. And no GPU.
+        drawing = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", *drawing])
         yield browser
         browser.close()
 

@@ -1,0 +1,96 @@
+"""``/v1/jobs/{id}/report.html``: a job as one page for paper."""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Request, Response
+from pydantic import BaseModel, ConfigDict, Field
+
+from service.api import errors
+from service.api.designs import drawn, solved
+from service.api.guard import GuardedRoute, Tenant
+from service.api.jobs import NO_JOB, TAG
+from service.api.parts import assemblies_of
+from service.api.state import Bench, Board, Desk
+from service.jobs.schema import JobRow
+from service.loading import IMPORTS
+from service.stated import read
+from service.telemetry import span
+from synthesis.registry import KINDS
+
+_TEXT = {"type": "string"}
+
+router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRoute)
+
+
+class ReportScope(BaseModel):
+    """How much of a job is reported."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    designs: int = Field(
+        default=5, ge=0, le=20, description="Designs shown in full, the best first; all of them are listed."
+    )
+    assemblies: bool = Field(
+        default=False,
+        description="Whether each of them is shown as an assembly of parts too, or why there is none is told.",
+    )
+
+
+@router.get(
+    "/{job_id}/report.html",
+    operation_id="report_job",
+    summary="Report a job",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "The page.",
+            "content": {"text/html; charset=utf-8": {"schema": _TEXT}},
+            "headers": {
+                "Content-Security-Policy": {
+                    "description": "Nothing but the page's own style sheet, by its hash.",
+                    "schema": _TEXT,
+                }
+            },
+        },
+        **errors.responses(
+            e404=NO_JOB,
+            e409="The job has no result (yet).",
+            e422="A parameter is not valid; `errors` says which.",
+            e503="Other drawings or parts have kept this one from being begun.",
+        ),
+    },
+)
+async def report_job(
+    request: Request, desk: Desk, board: Board, bench: Bench, tenant: Tenant, job_id: str,
+    query: Annotated[ReportScope, Query()],
+) -> Response:  # fmt: skip
+    """The job as one self-contained page for paper.
+
+    The problem, what was searched and what is proven; the designs with drawings, checks, and dimensions with units.
+    """
+    job, result = await solved(desk, tenant, job_id)
+    with span("report"):
+        built = {}
+        if query.assemblies:
+            built = await assemblies_of(request, bench, job, result, query.designs)
+        page, policy = await drawn(board, _report, job, result, query.designs, built)
+    headers = {
+        "Content-Security-Policy": policy,
+        "X-Content-Type-Options": "nosniff",
+        "Referrer-Policy": "no-referrer",
+        "Content-Disposition": f'inline; filename="{job.kind}-{job.id}.html"',
+    }
+    return Response(page, media_type="text/html", headers=headers)
+
+
+def _report(job: JobRow, result: str, most: int, built: dict[int, str]) -> tuple[str, str]:
+    with IMPORTS:
+        from service.render.report import POLICY, Occasion, report
+
+    kind = KINDS[job.kind]
+    occasion = Occasion(job.id, job.kind, job.label, job.created_at, job.finished_at, version("mechsynth"))
+    problem = read(job.kind, job.problem)
+    return report(problem, kind.result.model_validate_json(result), occasion, most, built), POLICY

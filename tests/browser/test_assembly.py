@@ -1,0 +1,198 @@
+"""The assembly in three dimensions: it is drawn, moves with the drawing, comes apart, and its parts are taken home."""
+
+import io
+import zipfile
+
+import ezdxf
+import pytest
+from PIL import Image, ImageChops
+
+from service.parts.extra import installed
+from tests.browser.conftest import SCREENS
+from tests.browser.test_accessibility import serious
+from tests.browser.test_studio import state
+from tests.browser.test_taking_home import taken as taken_of_design
+from tests.service.running import until
+from tests.service.test_parts import MOTION
+
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(400)]
+
+CANVAS = "#assembly canvas"
+NO_WEBGL = """
+const had = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (form, ...more) {
+  return form.startsWith("webgl") ? null : had.call(this, form, ...more);
+};
+"""
+
+
+def opened(studio, problem=MOTION):
+    """The assembly of the first design, at the beginning of its motion."""
+    page = studio.page
+    state(page, problem)
+    studio.solve()
+    page.wait_for_selector("#scrub")
+    page.focus("#scrub")
+    page.keyboard.press("Home")
+    page.locator("#assembly > summary").click()
+    page.wait_for_selector("#assembly .parts li", timeout=120_000)
+    return page
+
+
+def picture(page):
+    """What the canvas shows, when it has been drawn as it is now."""
+    page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    return Image.open(io.BytesIO(page.locator(CANVAS).screenshot())).convert("RGB")
+
+
+def differs(one, other):
+    return ImageChops.difference(one, other).getbbox() is not None
+
+
+def coloured(image):
+    """How many pixels have a colour: neither the ground nor shadows nor grey parts have."""
+    return sum(count for count, (r, g, b) in image.getcolors(1 << 24) if max(r, g, b) - min(r, g, b) > 60)
+
+
+def taken(page, described):
+    with page.expect_download(timeout=90_000) as waiting:
+        page.locator("#assembly").get_by_role("button", name=described, exact=True).click()
+    return waiting.value
+
+
+def test_it_is_drawn_moves_comes_apart_and_is_taken_home(open_studio):
+    studio = open_studio(reduced_motion="reduce")
+    page = opened(studio)
+    first = picture(page)
+    assert coloured(first) > 3000
+    assert len(first.getcolors(1 << 24)) > 200
+
+    # It goes where the drawing goes, and the drawing goes where it is led.
+    page.fill("#scrub", "200")
+    page.evaluate("document.querySelector('#scrub').dispatchEvent(new Event('input'))")
+    there = picture(page)
+    assert differs(first, there)
+    assert page.locator("#assembly-input").input_value() == pytest.approx(str(200 / 240), abs=1e-6) or float(
+        page.locator("#assembly-input").input_value()
+    ) == pytest.approx(200 / 240)
+    page.locator("#assembly-input").fill("0")
+    assert float(page.locator("#scrub").input_value()) == 0.0
+    assert not differs(first, picture(page))
+
+    # Each way of looking at it is another.
+    seen = [first]
+    for name in ("Top", "Front", "Side"):
+        page.locator("#assembly").get_by_role("button", name=name, exact=True).click()
+        seen.append(picture(page))
+    assert all(differs(one, other) for k, one in enumerate(seen) for other in seen[:k])
+    assert all(coloured(one) > 300 for one in seen)
+    page.locator("#assembly").get_by_role("button", name="Isometric", exact=True).click()
+
+    # Parts come apart: the same parts reach higher.
+    together = picture(page)
+    page.fill("#explode", "1")
+    apart = picture(page)
+    assert differs(together, apart)
+    page.locator("#assembly").get_by_role("button", name="Fit", exact=True).click()
+    SCREENS.mkdir(parents=True, exist_ok=True)
+    picture(page)
+    page.locator("#assembly").screenshot(path=SCREENS / "assembly.png")
+    with Image.open(taken(page, "Save picture").path()) as saved:
+        assert saved.format == "PNG"
+        assert coloured(saved.convert("RGB")) > 3000
+    page.fill("#explode", "0")
+
+    document = ezdxf.readfile(taken(page, "coupler as DXF").path())
+    assert len(document.modelspace().query("CIRCLE")) == 3
+    with zipfile.ZipFile(taken(page, "Everything as a zip").path()) as archive:
+        assert {"bom.csv", "isometric.svg"} <= set(archive.namelist())
+    assert page.locator("#assembly").get_by_role("button", name="coupler as STL").count() == int(installed())
+    report = taken_of_design(page, "Report").read_text(encoding="utf-8")
+    assert 'data-panel="isometric"' in report
+
+
+def test_parts_are_hidden_chosen_and_led_by_keys(open_studio):
+    studio = open_studio(reduced_motion="reduce")
+    page = opened(studio)
+    whole = picture(page)
+    kinds = page.locator("#assembly .parts li").count()
+    page.locator("#assembly").get_by_role("checkbox", name="Show coupler").uncheck()
+    without = picture(page)
+    assert coloured(without) < coloured(whole)
+    page.locator("#assembly").get_by_role("button", name="Hide all").click()
+    assert coloured(picture(page)) == 0
+    page.locator("#assembly").get_by_role("button", name="Show all").click()
+    assert not differs(picture(page), whole)
+    assert page.locator("#assembly .parts input:checked").count() == kinds
+
+    # A click on the orange coupler chooses it in the list, and a click in the list shows it in the picture.
+    box = page.locator(CANVAS).bounding_box()
+    places = ((x, y) for y in range(9, whole.height - 9, 3) for x in range(9, whole.width - 9, 3))
+    place = next(one for one in places if orange(whole, *one))
+        (x, y) for y in range(9, whole.height - 9, 3) for x in range(9, whole.width - 9, 3) if orange(whole, x, y)
+    )
+    page.mouse.click(box["x"] + place[0], box["y"] + place[1])
+    chosen = page.locator('#assembly .called[aria-pressed="true"]')
+    assert chosen.inner_text() == "coupler"
+    assert differs(picture(page), whole)
+    chosen.press("Enter")
+    assert chosen.count() == 0
+    page.mouse.move(0, 0)
+    assert not differs(picture(page), whole)
+
+    # By keys: the canvas has the arrows, and the list all else.
+    page.focus(CANVAS)
+    for key in ("ArrowLeft", "ArrowUp", "+", "Shift+ArrowRight"):
+        before = picture(page)
+        page.keyboard.press(key)
+        assert differs(picture(page), before), key
+    page.keyboard.press("Home")
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.id") == "explode"
+    page.keyboard.press("End")
+    assert page.locator("#explode").input_value() == "1"
+    page.locator("#show-link_coupler").press("Space")
+    assert not page.locator("#show-link_coupler").is_checked()
+    page.locator("#show-link_coupler").press("Space")
+    for scheme, width in (("dark", 1360), ("light", 390)):
+        page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
+        page.set_viewport_size({"width": width, "height": 900})
+        assert serious(page) == [], (scheme, width)
+        wider = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
+        assert wider <= 0
+        picture(page)
+        page.locator("#assembly").screenshot(path=SCREENS / f"assembly-{scheme}-{width}.png")
+
+
+def orange(image, x, y):
+    """Whether a place lies well within what is orange."""
+    around = [image.getpixel((x + u, y + v)) for u in (-6, 0, 6) for v in (-6, 0, 6)]
+    return all(r > g + 50 > b + 60 for r, g, b in around)
+
+
+def test_what_leaves_no_room_is_said_with_a_button_for_the_scale_that_works(open_studio):
+    studio = open_studio(reduced_motion="reduce")
+    page = opened(studio)
+    page.fill("#assembly-width", "60")
+    page.locator("#assembly-width").press("Enter")
+    fault = page.locator("#assembly-fault")
+    until(lambda: "There is no room for links 60 mm wide" in fault.inner_text(), 90, "the reason")
+    assert page.locator("#assembly-width").get_attribute("aria-invalid") == "true"
+    assert not page.locator(CANVAS).is_visible()
+    fault.get_by_role("button").click()
+    page.locator(CANVAS).wait_for(timeout=120_000)
+    scale = float(page.input_value("#assembly-scale"))
+    assert scale > 1.0
+    assert f"{scale:g} times the design" in page.locator("#assembly .note[role=status]").inner_text()
+    assert fault.inner_text() == ""
+    assert [text for text in studio.wrong if "422" not in text] == []
+    studio.wrong.clear()
+
+
+def test_without_webgl_the_parts_are_listed(own_studio):
+    own_studio.page.add_init_script(NO_WEBGL)
+    own_studio.load()
+    page = opened(own_studio)
+    assert "does not draw in three dimensions" in page.locator("#assembly").inner_text()
+    assert page.locator(CANVAS).count() == 0
+    assert ezdxf.readfile(taken(page, "base as DXF").path()).modelspace().query("CIRCLE")
