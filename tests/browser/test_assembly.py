@@ -129,8 +129,6 @@ def test_parts_are_hidden_chosen_and_led_by_keys(open_studio):
     box = page.locator(CANVAS).bounding_box()
     places = ((x, y) for y in range(9, whole.height - 9, 3) for x in range(9, whole.width - 9, 3))
     place = next(one for one in places if orange(whole, *one))
-        (x, y) for y in range(9, whole.height - 9, 3) for x in range(9, whole.width - 9, 3) if orange(whole, x, y)
-    )
     page.mouse.click(box["x"] + place[0], box["y"] + place[1])
     chosen = page.locator('#assembly .called[aria-pressed="true"]')
     assert chosen.inner_text() == "coupler"
