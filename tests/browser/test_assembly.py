@@ -104,7 +104,7 @@ def test_it_is_drawn_moves_comes_apart_and_is_taken_home(open_studio):
 
     document = ezdxf.readfile(taken(page, "coupler as DXF").path())
     assert len(document.modelspace().query("CIRCLE")) == 3
-    with zipfile.ZipFile(taken(page, "Everything as a zip").path()) as archive:
+    with zipfile.ZipFile(taken(page, "All files as a zip").path()) as archive:
         assert {"bom.csv", "isometric.svg"} <= set(archive.namelist())
     assert page.locator("#assembly").get_by_role("button", name="coupler as STL").count() == int(installed())
     report = taken_of_design(page, "Report").read_text(encoding="utf-8")
