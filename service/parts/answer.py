@@ -16,7 +16,7 @@ Point = tuple[float, float]
 Place = tuple[float, float, float]
 
 
-class Circle(BaseModel):
+class CircleEdge(BaseModel):
     """A circle."""
 
     model_config = ConfigDict(title="Circle of a part")
@@ -26,7 +26,7 @@ class Circle(BaseModel):
     radius: float
 
 
-class Corners(BaseModel):
+class CornersEdge(BaseModel):
     """A closed outline of straight lines and arcs."""
 
     model_config = ConfigDict(title="Outline of a part")
@@ -40,7 +40,7 @@ class Corners(BaseModel):
     smooth: bool = Field(description="Whether the corners are points of a smooth curve, and no corners of the part.")
 
 
-Edge = Annotated[Circle | Corners, Field(discriminator="form")]
+Edge = Annotated[CircleEdge | CornersEdge, Field(discriminator="form")]
 
 
 class Upright(BaseModel):
@@ -157,6 +157,9 @@ class Driven(BaseModel):
     low: float = Field(description="Where the range begins that the parts were made for.")
     high: float = Field(description="Where it ends.")
     closed: bool = Field(description="Whether it is one whole cycle, after which the parts are where they were.")
+    endless: bool = Field(
+        description="Whether it goes on beyond its range: every carrier turns and goes round at a constant rate."
+    )
     values: list[float] = Field(
         description="Degrees; or, where a slide drives, its place in the unit of the design, however large it is built."
     )

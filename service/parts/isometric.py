@@ -21,14 +21,15 @@ from itertools import combinations, groupby, pairwise
 from typing import NamedTuple
 
 import numpy as np
+import shapely
 
 from service.parts.bodies import Prism
 from service.parts.curves import Curve
 from service.parts.exploded import lifts
 from service.parts.model import FLAT, Assembly, Part, Placed
-from service.parts.shapes import Disc, Loop, Outline, Region, arc
+from service.parts.shapes import Disc, Loop, Outline, Region, arc, ring_of
 from service.render.page.sheet import EDGE, FULL, TOP, caption, framed, sheet
-from service.render.page.svg import Box, Element, Viewport, element, line, number, text, text_width
+from service.render.page.svg import Box, Element, Viewport, element, line, text, text_width
 from service.render.page.symbols import GREY, INK, scale_bar
 
 ALONG = cmath.exp(0.25j * math.pi)
@@ -43,6 +44,12 @@ LIGHT = cmath.exp(math.radians(-38.0) * 1j)
 
 BANDS = ((20.0, math.radians(15.0)), (7.0, math.radians(30.0)), (0.0, math.radians(45.0)))
 """Turn of the normal within one band, of arcs whose radius in pixels is larger than so much."""
+
+MANY, FINEST = 60, 0.3
+"""Outlines with so many corners are drawn without those that change them by less than so many pixels."""
+
+THROUGH = 0.3
+"""Opacity of a second base, where what is below it is to be seen."""
 
 SHADES = 16
 """Of a wall."""
@@ -132,8 +139,9 @@ def _panel(
     room = max((text_width(part.described, SMALL) for part in names), default=0.0)
     box = Box.around(np.concatenate([_outline_points(piece) for piece in pieces]))
     shown = Viewport.fit(box, Box(panel.left, panel.low, panel.right - room, panel.high), MARGIN, 22.0)
-    scene = _Scene(shown)
-    drawn = element("g", *(one for slab in slabs(pieces) for one in scene.drawn(slab)), **THIN)
+    scene = _Scene(shown, see_through=not named)
+    coarse = [piece._replace(region=_coarse(piece.region, FINEST / shown.scale)) for piece in pieces]
+    drawn = element("g", *(one for slab in slabs(coarse) for one in scene.drawn(slab)), **THIN)
     bar, _ = scale_bar(Viewport(panel, 0j, 0j, shown.scale), "mm")
     labels = _names(pieces, names, shown, panel.right - room - 12.0)
     return [framed(panel, "isometric"), caption(panel, words), drawn, *labels, bar]
@@ -161,6 +169,20 @@ def placed_pieces(assembly: Assembly, at: float, lifted: dict[str, float]) -> li
                     up = lifted[part.name]
                     found.append(Piece(part, moved, low + up, high + up, low == body.low, high == body.high))
     return found
+
+
+def _coarse(region: Region, finest: float) -> Region:
+    """A region without the corners that cannot be told apart: teeth and contours have hundreds."""
+    return Region(_coarse_outline(region.outer, finest), tuple(_coarse_outline(hole, finest) for hole in region.holes))
+
+
+def _coarse_outline(outline: Outline, finest: float) -> Outline:
+    if not isinstance(outline, Loop) or len(outline.corners) < MANY:
+        return outline
+    ring = ring_of(outline, beyond=False)
+    kept = shapely.Polygon(np.column_stack([ring.real, ring.imag])).simplify(finest).exterior.coords[:-1]
+    corners = tuple(complex(x, y) for x, y in kept)
+    return Loop(corners, (0.0,) * len(corners))
 
 
 def drawable(assembly: Assembly) -> bool:
@@ -302,8 +324,8 @@ def _filled(slab: Sequence[Piece]) -> Iterator[tuple[Outline, Piece]]:
 
 
 class _Scene:
-    def __init__(self, shown: Viewport) -> None:
-        self._shown = shown
+    def __init__(self, shown: Viewport, *, see_through: bool) -> None:
+        self._shown, self._see_through = shown, see_through
 
     def drawn(self, slab: Sequence[Piece]) -> list[Element]:
         """The pieces of a slab."""
@@ -319,9 +341,13 @@ class _Scene:
         found += [self._top(piece) for piece in slab if piece.ends]
         return found
 
+    def _glassy(self, piece: Piece) -> bool:
+        """Whether it is the second base, and what it holds is looked at."""
+        return self._see_through and piece.part.sort == "base" and piece.part.planes[0] > 0
+
     def _at(self, place: complex, height: float) -> str:
         z = self._shown.point(view(place, height))
-        return f"{number(z.real)} {number(z.imag)}"
+        return f"{z.real:.1f} {z.imag:.1f}"
 
     def _to(self, stretch: Stretch, height: float, *, back: bool = False) -> str:
         """The command that draws a stretch from where the pen is."""
@@ -331,7 +357,7 @@ class _Scene:
         centre, turned = arc(stretch.start, stretch.end, stretch.bulge)
         radius = self._shown.scale * abs(stretch.start - centre)
         sweep = int((turned < 0.0) != back)
-        return f"A{number(radius)} {number(SINE * radius)} 0 0 {sweep} {self._at(end, height)}"
+        return f"A{radius:.1f} {SINE * radius:.1f} 0 0 {sweep} {self._at(end, height)}"
 
     def _top(self, piece: Piece) -> Element:
         d = ""
@@ -339,7 +365,8 @@ class _Scene:
             own = stretches(outline)
             d += f"M{self._at(own[0].start, piece.high)}" + "".join(self._to(one, piece.high) for one in own) + "Z"
         fill = shaded(piece.part.colour, 1.0)
-        return element("path", d=d, fill=fill, fill_rule="evenodd", data_part=piece.part.name)
+        opacity = THROUGH if self._glassy(piece) else None
+        return element("path", d=d, fill=fill, fill_rule="evenodd", fill_opacity=opacity, data_part=piece.part.name)
 
     def _walls(self, piece: Piece, outline: Outline, *, hole: bool) -> list[Element]:
         low, high = piece.low, piece.high
@@ -351,7 +378,10 @@ class _Scene:
             back = "".join(self._to(stretch, low, back=True) for stretch in reversed(run))
             d = f"M{self._at(run[0].start, high)}{there}L{self._at(run[-1].end, low)}{back}Z"
             # The stroke closes the seams between bands.
-            found.append(element("path", d=d, fill=fill, stroke=fill))
+            if self._glassy(piece):
+                found.append(element("path", d=d, fill=fill, fill_opacity=THROUGH, stroke="none"))
+            else:
+                found.append(element("path", d=d, fill=fill, stroke=fill))
             if piece.begins and not hole:
                 edges += f"M{self._at(run[0].start, low)}" + "".join(self._to(stretch, low) for stretch in run)
         for before, after in zip(own, own[1:] + own[:1], strict=True):

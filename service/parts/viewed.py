@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from service.parts.answer import (
     AssemblyView,
     Carried,
-    Circle,
-    Corners,
+    CircleEdge,
+    CornersEdge,
     Driven,
     MeshShape,
     Point,
@@ -28,12 +28,15 @@ from service.parts.curves import Curve
 from service.parts.exploded import lifts
 from service.parts.extra import installed
 from service.parts.items import items
-from service.parts.model import FLAT, Assembly, Carrier, Frame, Part
+from service.parts.model import FLAT, Assembly, Carrier, Frame, Motion, Part
 from service.parts.shapes import Disc, Outline
-from service.parts.sizes import PartFile
+from service.parts.sizes import NotMade, PartFile
 
-FINE = 720
+FINE = 2880
 """Inputs at least between which an angle is followed, so that it is known how often something has turned."""
+
+BEYOND = 2000.0
+"""Degrees beyond a range at which it is asked whether the motion goes on."""
 
 
 def viewed(assembly: Assembly, positions: int) -> AssemblyView:
@@ -81,13 +84,31 @@ def _driven(assembly: Assembly, positions: int) -> Driven:
         low=motion.low / unit,
         high=motion.high / unit,
         closed=motion.closed,
-        values=(motion.inputs(positions) / unit).tolist(),
+        endless=_endless(motion),
+        values=(_spread(motion, positions) / unit).tolist(),
     )
+
+
+def _spread(motion: Motion, positions: int) -> NDArray[np.float64]:
+    """Inputs at equal steps over a whole cycle, or between the ends of the range and short of them."""
+    if motion.closed:
+        return np.linspace(motion.low, motion.high, positions, endpoint=False)
+    return np.linspace(motion.low, motion.high, positions + 2)[1:-1]
+
+
+def _endless(motion: Motion) -> bool:
+    """Whether any input is one of its own, and none the same as another."""
+    beyond = math.degrees(motion.high) + BEYOND
+    try:
+        stated = motion.stated(beyond, 1.0)
+    except NotMade:
+        return False
+    return not motion.closed and math.isclose(stated, math.radians(beyond))
 
 
 def _carried(assembly: Assembly, carriers: list[Carrier], positions: int) -> list[Carried]:
     motion = assembly.motion
-    inputs = motion.inputs(positions)
+    inputs = _spread(motion, positions)
     # An angle is followed through as many inputs as are needed, and told at those that are asked for.
     steps = max(1, math.ceil(FINE / positions))
     between = inputs
@@ -169,13 +190,13 @@ def _shape(body: Body) -> Shape:
     return PrismShape(**upright)
 
 
-def _edge(outline: Outline) -> Circle | Corners:
+def _edge(outline: Outline) -> CircleEdge | CornersEdge:
     if isinstance(outline, Disc):
-        return Circle(centre=_pair(outline.centre), radius=outline.radius)
+        return CircleEdge(centre=_pair(outline.centre), radius=outline.radius)
     if isinstance(outline, Curve):
         places = outline.through
-        return Corners(corners=[_pair(place) for place in places.tolist()], bulges=[0.0] * places.size, smooth=True)
-    return Corners(corners=[_pair(corner) for corner in outline.corners], bulges=list(outline.bulges), smooth=False)
+        return CornersEdge(corners=[_pair(place) for place in places.tolist()], bulges=[0.0] * places.size, smooth=True)
+    return CornersEdge(corners=[_pair(corner) for corner in outline.corners], bulges=list(outline.bulges), smooth=False)
 
 
 def _pair(z: complex) -> Point:

@@ -3,7 +3,7 @@
 /**
  * @typedef {{origins: number[][], along: number[][], normals: number[][]}} Standing
  * @typedef {{pivot: [number, number], angles: number[], places: [number, number][], frame: Standing | null}} Carrier
- * @typedef {{quantity: "angle" | "place", low: number, high: number, reference: number, closed: boolean, values: number[]}} Inputs
+ * @typedef {{quantity: "angle" | "place", low: number, high: number, reference: number, closed: boolean, endless: boolean, values: number[]}} Inputs
  */
 
 export class AssemblyMotion {
@@ -11,6 +11,8 @@ export class AssemblyMotion {
   constructor(inputs, carriers) {
     this.inputs = inputs;
     this.carriers = carriers;
+    /** How each goes round, where all do so evenly and without end. @type {Map<Carrier, Orbit>} */
+    this.orbits = new Map(inputs.endless ? carriers.map((carrier) => [carrier, orbit(carrier.places)]) : []);
   }
 
   /**
@@ -18,10 +20,11 @@ export class AssemblyMotion {
    * @param {number} input @returns {{at: number, within: boolean}}
    */
   place(input) {
-    const { values, low, high, closed, quantity } = this.inputs;
+    const { values, low, high, closed, endless, quantity } = this.inputs;
     const count = values.length;
     if (count < 2) return { at: 0, within: true };
     const step = values[1] - values[0];
+    if (endless) return { at: (input - values[0]) / step, within: true };
     const round = closed ? high - low : quantity === "angle" ? 360 : 0;
     const near = 1e-6 * (high - low);
     let value = input;
@@ -40,8 +43,16 @@ export class AssemblyMotion {
    * Where a carrier is: the angle by which it has turned, radians, and the place of its pivot.
    * @param {Carrier} carrier @param {number} at @returns {{angle: number, place: [number, number]}}
    */
-  carried({ angles, places }, at) {
+  carried(carrier, at) {
+    const { angles, places } = carrier;
     const count = angles.length;
+    const round = this.orbits.get(carrier);
+    if (round) {
+      const angle = ((angles[0] + (at * (angles[count - 1] - angles[0])) / Math.max(1, count - 1)) * Math.PI) / 180;
+      const [[x, y], [u, v]] = [round.centre, round.arm];
+      const [c, s] = [Math.cos(round.step * at), Math.sin(round.step * at)];
+      return { angle, place: [x + c * u - s * v, y + s * u + c * v] };
+    }
     const k = Math.min(Math.max(0, Math.floor(at)), this.inputs.closed ? count - 1 : Math.max(0, count - 2));
     const next = (k + 1) % count;
     const share = count > 1 ? at - k : 0;
@@ -54,4 +65,21 @@ export class AssemblyMotion {
     const [[x, y], [u, v]] = [places[k], places[next]];
     return { angle: ((angles[k] + share * (ahead - angles[k])) * Math.PI) / 180, place: [x + share * (u - x), y + share * (v - y)] };
   }
+}
+
+/** @typedef {{centre: [number, number], arm: [number, number], step: number}} Orbit */
+
+/** The circle on which evenly spaced places lie, and by how much each is farther round than the one before. @param {[number, number][]} places @returns {Orbit} */
+function orbit(places) {
+  const still = { centre: places[0], arm: /** @type {[number, number]} */ ([0, 0]), step: 0 };
+  if (places.length < 3) return still;
+  const [[ax, ay], [bx, by], [cx, cy]] = places;
+  const [ux, uy, vx, vy] = [bx - ax, by - ay, cx - bx, cy - by];
+  const size = Math.max(...places.map(([x, y]) => Math.hypot(x - ax, y - ay)));
+  if (size < 1e-9 * Math.max(1, Math.hypot(ax, ay))) return still;
+  const step = Math.atan2(ux * vy - uy * vx, ux * vx + uy * vy);
+  // The middle of a chord, and as far from it as the angle over it says.
+  const away = 0.5 / Math.tan(step / 2);
+  const centre = /** @type {[number, number]} */ ([(ax + bx) / 2 - away * uy, (ay + by) / 2 + away * ux]);
+  return { centre, arm: [ax - centre[0], ay - centre[1]], step };
 }

@@ -36,6 +36,8 @@ export class AssemblyScene {
     this.motion = new AssemblyMotion(assembly.input, assembly.carriers);
     this.at = 0;
     this.explosion = 0;
+    /** Whether it is looked at from where it was put, and nobody has turned it since. */
+    this.fitted = true;
     this.dirty = true;
     /** @type {string | null} */
     this.chosen = null;
@@ -64,7 +66,10 @@ export class AssemblyScene {
     this.ground = this.floor(assembly);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => (this.dirty = true));
-    this.controls.addEventListener("start", () => (this.travel = null));
+    this.controls.addEventListener("start", () => {
+      this.travel = null;
+      this.fitted = false;
+    });
     this.controls.maxDistance = 40 * this.reach.radius;
     this.controls.minDistance = 0.3 * this.reach.radius;
     this.schemes = matchMedia("(prefers-color-scheme: dark)");
@@ -221,6 +226,7 @@ export class AssemblyScene {
     for (const { group, lift } of this.solids) group.position.z = share * lift;
     const low = Math.min(...this.solids.map(({ low, lift }) => low + share * lift));
     this.ground.group.position.z = low - 0.02 * this.reach.radius;
+    if (this.fitted) this.fit(false);
     this.dirty = true;
   }
 
@@ -263,6 +269,7 @@ export class AssemblyScene {
 
   /** @param {THREE.Vector3} direction @param {boolean} animated */
   go(direction, animated) {
+    this.fitted = true;
     const corners = this.reach.corners.map(({ place, lift }) => place.clone().setZ(place.z + this.explosion * lift));
     const toward = direction.clone().normalize();
     const right = new THREE.Vector3(0, 0, 1).cross(toward).normalize();
@@ -318,6 +325,7 @@ export class AssemblyScene {
   key(event) {
     const by = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
     this.travel = null;
+    if (!event.key.match(/^(Shift|Tab)$/)) this.fitted = false;
     if (by && event.shiftKey) this.controls.pan(40 * by[0], 40 * by[1]);
     else if (by) {
       this.controls.rotateLeft((by[0] * Math.PI) / 24);

@@ -201,7 +201,6 @@ export class AssemblyView {
       el("button", { type: "button", class: "small", onclick: () => {
         apart.value = this.explosion > 0 ? 0 : 1;
         apart.dispatchEvent(new Event("input"));
-        this.scene?.fit();
       } }, "Together / apart")), this.motionRow);
   }
 

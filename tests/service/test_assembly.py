@@ -111,7 +111,7 @@ def test_parts_are_where_the_analysis_has_them(client: Any, jobs: Any, name: str
 
 def test_angles_have_no_jumps_and_a_cycle_comes_back(client: Any, jobs: Any) -> None:
     answer = seen(client, jobs["slider"], **SIZES, over="cycle")
-    assert answer["input"]["closed"]
+    assert (answer["input"]["closed"], answer["input"]["endless"]) == (True, False)
     assert len(answer["input"]["values"]) == 72
     for carrier in answer["carriers"]:
         assert np.abs(np.diff(carrier["angles"])).max() < 90.0
@@ -245,3 +245,37 @@ def test_the_picture_shows_every_part_twice_and_where_it_is_asked_to(client: Any
     )
     faults = client.get(f"{place(jobs['fourbar'])}/assembly.svg", params={**SIZES, "input_place": 1.0}).json()["errors"]
     assert [fault["path"] for fault in faults] == ["/query/input_place"]
+
+
+def test_a_report_shows_assemblies_where_they_are_asked_for(client: Any, jobs: Any) -> None:
+    """As the picture that is had by itself; what cannot be built is told, and the rest of the report is there."""
+    at = f"/v1/jobs/{jobs['fourbar']['id']}/report.html"
+    plain, whole, none = (client.get(at, params=query).text for query in ({}, {"assemblies": True}, {"designs": 0}))
+    assert 'data-panel="isometric"' not in plain + none
+    drawing = picture(client, jobs["fourbar"])
+    assert drawing[drawing.index("<svg") :] in whole
+    assert whole.replace(drawing[drawing.index("<svg") :], "").count("<svg") == plain.count("<svg")
+    narrow = {"kind": "quick_return", "time_ratio": 1.5, "stroke": 40.0, "max_designs": 1}
+    told = client.get(f"/v1/jobs/{finished(client, narrow)['id']}/report.html", params={"assemblies": True}).text
+    assert "<h3>Assembly</h3>" in told
+    assert ("There is no room for links" in told) != ('data-panel="isometric"' in told)
+    assert client.get(at, params={"assemblies": "perhaps"}).status_code == 422
+
+
+def test_a_train_turns_its_gears_as_its_teeth_say_and_goes_on(client: Any) -> None:
+    job = finished(client, {"kind": "gear_train", "ratio": "7/3", "max_stages": 1})
+    answer = seen(client, job, positions=24)
+    assert (answer["input"]["closed"], answer["input"]["endless"]) == (False, True)
+    gears = {
+        part["carrier"]: len(part["shapes"][0]["outer"]["corners"])
+        for part in answer["parts"]
+        if part["sort"] == "gear"
+    }
+    few, many = sorted(gears, key=gears.__getitem__)
+    pinion, wheel = (np.array(answer["carriers"][k]["angles"]) for k in (few, many))
+    assert np.diff(pinion) / np.diff(wheel) == pytest.approx(np.full(23, -7.0 / 3.0))
+    turned = np.diff(answer["input"]["values"])
+    assert np.abs(np.diff(pinion)) == pytest.approx(turned, rel=1e-9)
+    text = picture(client, job)
+    assert len(text) < 2_000_000
+    assert "second base" in text
