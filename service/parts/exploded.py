@@ -5,8 +5,8 @@ from __future__ import annotations
 from service.parts.model import Assembly
 from service.parts.sheet import layers
 
-SPREAD = 0.6
-"""What all spaces between layers are together, as a share of the mechanism's size."""
+SPREAD = 1.2
+"""What all spaces between layers are together, as a share of the size of the mechanism, or of its largest part."""
 
 LEAST = 1.2
 """One of them in thicknesses of the thickest layer at least."""
@@ -19,7 +19,8 @@ def lifts(assembly: Assembly) -> dict[str, float]:
     above them all; one with its head below hangs free beneath, as it is put in from there.
     """
     stacked = layers(assembly)
-    space = max(LEAST * max(layer.height for layer in stacked), SPREAD * assembly.size / len(stacked))
+    size = max(assembly.size, *(part.length_and_width[0] for part in assembly.parts))
+    space = max(LEAST * max(layer.height for layer in stacked), SPREAD * size / len(stacked))
     found: dict[str, float] = {}
     for k, layer in enumerate(stacked):
         found.update(dict.fromkeys((part.name for part in layer.parts), k * space))

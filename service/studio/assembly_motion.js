@@ -58,9 +58,10 @@ export class AssemblyMotion {
     const share = count > 1 ? at - k : 0;
     let ahead = angles[next];
     if (next < k) {
-      // After a cycle it is as it was, but for whole turns.
+      // After a cycle it is as it was, but for whole turns; a wheel that is turned by a slot goes on by as much as before.
       const step = angles[k] - angles[Math.max(0, k - 1)];
-      ahead += 360 * Math.round((angles[k] + step - ahead) / 360);
+      const back = ahead + 360 * Math.round((angles[k] + step - ahead) / 360);
+      ahead = Math.abs(angles[k] + step - back) < 1 + 2 * Math.abs(step) ? back : angles[k] + step;
     }
     const [[x, y], [u, v]] = [places[k], places[next]];
     return { angle: ((angles[k] + share * (ahead - angles[k])) * Math.PI) / 180, place: [x + share * (u - x), y + share * (v - y)] };

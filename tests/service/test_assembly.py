@@ -14,6 +14,7 @@ import pytest
 
 from service.parts.answer import AssemblyView
 from service.parts.extra import installed
+from synthesis.registry import examples
 from tests.service.answers import SVG, finished
 from tests.service.test_parts import DRIVEN, MOTION, SIZES, SLIDER, parts, refused
 
@@ -107,6 +108,18 @@ def test_parts_are_where_the_analysis_has_them(client: Any, jobs: Any, name: str
             looked_at += len(moved)
             assert all(min(abs(z - joints[joint]) for joint in on) < 1e-6 for z in moved), (part["name"], k)
     assert looked_at >= 5 * (len(links) - 1)
+
+
+def test_a_follower_goes_as_its_cam_is_analysed_to_lift_it(client: Any) -> None:
+    job = finished(client, examples("cam")[0])
+    answer = seen(client, job, positions=12)
+    assert answer["input"]["values"] == pytest.approx([30.0 * k for k in range(12)])
+    lift = client.get(f"{place(job)}/motion", params={"steps": 12}).json()["follower"]["position"][:12]
+    follower = next(part for part in answer["parts"] if part["name"] == "follower")
+    places = np.array(answer["carriers"][follower["carrier"]]["places"]) @ (1.0, 1j)
+    assert np.abs(places - places[0]) == pytest.approx(np.abs(np.array(lift) - lift[0]), abs=1e-6)
+    cam = next(part for part in answer["parts"] if part["sort"] == "cam")
+    assert np.abs(np.diff(answer["carriers"][cam["carrier"]]["angles"])) == pytest.approx(np.full(11, 30.0))
 
 
 def test_angles_have_no_jumps_and_a_cycle_comes_back(client: Any, jobs: Any) -> None:
