@@ -136,10 +136,10 @@ def test_no_two_solids_of_the_others_share_room(name: str) -> None:
 def test_printed_parts_are_watertight_meshes_on_the_plate(name: str) -> None:
     import trimesh
 
-    problem, _, design = solved(name)
-    with zipfile.ZipFile(io.BytesIO(package(design, problem, PartsQuery(process="print"), "A"))) as archive:
+    whole = assembly(name, "print")
+    with zipfile.ZipFile(io.BytesIO(package(whole, "print", "A", whole.motion.reference))) as archive:
         files = {file: archive.read(file) for file in archive.namelist()}
-    for item in items(assembly(name, "print")):
+    for item in items(whole):
         mesh = trimesh.load_mesh(io.BytesIO(files[f"stl/{item.name}.stl"]), file_type="stl")
         assert mesh.is_watertight
         assert mesh.volume == pytest.approx(item.part.volume, rel=0.02)

@@ -162,7 +162,7 @@ def test_printed_parts_are_watertight_meshes_that_lie_on_the_plate(kind: str) ->
     import trimesh
 
     whole = assembly(kind, "print")
-    at = float(whole.motion.mechanism.reference_input)
+    at = whole.motion.reference
     with zipfile.ZipFile(io.BytesIO(package(whole, "print", "A", at))) as archive:
         files = {name: archive.read(name) for name in archive.namelist()}
     listed = items(whole)
