@@ -32,6 +32,7 @@ from service.api import (
     parts,
     problems,
     reports,
+    simulations,
     studio,
 )
 from service.drawings import Drawings
@@ -147,6 +148,7 @@ def application(lifespan: Lifespan[FastAPI]) -> FastAPI:
         forces.reading,
         forces.stating,
         parts.router,
+        simulations.router,
         events.router,
         batches.router,
         batches.following,

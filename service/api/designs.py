@@ -113,7 +113,13 @@ for _form, _export in EXPORTS.items():
 
 
 async def drawn(board: Drawings, draw: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-    """What ``draw`` makes when its turn has come; 503 where that is not in time."""
+    """Have something drawn in its turn.
+
+    Raises
+    ------
+    Refusal
+        503 where its turn has not come in time.
+    """
     try:
         return await board.call(draw, *args, **kwargs)
     except Busy:

@@ -16,6 +16,11 @@ MOST_CORNERS = 500
 
 Name = Annotated[str, Field(min_length=1, max_length=50)]
 
+Material = Literal["steel", "aluminium", "PETG"]
+
+DENSITIES: dict[Material, float] = {"steel": 7850.0, "aluminium": 2700.0, "PETG": 1270.0}
+"""Densities of materials, kg/m³."""
+
 
 class PolarPlace(Statement):
     """A place on a link by its distance from the link's first joint, and its angle from the line to the second one."""

@@ -1,0 +1,125 @@
+"""``/v1/jobs/{id}/designs/{n}.mjcf``, ``.urdf``, ``.mo`` and ``.sim.py``: a design for programs that simulate it."""
+
+from __future__ import annotations
+
+from typing import Annotated, NamedTuple
+
+from fastapi import APIRouter, Query, Response
+
+from service.api import errors
+from service.api.designs import OTHER_DRAWINGS, design_index, drawn, solved
+from service.api.errors import Refusal, invalid_request, not_found
+from service.api.guard import GuardedRoute, Tenant
+from service.api.jobs import TAG
+from service.api.state import Board, Desk
+from service.jobs.schema import JobRow
+from service.loading import IMPORTS
+from service.simulation.query import Form, NoSimulation, NotSimulated, SimulationQuery
+from service.stated import read
+from service.telemetry import span
+from synthesis.registry import KINDS
+
+router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRoute)
+
+
+class Simulation(NamedTuple):
+    """A form of simulation, as the API describes it."""
+
+    media_type: str
+    operation_id: str
+    summary: str
+    description: str
+
+
+_DRIVEN = (
+    " SI units: metres, kilograms, radians, seconds. Its input turns once at constant speed where it turns through, "
+    "and otherwise goes along the range that the design was verified along. Masses are those of the problem's "
+    "`dynamics`, or of plates. Linkages and gear trains have simulations."
+)
+
+SIMULATIONS: dict[Form, Simulation] = {
+    "mjcf": Simulation(
+        "application/xml",
+        "export_design_mjcf",
+        "Export a design to MuJoCo",
+        "Design ``number`` of the job's result as a model of MuJoCo, with its loops closed and its input driven."
+        + _DRIVEN,
+    ),
+    "urdf": Simulation(
+        "application/xml",
+        "export_design_urdf",
+        "Export a design as URDF",
+        "Design ``number`` of the job's result as URDF: a tree; its loops are closed by joints of SDF in the block "
+        "`gazebo`." + _DRIVEN,
+    ),
+    "mo": Simulation(
+        "text/plain; charset=utf-8",
+        "export_design_modelica",
+        "Export a design to Modelica",
+        "Design ``number`` of the job's result as a model of Modelica.Mechanics.MultiBody." + _DRIVEN,
+    ),
+    "sim.py": Simulation(
+        "text/x-python; charset=utf-8",
+        "export_design_script",
+        "Export a design as a script that simulates it",
+        "Design ``number`` of the job's result as a Python script that runs it in MuJoCo, and compares its joint "
+        "angles with those of the analysis, which stand in it." + _DRIVEN,
+    ),
+}
+
+
+def _offer(form: Form, export: Simulation) -> None:
+    """Add the operation that gives the simulations of one form."""
+
+    async def file(
+        desk: Desk, board: Board, tenant: Tenant, job_id: str, number: str, query: Annotated[SimulationQuery, Query()]
+    ) -> Response:
+        job, result = await solved(desk, tenant, job_id)
+        with span("simulation"):
+            n, content = await drawn(board, _simulation, job, result, number, form, query)
+        headers = {
+            "X-Content-Type-Options": "nosniff",
+            "Content-Disposition": f'attachment; filename="{job.kind}-{n}.{form}"',
+        }
+        return Response(content, media_type=export.media_type, headers=headers)
+
+    router.add_api_route(
+        f"/{{job_id}}/designs/{{number}}.{form}",
+        file,
+        operation_id=export.operation_id,
+        summary=export.summary,
+        description=export.description,
+        response_class=Response,
+        responses={
+            200: {"description": "The file.", "content": {export.media_type: {"schema": {"type": "string"}}}},
+            **errors.responses(
+                e404="There is no such job or design, or no simulation of its type of mechanism.",
+                e409="The job has no result (yet), or the design cannot be simulated; `detail` says why.",
+                e422="A parameter is not valid, or does not fit the design; `errors` says which.",
+                e503=OTHER_DRAWINGS,
+            ),
+        },
+    )
+
+
+for _form, _export in SIMULATIONS.items():
+    _offer(_form, _export)
+
+
+def _simulation(job: JobRow, result: str, number: str, form: Form, query: SimulationQuery) -> tuple[int, str]:
+    # Who asks for nothing of this waits for no import.
+    with IMPORTS:
+        from service.render import heading
+        from service.simulation.export import simulation
+
+    designs = KINDS[job.kind].result.model_validate_json(result).designs
+    n = design_index(number, len(designs))
+    problem = read(job.kind, job.problem)
+    try:
+        return n, simulation(designs[n], problem, heading(problem, job.label, n), form, query)
+    except NoSimulation:
+        raise not_found("This type of mechanism has no simulations; linkages and gear trains have.") from None
+    except NotSimulated as error:
+        if error.path:
+            raise invalid_request([(error.path, str(error))]) from None
+        raise Refusal(409, "no-simulation", "No simulation", str(error)) from None

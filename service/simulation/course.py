@@ -1,0 +1,91 @@
+"""The motion of a design that is simulated: a whole turn of an input that turns through, else as it was verified."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from pydantic import ValidationError
+
+from kinematics.linkage.planar.mechanism import Mechanism
+from service.simulation.model import Real
+from service.simulation.query import NotSimulated, SimulationQuery, nonzero, unused
+from synthesis.analyses.cycle import cycle_of
+from synthesis.model.dynamics import DynamicsBlock, WeighedLinkage
+from synthesis.outcome.forces import shaped
+
+SAMPLES = 360
+"""Steps of the motion at whose ends joint angles are compared."""
+
+USUAL_RPM = 60.0
+"""Speed of an input that turns, where none is stated."""
+
+
+class Course(NamedTuple):
+    """Inputs (radians or length units, shape (n + 1,)), and the speed along them, signed."""
+
+    inputs: Real
+    speed: float
+
+
+def block_of(problem: Any, design: Any, mechanism: Mechanism) -> WeighedLinkage | None:
+    """What the links of a design weigh and carry by its own block ``dynamics`` or its problem's; None without any."""
+    own = getattr(design, "dynamics", None)
+    if own:
+        try:
+            return DynamicsBlock.model_validate(own)
+        except ValidationError as error:
+            raise NotSimulated(f"The design's `dynamics` cannot be read: {error.errors()[0]['msg']}.") from None
+    stated = getattr(problem, "dynamics", None)
+    return None if stated is None else shaped(stated, mechanism.links)
+
+
+def course_of(problem: Any, design: Any, mechanism: Mechanism, query: SimulationQuery) -> Course:
+    """The motion of a design and its speed.
+
+    Raises
+    ------
+    NotSimulated
+        Where there is none, or a speed is stated that does not fit its input.
+    """
+    slides = mechanism.driven_by_slide
+    unused(query, "an input that slides" if slides else "an input that turns", "speed_rpm" if slides else "speed")
+    low, high = _ends(problem, design, mechanism)
+    speed = nonzero(query.speed if slides else query.speed_rpm, "speed" if slides else "speed_rpm")
+    if speed is None:
+        speed = _stated_speed(problem, slides) or (abs(high - low) if slides else USUAL_RPM)
+    rate = speed if slides else speed * math.tau / 60.0
+    inputs = np.linspace(low, high, SAMPLES + 1)
+    if rate * (high - low) < 0.0:
+        turn = abs(high - low - math.tau) <= 1e-9 and not slides
+        inputs = np.linspace(low, low - math.tau, SAMPLES + 1) if turn else inputs[::-1]
+    return Course(inputs, rate)
+
+
+def _stated_speed(problem: Any, slides: bool) -> float | None:
+    """That of the problem's dynamics, or of its motion; None where there is none, or it is 0."""
+    for stated in (getattr(problem, "dynamics", None), getattr(problem, "motion", None)):
+        found = getattr(stated, "speed" if slides else "speed_rpm", None)
+        if found:
+            return float(found)
+    return None
+
+
+def _ends(problem: Any, design: Any, mechanism: Mechanism) -> tuple[float, float]:
+    slides, metrics = mechanism.driven_by_slide, design.metrics
+    if getattr(metrics, "full_rotation", False) and not slides:
+        start = float(mechanism.reference_input)
+        return start, start + math.tau
+    ends = getattr(metrics, "used_stroke" if slides else "used_range", None)
+    motion = getattr(problem, "motion", None)
+    if ends is None and motion is not None:
+        ends = motion.start, motion.end
+        if None in ends:
+            return cycle_of(mechanism)
+    if ends is None:
+        raise NotSimulated("There is no motion that this design was verified along.")
+    low, high = (float(end) if slides else math.radians(float(end)) for end in ends)
+    if low == high:
+        raise NotSimulated("The input of this design stands still in the motion that it was verified along.")
+    return low, high

@@ -1,0 +1,76 @@
+"""Simulations of designs as text: MuJoCo models and scripts, URDF, Modelica."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from service.simulation.course import block_of, course_of
+from service.simulation.linkage import linkage
+from service.simulation.mjcf import mjcf
+from service.simulation.model import Multibody
+from service.simulation.modelica import modelica
+from service.simulation.query import Form, NoSimulation, NotSimulated, SimulationQuery, unused
+from service.simulation.script import script
+from service.simulation.trains import TRAINS
+from service.simulation.urdf import urdf
+from service.simulation.weights import weights_of
+from synthesis.model.dynamics import METRES
+from synthesis.proof.rebuilt import rebuilt
+
+LEAST = 1e-14
+"""MuJoCo refuses bodies whose mass or inertia is below 1e-15."""
+
+WRITERS: dict[Form, Callable[[Multibody], str]] = {"mjcf": mjcf, "urdf": urdf, "mo": modelica, "sim.py": script}
+
+
+def simulation(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> str:
+    """A design as a simulation.
+
+    Parameters
+    ----------
+    design : a design of any kind
+    problem : StatedProblem
+        The problem that it answers.
+    title : str
+        Any text.
+    form : {"mjcf", "urdf", "mo", "sim.py"}
+    query : SimulationQuery
+
+    Raises
+    ------
+    NoSimulation
+        For a type of mechanism of which there are none.
+    NotSimulated
+        For a design that none can be made of.
+    """
+    return WRITERS[form](machine_of_design(design, problem, title, form, query))
+
+
+def machine_of_design(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
+    """What is simulated of a design; raises as :func:`simulation` does."""
+    kind = design.mechanism.type
+    if kind in TRAINS:
+        machine = TRAINS[kind](design, problem, title, query)
+    elif hasattr(design.mechanism, "skeleton"):
+        machine = _linkage(design, problem, title, form, query)
+    else:
+        raise NoSimulation(kind)
+    if form != "mo" and min(min(body.mass, body.inertia) for body in machine.bodies) < LEAST:
+        raise NotSimulated("The bodies of this design are too light for the simulation: below 1e-14 kg or kg m2.")
+    return machine
+
+
+def _linkage(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
+    unused(query, "a linkage", "gear")
+    mechanism = rebuilt(design.mechanism, from_skeleton=True)
+    if mechanism is None:
+        raise NotSimulated("No mechanism can be built from the dimensions of this design.")
+    if form == "mo" and mechanism.redundant:
+        raise NotSimulated(
+            "Its constraints are redundant: Modelica's equations would be singular. MuJoCo takes it as .mjcf."
+        )
+    inputs, speed = course_of(problem, design, mechanism, query)
+    block = block_of(problem, design, mechanism)
+    weights = weights_of(mechanism, block, getattr(problem, "layout", None), problem.length_unit, query)
+    return linkage(mechanism, inputs, speed, weights, METRES[problem.length_unit], title)

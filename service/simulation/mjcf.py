@@ -1,0 +1,174 @@
+"""The MuJoCo model of a machine (MJCF).
+
+The tree of bodies as it is; a closure is an equality ``connect``, a relation an equality of two joints, or of a fixed
+tendon where it has more terms. Constraints of MuJoCo are soft: their time constant is two steps, and a step a fixed
+share of the motion's time, so that joint angles hold whatever the speed. The drive is a *lead*: a body of so much
+inertia that nothing changes its speed, to whose joint the input's is coupled; the force of that constraint is the
+drive's. The keyframe ``start`` has all coordinates and rates at the start of the motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from service.simulation.model import GROUND, Body, Multibody, Vector
+from service.simulation.naming import attribute, comment, number, numbers
+
+STEPS = 20_160
+"""Steps of the motion."""
+
+STIFFNESS = 2.0
+"""Time constant of the constraints in steps: the least that MuJoCo takes."""
+
+IMPEDANCE = "0.9999 0.9999 0.001 0.5 2"
+
+LEAD = "lead"
+"""The body that leads the drive."""
+
+COLOURS = ("0.30 0.47 0.66 1", "0.95 0.56 0.17 1", "0.35 0.63 0.31 1", "0.88 0.34 0.35 1", "0.46 0.72 0.70 1")
+
+
+def mjcf(machine: Multibody) -> str:
+    """The model, as text."""
+    return "\n".join(_lines(machine)) + "\n"
+
+
+def _lines(machine: Multibody) -> Iterator[str]:
+    step = machine.duration / STEPS
+    yield '<?xml version="1.0" encoding="utf-8"?>'
+    yield f"<!-- {comment(machine.title)} -->"
+    for remark in machine.remarks:
+        yield f"<!-- {comment(remark)} -->"
+    yield f'<mujoco model="{attribute(machine.title)}">'
+    yield '  <compiler angle="radian" autolimits="true" inertiafromgeom="false" boundmass="0" boundinertia="0"/>'
+    yield (
+        f'  <option timestep="{number(step)}" gravity="{numbers(*machine.gravity)}" integrator="Euler" '
+        'solver="Newton" iterations="100" tolerance="1e-14" cone="pyramidal" jacobian="dense">'
+    )
+    yield '    <flag contact="disable" eulerdamp="disable"/>'
+    yield "  </option>"
+    stat = numbers(*_middle(machine))
+    yield f'  <statistic extent="{number(max(machine.size, 1e-6))}" center="{stat}"/>'
+    yield "  <default>"
+    yield '    <geom contype="0" conaffinity="0" group="1"/>'
+    yield f'    <equality solref="{number(STIFFNESS * step)} 1" solimp="{IMPEDANCE}"/>'
+    yield "  </default>"
+    yield "  <worldbody>"
+    yield '    <light pos="0 0 10" dir="0 0 -1" directional="true"/>'
+    children: dict[str, list[Body]] = {}
+    for body in machine.bodies:
+        children.setdefault(body.parent, []).append(body)
+    for body in children.get(GROUND, []):
+        yield from _body(machine, children, body, (0.0, 0.0, 0.0), "    ")
+    driven = machine.by_name[machine.driven]
+    lead = machine.lead
+    yield f'    <body name="{LEAD}">'
+    # A hinge knows its inertia alone, and a slide its mass: the other may be anything.
+    yield f'      <inertial pos="0 0 0" mass="{number(lead)}" diaginertia="{numbers(lead, lead, lead)}"/>'
+    yield f'      <joint name="{LEAD}" type="{driven.sort}" axis="{numbers(*driven.axis)}"/>'
+    yield "    </body>"
+    yield "  </worldbody>"
+    yield from _constraints(machine)
+    joints = [body.name for body in _depth_first(children, GROUND)]
+    yield "  <sensor>"
+    for body in machine.bodies:
+        yield f'    <jointpos name="{body.joint}" joint="{body.joint}"/>'
+    yield "  </sensor>"
+    yield "  <keyframe>"
+    zero = numbers(*(0.0 for _ in joints), 0.0)
+    rates = numbers(*(machine.rates[name] for name in joints), machine.speed)
+    yield f'    <key name="start" qpos="{zero}" qvel="{rates}"/>'
+    yield "  </keyframe>"
+    yield "</mujoco>"
+
+
+def _middle(machine: Multibody) -> Vector:
+    places = np.array([body.place for body in machine.bodies])
+    x, y, z = 0.5 * (places.min(axis=0) + places.max(axis=0))
+    return float(x), float(y), float(z)
+
+
+def _depth_first(children: dict[str, list[Body]], parent: str) -> Iterator[Body]:
+    for body in children.get(parent, []):
+        yield body
+        yield from _depth_first(children, body.name)
+
+
+def _body(
+    machine: Multibody, children: dict[str, list[Body]], body: Body, origin: Vector, indent: str
+) -> Iterator[str]:
+    yield f'{indent}<body name="{body.name}" pos="{numbers(*_from(origin, body.place))}">'
+    yield (
+        f'{indent}  <inertial pos="{numbers(*_from(body.place, body.centre))}" mass="{number(body.mass)}" '
+        f'diaginertia="{numbers(*inertias(body))}"/>'
+    )
+    yield f'{indent}  <joint name="{body.joint}" type="{body.sort}" axis="{numbers(*body.axis)}"/>'
+    colour = COLOURS[machine.bodies.index(body) % len(COLOURS)]
+    for geom in _geoms(body):
+        yield f'{indent}  <geom {geom} rgba="{colour}"/>'
+    for child in children.get(body.name, []):
+        yield from _body(machine, children, child, body.place, indent + "  ")
+    yield f"{indent}</body>"
+
+
+def inertias(body: Body) -> Vector:
+    """Moments about the three axes: of a flat plate in the plane of motion; about any other axis all the same."""
+    if body.axis[:2] == (0.0, 0.0) or body.sort == "slide":
+        return 0.5 * body.inertia, 0.5 * body.inertia, body.inertia
+    return body.inertia, body.inertia, body.inertia
+
+
+def _geoms(body: Body) -> Iterator[str]:
+    if body.radius > 0.0:
+        half = [0.5 * body.width * part for part in body.axis]
+        yield f'type="cylinder" fromto="{numbers(*(-h for h in half), *half)}" size="{number(body.radius)}"'
+        return
+    radius = 0.5 * body.width
+    if radius <= 0.0:
+        return
+    marks = [_from(body.place, mark) for mark in body.marks]
+    drawn = False
+    for n, one in enumerate(marks):
+        for other in marks[n + 1 :]:
+            if one != other:
+                yield f'type="capsule" fromto="{numbers(*one, *other)}" size="{number(0.35 * radius)}"'
+                drawn = True
+    if not drawn:
+        yield f'type="box" size="{numbers(radius, 0.7 * radius, 0.4 * radius)}"'
+
+
+def _constraints(machine: Multibody) -> Iterator[str]:
+    long = [relation for relation in machine.relations if len(relation.terms) != 2]
+    names = machine.by_name
+    if long:
+        yield "  <tendon>"
+        for relation in long:
+            yield f'    <fixed name="{relation.name}">'
+            for name, weight in relation.terms:
+                yield f'      <joint joint="{names[name].joint}" coef="{number(weight)}"/>'
+            yield "    </fixed>"
+        yield "  </tendon>"
+    yield "  <equality>"
+    for closure in machine.closures:
+        anchor = numbers(*_from(names[closure.first].place if closure.first != GROUND else (0, 0, 0), closure.place))
+        first = "world" if closure.first == GROUND else closure.first
+        second = "world" if closure.second == GROUND else closure.second
+        yield f'    <connect name="{closure.name}" body1="{first}" body2="{second}" anchor="{anchor}"/>'
+    for relation in machine.relations:
+        if relation in long:
+            yield f'    <tendon name="{relation.name}" tendon1="{relation.name}"/>'
+        else:
+            (one, weight), (other, by) = relation.terms
+            ratio = number(-by / weight)
+            yield (
+                f'    <joint name="{relation.name}" joint1="{names[one].joint}" joint2="{names[other].joint}" '
+                f'polycoef="0 {ratio} 0 0 0"/>'
+            )
+    yield f'    <joint name="drive" joint1="{names[machine.driven].joint}" joint2="{LEAD}" polycoef="0 1 0 0 0"/>'
+    yield "  </equality>"
+
+
+def _from(origin: Vector, place: Vector) -> Vector:
+    return place[0] - origin[0], place[1] - origin[1], place[2] - origin[2]

@@ -1,0 +1,375 @@
+"""Gear trains as shafts on hinges whose turns are tied by the teeth in mesh.
+
+What turns as one piece is one body: a shaft with its gears, a ring, a carrier; each copy of a planet hangs from its
+carrier. A mesh is a relation of its teeth; the motion that it is held against has the exact speeds of the analysis.
+Relations that follow from others, such as those of further planets, are left out, so that none is redundant.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from kinematics.gear.arrangements import ARRANGEMENTS
+from kinematics.gear.planetary import Mesh
+from kinematics.gear.teeth import Gear
+from service.render.gears.gearbox_layout import gearbox_layout, layshaft_layout
+from service.render.gears.planetary_layout import placed_planetary_gears
+from service.render.gears.train_layout import placed_gears
+from service.simulation.course import SAMPLES, USUAL_RPM
+from service.simulation.model import GROUND, Body, Multibody, Relation, Vector, weighty
+from service.simulation.naming import Names
+from service.simulation.query import NotSimulated, SimulationQuery, nonzero, unused
+from synthesis.kinds.gear_train.design import GearTrainMechanism
+from synthesis.kinds.gear_train.verification import driven_train
+from synthesis.kinds.planetary_train.design import PlanetaryMechanism
+from synthesis.model.bodies import DENSITIES
+from synthesis.model.dynamics import METRES
+
+FACE = 10.0
+"""Face width of gears that state none, modules."""
+
+RIM = 4.0
+"""Width of a ring beyond its pitch circle, modules."""
+
+ARM = 0.25
+"""Width of a carrier's plate and radius of its bosses, as shares of the distance of its pins."""
+
+Z: Vector = (0.0, 0.0, 1.0)
+
+
+@dataclass
+class _Shaft:
+    """What turns as one piece; lengths in metres."""
+
+    label: str
+    speed: float
+    place: complex
+    axis: Vector = Z
+    parent: str = GROUND
+    mass: float = 0.0
+    inertia: float = 0.0
+    radius: float = 0.0
+    width: float = 0.0
+    marks: list[complex] = field(default_factory=list)
+
+
+class _Train:
+    """Shafts and meshes of a train, by the names that they are given here."""
+
+    def __init__(self, unit: Any, query: SimulationQuery) -> None:
+        self.scale = METRES[unit]
+        self.shafts: dict[str, _Shaft] = {}
+        self.relations: list[tuple[tuple[str, float], ...]] = []
+        self.material = query.material or "steel"
+        self._face = None if query.thickness is None else self.scale * query.thickness
+        self.told: set[str] = set()
+
+    def shaft(self, name: str, speed: float, place: complex, axis: Vector = Z, parent: str = GROUND) -> str:
+        """Add a shaft, at a place in length units; ``speed`` is over the input's, against the parent."""
+        if name not in self.shafts:
+            self.shafts[name] = _Shaft(name, speed, self.scale * place, axis, parent)
+        return name
+
+    def gear(self, shaft: str, gear: Gear, face: float | None) -> None:
+        """Put a gear on a shaft: a disc of its pitch circle, or a ring beyond it."""
+        one = self.shafts[shaft]
+        width = self._face or FACE * self.scale * gear.module
+        if face is not None:
+            width = self.scale * face
+        inner, outer = 0.0, self.scale * gear.pitch_radius
+        if gear.internal:
+            inner, outer = outer, outer + RIM * self.scale * gear.module
+        mass = DENSITIES[self.material] * math.pi * (outer**2 - inner**2) * width
+        one.mass += mass
+        one.inertia += 0.5 * mass * (outer**2 + inner**2)
+        if outer > one.radius:
+            one.radius, one.width = outer, width
+
+    def carrier(self, shaft: str, pins: Iterable[complex]) -> None:
+        """Make a shaft a carrier of pins (length units) by bars of its material from the axis."""
+        one = self.shafts[shaft]
+        for pin in pins:
+            length = abs(self.scale * pin)
+            width = ARM * length
+            mass = DENSITIES[self.material] * length * width * width
+            one.mass += mass
+            one.inertia += mass * (length**2 / 3.0 + width**2 / 12.0)
+            one.marks.append(one.place + self.scale * pin)
+            one.width = one.width or width
+
+    def mesh(self, *terms: tuple[str, float]) -> None:
+        """Tie turns together: their weighted sum stays 0. What follows from others is left out."""
+        known = list(self.shafts)
+        kept: dict[str, float] = {}
+        for name, weight in terms:
+            if name != GROUND:
+                kept[name] = kept.get(name, 0.0) + weight
+        rows = [*self.relations, tuple((name, weight) for name, weight in kept.items() if weight != 0.0)]
+        matrix = np.array([[dict(row).get(name, 0.0) for name in known] for row in rows])
+        matrix /= np.abs(matrix).max(axis=1, keepdims=True)
+        if np.linalg.matrix_rank(matrix) == len(rows):
+            self.relations = rows
+
+    def machine(self, title: str, driven: str, query: SimulationQuery, remarks: Iterable[str] = ()) -> Multibody:
+        """The machine, its driven shaft turning once."""
+        unused(query, "gears", "width", "speed")
+        if driven not in self.shafts:
+            raise NotSimulated("The input of this train is held.")
+        speed = nonzero(query.speed_rpm, "speed_rpm") or USUAL_RPM
+        rate = speed * math.tau / 60.0
+        names = Names()
+        called = {name: names.of("gear", name) for name in self.shafts} | {GROUND: GROUND}
+        bodies, given = weighty(tuple(self._body(called, shaft) for shaft in self.shafts.values()), self._size())
+        times = np.linspace(0.0, math.tau / abs(rate), SAMPLES + 1)
+        share = self.shafts[driven].speed
+        rates = {called[name]: rate * shaft.speed / share for name, shaft in self.shafts.items()}
+        told = [
+            f"Gears are discs of {self.material} ({DENSITIES[self.material]:g} kg/m3) as large as their pitch circles.",
+            *remarks,
+            "There is no gravity.",
+        ]
+        if given:
+            told.append(f"Without mass or inertia of their own, and given a millionth: {', '.join(given)}.")
+        return Multibody(
+            title=title,
+            bodies=bodies,
+            closures=(),
+            relations=tuple(
+                Relation(f"mesh_{number}", tuple((called[name], weight) for name, weight in terms))
+                for number, terms in enumerate(self.relations, 1)
+            ),
+            gravity=(0.0, 0.0, 0.0),
+            driven=called[driven],
+            speed=rate,
+            times=times,
+            motion={name: own * times for name, own in rates.items()},
+            rates=rates,
+            size=self._size(),
+            remarks=tuple(told),
+        )
+
+    def _size(self) -> float:
+        places = [(shaft.place, shaft.radius) for shaft in self.shafts.values()]
+        return max(abs(a - b) + r + s for a, r in places for b, s in places)
+
+    def _body(self, called: Mapping[str, str], shaft: _Shaft) -> Body:
+        place = (shaft.place.real, shaft.place.imag, 0.0)
+        return Body(
+            name=called[shaft.label],
+            label=shaft.label,
+            parent=called[shaft.parent],
+            sort="hinge",
+            place=place,
+            axis=shaft.axis,
+            mass=shaft.mass,
+            centre=place,
+            inertia=shaft.inertia,
+            marks=(place, *((mark.real, mark.imag, 0.0) for mark in shaft.marks)),
+            radius=0.0 if shaft.marks else shaft.radius,
+            width=shaft.width,
+        )
+
+
+def gear_train(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
+    """An ordinary train."""
+    unused(query, "a gear train", "gear")
+    train = _Train(problem.length_unit, query)
+    first, _, remarks = _ordinary(train, design.mechanism, problem.reverted, "", 1.0, None)
+    return train.machine(title, first, query, remarks)
+
+
+def _ordinary(
+    train: _Train, mechanism: GearTrainMechanism, reverted: bool, prefix: str, share: float, before: str | None
+) -> tuple[str, str, list[str]]:
+    """Add the shafts of an ordinary train; the first, the last, and what is to be said of it."""
+    built = driven_train(mechanism)
+    placed = placed_gears(mechanism, reverted)
+    axes: list[Vector] = [(float(x), float(y), float(z)) for x, y, z in built.axes]
+    first = before or train.shaft(f"{prefix}shaft 1", share, placed[0].centre, axes[0])
+    aside = train.shafts[first].place / train.scale - placed[0].centre
+    at = first
+    for number, stage in enumerate(built.stages):
+        gears = [gear for gear in placed if gear.stage == number + 1]
+        face = mechanism.stages[number].face_width
+        train.gear(at, gears[0].gear, face)
+        for n, gear in enumerate(gears[1:], 1):
+            last = n == len(gears) - 1
+            label = f"{prefix}shaft {number + 2}" if last else f"{prefix}idler {number + 1}.{n}"
+            train.shaft(label, share * float(gear.speed), gear.centre + aside, axes[number + last])
+            train.gear(label, gear.gear, face)
+            # Teeth pass the mesh alike on both gears; the sense is that about the axes of the shafts.
+            train.mesh((label, float(gear.count)), (at, -float(stage.sense) * gears[n - 1].count))
+            at = label
+    crossed = not all(stage.is_parallel for stage in built.stages)
+    remarks = ["Shafts that are not parallel stand side by side, as in the drawing."] if crossed else []
+    return first, at, remarks
+
+
+def planetary_train(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
+    """A planetary train."""
+    unused(query, "a gear train", "gear")
+    train = _Train(problem.length_unit, query)
+    mechanism = design.mechanism
+    bodies = _planetary(train, mechanism, design.metrics, "", 1.0, 0j, {})
+    return train.machine(title, bodies[mechanism.input], query)
+
+
+def _planetary(
+    train: _Train, mechanism: PlanetaryMechanism, metrics: Any, prefix: str, share: float, axis: complex,
+    joined: Mapping[str, str],
+) -> dict[str, str]:  # fmt: skip
+    """Add the bodies of a planetary train about an axis; the names of its members, those ``joined`` as they are."""
+    arrangement, speeds = ARRANGEMENTS[mechanism.arrangement], metrics.speeds
+    placed = placed_planetary_gears(mechanism)
+    if not placed:
+        raise NotSimulated("The gears of this train have no places.")
+    bodies = {mechanism.fixed: GROUND, **joined}
+    for member in arrangement.members:
+        if member not in bodies:
+            bodies[member] = train.shaft(prefix + member, share * speeds[member], axis)
+    copies: dict[str, dict[int, str]] = {}
+    faces = mechanism.face_widths or []
+    for gear in placed:
+        carrier = arrangement.carriers.get(gear.body)
+        plane = gear.planes[0] - 1
+        face = faces[plane] if plane < len(faces) else None
+        name = bodies.get(gear.body, "")
+        if carrier is not None:
+            name = f"{prefix}{gear.body.replace('_', ' ')} {gear.copy + 1}"
+            centre = gear.centre
+            own: Vector = Z
+            if arrangement.bevel:
+                ahead = gear.centre / abs(gear.centre)
+                own = (ahead.real, ahead.imag, 0.0)
+            relative = speeds[gear.body] - speeds[carrier]
+            train.shaft(name, share * relative, axis + centre, own, bodies[carrier])
+            copies.setdefault(gear.body, {})[gear.copy] = name
+        if name != GROUND:
+            train.gear(name, gear.gear, face)
+    for carrier in dict.fromkeys(arrangement.carriers.values()):
+        if bodies[carrier] != GROUND:
+            carried = [gear.centre for gear in placed if arrangement.carriers.get(gear.body) == carrier]
+            train.carrier(bodies[carrier], dict.fromkeys(carried))
+    for copy in range(mechanism.planets):
+        for mesh in arrangement.train(mechanism.teeth).meshes:
+            _planet_mesh(train, mesh, bodies, copies, copy)
+    return bodies
+
+
+def _planet_mesh(
+    train: _Train, mesh: Mesh, bodies: Mapping[str, str], copies: Mapping[str, Mapping[int, str]], copy: int
+) -> None:
+    """A mesh of one copy of the planets: turns of planets are counted from their carrier."""
+    terms = []
+    for body, weight in ((mesh.first, mesh.first_teeth), (mesh.second, -mesh.sense * mesh.second_teeth)):
+        if body in copies:
+            terms.append((copies[body][copy], float(weight)))
+        else:
+            terms += [(bodies[body], float(weight)), (bodies[mesh.carrier], -float(weight))]
+    train.mesh(*terms)
+
+
+def train_series(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
+    """Trains in series: the output of each is the input of the next, about one axis."""
+    unused(query, "a gear train", "gear")
+    train = _Train(problem.length_unit, query)
+    mechanism, metrics = design.mechanism, design.metrics
+    remarks: list[str] = []
+    joined: str | None = None
+    first = ""
+    for number, unit in enumerate(mechanism.units):
+        prefix, share = f"unit {number + 1} ", metrics.speeds[number]
+        if isinstance(unit, PlanetaryMechanism):
+            held = {} if joined is None else {unit.input: joined}
+            axis = 0j if joined is None else train.shafts[joined].place / train.scale
+            bodies = _planetary(train, unit, metrics.units[number], prefix, share, axis, held)
+            start, joined = bodies[unit.input], bodies[unit.output]
+        else:
+            start, joined, told = _ordinary(train, unit, problem.units[number].reverted, prefix, share, joined)
+            remarks += told
+        first = first or start
+    return train.machine(title, first, query, dict.fromkeys(remarks))
+
+
+def gearbox(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
+    """A machine-tool gearbox with the pairs of one speed engaged."""
+    engaged_speed = _engaged(query, len(design.metrics.speeds))
+    found = design.metrics.speeds[engaged_speed - 1]
+    train = _Train(problem.length_unit, query)
+    layout, mechanism = gearbox_layout(design.mechanism), design.mechanism
+    shares = [1.0]
+    for stage, pair in zip(mechanism.stages, found.engaged, strict=True):
+        teeth = stage.pairs[pair]
+        shares.append(-shares[-1] * teeth.driver / teeth.driven)
+    for shaft, share in zip(layout.shafts, shares, strict=True):
+        train.shaft(shaft.name, share, shaft.centre)
+    for gear in layout.gears:
+        train.gear(layout.shafts[gear.shaft].name, gear.gear, None)
+    for number, pair in enumerate(found.engaged):
+        one, other = layout.shafts[number].name, layout.shafts[number + 1].name
+        teeth = mechanism.stages[number].pairs[pair]
+        train.mesh((other, float(teeth.driven)), (one, float(teeth.driver)))
+    if query.speed_rpm is None:
+        query = query.model_copy(update={"speed_rpm": mechanism.input_speed})
+    return train.machine(title, "input", query, [f"Engaged is speed {engaged_speed} of {len(design.metrics.speeds)}."])
+
+
+def layshaft_gearbox(design: Any, problem: Any, title: str, query: SimulationQuery) -> Multibody:
+    """A layshaft gearbox with one gear engaged; reverse comes after the last."""
+    mechanism = design.mechanism
+    count = len(mechanism.gears) + (mechanism.reverse is not None)
+    number = _engaged(query, count)
+    train = _Train(problem.length_unit, query)
+    layout, head = layshaft_layout(mechanism), mechanism.head
+    on_layshaft = -head.driver / head.driven
+    back = mechanism.reverse
+    pair = None if number > len(mechanism.gears) else mechanism.gears[number - 1]
+    if pair is None:
+        assert back is not None
+        output = on_layshaft * back.layshaft / back.mainshaft
+    elif pair.layshaft is None:
+        output = 1.0
+    else:
+        output = -on_layshaft * pair.layshaft / pair.mainshaft
+    shares = {"input": 1.0, "layshaft": on_layshaft, "main shaft": output}
+    if back is not None:
+        shares["idler"] = -on_layshaft * back.layshaft / back.idler
+    for shaft in layout.shafts:
+        train.shaft(shaft.name, shares[shaft.name], shaft.centre)
+    for gear in layout.gears:
+        train.gear(layout.shafts[gear.shaft].name, gear.gear, None)
+    train.mesh(("layshaft", float(head.driven)), ("input", float(head.driver)))
+    if back is not None:
+        train.mesh(("idler", float(back.idler)), ("layshaft", float(back.layshaft)))
+    if pair is None:
+        assert back is not None
+        train.mesh(("main shaft", float(back.mainshaft)), ("idler", float(back.idler)))
+    elif pair.layshaft is None:
+        train.mesh(("main shaft", 1.0), ("input", -1.0))
+    else:
+        train.mesh(("main shaft", float(pair.mainshaft)), ("layshaft", float(pair.layshaft)))
+    name = "reverse" if pair is None else f"gear {number}"
+    remarks = [f"Engaged is {name}; the gears that turn loose on the main shaft count as parts of it."]
+    return train.machine(title, "input", query, remarks)
+
+
+def _engaged(query: SimulationQuery, count: int) -> int:
+    number = 1 if query.gear is None else query.gear
+    if number > count:
+        raise NotSimulated(f"This gearbox has {count}, counted from 1.", "/query/gear")
+    return number
+
+
+TRAINS: dict[str, Callable[[Any, Any, str, SimulationQuery], Multibody]] = {
+    "gear_train": gear_train,
+    "planetary_train": planetary_train,
+    "train_series": train_series,
+    "gearbox": gearbox,
+    "layshaft_gearbox": layshaft_gearbox,
+}
+"""The makers of trains, by the type of the mechanism."""

@@ -1,0 +1,107 @@
+"""The URDF of a machine.
+
+URDF knows trees alone. The tree stands as it is; the pins that close its loops are in a block ``<gazebo>`` as joints of
+SDF, which Gazebo adds to the model, and in comments for everything else. Gears between two joints of the ground are
+``mimic``; other relations are comments.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from service.simulation.mjcf import inertias
+from service.simulation.model import GROUND, Body, Multibody, Vector
+from service.simulation.naming import attribute, comment, number, numbers
+
+
+def urdf(machine: Multibody) -> str:
+    """The model, as text."""
+    return "\n".join(_lines(machine)) + "\n"
+
+
+def _lines(machine: Multibody) -> Iterator[str]:
+    yield '<?xml version="1.0" encoding="utf-8"?>'
+    yield f"<!-- {comment(machine.title)} -->"
+    for remark in machine.remarks:
+        yield f"<!-- {comment(remark)} -->"
+    if machine.closures or machine.relations:
+        yield (
+            "<!-- A tree, as URDF has it: loops are closed in the gazebo block below, as joints of SDF. Programs that "
+            "do not read it have to add these pins themselves; the MJCF file of this design has all of them. -->"
+        )
+    yield f'<robot name="{attribute(machine.title)}">'
+    yield "  <!-- The ground has the design's coordinates in metres; at the start of the motion all joints are at 0. -->"
+    yield f'  <link name="{GROUND}"/>'
+    origins: dict[str, Vector] = {GROUND: (0.0, 0.0, 0.0)}
+    mimics, told = _mimics(machine)
+    for body in machine.bodies:
+        origins[body.name] = body.place
+        yield from _link(body)
+        yield from _joint(machine, body, origins[body.parent], mimics.get(body.name, ""))
+    for line in told:
+        yield f"  <!-- {comment(line)} -->"
+    for closure in machine.closures:
+        yield from _closure(closure.name, closure.first, closure.second, closure.place, origins)
+    yield "</robot>"
+
+
+def _link(body: Body) -> Iterator[str]:
+    xx, yy, zz = inertias(body)
+    yield f'  <link name="{body.name}">'
+    yield "    <inertial>"
+    yield f'      <origin xyz="{numbers(*_from(body.place, body.centre))}" rpy="0 0 0"/>'
+    yield f'      <mass value="{number(body.mass)}"/>'
+    yield (f'      <inertia ixx="{number(xx)}" ixy="0" ixz="0" iyy="{number(yy)}" iyz="0" izz="{number(zz)}"/>')
+    yield "    </inertial>"
+    yield "  </link>"
+
+
+def _joint(machine: Multibody, body: Body, origin: Vector, mimic: str) -> Iterator[str]:
+    yield f'  <joint name="{body.joint}" type="{"continuous" if body.sort == "hinge" else "prismatic"}">'
+    yield f'    <parent link="{body.parent}"/>'
+    yield f'    <child link="{body.name}"/>'
+    yield f'    <origin xyz="{numbers(*_from(origin, body.place))}" rpy="0 0 0"/>'
+    yield f'    <axis xyz="{numbers(*body.axis)}"/>'
+    if body.sort == "slide":
+        # A tenth of the machine's size more than the motion takes: a limit must not be in its way.
+        travelled = machine.motion[body.name]
+        room = 0.1 * machine.size
+        low, high = float(travelled.min()) - room, float(travelled.max()) + room
+        yield f'    <limit lower="{number(low)}" upper="{number(high)}" effort="1e9" velocity="1e9"/>'
+    if mimic:
+        yield f"    {mimic}"
+    yield "  </joint>"
+
+
+def _mimics(machine: Multibody) -> tuple[dict[str, str], list[str]]:
+    """What follows another joint, by its body, and the relations that no ``mimic`` can say."""
+    names, mimics, told = machine.by_name, {}, []
+    for relation in machine.relations:
+        terms = relation.terms
+        follower = next((name for name, _ in terms if name != machine.driven and name not in mimics), "")
+        if len(terms) == 2 and follower:
+            weight = dict(terms)[follower]
+            ((leader, by),) = ((name, value) for name, value in terms if name != follower)
+            mimics[follower] = f'<mimic joint="{names[leader].joint}" multiplier="{number(-by / weight)}" offset="0"/>'
+        else:
+            total = " + ".join(f"{number(weight)} {names[name].joint}" for name, weight in terms)
+            told.append(f"Gears in mesh: {total} = 0")
+    return mimics, told
+
+
+def _closure(name: str, first: str, second: str, place: Vector, origins: dict[str, Vector]) -> Iterator[str]:
+    own = numbers(*_from(origins[first], place))
+    other = numbers(*_from(origins[second], place))
+    yield f"  <!-- {name}: a pin at {own} of {first} and at {other} of {second} closes a loop. -->"
+    yield "  <gazebo>"
+    yield f'    <joint name="{name}" type="revolute">'
+    yield f"      <parent>{'world' if first == GROUND else first}</parent>"
+    yield f"      <child>{second}</child>"
+    yield f"      <pose>{other} 0 0 0</pose>"
+    yield "      <axis><xyz>0 0 1</xyz></axis>"
+    yield "    </joint>"
+    yield "  </gazebo>"
+
+
+def _from(origin: Vector, place: Vector) -> Vector:
+    return place[0] - origin[0], place[1] - origin[1], place[2] - origin[2]

@@ -1,0 +1,116 @@
+"""What the links of a design weigh: as its block ``dynamics`` says, or as plates of a material do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import combinations
+from typing import Any, NamedTuple
+
+from kinematics.dynamics import shapes
+from kinematics.dynamics.bodies import Body
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from service.simulation.query import NotSimulated, SimulationQuery
+from synthesis.mechanisms.link_bodies import BlockError
+from synthesis.mechanisms.machine import machine_of, weight_faults
+from synthesis.model.bodies import DENSITIES, Material
+from synthesis.model.dynamics import METRES, WeighedLinkage
+
+PIN_OF_SIZE, PIN_OF_LINK = 0.04, 0.35
+"""Diameter of the pins of a mechanism as a share of its size and of its shortest link at most, as parts have it."""
+
+WIDTH, THICKNESS = 2.5, 0.7
+"""Width and thickness of a plate in diameters of its pins, where neither is stated."""
+
+BLOCK_WIDTH, BLOCK_LENGTH = 0.6, 0.9
+"""Of a block in its slot, in widths of a link."""
+
+
+class Weights(NamedTuple):
+    """Bodies of the links in the reference, masses of pins, of each block by its mass and inertia; SI."""
+
+    links: Mapping[str, Body]
+    pins: Mapping[str, float]
+    block: tuple[float, float]
+    gravity: complex
+    width: float
+    remarks: tuple[str, ...]
+
+
+def weights_of(
+    mechanism: Mechanism, block: WeighedLinkage | None, layout: Any, unit: Any, query: SimulationQuery
+) -> Weights:
+    """What a linkage weighs.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        In length units.
+    block : WeighedLinkage or None
+        What the problem states of this mechanism's links.
+    layout : LayoutSizes or None
+        Of the problem.
+    unit : str
+        Of length.
+
+    Raises
+    ------
+    NotSimulated
+        For a block in units of its own, or one that does not fit the mechanism.
+    """
+    scale = METRES[unit]
+    width = query.width or (layout.link_width if layout is not None else _width(mechanism))
+    metres = scale * width
+    thickness = scale * (query.thickness or (layout.thickness if layout is not None else THICKNESS / WIDTH * width))
+    if block is not None and block.units != "si":
+        raise NotSimulated(
+            "The problem's `dynamics` is in units of its own, and simulations are in SI units; state it with "
+            "`units: si`."
+        )
+    remarks: list[str] = []
+    gravity, pins = 0j, {}
+    if block is not None:
+        faults = weight_faults(block, mechanism)
+        if faults:
+            raise NotSimulated(f"The problem's `dynamics` does not fit this design: {faults[0][0]}: {faults[0][1]}.")
+        try:
+            machine, _ = machine_of(block, mechanism, unit)
+        except BlockError as error:
+            raise NotSimulated(f"The problem's `dynamics` does not fit this design: {error}.") from None
+        gravity = machine.gravity
+        pins = {joint: float(mass) for joint, mass in machine.pin_masses.items()}
+        left = [name for name in ("loads", "springs", "friction") if getattr(block, name)]
+        if left:
+            remarks.append(f"Not in this file: {', '.join(left)} of the problem's dynamics.")
+        if any(float(part.mass) > 0.0 for part in machine.bodies.values()) or any(pins.values()):
+            remarks.append("Masses and gravity are those of the problem's dynamics.")
+            return Weights(machine.bodies, pins, (0.0, 0.0), gravity, metres, tuple(remarks))
+    material: Material = query.material or "steel"
+    density = DENSITIES[material]
+    plates = {
+        link: shapes.widened_hull([scale * complex(mechanism.joints[joint]) for joint in joints], metres).body(
+            density, thickness
+        )
+        for link, joints in mechanism.links.items()
+        if link != GROUND
+    }
+    half = 0.5 * (BLOCK_LENGTH - BLOCK_WIDTH) * metres
+    made = shapes.widened_hull([complex(-half), complex(half)], BLOCK_WIDTH * metres).body(density, thickness)
+    remarks.append(
+        f"Links are plates of {material} ({density:g} kg/m3), {metres:.6g} m wide with round ends and {thickness:.6g} "
+        "m thick; their holes are filled by pins."
+    )
+    remarks.append("Gravity is that of the problem's dynamics." if block is not None else "There is no gravity.")
+    return Weights(plates, pins, (float(made.mass), float(made.inertia)), gravity, metres, tuple(remarks))
+
+
+def _width(mechanism: Mechanism) -> float:
+    places = [complex(z) for z in mechanism.joints.values()]
+    size = max(abs(a - b) for a, b in combinations(places, 2))
+    shortest = min(
+        abs(complex(mechanism.joints[a] - mechanism.joints[b]))
+        for link, joints in mechanism.links.items()
+        if link != GROUND
+        for a, b in combinations(joints, 2)
+        if complex(mechanism.joints[a]) != complex(mechanism.joints[b])
+    )
+    return WIDTH * min(PIN_OF_SIZE * size, PIN_OF_LINK * shortest)
