@@ -14,7 +14,7 @@ from service.simulation.query import Form, NoSimulation, NotSimulated, Simulatio
 from service.simulation.script import script
 from service.simulation.trains import TRAINS
 from service.simulation.urdf import urdf
-from service.simulation.weights import weights_of
+from service.simulation.weights import SCALE, weights_of
 from synthesis.model.dynamics import METRES
 from synthesis.proof.rebuilt import rebuilt
 
@@ -56,8 +56,15 @@ def machine_of_design(design: Any, problem: Any, title: str, form: Form, query: 
         machine = _linkage(design, problem, title, form, query)
     else:
         raise NoSimulation(kind)
-    if form != "mo" and min(min(body.mass, body.inertia) for body in machine.bodies) < LEAST:
-        raise NotSimulated("The bodies of this design are too light for the simulation: below 1e-14 kg or kg m2.")
+    lightest = min(min(body.mass, body.inertia) for body in machine.bodies)
+    if form != "mo" and lightest < LEAST:
+        # The inertia of plates goes with the fifth power of their size.
+        larger = 1.1 * query.scale * (LEAST / lightest) ** 0.2
+        raise NotSimulated(
+            f"The bodies of this design are too light for MuJoCo, below {LEAST:g} kg or kg m2; plates of a `scale` of "
+            f"{larger:.2g} are not.",
+            SCALE,
+        )
     return machine
 
 
@@ -73,4 +80,4 @@ def _linkage(design: Any, problem: Any, title: str, form: Form, query: Simulatio
     inputs, speed = course_of(problem, design, mechanism, query)
     block = block_of(problem, design, mechanism)
     weights = weights_of(mechanism, block, getattr(problem, "layout", None), problem.length_unit, query)
-    return linkage(mechanism, inputs, speed, weights, METRES[problem.length_unit], title)
+    return linkage(mechanism, inputs, speed, weights, METRES[problem.length_unit] * query.scale, title)

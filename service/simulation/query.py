@@ -45,6 +45,11 @@ class SimulationQuery(BaseModel):
         description="Of an input that slides, length units a second; that of the problem's `dynamics`, or the whole "
         "way in a second, if left out. Not 0.",
     )
+    scale: Annotated[float, Field(gt=0.0, le=LARGEST)] = Field(
+        default=1.0,
+        description="How much larger than the design it is built, as for a mechanism of unit size; `width` and "
+        "`thickness` are as built. Not where the problem's `dynamics` says what links weigh.",
+    )
     gear: Annotated[int, Field(ge=1, le=100)] | None = Field(
         default=None,
         description="Of a gearbox: which of its speeds is engaged, from 1, in the order of `metrics.speeds`; of a "

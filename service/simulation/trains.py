@@ -62,12 +62,11 @@ class _Train:
     """Shafts and meshes of a train, by the names that they are given here."""
 
     def __init__(self, unit: Any, query: SimulationQuery) -> None:
-        self.scale = METRES[unit]
+        self.scale = METRES[unit] * query.scale
         self.shafts: dict[str, _Shaft] = {}
         self.relations: list[tuple[tuple[str, float], ...]] = []
         self.material = query.material or "steel"
-        self._face = None if query.thickness is None else self.scale * query.thickness
-        self.told: set[str] = set()
+        self._face = None if query.thickness is None else METRES[unit] * query.thickness
 
     def shaft(self, name: str, speed: float, place: complex, axis: Vector = Z, parent: str = GROUND) -> str:
         """Add a shaft, at a place in length units; ``speed`` is over the input's, against the parent."""

@@ -30,7 +30,7 @@ def _lines(machine: Multibody) -> Iterator[str]:
             "do not read it have to add these pins themselves; the MJCF file of this design has all of them. -->"
         )
     yield f'<robot name="{attribute(machine.title)}">'
-    yield "  <!-- The ground has the design's coordinates in metres; at the start of the motion all joints are at 0. -->"
+    yield "  <!-- The ground has the design's coordinates in metres; at the start of the motion joints are at 0. -->"
     yield f'  <link name="{GROUND}"/>'
     origins: dict[str, Vector] = {GROUND: (0.0, 0.0, 0.0)}
     mimics, told = _mimics(machine)

@@ -25,6 +25,9 @@ BLOCK_WIDTH, BLOCK_LENGTH = 0.6, 0.9
 """Of a block in its slot, in widths of a link."""
 
 
+SCALE = "/query/scale"
+
+
 class Weights(NamedTuple):
     """Bodies of the links in the reference, masses of pins, of each block by its mass and inertia; SI."""
 
@@ -57,10 +60,8 @@ def weights_of(
     NotSimulated
         For a block in units of its own, or one that does not fit the mechanism.
     """
-    scale = METRES[unit]
-    width = query.width or (layout.link_width if layout is not None else _width(mechanism))
-    metres = scale * width
-    thickness = scale * (query.thickness or (layout.thickness if layout is not None else THICKNESS / WIDTH * width))
+    scale = METRES[unit] * query.scale
+    width, thickness = _sizes(mechanism, layout, METRES[unit], query)
     if block is not None and block.units != "si":
         raise NotSimulated(
             "The problem's `dynamics` is in units of its own, and simulations are in SI units; state it with "
@@ -82,28 +83,39 @@ def weights_of(
         if left:
             remarks.append(f"Not in this file: {', '.join(left)} of the problem's dynamics.")
         if any(float(part.mass) > 0.0 for part in machine.bodies.values()) or any(pins.values()):
+            if query.scale != 1.0:
+                raise NotSimulated("The problem's `dynamics` says what links weigh; they are not built larger.", SCALE)
             remarks.append("Masses and gravity are those of the problem's dynamics.")
-            return Weights(machine.bodies, pins, (0.0, 0.0), gravity, metres, tuple(remarks))
+            return Weights(machine.bodies, pins, (0.0, 0.0), gravity, width, tuple(remarks))
     material: Material = query.material or "steel"
     density = DENSITIES[material]
     plates = {
-        link: shapes.widened_hull([scale * complex(mechanism.joints[joint]) for joint in joints], metres).body(
+        link: shapes.widened_hull([scale * complex(mechanism.joints[joint]) for joint in joints], width).body(
             density, thickness
         )
         for link, joints in mechanism.links.items()
         if link != GROUND
     }
-    half = 0.5 * (BLOCK_LENGTH - BLOCK_WIDTH) * metres
-    made = shapes.widened_hull([complex(-half), complex(half)], BLOCK_WIDTH * metres).body(density, thickness)
+    half = 0.5 * (BLOCK_LENGTH - BLOCK_WIDTH) * width
+    made = shapes.widened_hull([complex(-half), complex(half)], BLOCK_WIDTH * width).body(density, thickness)
     remarks.append(
-        f"Links are plates of {material} ({density:g} kg/m3), {metres:.6g} m wide with round ends and {thickness:.6g} "
+        f"Links are plates of {material} ({density:g} kg/m3), {width:.6g} m wide with round ends and {thickness:.6g} "
         "m thick; their holes are filled by pins."
     )
     remarks.append("Gravity is that of the problem's dynamics." if block is not None else "There is no gravity.")
-    return Weights(plates, pins, (float(made.mass), float(made.inertia)), gravity, metres, tuple(remarks))
+    return Weights(plates, pins, (float(made.mass), float(made.inertia)), gravity, width, tuple(remarks))
+
+
+def _sizes(mechanism: Mechanism, layout: Any, unit: float, query: SimulationQuery) -> tuple[float, float]:
+    """Width and thickness of links, metres."""
+    width = query.width or getattr(layout, "link_width", None)
+    thickness = query.thickness or getattr(layout, "thickness", None)
+    built = unit * width if width else unit * query.scale * _width(mechanism)
+    return built, unit * thickness if thickness else THICKNESS / WIDTH * built
 
 
 def _width(mechanism: Mechanism) -> float:
+    """As wide as parts make links where no sizes are stated, length units."""
     places = [complex(z) for z in mechanism.joints.values()]
     size = max(abs(a - b) for a, b in combinations(places, 2))
     shortest = min(
