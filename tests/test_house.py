@@ -80,9 +80,15 @@ def test_kinematics_knows_numpy_and_numba_only() -> None:
     assert foreign == set()
 
 
-def test_kinds_are_known_by_name_where_they_are_listed_drawn_and_built_only() -> None:
+def test_kinds_are_known_by_name_where_they_are_listed_drawn_built_and_simulated_only() -> None:
     """What goes over all kinds asks the registry."""
-    allowed = ("synthesis/kinds/", "synthesis/registry.py", "service/render/", "service/parts/")
+    allowed = (
+        "synthesis/kinds/",
+        "synthesis/registry.py",
+        "service/render/",
+        "service/parts/",
+        "service/simulation/trains.py",
+    )
     files = [path for package in ("synthesis", "service") for path in (ROOT / package).rglob("*.py")]
     knowing = {
         place
