@@ -6,8 +6,8 @@
 # make test-browser  drive the studio in the system's Chromium, check its types and its accessibility, and run a
 #              generated TypeScript client in node (Chromium and node are installed where they are missing and we are root)
 # make test-cad  the tests of solids, in an environment of their own with the extra cad (.venv-cad, a gigabyte)
-# make campaign  the checks with thousands of random problems: a tenth of them, or all with SHARE=1 (an independent
-#              multibody program is installed for them)
+# make campaign  the checks with thousands of random problems: a tenth of them, or all with SHARE=1 (independent
+#              multibody programs are installed for them)
 # make fuzz    hundreds of requests of each operation, and of absurd problems of each kind; half an hour
 # make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
 # make docs    the site, in var/site: all pages, the references, and a gallery of machines that are solved for it
@@ -231,7 +231,8 @@ $(NODE): tests/node/package.json tests/node/package-lock.json
 	@cd tests/node && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
 	@touch $@
 
-# An independent multibody program, which the campaign alone asks: no part of the service, and none of its lock.
+# Independent multibody programs and a parser of Modelica, which the campaign alone asks: no part of the service, and none
+# of its lock.
 $(MULTIBODY): tests/oracles/multibody.lock | $(STAMP)
 	@$(UV) pip install --python $(BIN)/python --quiet --no-deps --require-hashes -r tests/oracles/multibody.lock
 	@touch $@

@@ -11,7 +11,8 @@ from service.api.guard import GuardedRoute
 from service.api.schemas import ProblemKind, ProblemKinds
 from service.parts.extra import installed
 from service.parts.made import LINKAGE, MAKERS
-from service.render import forms
+from service.render import FILES, forms
+from service.simulation.query import FORMS, TRAINS
 from synthesis.registry import KINDS, example
 
 TAG = {"name": "problems", "description": "What can be asked."}
@@ -37,8 +38,14 @@ def _kinds() -> ProblemKinds:
                 description=inspect.getdoc(kind.problem) or "",
                 schema=kind.problem.model_json_schema(),
                 example=example(name),
-                files={type_: list(offered) for type_ in kind.mechanisms if (offered := forms(type_))},
+                files={type_: offered for type_ in kind.mechanisms if (offered := _files(type_))},
             )
             for name, kind in KINDS.items()
         ],
     )
+
+
+def _files(mechanism: str) -> list[str]:
+    """The forms of files of a type of mechanism: drawings, and simulations of linkages and gear trains."""
+    simulated = mechanism in TRAINS or mechanism not in FILES
+    return [*forms(mechanism), *(FORMS if simulated else ())]

@@ -107,7 +107,8 @@ class ProblemKind(BaseModel):
     )
     example: dict[str, Any] = Field(description="A problem of this kind that runs as it is.")
     files: dict[str, list[str]] = Field(
-        description="By the type of mechanism, the files that there are of its designs: svg, gif, dxf, csv."
+        description="By the type of mechanism, the files that there are of its designs: drawings (svg, gif, dxf), a "
+        "table (csv), and simulations (mjcf, urdf, mo, sim.py)."
     )
 
 

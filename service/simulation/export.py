@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from service.simulation.course import block_of, course_of
@@ -12,7 +15,7 @@ from service.simulation.model import Multibody
 from service.simulation.modelica import modelica
 from service.simulation.query import Form, NoSimulation, NotSimulated, SimulationQuery, unused
 from service.simulation.script import script
-from service.simulation.trains import TRAINS
+from service.simulation.trains import MAKERS
 from service.simulation.urdf import urdf
 from service.simulation.weights import SCALE, weights_of
 from synthesis.model.dynamics import METRES
@@ -49,23 +52,35 @@ def simulation(design: Any, problem: Any, title: str, form: Form, query: Simulat
 
 def machine_of_design(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
     """What is simulated of a design; raises as :func:`simulation` does."""
-    kind = design.mechanism.type
-    if kind in TRAINS:
-        machine = TRAINS[kind](design, problem, title, query)
-    elif hasattr(design.mechanism, "skeleton"):
-        machine = _linkage(design, problem, title, form, query)
-    else:
-        raise NoSimulation(kind)
-    lightest = min(min(body.mass, body.inertia) for body in machine.bodies)
-    if form != "mo" and lightest < LEAST:
+    machine = _made(design, problem, title, form, query)
+    lightest = _lightest(machine)
+    if lightest >= LEAST:
+        return machine
+    if query.scale is None:
         # The inertia of plates goes with the fifth power of their size.
-        larger = 1.1 * query.scale * (LEAST / lightest) ** 0.2
-        raise NotSimulated(
-            f"The bodies of this design are too light for MuJoCo, below {LEAST:g} kg or kg m2; plates of a `scale` of "
-            f"{larger:.2g} are not.",
-            SCALE,
-        )
-    return machine
+        larger = 10.0 ** math.ceil(0.2 * math.log10(LEAST / lightest))
+        with contextlib.suppress(NotSimulated):
+            machine = _made(design, problem, title, form, query.model_copy(update={"scale": larger}))
+            if _lightest(machine) >= LEAST:
+                told = f"Built {larger:g} times larger than the design, whose bodies would be too light for MuJoCo."
+                return replace(machine, remarks=(*machine.remarks, told))
+    raise NotSimulated(
+        f"The bodies of this design are too light for MuJoCo: {lightest:.2g} kg or kg m2, less than {LEAST:g}.",
+        "" if query.scale is None else SCALE,
+    )
+
+
+def _lightest(machine: Multibody) -> float:
+    return min(min(body.mass, body.inertia) for body in machine.bodies)
+
+
+def _made(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
+    kind = design.mechanism.type
+    if kind in MAKERS:
+        return MAKERS[kind](design, problem, title, query)
+    if not hasattr(design.mechanism, "skeleton"):
+        raise NoSimulation(kind)
+    return _linkage(design, problem, title, form, query)
 
 
 def _linkage(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
@@ -80,4 +95,4 @@ def _linkage(design: Any, problem: Any, title: str, form: Form, query: Simulatio
     inputs, speed = course_of(problem, design, mechanism, query)
     block = block_of(problem, design, mechanism)
     weights = weights_of(mechanism, block, getattr(problem, "layout", None), problem.length_unit, query)
-    return linkage(mechanism, inputs, speed, weights, METRES[problem.length_unit] * query.scale, title)
+    return linkage(mechanism, inputs, speed, weights, METRES[problem.length_unit] * query.built, title)

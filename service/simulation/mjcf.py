@@ -4,11 +4,13 @@ The tree of bodies as it is; a closure is an equality ``connect``, a relation an
 tendon where it has more terms. Constraints of MuJoCo are soft: their time constant is two steps, and a step a fixed
 share of the motion's time, so that joint angles hold whatever the speed. The drive is a *lead*: a body of so much
 inertia that nothing changes its speed, to whose joint the input's is coupled; the force of that constraint is the
-drive's. The keyframe ``start`` has all coordinates and rates at the start of the motion.
+drive's. The solver goes on as long as it gains anything (tolerance 0): beside the lead's inertia any gain looks small.
+The keyframe ``start`` has all coordinates and rates at the start of the motion.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -16,8 +18,15 @@ import numpy as np
 from service.simulation.model import GROUND, Body, Multibody, Vector
 from service.simulation.naming import attribute, comment, number, numbers
 
-STEPS = 20_160
-"""Steps of the motion."""
+STEPS = 56
+"""Steps between two samples of the motion, where gravity does not ask for more."""
+
+FALL = 0.05
+"""Longest step, in times √(size/g). A weight draws a constraint apart by what it would fall within its time constant,
+which is long in slow motions."""
+
+MOST_STEPS = 5600
+"""Steps between two samples at most."""
 
 STIFFNESS = 2.0
 """Time constant of the constraints in steps: the least that MuJoCo takes."""
@@ -35,8 +44,15 @@ def mjcf(machine: Multibody) -> str:
     return "\n".join(_lines(machine)) + "\n"
 
 
+def steps_between(machine: Multibody) -> int:
+    """Steps from one sample of the motion to the next."""
+    pull, step = math.hypot(*machine.gravity), float(machine.times[1]) / STEPS
+    longest = FALL * math.sqrt(machine.size / pull) if pull > 0.0 else math.inf
+    return min(math.ceil(STEPS * max(1.0, step / longest)), MOST_STEPS)
+
+
 def _lines(machine: Multibody) -> Iterator[str]:
-    step = machine.duration / STEPS
+    step = float(machine.times[1]) / steps_between(machine)
     yield '<?xml version="1.0" encoding="utf-8"?>'
     yield f"<!-- {comment(machine.title)} -->"
     for remark in machine.remarks:
@@ -45,7 +61,7 @@ def _lines(machine: Multibody) -> Iterator[str]:
     yield '  <compiler angle="radian" autolimits="true" inertiafromgeom="false" boundmass="0" boundinertia="0"/>'
     yield (
         f'  <option timestep="{number(step)}" gravity="{numbers(*machine.gravity)}" integrator="Euler" '
-        'solver="Newton" iterations="100" tolerance="1e-14" cone="pyramidal" jacobian="dense">'
+        'solver="Newton" iterations="100" tolerance="0" cone="pyramidal" jacobian="dense">'
     )
     yield '    <flag contact="disable" eulerdamp="disable"/>'
     yield "  </option>"

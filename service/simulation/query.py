@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -10,6 +10,11 @@ from synthesis.model.bodies import Material
 
 Form = Literal["mjcf", "urdf", "mo", "sim.py"]
 """What a design's simulation is had as."""
+
+FORMS: tuple[Form, ...] = get_args(Form)
+
+TRAINS = ("gear_train", "planetary_train", "train_series", "gearbox", "layshaft_gearbox")
+"""Types of mechanisms that are simulated beside the linkages."""
 
 LARGEST = 1e9
 
@@ -45,16 +50,22 @@ class SimulationQuery(BaseModel):
         description="Of an input that slides, length units a second; that of the problem's `dynamics`, or the whole "
         "way in a second, if left out. Not 0.",
     )
-    scale: Annotated[float, Field(gt=0.0, le=LARGEST)] = Field(
-        default=1.0,
-        description="How much larger than the design it is built, as for a mechanism of unit size; `width` and "
-        "`thickness` are as built. Not where the problem's `dynamics` says what links weigh.",
+    scale: Annotated[float, Field(gt=0.0, le=LARGEST)] | None = Field(
+        default=None,
+        description="How much larger than the design it is built; `width` and `thickness` are as built. 1 if left out, "
+        "or the power of ten that makes a mechanism of unit size as heavy as MuJoCo needs. Not where the problem's "
+        "`dynamics` says what links weigh.",
     )
     gear: Annotated[int, Field(ge=1, le=100)] | None = Field(
         default=None,
         description="Of a gearbox: which of its speeds is engaged, from 1, in the order of `metrics.speeds`; of a "
         "layshaft gearbox the gear, and reverse after the last. 1 if left out.",
     )
+
+    @property
+    def built(self) -> float:
+        """How much larger than the design it is built."""
+        return 1.0 if self.scale is None else self.scale
 
 
 class NotSimulated(ValueError):

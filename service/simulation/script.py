@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 
-from service.simulation.course import SAMPLES
-from service.simulation.mjcf import STEPS, mjcf
+from service.simulation.mjcf import mjcf, steps_between
 from service.simulation.model import Multibody
 from service.simulation.naming import one_line
 
@@ -106,7 +105,7 @@ def _head(machine: Multibody) -> Iterator[str]:
     yield f"DURATION = {machine.duration!r}"
     yield f"SIZE = {machine.size!r}"
     yield f'FORCE = "{"N m" if hinge else "N"}"'
-    yield f"STEPS = {STEPS // SAMPLES}  # between two rows of MOTION"
+    yield f"STEPS = {steps_between(machine)}  # between two rows of MOTION"
     yield "EQUALITY = mujoco.mjtConstraint.mjCNSTR_EQUALITY"
     yield f"JOINTS = {json.dumps([body.joint for body in machine.bodies])}"
     yield f"UNITS = {json.dumps([body.unit for body in machine.bodies])}"

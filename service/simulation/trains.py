@@ -23,7 +23,7 @@ from service.render.gears.train_layout import placed_gears
 from service.simulation.course import SAMPLES, USUAL_RPM
 from service.simulation.model import GROUND, Body, Multibody, Relation, Vector, weighty
 from service.simulation.naming import Names
-from service.simulation.query import NotSimulated, SimulationQuery, nonzero, unused
+from service.simulation.query import TRAINS, NotSimulated, SimulationQuery, nonzero, unused
 from synthesis.kinds.gear_train.design import GearTrainMechanism
 from synthesis.kinds.gear_train.verification import driven_train
 from synthesis.kinds.planetary_train.design import PlanetaryMechanism
@@ -62,7 +62,7 @@ class _Train:
     """Shafts and meshes of a train, by the names that they are given here."""
 
     def __init__(self, unit: Any, query: SimulationQuery) -> None:
-        self.scale = METRES[unit] * query.scale
+        self.scale = METRES[unit] * query.built
         self.shafts: dict[str, _Shaft] = {}
         self.relations: list[tuple[tuple[str, float], ...]] = []
         self.material = query.material or "steel"
@@ -364,11 +364,7 @@ def _engaged(query: SimulationQuery, count: int) -> int:
     return number
 
 
-TRAINS: dict[str, Callable[[Any, Any, str, SimulationQuery], Multibody]] = {
-    "gear_train": gear_train,
-    "planetary_train": planetary_train,
-    "train_series": train_series,
-    "gearbox": gearbox,
-    "layshaft_gearbox": layshaft_gearbox,
-}
+MAKERS: dict[str, Callable[[Any, Any, str, SimulationQuery], Multibody]] = dict(
+    zip(TRAINS, (gear_train, planetary_train, train_series, gearbox, layshaft_gearbox), strict=True)
+)
 """The makers of trains, by the type of the mechanism."""

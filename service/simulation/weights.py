@@ -60,7 +60,7 @@ def weights_of(
     NotSimulated
         For a block in units of its own, or one that does not fit the mechanism.
     """
-    scale = METRES[unit] * query.scale
+    scale = METRES[unit] * query.built
     width, thickness = _sizes(mechanism, layout, METRES[unit], query)
     if block is not None and block.units != "si":
         raise NotSimulated(
@@ -83,7 +83,7 @@ def weights_of(
         if left:
             remarks.append(f"Not in this file: {', '.join(left)} of the problem's dynamics.")
         if any(float(part.mass) > 0.0 for part in machine.bodies.values()) or any(pins.values()):
-            if query.scale != 1.0:
+            if query.built != 1.0:
                 raise NotSimulated("The problem's `dynamics` says what links weigh; they are not built larger.", SCALE)
             remarks.append("Masses and gravity are those of the problem's dynamics.")
             return Weights(machine.bodies, pins, (0.0, 0.0), gravity, width, tuple(remarks))
@@ -110,7 +110,7 @@ def _sizes(mechanism: Mechanism, layout: Any, unit: float, query: SimulationQuer
     """Width and thickness of links, metres."""
     width = query.width or getattr(layout, "link_width", None)
     thickness = query.thickness or getattr(layout, "thickness", None)
-    built = unit * width if width else unit * query.scale * _width(mechanism)
+    built = unit * width if width else unit * query.built * _width(mechanism)
     return built, unit * thickness if thickness else THICKNESS / WIDTH * built
 
 

@@ -3,6 +3,14 @@
 import * as api from "./api.js";
 import { el } from "./dom.js";
 
+/** @type {Record<string, [string, string]>} */
+const SIMULATIONS = {
+  "mjcf": ["MuJoCo", "A model of MuJoCo: loops closed, the input driven"],
+  "urdf": ["URDF", "A tree of links and joints for robotics programs, its loops beside it"],
+  "mo": ["Modelica", "A model of Modelica's MultiBody library"],
+  "sim.py": ["Simulation", "A Python script that runs the design in MuJoCo and compares it with the analysis"],
+};
+
 /** @param {api.Job} job @param {number} n @param {HTMLElement} drawing where the labelled drawing stands */
 export function downloads(job, n, drawing) {
   const place = el("div", { class: "row", id: "downloads", role: "group", "aria-label": "Files to take home" }, el("span", {}, "Take home"));
@@ -21,8 +29,12 @@ export function downloads(job, n, drawing) {
       pressed.disabled = false;
     } }, title);
   place.append(
-    ...api.files(job.kind, job.result.designs[n].mechanism.type).map((form) =>
-      button(form.toUpperCase(), `${job.kind}-${n}.${form}`, () => api.file(job.id, n, form))),
+    ...api.files(job.kind, job.result.designs[n].mechanism.type).map((form) => {
+      const [title, told] = SIMULATIONS[form] ?? [form.toUpperCase(), ""];
+      const made = button(title, `${job.kind}-${n}.${form}`, () => api.file(job.id, n, form));
+      if (told) made.title = told;
+      return made;
+    }),
     button("PNG", `${job.kind}-${n}.png`, async () => {
       const image = drawing.querySelector("img");
       if (!image) throw new Error("The drawing is not there yet.");

@@ -1,5 +1,6 @@
 """Each kind of problem: stated in the page, solved, seen to move, and every file of it opened with another program."""
 
+import ast
 import csv
 import io
 import json
@@ -15,7 +16,6 @@ from PIL import Image, ImageChops
 from playwright.sync_api import TimeoutError
 
 from service.parts.extra import installed
-from service.render import forms
 from synthesis.registry import KINDS
 from tests.browser.test_studio import drawn, stated
 from tests.service.running import until
@@ -150,7 +150,28 @@ def check_report(path, job):
     assert all(heading in text for heading in ("Answer", "Problem", "What was searched", "Checks", "Dimensions"))
 
 
+def check_mujoco(path, job):
+    root = ElementTree.parse(path).getroot()
+    assert root.tag == "mujoco"
+    assert root.find("equality/joint[@name='drive']") is not None
+
+
+def check_urdf(path, job):
+    assert ElementTree.parse(path).getroot().tag == "robot"
+
+
+def check_modelica(path, job):
+    assert path.read_text().rstrip().endswith("end Machine;")
+
+
+def check_script(path, job):
+    names = [node.targets[0].id for node in ast.parse(path.read_text()).body if isinstance(node, ast.Assign)]
+    assert {"MODEL", "MOTION"} <= set(names)
+
+
+SIMULATIONS = {"mjcf": "MuJoCo", "urdf": "URDF", "mo": "Modelica", "sim.py": "Simulation"}
 CHECKS = {
+    "MuJoCo": check_mujoco, "URDF": check_urdf, "Modelica": check_modelica, "Simulation": check_script,
     "SVG": check_svg, "DXF": check_dxf, "CSV": check_csv, "GIF": check_gif,
     "PNG": check_png, "JSON": check_json, "Report": check_report,
 }  # fmt: skip
@@ -181,7 +202,9 @@ def test_each_kind_is_stated_solved_moves_and_is_taken_home(studio, kind):
     design = json.loads(taken(page, "JSON").read_text())["result"]["designs"][0]
     offered = [one.inner_text() for one in page.locator("#downloads button").all()]
     parts = ["Parts", "Printed parts"] if "skeleton" in design["mechanism"] else []
-    files = [*(form.upper() for form in forms(design["mechanism"]["type"])), "PNG", "JSON"]
+    told = page.evaluate("() => fetch('/v1/problems').then((answer) => answer.json())")["problems"]
+    forms = next(one for one in told if one["kind"] == kind)["files"][design["mechanism"]["type"]]
+    files = [*(SIMULATIONS.get(form, form.upper()) for form in forms), "PNG", "JSON"]
     assert offered == [*files, *parts, "Report"]
     for name in [*files, "Report"]:
         CHECKS[name](taken(page, name), job)

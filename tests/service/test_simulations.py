@@ -32,6 +32,7 @@ PROBLEMS = {
     "weighed": {**MOTION, "dynamics": WEIGHED},
     "laid out": {**MOTION, "layout": {"link_width": 9.0, "pin_diameter": 3.0, "thickness": 2.0}},
     "consistent": {**MOTION, "dynamics": {**WEIGHED, "units": "consistent"}},
+    "unit size": example("quick_return"),
     "train": TRAIN,
     "planets": example("planetary_train"),
     "gearbox": example("gearbox"),
@@ -166,7 +167,7 @@ def test_the_block_dynamics_says_masses_gravity_and_speed(designs: Designs) -> N
     design, model = designs.design("weighed"), designs.model("weighed")
     option = model.find("option")
     assert numbers(option, "gravity") == pytest.approx([-9.0, 0.0, 0.0], abs=1e-12)
-    assert numbers(option, "timestep")[0] * 20160 == pytest.approx(
+    assert numbers(option, "timestep")[0] * 360 * 56 == pytest.approx(
         2.0 if design["metrics"]["full_rotation"] else abs(swept(design)) / math.pi, rel=1e-9
     )
     bodies = placed(model)
@@ -236,6 +237,22 @@ def test_a_speed_counts(designs: Designs, name: str, query: Any) -> None:
     # The lead's rate is the last.
     assert rates(designs.model(name))[-1] == pytest.approx(2.0 * math.pi)
     assert rates(designs.model(name, **query))[-1] == pytest.approx(query["speed_rpm"] * math.pi / 30.0)
+
+
+def test_a_mechanism_of_unit_size_is_built_larger_and_said_to_be(designs: Designs) -> None:
+    at = joints(designs.design("unit size"))
+    crank = next(
+        link for link in designs.design("unit size")["mechanism"]["skeleton"]["links"] if link["name"] == "input"
+    )
+    length = 1e-3 * abs(at[crank["joints"][0]] - at[crank["joints"][1]])
+    bodies = placed(designs.model("unit size"))
+    apart = abs(bodies["link_coupler"][0] - bodies["link_input"][0])
+    assert f"Built {apart / length:.6g} times larger" in designs.text("unit size", "mjcf")
+    assert apart / length >= 10.0
+    assert apart / length == pytest.approx(10.0 ** round(math.log10(apart / length)), rel=1e-9)
+    for _, body in bodies.values():
+        assert numbers(body.find("inertial"), "mass")[0] >= 1e-14
+        assert min(numbers(body.find("inertial"), "diaginertia")) >= 0.5e-14
 
 
 def test_gears_are_tied_by_their_teeth(designs: Designs) -> None:
