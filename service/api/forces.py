@@ -110,6 +110,7 @@ def _forces(job: JobRow, result: str, number: str, steps: int, body: Any) -> byt
     else:
         try:
             stated = DesignForcesRequest.model_validate(body).dynamics
+            stated.laid_out(problem.layout)
         except ValidationError as error:
             raise invalid_body(error, body) from None
     try:

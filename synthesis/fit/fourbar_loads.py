@@ -112,10 +112,10 @@ class _Teller:
             at = BODIES + n * LINK
             if body is not None:
                 self._body(body, joints, out[at : at + LINK])
-            elif stated.links is not None:
-                own = {joint: hole for joint, hole in stated.links.holes.items() if joint in joints}
+            elif stated.plate is not None:
+                own = {joint: hole for joint, hole in stated.plate.holes.items() if joint in joints}
                 plain = {"ends": "round", "overhang": 0.0} if len(joints) > 2 else {}
-                shape = stated.links.model_copy(update={"holes": own, **plain})
+                shape = stated.plate.model_copy(update={"holes": own, **plain})
                 self._shape(shape, joints, out[at : at + LINK])
         out[FORCES:] = [number for force in forces for number in force]
         return out
@@ -153,10 +153,10 @@ class _Teller:
 
     def _shape(self, shape: Shape, joints: Sequence[str], out: Real) -> None:
         for part in shape.parts:
-            self._part(part, shape.density, out)
+            self._part(part, shape.heaviness, out)
         if shape.thickness is None:
             return
-        density = shape.density * self.scale * shape.thickness
+        density = shape.heaviness * self.scale * shape.thickness
         if shape.polygon is not None:
             places = [self._told(corner) for corner in shape.polygon]
             frames = {plane for plane, _ in places}
@@ -165,7 +165,7 @@ class _Teller:
             section = polygon([place for _, place in places])
             if not section.area > 0.0:
                 raise _Untold
-            _add(out, frames.pop(), section.body(shape.density, self.scale * shape.thickness))
+            _add(out, frames.pop(), section.body(shape.heaviness, self.scale * shape.thickness))
         elif shape.ends == "square" and len(joints) > 2:
             raise _Untold
         if not shape.holes.keys() <= set(joints):

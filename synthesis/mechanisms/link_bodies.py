@@ -60,7 +60,7 @@ class LinkBodies:
 
     def _shaped(self, link: str, shape: Shape) -> Body:
         joints = {joint: self.scale * complex(self.joints[joint]) for joint in self.links[link]}
-        bodies = [self._part(link, part, shape.density) for part in shape.parts]
+        bodies = [self._part(link, part, shape.heaviness) for part in shape.parts]
         if shape.thickness is not None:
             if shape.polygon is not None:
                 plate = shapes.polygon([self.place(link, corner) for corner in shape.polygon])
@@ -78,7 +78,7 @@ class LinkBodies:
                 wider = 0.0 if shape.width is None else diameter - shape.width
                 if wider > 0.0 and self._at_edge(link, joint, wider):
                     raise BlockError(f"{path}/holes/{token(joint)}", "the hole is wider than the plate around it")
-            bodies.append(plate.body(shape.density, self.scale * shape.thickness))
+            bodies.append(plate.body(shape.heaviness, self.scale * shape.thickness))
         return joined(bodies)
 
     def _at_edge(self, link: str, joint: str, wider: float) -> bool:

@@ -73,7 +73,11 @@ class Shape(Statement):
     width all round.
     """
 
-    density: Annotated[PositiveNumber, DENSITY]
+    density: Annotated[PositiveNumber, DENSITY] | None = None
+    material: Material | None = Field(
+        default=None,
+        description="In place of a density, in SI units: steel 7850, aluminium 2700, PETG 1270 kg/m³.",
+    )
     thickness: PositiveLength | None = Field(default=None, description="Of the plate; not of parts.")
     width: PositiveLength | None = None
     ends: Literal["round", "square"] = Field(default="round", description="Of a bar of two joints.")
@@ -87,6 +91,17 @@ class Shape(Statement):
         default={}, max_length=20, description="Diameters by joint; each takes its disc away."
     )
     parts: list[Part] = Field(default=[], max_length=50, description="Prisms and cylinders, added to the plate.")
+
+    @property
+    def heaviness(self) -> float:
+        """Its density, or that of its material."""
+        return DENSITIES[self.material] if self.density is None and self.material is not None else self.density or 0.0
+
+    @model_validator(mode="after")
+    def _of_something(self) -> Self:
+        if (self.density is None) == (self.material is None):
+            raise ValueError("give a density or a material")
+        return self
 
     @model_validator(mode="after")
     def _one_plate(self) -> Self:
@@ -104,6 +119,30 @@ class Shape(Statement):
         if self.overhang > 0.0 and self.ends != "square":
             raise ValueError("an overhang is that of square ends")
         return self
+
+
+class LinkShape(Shape):
+    """The shape of all links, whose `width` and `thickness` are those of the problem's `layout` where left out."""
+
+    @model_validator(mode="after")
+    def _one_plate(self) -> Self:
+        """Known where the layout is: :meth:`filled`."""
+        return self
+
+    def filled(self, width: float | None, thickness: float | None) -> Shape:
+        """The shape with the sizes of a layout, where there is one.
+
+        Raises
+        ------
+        pydantic.ValidationError
+            Where it is none.
+        """
+        stated = self.model_dump(exclude_unset=True)
+        if self.polygon is None and not self.parts and width is not None:
+            stated.setdefault("width", width)
+        if ("width" in stated or "polygon" in stated) and thickness is not None:
+            stated.setdefault("thickness", thickness)
+        return Shape.model_validate(stated)
 
 
 class StatedBody(Statement):

@@ -6,10 +6,11 @@ import cmath
 import math
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
-from synthesis.model.bodies import Name, PointMass, Shape, StatedBody
+from synthesis.model.bodies import LinkShape, Name, PointMass, Shape, StatedBody
 from synthesis.model.dimension import GRAVITY, INERTIA, LENGTH, ROTATIONAL_SPEED
+from synthesis.model.layout import LayoutSizes
 from synthesis.model.loads import StatedLoad
 from synthesis.model.springs import StatedSpring
 from synthesis.model.statement import Degrees, NonNegative, Number, Point, PositiveLength, Statement
@@ -94,6 +95,13 @@ class WeighedLinkage(Statement):
         default=None, description="Point about which the shaking moment is taken; by default the first fixed pivot."
     )
 
+    @model_validator(mode="after")
+    def _materials(self) -> Self:
+        shapes = [*(stated.shape for stated in self.bodies.values()), getattr(self, "links", None)]
+        if self.units != "si" and any(shape is not None and shape.material is not None for shape in shapes):
+            raise ValueError("materials are in SI units; state densities in the consistent ones")
+        return self
+
     def scale(self, unit: LengthUnit) -> float:
         """The length unit in the unit of forces over stiffnesses: metres, or as it is."""
         return METRES[unit] if self.units == "si" else 1.0
@@ -129,13 +137,40 @@ class DynamicsBlock(WeighedLinkage):
 class DesignDynamics(WeighedLinkage):
     """What every design of a problem weighs and carries, and how fast it is driven."""
 
-    links: Shape | None = Field(
-        default=None, description="The shape of each moving link that `bodies` does not name, whatever it is called."
+    links: LinkShape | None = Field(
+        default=None,
+        description="The shape of each moving link that `bodies` does not name, whatever it is called. Width and "
+        "thickness are those of the problem's `layout` where they are left out.",
     )
     speed_rpm: Annotated[Number, ROTATIONAL_SPEED] | None = Field(default=None, description="Of an input that turns.")
     speed: Annotated[Number, LENGTH] | None = Field(
         default=None, description="Of an input that slides, length units a second."
     )
+
+    _plate: Shape | None = PrivateAttr(default=None)
+
+    @property
+    def plate(self) -> Shape | None:
+        """The shape of the links with its sizes; None where there is none, or these are not known."""
+        return self._plate
+
+    def laid_out(self, layout: LayoutSizes | None) -> str | None:
+        """Take sizes of links that are not stated from a layout; what is then missing, or None."""
+        if self.links is None:
+            return None
+        width, thickness = (None, None) if layout is None else (layout.link_width, layout.thickness)
+        try:
+            self._plate = self.links.filled(width, thickness)
+        except ValidationError as error:
+            reason = error.errors(include_url=False)[0]["msg"].removeprefix("Value error, ")
+            return reason if layout is not None else f"{reason}; or state a layout, whose plates they then are"
+        return None
+
+    @model_validator(mode="after")
+    def _known_alone(self) -> Self:
+        """Sizes that are all stated need no layout."""
+        self.laid_out(None)
+        return self
 
     @model_validator(mode="after")
     def _driven(self) -> Self:

@@ -172,6 +172,13 @@ class LinkageProblem(StatedProblem):
 
     _listed_later: bool = PrivateAttr(default=False)
 
+    @model_validator(mode="after")
+    def _links_of_the_layout(self) -> Self:
+        """Links whose sizes `dynamics` leaves out are the plates of the layout."""
+        if self.dynamics is not None:
+            self.dynamics.laid_out(self.layout)
+        return self
+
     @property
     def listed_later(self) -> bool:
         """Whether more designs are looked for than are listed: what is found is ordered anew, and then cut."""
@@ -217,6 +224,9 @@ class LinkageProblem(StatedProblem):
         listed = self.constraints.contradictions()
         if self.rank_by == "planes" and self.layout is None:
             listed.append(Contradiction("/rank_by", "planes are counted where a layout is stated; state one"))
+        missing = None if self.dynamics is None else self.dynamics.laid_out(self.layout)
+        if missing is not None:
+            listed.append(Contradiction("/dynamics/links", missing))
         listed += self._forces_without_loads()
         if self.rank_by == "yield" and (self.manufacture is None or not self.manufacture.sampled):
             detail = "a yield is sampled where manufacture has tolerances and a quality; state them"

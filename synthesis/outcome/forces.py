@@ -136,6 +136,8 @@ def run_of(stated: DesignDynamics, design: Any, steps: int = STEPS) -> Run:
     """
     from synthesis.mechanisms.machine import weight_faults
 
+    if stated.links is not None and stated.plate is None:
+        raise NoForces("/dynamics/links", stated.laid_out(None) or "")
     mechanism = rebuilt(design.mechanism, from_skeleton=True)
     if mechanism is None:
         raise NoForces("", "no mechanism can be built from the dimensions")
@@ -229,12 +231,12 @@ def _as_written(stated: DesignDynamics, path: str) -> str:
 
 def shaped(stated: DesignDynamics, links: Mapping[str, Sequence[str]]) -> DesignDynamics:
     """The block with the shape of all ``links`` given to those of a mechanism (by their joints) it does not name."""
-    if stated.links is None:
+    if stated.plate is None:
         return stated
     bodies = dict(stated.bodies)
     for link, joints in links.items():
         if link != GROUND and link not in bodies:
-            bodies[link] = StatedBody(shape=_shaped_for(stated.links, joints))
+            bodies[link] = StatedBody(shape=_shaped_for(stated.plate, joints))
     return stated.model_copy(update={"bodies": bodies, "links": None})
 
 
