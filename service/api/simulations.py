@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from fastapi import APIRouter, Query, Response
+from pydantic import BaseModel, ConfigDict, Field
 
 from service.api import errors
 from service.api.designs import OTHER_DRAWINGS, design_index, drawn, solved
@@ -104,6 +105,51 @@ def _offer(form: Form, export: Simulation) -> None:
 
 for _form, _export in SIMULATIONS.items():
     _offer(_form, _export)
+
+
+class PmksModel(BaseModel):
+    """A design for PMKS+, whose models are in their addresses."""
+
+    model_config = ConfigDict(title="Model of PMKS+")
+
+    url: str = Field(description="Where PMKS+ opens it. Nothing is sent there but by who follows it.")
+    scale: float = Field(description="PMKS+'s length units to one of the design; its first joint is at PMKS+'s origin.")
+
+
+@router.get(
+    "/{job_id}/designs/{number}/pmks",
+    operation_id="open_design_in_pmks",
+    summary="Open a design in PMKS+",
+    response_model=PmksModel,
+    responses=errors.responses(
+        e404="There is no such job or design, or it is no linkage.",
+        e409="The job has no result (yet), or PMKS+ cannot hold the design; `detail` says why.",
+        e503=OTHER_DRAWINGS,
+    ),
+)
+async def open_design_in_pmks(desk: Desk, board: Board, tenant: Tenant, job_id: str, number: str) -> PmksModel:
+    """The address at which PMKS+ (https://app.pmksplus.com) opens design ``number`` of the job's result.
+
+    PMKS+ has pins and slides and no gears. It keeps three decimals of lengths, so that the design is made larger or
+    smaller by a power of ten; masses are not passed on.
+    """
+    job, result = await solved(desk, tenant, job_id)
+    url, scale = await drawn(board, _pmks, job, result, number)
+    return PmksModel(url=url, scale=scale)
+
+
+def _pmks(job: JobRow, result: str, number: str) -> tuple[str, float]:
+    with IMPORTS:
+        from service.simulation.export import opened_in_pmks
+
+    designs = KINDS[job.kind].result.model_validate_json(result).designs
+    n = design_index(number, len(designs))
+    try:
+        return opened_in_pmks(designs[n], read(job.kind, job.problem))
+    except NoSimulation:
+        raise not_found("PMKS+ opens linkages only.") from None
+    except NotSimulated as error:
+        raise Refusal(409, "no-simulation", "No simulation", str(error)) from None
 
 
 def _simulation(job: JobRow, result: str, number: str, form: Form, query: SimulationQuery) -> tuple[int, str]:

@@ -8,11 +8,13 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from service.simulation.course import block_of, course_of
+from kinematics.linkage.planar.mechanism import Mechanism
+from service.simulation.course import USUAL_RPM, block_of, course_of
 from service.simulation.linkage import linkage
 from service.simulation.mjcf import mjcf
 from service.simulation.model import Multibody
 from service.simulation.modelica import modelica
+from service.simulation.pmks import Model, pmks
 from service.simulation.query import Form, NoSimulation, NotSimulated, SimulationQuery, unused
 from service.simulation.script import script
 from service.simulation.trains import MAKERS
@@ -70,6 +72,21 @@ def machine_of_design(design: Any, problem: Any, title: str, form: Form, query: 
     )
 
 
+def opened_in_pmks(design: Any, problem: Any) -> Model:
+    """The address at which PMKS+ opens a design; raises as :func:`simulation` does."""
+    if not hasattr(design.mechanism, "skeleton"):
+        raise NoSimulation(design.mechanism.type)
+    stated = getattr(getattr(problem, "dynamics", None), "speed_rpm", None)
+    return pmks(_rebuilt(design), stated or USUAL_RPM)
+
+
+def _rebuilt(design: Any) -> Mechanism:
+    mechanism = rebuilt(design.mechanism, from_skeleton=True)
+    if mechanism is None:
+        raise NotSimulated("No mechanism can be built from the dimensions of this design.")
+    return mechanism
+
+
 def _lightest(machine: Multibody) -> float:
     return min(min(body.mass, body.inertia) for body in machine.bodies)
 
@@ -85,9 +102,7 @@ def _made(design: Any, problem: Any, title: str, form: Form, query: SimulationQu
 
 def _linkage(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
     unused(query, "a linkage", "gear")
-    mechanism = rebuilt(design.mechanism, from_skeleton=True)
-    if mechanism is None:
-        raise NotSimulated("No mechanism can be built from the dimensions of this design.")
+    mechanism = _rebuilt(design)
     if form == "mo" and mechanism.redundant:
         raise NotSimulated(
             "Its constraints are redundant: Modelica's equations would be singular. MuJoCo takes it as .mjcf."

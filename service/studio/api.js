@@ -135,6 +135,11 @@ export function files(kind, mechanism) {
   return told.find((one) => one.kind === kind)?.files[mechanism] ?? [];
 }
 
+/** Where PMKS+ opens a design of linkages. @param {string} id @param {number} design @returns {Promise<string>} */
+export async function pmks(id, design) {
+  return (await (await ask(`/v1/jobs/${encodeURIComponent(id)}/designs/${design}/pmks`)).json()).url;
+}
+
 /** Where the report of a job is, with its assemblies. @param {string} id */
 export function reportAt(id) {
   return `/v1/jobs/${encodeURIComponent(id)}/report.html?assemblies=true`;

@@ -21,7 +21,8 @@ export function downloads(job, n, drawing) {
       pressed.disabled = true;
       fault.replaceChildren();
       try {
-        saved(await make(), name);
+        const done = await make();
+        if (done) saved(done, name);
       } catch (error) {
         const reasons = error instanceof api.Refused ? error.errors.map((one) => one.detail) : [];
         fault.replaceChildren(reasons.join(" ") || /** @type {Error} */ (error).message);
@@ -45,6 +46,7 @@ export function downloads(job, n, drawing) {
       return URL.createObjectURL(new Blob(parts, { type: "application/json" }));
     }),
     ...(api.hasParts(job.result.designs[n].mechanism) ? made(job, n, button) : []),
+    ...(job.result.designs[n].mechanism.skeleton ? [opened(job, n, button)] : []),
     button("Report", `${job.kind}.html`, () => api.report(job.id)),
     // A link cannot send a key.
     api.key() ? "" : el("a", { href: api.reportAt(job.id), target: "_blank", rel: "noopener" }, "Open the report"),
@@ -67,6 +69,21 @@ function made(job, n, button) {
     printed.title = "This service makes no solids: it runs without its extra cad (MECHSYNTH_CAD=1 make serve)";
   }
   return [cut, printed];
+}
+
+/**
+ * What opens a linkage in PMKS+.
+ * @param {api.Job} job @param {number} n
+ * @param {(title: string, name: string, make: () => Promise<string>) => HTMLElement} button
+ */
+function opened(job, n, button) {
+  const there = button("PMKS+", "", async () => {
+    const url = await api.pmks(job.id, n);
+    el("a", { href: url, target: "_blank", rel: "noopener noreferrer" }).click();
+    return "";
+  });
+  there.title = "Open it in PMKS+, whose models are in their addresses: app.pmksplus.com is told all of it";
+  return there;
 }
 
 /** The drawing in pixels, two for one of its own. @param {HTMLImageElement} image @returns {Promise<string>} */

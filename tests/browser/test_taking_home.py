@@ -201,7 +201,7 @@ def test_each_kind_is_stated_solved_moves_and_is_taken_home(studio, kind):
     job = page.url.rpartition("=")[2]
     design = json.loads(taken(page, "JSON").read_text())["result"]["designs"][0]
     offered = [one.inner_text() for one in page.locator("#downloads button").all()]
-    parts = ["Parts", "Printed parts"] if "skeleton" in design["mechanism"] else []
+    parts = ["Parts", "Printed parts", "PMKS+"] if "skeleton" in design["mechanism"] else []
     told = page.evaluate("() => fetch('/v1/problems').then((answer) => answer.json())")["problems"]
     forms = next(one for one in told if one["kind"] == kind)["files"][design["mechanism"]["type"]]
     files = [*(SIMULATIONS.get(form, form.upper()) for form in forms), "PNG", "JSON"]

@@ -1,0 +1,183 @@
+"""The address at which PMKS+ opens a linkage: its model is in the query.
+
+PMKS+ (Worcester Polytechnic Institute, https://app.pmksplus.com) writes a model as sections with points between them:
+settings, joints, links, forces, what is selected, and a character that tells the length of it all; so its public sources
+have it, ``src/app/services/transcoding`` of ``PMKS-Web/PMKSWeb``. Numbers are whole thousandths to the base of 64, with
+a 0 before negative ones; flags are bits of such a number.
+
+A joint is ``flags id,name,x,y,angle``, and where it slides in a link the link and two of its joints follow. A sliding
+joint stands beside the pin that it carries, and a link of the sort P, the block, joins both. A link is
+``Y sort id,name,mass,inertia,x,y,colour,joints,,``, its mass and inertia 1 as PMKS+ has them of new links.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism, Slide
+from service.simulation.query import NotSimulated
+
+ADDRESS = "https://app.pmksplus.com/?"
+
+DIGITS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_-"
+LENGTHS = DIGITS[:62]
+"""Of which the last character is one: the length of the model to the base of 62."""
+
+LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+
+THOUSANDTHS = 1000
+LARGE = 50.0
+"""Size of a model is up to this and a tenth of it at least, in PMKS+'s units: thousandths are then 1/5000 or less."""
+
+SLOT = 2.5
+"""Half of what is shown of a slot, in PMKS+'s units."""
+
+SLIDES, INPUT, GROUNDED, CURVE = 1, 2, 4, 16
+
+COLOURS = ("c5cae9", "303e9f", "0d125a", "B2DFDB", "26A69A", "00695C")
+
+CLOCKWISE = 1
+SETTINGS = 8 + 16 + 128
+"""Bits of the settings: grids and forces, as in PMKS+'s own templates."""
+
+
+class Model(NamedTuple):
+    """An address, and how many of PMKS+'s length units are one of the design's."""
+
+    url: str
+    scale: float
+
+
+def pmks(mechanism: Mechanism, rpm: float) -> Model:
+    """A linkage as PMKS+ opens it.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+    rpm : float
+        Speed of an input that turns.
+
+    Raises
+    ------
+    NotSimulated
+        For gears, for more joints than there are letters, and for links whose names would be the same.
+    """
+    if mechanism.gears:
+        raise NotSimulated("PMKS+ has no gears.")
+    return _Writer(mechanism).model(rpm)
+
+
+def integer(value: int) -> str:
+    """A whole number to the base of 64.
+
+    Examples
+    --------
+    >>> integer(1000), integer(-3000), integer(0)
+    ('Fe', '0ku', '0')
+    """
+    digits, rest = "", abs(value)
+    while rest or not digits:
+        rest, digit = divmod(rest, 64)
+        digits = DIGITS[digit] + digits
+    return f"0{digits}" if value < 0 else digits
+
+
+def decimal(value: float) -> str:
+    """A number in thousandths."""
+    return integer(round(value * THOUSANDTHS))
+
+
+class _Writer:
+    def __init__(self, mechanism: Mechanism) -> None:
+        self._mechanism = mechanism
+        places = [complex(z) for z in mechanism.joints.values()]
+        size = max(abs(a - b) for a in places for b in places)
+        self._scale = 10.0 ** math.floor(math.log10(LARGE / size))
+        self._origin = places[0]
+        letters = iter(LETTERS)
+        self._letters = {}
+        for joint in mechanism.joints:
+            self._letters[joint] = self._next(letters)
+        self._free = letters
+        self._records: list[str] = []
+        self._links: list[str] = []
+        self._members = {link: [self._letters[j] for j in listed] for link, listed in mechanism.links.items()}
+
+    def model(self, rpm: float) -> Model:
+        mechanism = self._mechanism
+        ground = set(mechanism.links[GROUND])
+        driven = None if mechanism.driven_by_slide else mechanism.input_pivot
+        for joint, z in mechanism.joints.items():
+            flags = CURVE + GROUNDED * (joint in ground) + INPUT * (joint == driven)
+            self._joint(flags, self._letters[joint], complex(z), 0.0)
+        slots = [self._slot(slide) for slide in mechanism.slides]
+        blocks = [self._block(slide, ends) for slide, ends in zip(mechanism.slides, slots, strict=True)]
+        for link in mechanism.links:
+            if link != GROUND:
+                self._link("R", self._members[link], self._middle(link))
+        for pin, slot in blocks:
+            self._link("P", (pin, slot), None)
+        if len({link.split(",")[0][2:] for link in self._links}) < len(self._links):
+            raise NotSimulated("Two links of this design have the same joints; PMKS+ names links by them.")
+        speed = min(max(round(abs(rpm)), 1), 1000)
+        flags = integer(SETTINGS + CLOCKWISE * (rpm < 0.0)).rjust(2, "0")
+        head = (flags, f"{decimal(0.7)},{decimal(5.0)}", f"{integer(speed)},0", "1011")
+        joints, links = "".join(f"{one}." for one in self._records), "".join(f"{one}." for one in self._links)
+        text = ".".join((*head, joints, links, "", "N_"))
+        return Model(f"{ADDRESS}{text}{LENGTHS[len(text) % 62]}", self._scale)
+
+    @staticmethod
+    def _next(letters: Iterator[str]) -> str:
+        for letter in letters:
+            return letter
+        raise NotSimulated(f"This design has more joints than {len(LETTERS)}, by whose letters PMKS+ names them.")
+
+    def _xy(self, place: complex) -> str:
+        moved = self._scale * (place - self._origin)
+        return f"{decimal(moved.real)},{decimal(moved.imag)}"
+
+    def _joint(self, flags: int, letter: str, place: complex, angle: float, slot: str = "") -> None:
+        self._records.append(f"{integer(flags)}{letter},{letter},{self._xy(place)},{decimal(angle)}{slot}")
+
+    def _slot(self, slide: Slide) -> tuple[str, ...]:
+        """Add the points through which a slot of a moving link lies, as joints of the link; none on the ground."""
+        if slide.link == GROUND:
+            return ()
+        ends = []
+        for step in (-SLOT, SLOT):
+            end = self._next(self._free)
+            away = step / self._scale * cmath.exp(1j * float(slide.angle))
+            self._joint(0, end, complex(self._mechanism.joints[slide.joint]) + away, 0.0)
+            self._members[slide.link].append(end)
+            ends.append(end)
+        return tuple(ends)
+
+    def _block(self, slide: Slide, ends: tuple[str, ...]) -> tuple[str, str]:
+        """Add a block on a slide; the pin that it carries, and its own joint."""
+        pin, place = self._letters[slide.joint], complex(self._mechanism.joints[slide.joint])
+        own = self._next(self._free)
+        drives = self._mechanism.driven_by_slide and self._mechanism.input == slide.joint and slide.link == GROUND
+        flags = SLIDES + CURVE + INPUT * drives
+        if slide.link == GROUND:
+            turned = (float(slide.angle) + math.pi / 2.0) % math.pi - math.pi / 2.0
+            self._joint(flags + GROUNDED, own, place, turned)
+        else:
+            slot = ",".join(("".join(self._members[slide.link]), *ends))
+            self._joint(flags, own, place, 0.0, f",{slot}")
+        return pin, own
+
+    def _middle(self, link: str) -> complex:
+        places = [complex(self._mechanism.joints[joint]) for joint in self._mechanism.links[link]]
+        return sum(places) / len(places)
+
+    def _link(self, sort: str, members: Sequence[str], centre: complex | None) -> None:
+        name = "".join(members)
+        mass = decimal(1.0)
+        if centre is None:
+            what = f"{mass},0,0,0,"
+        else:
+            what = f"{mass},{mass},{self._xy(centre)},{COLOURS[len(self._links) % len(COLOURS)]}"
+        self._links.append(f"Y{sort}{name},{name},{what},{','.join(members)},,")
