@@ -1,9 +1,9 @@
 """The address at which PMKS+ opens a linkage: its model is in the query.
 
 PMKS+ (Worcester Polytechnic Institute, https://app.pmksplus.com) writes a model as sections with points between them:
-settings, joints, links, forces, what is selected, and a character that tells the length of it all; so its public sources
-have it, ``src/app/services/transcoding`` of ``PMKS-Web/PMKSWeb``. Numbers are whole thousandths to the base of 64, with
-a 0 before negative ones; flags are bits of such a number.
+settings, joints, links, forces, what is selected, and a character that tells the length of it all; so its public
+sources have it, ``src/app/services/transcoding`` of ``PMKS-Web/PMKSWeb``. Numbers are whole thousandths to the base of
+64, with a 0 before negative ones; flags are bits of such a number.
 
 A joint is ``flags id,name,x,y,angle``, and where it slides in a link the link and two of its joints follow. A sliding
 joint stands beside the pin that it carries, and a link of the sort P, the block, joins both. A link is
@@ -123,8 +123,8 @@ class _Writer:
         if len({link.split(",")[0][2:] for link in self._links}) < len(self._links):
             raise NotSimulated("Two links of this design have the same joints; PMKS+ names links by them.")
         speed = min(max(round(abs(rpm)), 1), 1000)
-        flags = integer(SETTINGS + CLOCKWISE * (rpm < 0.0)).rjust(2, "0")
-        head = (flags, f"{decimal(0.7)},{decimal(5.0)}", f"{integer(speed)},0", "1011")
+        settings = integer(SETTINGS + CLOCKWISE * (rpm < 0.0)).rjust(2, "0")
+        head = (settings, f"{decimal(0.7)},{decimal(5.0)}", f"{integer(speed)},0", "1011")
         joints, links = "".join(f"{one}." for one in self._records), "".join(f"{one}." for one in self._links)
         text = ".".join((*head, joints, links, "", "N_"))
         return Model(f"{ADDRESS}{text}{LENGTHS[len(text) % 62]}", self._scale)

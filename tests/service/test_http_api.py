@@ -132,7 +132,8 @@ def test_the_openapi_document_is_complete(openapi):
     assert sorted(ids) == [
         "analyse", "analyse_forces_of_design", "animate_design", "create_batch", "create_job", "delete_batch",
         "delete_job", "draw_design", "export_assembly_glb", "export_assembly_step", "export_design_csv",
-        "export_design_dxf", "follow_batch", "follow_job", "forces_of_design", "get_batch", "get_job", "healthz",
+        "export_design_dxf", "export_design_mjcf",
+            "export_design_modelica", "export_design_script", "export_design_urdf", "follow_batch", "follow_job", "forces_of_design", "get_batch", "get_job", "healthz",
         "import_curves", "list_batches", "list_jobs", "list_problems", "make_parts", "metrics", "move_design",
         "read_outlines", "readyz", "report_job", "tabulate_batch", "tabulate_batch_as_csv", "weigh_up_batch",
     ]  # fmt: skip
