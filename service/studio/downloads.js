@@ -32,9 +32,9 @@ export function downloads(job, n, drawing) {
   place.append(
     ...api.files(job.kind, job.result.designs[n].mechanism.type).map((form) => {
       const [title, told] = SIMULATIONS[form] ?? [form.toUpperCase(), ""];
-      const made = button(title, `${job.kind}-${n}.${form}`, () => api.file(job.id, n, form));
-      if (told) made.title = told;
-      return made;
+      const one = button(title, `${job.kind}-${n}.${form}`, () => api.file(job.id, n, form));
+      if (told) one.title = told;
+      return one;
     }),
     button("PNG", `${job.kind}-${n}.png`, async () => {
       const image = drawing.querySelector("img");

@@ -169,6 +169,7 @@ def check_script(path, job):
     assert {"MODEL", "MOTION"} <= set(names)
 
 
+BUILT = ("cam", "gear_train", "geneva_external", "geneva_internal", "planetary_train", "ratchet")
 SIMULATIONS = {"mjcf": "MuJoCo", "urdf": "URDF", "mo": "Modelica", "sim.py": "Simulation"}
 CHECKS = {
     "MuJoCo": check_mujoco, "URDF": check_urdf, "Modelica": check_modelica, "Simulation": check_script,
@@ -201,7 +202,9 @@ def test_each_kind_is_stated_solved_moves_and_is_taken_home(studio, kind):
     job = page.url.rpartition("=")[2]
     design = json.loads(taken(page, "JSON").read_text())["result"]["designs"][0]
     offered = [one.inner_text() for one in page.locator("#downloads button").all()]
-    parts = ["Parts", "Printed parts", "PMKS+"] if "skeleton" in design["mechanism"] else []
+    linkage = "skeleton" in design["mechanism"]
+    parts = ["Parts", "Printed parts"] if linkage or design["mechanism"]["type"] in BUILT else []
+    parts += ["PMKS+"] if linkage else []
     told = page.evaluate("() => fetch('/v1/problems').then((answer) => answer.json())")["problems"]
     forms = next(one for one in told if one["kind"] == kind)["files"][design["mechanism"]["type"]]
     files = [*(SIMULATIONS.get(form, form.upper()) for form in forms), "PNG", "JSON"]

@@ -131,11 +131,13 @@ def test_the_openapi_document_is_complete(openapi):
     ids = [op["operationId"] for _, _, op in operations(openapi)]
     assert sorted(ids) == [
         "analyse", "analyse_forces_of_design", "animate_design", "create_batch", "create_job", "delete_batch",
-        "delete_job", "draw_design", "export_assembly_glb", "export_assembly_step", "export_design_csv",
-        "export_design_dxf", "export_design_mjcf",
-            "export_design_modelica", "export_design_script", "export_design_urdf", "follow_batch", "follow_job", "forces_of_design", "get_batch", "get_job", "healthz",
+        "delete_job", "draw_assembly", "draw_design", "export_assembly_glb", "export_assembly_step",
+        "export_design_csv", "export_design_dxf", "export_design_mjcf", "export_design_modelica",
+        "export_design_script", "export_design_urdf", "export_part_3mf", "export_part_dxf", "export_part_step",
+        "export_part_stl", "follow_batch", "follow_job", "forces_of_design", "get_batch", "get_job", "healthz",
         "import_curves", "list_batches", "list_jobs", "list_problems", "make_parts", "metrics", "move_design",
-        "read_outlines", "readyz", "report_job", "tabulate_batch", "tabulate_batch_as_csv", "weigh_up_batch",
+        "open_design_in_pmks", "read_outlines", "readyz", "report_job", "tabulate_batch",
+        "tabulate_batch_as_csv", "view_assembly", "weigh_up_batch",
     ]  # fmt: skip
     schemas = openapi["components"]["schemas"]
     assert not {"HTTPValidationError", "ValidationError"} & set(schemas)
