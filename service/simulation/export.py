@@ -8,6 +8,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
+from kinematics.errors import MechanismError
 from kinematics.linkage.planar.mechanism import Mechanism
 from service.simulation.course import USUAL_RPM, block_of, course_of
 from service.simulation.linkage import linkage
@@ -20,11 +23,15 @@ from service.simulation.script import script
 from service.simulation.trains import MAKERS
 from service.simulation.urdf import urdf
 from service.simulation.weights import SCALE, weights_of
+from synthesis.mechanisms import MechanismError as StatedMechanismError
 from synthesis.model.dynamics import METRES
 from synthesis.proof.rebuilt import rebuilt
 
 LEAST = 1e-14
 """MuJoCo refuses bodies whose mass or inertia is below 1e-15."""
+
+MOST = 1e9
+"""MuJoCo begins anew where a coordinate, its rate or its acceleration is above 1e10."""
 
 WRITERS: dict[Form, Callable[[Multibody], str]] = {"mjcf": mjcf, "urdf": urdf, "mo": modelica, "sim.py": script}
 
@@ -55,6 +62,8 @@ def simulation(design: Any, problem: Any, title: str, form: Form, query: Simulat
 def machine_of_design(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:
     """What is simulated of a design; raises as :func:`simulation` does."""
     machine = _made(design, problem, title, form, query)
+    if form in ("mjcf", "sim.py") and _greatest(machine) > MOST:
+        raise NotSimulated("Coordinates of this design, or their rates, are beyond what MuJoCo takes, above 1e9.")
     lightest = _lightest(machine)
     if lightest >= LEAST:
         return machine
@@ -87,6 +96,15 @@ def _rebuilt(design: Any) -> Mechanism:
     return mechanism
 
 
+def _greatest(machine: Multibody) -> float:
+    """The greatest joint coordinate, rate or acceleration in the motion, about."""
+    step, found = float(machine.times[1]), 0.0
+    for course in machine.motion.values():
+        rate = np.gradient(course, step)
+        found = max(found, *(float(np.abs(jet).max()) for jet in (course, rate, np.gradient(rate, step))))
+    return found
+
+
 def _lightest(machine: Multibody) -> float:
     return min(min(body.mass, body.inertia) for body in machine.bodies)
 
@@ -97,7 +115,10 @@ def _made(design: Any, problem: Any, title: str, form: Form, query: SimulationQu
         return MAKERS[kind](design, problem, title, query)
     if not hasattr(design.mechanism, "skeleton"):
         raise NoSimulation(kind)
-    return _linkage(design, problem, title, form, query)
+    try:
+        return _linkage(design, problem, title, form, query)
+    except (MechanismError, StatedMechanismError) as error:
+        raise NotSimulated(f"This design cannot be driven: {error}.") from None
 
 
 def _linkage(design: Any, problem: Any, title: str, form: Form, query: SimulationQuery) -> Multibody:

@@ -56,7 +56,7 @@ def _lines(machine: Multibody) -> Iterator[str]:
         yield f"  {CLOSURE} {closure.name}(n = {{0, 0, 1}});"
         for end, name in (("a", closure.first), ("b", closure.second)):
             arm = _from(_place(machine, name), closure.place)
-            yield f"  {ARM} {closure.name}_{end}(r = {_vector(arm)}, animation = false);"
+            yield f"  {ARM} {closure.name}__{end}(r = {_vector(arm)}, animation = false);"
     for relation in machine.relations:
         weights = ", ".join(number(weight) for _, weight in relation.terms)
         yield f"  Relation {relation.name}(weights = {{{weights}}});"
@@ -65,14 +65,14 @@ def _lines(machine: Multibody) -> Iterator[str]:
     yield f"  Modelica.Blocks.Sources.Constant speed(k = {number(machine.speed)});"
     yield "equation"
     for body in machine.bodies:
-        yield f"  connect({_frame(machine, body.parent)}, {body.name}_at.frame_a);"
-        yield f"  connect({body.name}_at.frame_b, {body.joint}.frame_a);"
+        yield f"  connect({_frame(machine, body.parent)}, {body.name}__at.frame_a);"
+        yield f"  connect({body.name}__at.frame_b, {body.joint}.frame_a);"
         yield f"  connect({body.joint}.frame_b, {body.name}.frame_a);"
     for closure in machine.closures:
-        yield f"  connect({_frame(machine, closure.first)}, {closure.name}_a.frame_a);"
-        yield f"  connect({closure.name}_a.frame_b, {closure.name}.frame_a);"
-        yield f"  connect({_frame(machine, closure.second)}, {closure.name}_b.frame_a);"
-        yield f"  connect({closure.name}_b.frame_b, {closure.name}.frame_b);"
+        yield f"  connect({_frame(machine, closure.first)}, {closure.name}__a.frame_a);"
+        yield f"  connect({closure.name}__a.frame_b, {closure.name}.frame_a);"
+        yield f"  connect({_frame(machine, closure.second)}, {closure.name}__b.frame_a);"
+        yield f"  connect({closure.name}__b.frame_b, {closure.name}.frame_b);"
     for relation in machine.relations:
         for place, (name, _) in enumerate(relation.terms, 1):
             yield f"  connect({relation.name}.flange[{place}], {machine.by_name[name].joint}.axis);"
@@ -92,7 +92,7 @@ def _flanged(machine: Multibody) -> set[str]:
 
 def _body(machine: Multibody, body: Body, flange: bool) -> Iterator[str]:
     arm = _from(_place(machine, body.parent), body.place)
-    yield f"  {ARM} {body.name}_at(r = {_vector(arm)}, animation = false);"
+    yield f"  {ARM} {body.name}__at(r = {_vector(arm)}, animation = false);"
     sort, coordinate, rate = (REVOLUTE, "phi", "w") if body.sort == "hinge" else (PRISMATIC, "s", "v")
     start = f"{coordinate}(start = 0), {rate}(start = {number(machine.rates[body.name])})"
     yield f"  {sort} {body.joint}(n = {_vector(body.axis)}, useAxisFlange = {'true' if flange else 'false'}, {start});"

@@ -15,6 +15,8 @@ class Names:
     def of(self, sort: str, label: str) -> str:
         """A name for what a design calls ``label``; it begins with its sort, so that it is no word of a language.
 
+        No two underscores stand together in it, so that what is added after two of them is no other name.
+
         Examples
         --------
         >>> names = Names()

@@ -396,6 +396,7 @@ def test_whatever_a_label_holds_every_file_is_well_formed(designs: Designs) -> N
         ("train", {"width": 5.0}, "/query/width"),
         ("train", {"gear": 1}, "/query/gear"),
         ("train", {"speed_rpm": 0.0}, "/query/speed_rpm"),
+        ("fourbar", {"speed_rpm": 1e7}, "/query/speed_rpm"),
     ],
 )
 def test_a_field_that_does_not_fit_is_told(designs: Designs, name: str, query: Any, path: str) -> None:
@@ -406,6 +407,9 @@ def test_a_field_that_does_not_fit_is_told(designs: Designs, name: str, query: A
 def test_what_has_no_simulation_is_told(designs: Designs) -> None:
     for form in FORMS:
         assert designs.fault("engine", form, 404)["type"] == "/problems/not-found"
+    told = designs.fault("fourbar", "sim.py", 409, speed_rpm=1e6)
+    assert "beyond what MuJoCo takes" in told["detail"]
+    assert designs.asked("fourbar", "urdf", speed_rpm=1e6).status_code == 200
     told = designs.fault("consistent", "mjcf", 409)
     assert told["type"] == "/problems/no-simulation"
     assert "units" in told["detail"]
