@@ -101,6 +101,8 @@ class _Tree:
         mechanism, remarks, gravity = self._mechanism, weights.remarks, weights.gravity
         self._grow()
         self._load(weights)
+        if not any(float(part.mass) > 0.0 for node in self._nodes.values() for part in node.weights):
+            raise NotSimulated("Nothing that moves has any mass.")
         size = self._scale * float(mechanism.frame[1])
         bodies, given = weighty(tuple(self._body(self._nodes[name], weights.width) for name in self._order), size)
         if given:

@@ -16,7 +16,8 @@ FORMS: tuple[Form, ...] = get_args(Form)
 TRAINS = ("gear_train", "planetary_train", "train_series", "gearbox", "layshaft_gearbox")
 """Types of mechanisms that are simulated beside the linkages."""
 
-LARGEST = 1e9
+SMALLEST, LARGEST = 1e-9, 1e9
+"""Of what a query may state."""
 
 
 class SimulationQuery(BaseModel):
@@ -31,12 +32,12 @@ class SimulationQuery(BaseModel):
         default=None,
         description="Of all bodies; steel if left out. What links weigh by the problem's `dynamics` comes before it.",
     )
-    width: Annotated[float, Field(gt=0.0, le=LARGEST)] | None = Field(
+    width: Annotated[float, Field(ge=SMALLEST, le=LARGEST)] | None = Field(
         default=None,
         description="Of links between their round ends; that of the problem's `layout`, or a tenth of the mechanism's "
         "size, and not more than 0.875 of its shortest link, if left out.",
     )
-    thickness: Annotated[float, Field(gt=0.0, le=LARGEST)] | None = Field(
+    thickness: Annotated[float, Field(ge=SMALLEST, le=LARGEST)] | None = Field(
         default=None,
         description="Of links; that of the `layout` or 0.28 of their width if left out. Of gears: the face width of "
         "those that have none of their own; 10 modules if left out.",
@@ -50,7 +51,7 @@ class SimulationQuery(BaseModel):
         description="Of an input that slides, length units a second; that of the problem's `dynamics`, or the whole "
         "way in a second, if left out. Not 0.",
     )
-    scale: Annotated[float, Field(gt=0.0, le=LARGEST)] | None = Field(
+    scale: Annotated[float, Field(ge=SMALLEST, le=LARGEST)] | None = Field(
         default=None,
         description="How much larger than the design it is built; `width` and `thickness` are as built. 1 if left out, "
         "or the power of ten that makes a mechanism of unit size as heavy as MuJoCo needs. Not where the problem's "
@@ -100,8 +101,8 @@ def nonzero(value: float | None, field: str) -> float | None:
     Raises
     ------
     NotSimulated
-        Where it is 0.
+        Where it is 0, or next to it.
     """
-    if value == 0.0:
-        raise NotSimulated("A simulation needs a speed that is not 0.", f"/query/{field}")
+    if value is not None and abs(value) < SMALLEST:
+        raise NotSimulated(f"A simulation needs a speed of {SMALLEST:g} at least, either way.", f"/query/{field}")
     return value
