@@ -41,7 +41,7 @@ class Design:
 
     def __repr__(self) -> str:
         verdict = "passed" if self.passed else "FAILED"
-        return f"<Design {self.number}: {self.mechanism.type}, {len(self.verification.checks)} checks {verdict}>"
+        return f"<Design {self.number + 1}: {self.mechanism.type}, {len(self.verification.checks)} checks {verdict}>"
 
     @property
     def mechanism(self) -> Any:
@@ -192,7 +192,7 @@ class Result:
     def _repr_html_(self) -> str:
         names = [name for name, value in _metrics(self.designs) if isinstance(value, int | float | str)][:COLUMNS]
         rows = (
-            (str(d.number), str(d.mechanism.type), *(_shown(getattr(d.metrics, name, None)) for name in names))
+            (str(d.number + 1), str(d.mechanism.type), *(_shown(getattr(d.metrics, name, None)) for name in names))
             for d in self.designs
         )
         table = _table(("", "mechanism", *(name.replace("_", " ") for name in names)), rows) if self.designs else ""

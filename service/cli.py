@@ -194,7 +194,7 @@ def _parser() -> argparse.ArgumentParser:
     draw = commands.add_parser("draw", help="draw a design of an answer; this needs no service")
     draw.add_argument("answer", help="what mechsynth solve --json has printed; - for standard input")
     draw.add_argument("-o", "--output", type=Path, required=True, help="the file: .svg, .gif, .dxf or .csv")
-    draw.add_argument("--design", type=int, default=0, help="which of the designs, counted from 0")
+    draw.add_argument("--design", type=int, default=1, help="which of the designs, counted from 1")
     openapi = commands.add_parser("openapi", help="write the OpenAPI document to a file")
     openapi.add_argument("output", type=Path)
     keys = commands.add_parser("keys", help="make, list and revoke API keys").add_subparsers(

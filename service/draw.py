@@ -15,7 +15,7 @@ from synthesis.registry import KINDS
 
 
 def draw(source: str, number: int, output: Path) -> None:
-    """Write a design of an answer to a file, in the form that its ending names.
+    """Write a design of an answer, counted from 1, to a file, in the form that its ending names.
 
     Raises
     ------
@@ -28,11 +28,11 @@ def draw(source: str, number: int, output: Path) -> None:
         raise SourceError(f"{output}: the name must end in one of: {', '.join(f'.{form}' for form in known)}")
     job = object_of(source)
     problem, designs = _answer(source, job)
-    if not 0 <= number < len(designs):
-        raise SourceError(f"{source} has {len(designs)} designs, counted from 0; {number} is none of them")
-    design = designs[number]
+    if not 1 <= number <= len(designs):
+        raise SourceError(f"{source} has {len(designs)} designs, counted from 1; {number} is none of them")
+    design = designs[number - 1]
     try:
-        content = exported(design, problem, heading(problem, job.get("label"), number), form)
+        content = exported(design, problem, heading(problem, job.get("label"), number - 1), form)
     except NoSuchExport:
         there = ", ".join(forms(design.mechanism.type))
         raise SourceError(f"there is no .{form} of a {design.mechanism.type}; there are: {there}") from None

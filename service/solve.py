@@ -113,13 +113,13 @@ def report(job: service.Job, console: Console) -> None:
     console.print(_compared(designs))
     best = designs[0]
     unit = job.problem.get("length_unit")
-    table = Table(title=f"Design 0: {best['mechanism']['type']}" + (f", lengths in {unit}" if unit else ""))
+    table = Table(title=f"Design 1: {best['mechanism']['type']}" + (f", lengths in {unit}" if unit else ""))
     table.add_column("dimension")
     table.add_column("value", justify="right")
     for name, value in _flat(best["mechanism"]):
         table.add_row(name, value)
     console.print(table)
-    table = Table(title="Checks of design 0, when driven")
+    table = Table(title="Checks of design 1, when driven")
     for name in ("check", "", "value", "limit"):
         table.add_column(name, justify="right" if name in ("value", "limit") else "left")
     units = _units(job.problem)
@@ -156,7 +156,7 @@ def _compared(designs: Sequence[Mapping[str, Any]]) -> Table:
         table.add_column(name.replace("_", " "), justify="right")
     for n, design in enumerate(designs):
         metrics = design["metrics"]
-        table.add_row(str(n), design["mechanism"]["type"], *(_shown(metrics.get(name)) for name in columns))
+        table.add_row(str(n + 1), design["mechanism"]["type"], *(_shown(metrics.get(name)) for name in columns))
     return table
 
 
@@ -189,5 +189,5 @@ def _drawings(client: service.Client, job: service.Job, folder: Path, forms: Seq
             content = client.file(job.id, n, form)
             if content is not None:
                 folder.mkdir(parents=True, exist_ok=True)
-                (folder / f"design-{n}.{form}").write_bytes(content)
-                yield f"design-{n}.{form}"
+                (folder / f"design-{n + 1}.{form}").write_bytes(content)
+                yield f"design-{n + 1}.{form}"

@@ -220,8 +220,8 @@ async def _answered(
             content = await _made(request, bench, filled, order, file)
         else:
             content = await _made(request, bench, part_filled, order, part, file)
-    names = {"zip": f"{job.kind}-{n}-parts.zip", "svg": f"{job.kind}-{n}-assembly.svg"}
-    name = names.get(file, f"{job.kind}-{n}.{file}") if part is None else f"{part}.{file}"
+    names = {"zip": f"{job.kind}-{n + 1}-parts.zip", "svg": f"{job.kind}-{n + 1}-assembly.svg"}
+    name = names.get(file, f"{job.kind}-{n + 1}.{file}") if part is None else f"{part}.{file}"
     headers = {"X-Content-Type-Options": "nosniff"}
     if file == "svg":
         headers |= HEADERS["svg"]

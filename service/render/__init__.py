@@ -172,8 +172,16 @@ _MAKERS: dict[Form, Callable[[], dict[str, Maker]]] = {
 
 
 def heading(problem: Any, label: str | None, number: int) -> str:
-    """What stands above the drawings of a design: the label of its job, or the name of its kind, and its number."""
-    return f"{label or problem.model_config.get('title') or problem.kind}, design {number}"
+    """What stands above the drawings of a design: the label of its job, or the name of its kind, and its number.
+
+    Parameters
+    ----------
+    problem : pydantic model
+    label : str or None
+    number : int
+        The design's index in the answer; people count designs from 1.
+    """
+    return f"{label or problem.model_config.get('title') or problem.kind}, design {number + 1}"
 
 
 def forms(mechanism: str) -> list[Form]:

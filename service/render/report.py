@@ -115,7 +115,7 @@ def report(
     title = problem.model_config.get("title") or words(occasion.kind)
     heading = clean(occasion.label or "") or title
     sheets = [
-        _sheet(design, n, problem, f"{heading}, design {n}", units, assemblies.get(n, ""))
+        _sheet(design, n, problem, f"{heading}, design {n + 1}", units, assemblies.get(n, ""))
         for n, design in enumerate(result.designs[:most])
     ]
     return _PAGE.render(
@@ -157,7 +157,7 @@ def _sheet(
         name = "Skeleton: the joints at the first target" if beside else "Dimensions: the joints as stated"
         parts.append((f"{name}, and the rigid links", outline(skeleton, units)))
     return Sheet(
-        number=n,
+        number=n + 1,
         name=words(design.mechanism.type),
         passed=design.verification.passed,
         drawing=_inside(drawing) if drawing else "",
@@ -193,7 +193,7 @@ def _ranking(result: Result[Any], units: dict[Dimension, str]) -> list[tuple[int
         for name, value in plain[:RANKED_BY]:
             measured = measures.get(name)
             figures.append((words(name), with_unit(written(value), "" if measured is None else units[measured])))
-        ranked.append((n, words(design.mechanism.type), design.verification.passed, figures))
+        ranked.append((n + 1, words(design.mechanism.type), design.verification.passed, figures))
     return ranked
 
 

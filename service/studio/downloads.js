@@ -32,11 +32,11 @@ export function downloads(job, n, drawing) {
   place.append(
     ...api.files(job.kind, job.result.designs[n].mechanism.type).map((form) => {
       const [title, told] = SIMULATIONS[form] ?? [form.toUpperCase(), ""];
-      const one = button(title, `${job.kind}-${n}.${form}`, () => api.file(job.id, n, form));
+      const one = button(title, `${job.kind}-${n + 1}.${form}`, () => api.file(job.id, n, form));
       if (told) one.title = told;
       return one;
     }),
-    button("PNG", `${job.kind}-${n}.png`, async () => {
+    button("PNG", `${job.kind}-${n + 1}.png`, async () => {
       const image = drawing.querySelector("img");
       if (!image) throw new Error("The drawing is not there yet.");
       return raster(image);
@@ -60,9 +60,9 @@ export function downloads(job, n, drawing) {
  * @param {(title: string, name: string, make: () => Promise<string>) => HTMLElement} button
  */
 function made(job, n, button) {
-  const cut = button("Parts", `${job.kind}-${n}-parts.zip`, () => api.parts(job.id, n, { process: "laser" }));
+  const cut = button("Parts", `${job.kind}-${n + 1}-parts.zip`, () => api.parts(job.id, n, { process: "laser" }));
   cut.title = "Plates to be cut, with what joins them, a drawing of the assembly and a bill";
-  const printed = button("Printed parts", `${job.kind}-${n}-printed.zip`, () => api.parts(job.id, n, { process: "print" }));
+  const printed = button("Printed parts", `${job.kind}-${n + 1}-printed.zip`, () => api.parts(job.id, n, { process: "print" }));
   printed.title = "STL and 3MF files of all parts, and their assembly";
   if (!api.makesSolids()) {
     printed.setAttribute("disabled", "");

@@ -101,7 +101,7 @@ def test_what_has_no_joints_has_the_rest_of_its_motion(train):
 
 def test_designs_are_drawn_and_written(motion, tmp_path):
     design = motion.designs[1]
-    assert design.title == "<gripper>, design 1"
+    assert design.title == "<gripper>, design 2"
     assert design.forms == ["svg", "gif", "dxf", "csv"]
     drawn = ET.fromstring(design.draw())
     assert drawn.tag == "{http://www.w3.org/2000/svg}svg"

@@ -237,7 +237,7 @@ def test_the_command_prints_the_answer_and_writes_the_drawings(server, tmp_path,
     for check in result["designs"][0]["verification"]["checks"]:
         assert check["name"] in done.stdout
     for n in range(len(result["designs"])):
-        drawn = (tmp_path / "task-designs" / f"design-{n}.svg").read_bytes()
+        drawn = (tmp_path / "task-designs" / f"design-{n + 1}.svg").read_bytes()
         assert drawn == server.client.get(f"/v1/jobs/{job['id']}/designs/{n}.svg").content
 
 

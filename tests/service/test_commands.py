@@ -177,7 +177,7 @@ def test_a_design_is_drawn_as_the_service_draws_it(server, solved, number):
     job = json.loads((solved / "answer.json").read_text())
     for form in ("svg", "csv"):
         place = f"drawn/{number}.{form}"
-        done = mechsynth(solved, "draw", "answer.json", "--design", str(number), "-o", place)
+        done = mechsynth(solved, "draw", "answer.json", "--design", str(number + 1), "-o", place)
         assert done.returncode == 0, done.stderr
         drawn = (solved / place).read_bytes()
         assert drawn == server.client.get(f"/v1/jobs/{job['id']}/designs/{number}.{form}").content
@@ -187,8 +187,8 @@ def test_a_design_is_drawn_as_the_service_draws_it(server, solved, number):
     ("arguments", "says"),
     [
         (("answer.json", "-o", "a.png"), "must end in one of: .svg, .gif, .dxf, .csv"),
-        (("answer.json", "-o", "a.svg", "--design", "2"), "2 is none of them"),
-        (("answer.json", "-o", "a.svg", "--design", "-1"), "-1 is none of them"),
+        (("answer.json", "-o", "a.svg", "--design", "3"), "3 is none of them"),
+        (("answer.json", "-o", "a.svg", "--design", "0"), "counted from 1; 0 is none of them"),
         (("train.json", "-o", "a.svg"), "mechsynth solve --json writes one"),
         (("other.json", "-o", "a.svg"), "no answer of this version"),
         (("rotor.json", "-o", "a.gif"), "there are: svg, dxf, csv"),

@@ -15,5 +15,5 @@ def test_the_shell_program_of_a_machine_runs_against_a_service(server, tmp_path)
     program = shell_code(entry, ["svg", "gif"]).replace("http://127.0.0.1:8000", server.url)
     done = subprocess.run(["bash", "-e"], input=program, cwd=tmp_path, text=True, capture_output=True, check=True)
     assert json.loads(done.stdout)["status"] == "succeeded"
-    assert "Small one, design 0" in (tmp_path / "small.svg").read_text("utf-8")
+    assert "Small one, design 1" in (tmp_path / "small.svg").read_text("utf-8")
     assert (tmp_path / "small.gif").read_bytes().startswith(b"GIF89a")
