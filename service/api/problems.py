@@ -8,7 +8,8 @@ from functools import cache
 from fastapi import APIRouter
 
 from service.api.guard import GuardedRoute
-from service.api.schemas import ProblemKind, ProblemKinds
+from service.api.measures import measures
+from service.api.schemas import ExampleName, ProblemKind, ProblemKinds
 from service.parts.extra import installed
 from service.parts.made import LINKAGE, MAKERS
 from service.render import FILES, forms
@@ -22,7 +23,7 @@ router = APIRouter(prefix="/v1/problems", tags=["problems"], route_class=Guarded
 
 @router.get("", operation_id="list_problems", summary="List the kinds of problems")
 async def list_problems() -> ProblemKinds:
-    """Every kind of problem with its title, its JSON schema and an example that runs as it is."""
+    """Every kind of problem with its title, its JSON schema, and examples that run as they are."""
     return _kinds()
 
 
@@ -38,6 +39,8 @@ def _kinds() -> ProblemKinds:
                 description=inspect.getdoc(kind.problem) or "",
                 schema=kind.problem.model_json_schema(),
                 example=example(name),
+                examples=[ExampleName(**named._asdict()) for named in kind.gallery],
+                measures={of: str(measure) for of, measure in measures(kind.result).items()},
                 files={type_: offered for type_ in kind.mechanisms if (offered := _files(type_))},
             )
             for name, kind in KINDS.items()

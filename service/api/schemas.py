@@ -12,6 +12,7 @@ from service.jobs.schema import JobRow, JobSummary, SampleRow
 from service.jobs.states import Status
 from service.stated import filled_in
 from synthesis.model.answer import Result, optional
+from synthesis.model.kind import Group
 from synthesis.registry import KINDS, Problem, example
 
 if TYPE_CHECKING:
@@ -92,6 +93,16 @@ class JobList(BaseModel):
     next_cursor: str | None = Field(description="The cursor of the next page; null on the last one.")
 
 
+class ExampleName(BaseModel):
+    """An example of a kind of problem, as a person looks for it."""
+
+    model_config = ConfigDict(title="Example name")
+
+    name: str = Field(examples=["Hatch lid"])
+    group: Group = Field(description="What it is for.")
+    line: str = Field(description="What it shows, in a sentence.")
+
+
 class ProblemKind(BaseModel):
     """A kind of problem that the service solves."""
 
@@ -106,6 +117,13 @@ class ProblemKind(BaseModel):
         "unit, an angle in degrees, ...; pure numbers have none.",
     )
     example: dict[str, Any] = Field(description="A problem of this kind that runs as it is.")
+    examples: list[ExampleName] = Field(
+        description="What the `examples` of the schema are, in their order; the first of them is `example`."
+    )
+    measures: dict[str, str] = Field(
+        description="What the numbers of its designs measure, by their names in `metrics` and `mechanism`: a length in "
+        "the problem's unit, an angle in degrees, ...; pure numbers are not in it."
+    )
     files: dict[str, list[str]] = Field(
         description="By the type of mechanism, the files that there are of its designs: drawings (svg, gif, dxf), a "
         "table (csv), and simulations (mjcf, urdf, mo, sim.py)."

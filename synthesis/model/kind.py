@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from dataclasses import dataclass, field
+from typing import Any, Generic, Literal, NamedTuple, TypeVar
 
 from synthesis.model.answer import Result
 from synthesis.model.mechanism_types import mechanism_types, models_within
@@ -31,6 +31,25 @@ def never(_problem: StatedProblem) -> bool:
 def always(_problem: StatedProblem) -> bool:
     """Every statement is."""
     return True
+
+
+Group = Literal[
+    "Carry a body",
+    "Draw a curve",
+    "Make an output follow",
+    "Change a speed",
+    "Lift and rest",
+    "Run smoothly",
+]
+"""What a person wants, in the order of the studio's gallery."""
+
+
+class Named(NamedTuple):
+    """An example as a person looks for it: its name, what it is for, and what it shows in a sentence."""
+
+    name: str
+    group: Group
+    line: str
 
 
 @dataclass(frozen=True)
@@ -60,6 +79,8 @@ class Kind(Generic[P, R]):
         Measures a finished mechanism against a statement of which it meets as nearly as it can what designs must meet
         exactly: from the statement, a design that does, and another mechanism, the design of that; None where it cannot
         be driven.
+    gallery : tuple of Named
+        Its examples by name, in their order.
     brief : callable, optional
         Whether the answer to a statement takes a fraction of a second, as a rule. The service computes such ones beside
         searches that take long; where it is left out none is brief.
@@ -74,6 +95,7 @@ class Kind(Generic[P, R]):
     nearer: Callable[[P, Sequence[Any], Progress], Sequence[Any] | None] | None = None
     brief: Callable[[P], bool] = never
     nearly: Callable[[P, Any, Any], Any] | None = None
+    gallery: tuple[Named, ...] = field(kw_only=True)
 
     @property
     def mechanisms(self) -> list[str]:

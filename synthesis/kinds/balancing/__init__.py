@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synthesis.kinds.balancing.design import BalancingResult
+from synthesis.kinds.balancing.gallery import GALLERY
 from synthesis.kinds.balancing.problem import BalancingProblem
 from synthesis.model.kind import Kind, Progress
 
@@ -21,4 +22,4 @@ def _brief(problem: BalancingProblem) -> bool:
     return correction is None or (correction.holes is None and correction.stock is None)
 
 
-KIND = Kind("balancing", BalancingProblem, BalancingResult, _solve, brief=_brief)
+KIND = Kind("balancing", BalancingProblem, BalancingResult, _solve, brief=_brief, gallery=GALLERY)

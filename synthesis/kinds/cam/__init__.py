@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synthesis.kinds.cam.design import CamResult
+from synthesis.kinds.cam.gallery import GALLERY
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.segments import Move
 from synthesis.model.kind import Kind, Progress
@@ -27,4 +28,4 @@ def _brief(problem: CamProblem) -> bool:
     return not any(isinstance(segment, Move) and segment.law in ("auto", "optimal") for segment in problem.segments)
 
 
-KIND = Kind("cam", CamProblem, CamResult, _solve, _warm_up, brief=_brief)
+KIND = Kind("cam", CamProblem, CamResult, _solve, _warm_up, brief=_brief, gallery=GALLERY)

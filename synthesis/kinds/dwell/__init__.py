@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synthesis.kinds.dwell.design import DwellDesign, DwellMechanism, DwellResult
+from synthesis.kinds.dwell.gallery import GALLERY
 from synthesis.kinds.dwell.problem import DwellProblem
 from synthesis.model.kind import Kind, Progress
 
@@ -27,4 +28,4 @@ def _verify(problem: DwellProblem, mechanism: DwellMechanism) -> DwellDesign | N
     return verify_dwell(problem, mechanism)
 
 
-KIND = Kind("dwell", DwellProblem, DwellResult, _solve, _warm_up, verify=_verify)
+KIND = Kind("dwell", DwellProblem, DwellResult, _solve, _warm_up, verify=_verify, gallery=GALLERY)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synthesis.kinds.engine.design import EngineResult
+from synthesis.kinds.engine.gallery import GALLERY
 from synthesis.kinds.engine.problem import EngineProblem
 from synthesis.model.kind import Kind, Progress
 
@@ -20,4 +21,4 @@ def _brief(problem: EngineProblem) -> bool:
     return problem.layout.throws is not None
 
 
-KIND = Kind("engine", EngineProblem, EngineResult, _solve, brief=_brief)
+KIND = Kind("engine", EngineProblem, EngineResult, _solve, brief=_brief, gallery=GALLERY)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synthesis.kinds.flywheel.design import FlywheelResult
+from synthesis.kinds.flywheel.gallery import GALLERY
 from synthesis.kinds.flywheel.problem import FlywheelProblem
 from synthesis.model.kind import Kind, Progress, always
 
@@ -15,4 +16,4 @@ def _solve(problem: FlywheelProblem, progress: Progress) -> FlywheelResult:
     return solve_flywheel(problem, progress)
 
 
-KIND = Kind("flywheel", FlywheelProblem, FlywheelResult, _solve, brief=always)
+KIND = Kind("flywheel", FlywheelProblem, FlywheelResult, _solve, brief=always, gallery=GALLERY)

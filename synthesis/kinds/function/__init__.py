@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synthesis.kinds.function.design import FunctionDesign, FunctionMechanism, FunctionResult
+from synthesis.kinds.function.gallery import GALLERY
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.model.kind import Kind, Progress
 
@@ -32,4 +33,6 @@ def _brief(problem: FunctionProblem) -> bool:
     return problem.aim == "precision" and not problem.sixbars
 
 
-KIND = Kind("function", FunctionProblem, FunctionResult, _solve, _warm_up, brief=_brief, nearly=_nearly)
+KIND = Kind(
+    "function", FunctionProblem, FunctionResult, _solve, _warm_up, brief=_brief, nearly=_nearly, gallery=GALLERY
+)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synthesis.kinds.gear_train.design import GearTrainResult
+from synthesis.kinds.gear_train.gallery import GALLERY
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.model.kind import Kind, Progress
 
@@ -20,4 +21,4 @@ def _brief(problem: GearTrainProblem) -> bool:
     return problem.most_stages <= 2 and problem.stock is None and problem.strength is None
 
 
-KIND = Kind("gear_train", GearTrainProblem, GearTrainResult, _solve, brief=_brief)
+KIND = Kind("gear_train", GearTrainProblem, GearTrainResult, _solve, brief=_brief, gallery=GALLERY)

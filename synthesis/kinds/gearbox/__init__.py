@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synthesis.kinds.gearbox.design import GearboxResult
+from synthesis.kinds.gearbox.gallery import GALLERY
 from synthesis.kinds.gearbox.problem import GearboxProblem
 from synthesis.model.kind import Kind, Progress, always
 
@@ -15,4 +16,4 @@ def _solve(problem: GearboxProblem, progress: Progress) -> GearboxResult:
     return solve_gearbox(problem, progress)
 
 
-KIND = Kind("gearbox", GearboxProblem, GearboxResult, _solve, brief=always)
+KIND = Kind("gearbox", GearboxProblem, GearboxResult, _solve, brief=always, gallery=GALLERY)

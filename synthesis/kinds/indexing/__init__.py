@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synthesis.kinds.indexing.design import IndexingResult
+from synthesis.kinds.indexing.gallery import GALLERY
 from synthesis.kinds.indexing.problem import IndexingProblem
 from synthesis.model.kind import Kind, Progress
 
@@ -20,4 +21,4 @@ def _brief(problem: IndexingProblem) -> bool:
     return problem.driver == "crank"
 
 
-KIND = Kind("indexing", IndexingProblem, IndexingResult, _solve, brief=_brief)
+KIND = Kind("indexing", IndexingProblem, IndexingResult, _solve, brief=_brief, gallery=GALLERY)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synthesis.kinds.layshaft_gearbox.design import LayshaftResult
+from synthesis.kinds.layshaft_gearbox.gallery import GALLERY
 from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 from synthesis.model.kind import Kind, Progress, always
 
@@ -15,4 +16,4 @@ def _solve(problem: LayshaftProblem, progress: Progress) -> LayshaftResult:
     return solve_layshaft_gearbox(problem, progress)
 
 
-KIND = Kind("layshaft_gearbox", LayshaftProblem, LayshaftResult, _solve, brief=always)
+KIND = Kind("layshaft_gearbox", LayshaftProblem, LayshaftResult, _solve, brief=always, gallery=GALLERY)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from synthesis.kinds.motion.design import MotionResult
+from synthesis.kinds.motion.gallery import GALLERY
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.model.kind import Kind, Progress
 from synthesis.model.linkage_answer import LinkageDesign, LinkageMechanism
@@ -42,4 +43,14 @@ def _brief(problem: MotionProblem) -> bool:
     return not (fitted or problem.sixbars)
 
 
-KIND = Kind("motion", MotionProblem, MotionResult, _solve, _warm_up, brief=_brief, nearer=_nearer, nearly=_nearly)
+KIND = Kind(
+    "motion",
+    MotionProblem,
+    MotionResult,
+    _solve,
+    _warm_up,
+    brief=_brief,
+    nearer=_nearer,
+    nearly=_nearly,
+    gallery=GALLERY,
+)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synthesis.kinds.parallel_motion.design import ParallelMotionResult
+from synthesis.kinds.parallel_motion.gallery import GALLERY
 from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem
 from synthesis.model.kind import Kind, Progress, always
 
@@ -21,4 +22,6 @@ def _warm_up() -> None:
     warm_up()
 
 
-KIND = Kind("parallel_motion", ParallelMotionProblem, ParallelMotionResult, _solve, _warm_up, brief=always)
+KIND = Kind(
+    "parallel_motion", ParallelMotionProblem, ParallelMotionResult, _solve, _warm_up, brief=always, gallery=GALLERY
+)

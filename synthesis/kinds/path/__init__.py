@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synthesis.kinds.path.design import PathDesign, PathResult
+from synthesis.kinds.path.gallery import GALLERY
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.model.kind import Kind, Progress
 from synthesis.model.linkage_answer import LinkageMechanism
@@ -33,4 +34,4 @@ def _brief(problem: PathProblem) -> bool:
     return problem.prescribed
 
 
-KIND = Kind("path", PathProblem, PathResult, _solve, _warm_up, brief=_brief, nearly=_nearly)
+KIND = Kind("path", PathProblem, PathResult, _solve, _warm_up, brief=_brief, nearly=_nearly, gallery=GALLERY)

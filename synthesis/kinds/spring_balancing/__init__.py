@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synthesis.kinds.spring_balancing.design import SpringBalancingResult
+from synthesis.kinds.spring_balancing.gallery import GALLERY
 from synthesis.kinds.spring_balancing.problem import SpringBalancingProblem
 from synthesis.model.kind import Kind, Progress
 
@@ -20,4 +21,4 @@ def _brief(problem: SpringBalancingProblem) -> bool:
     return all(spring.convex for spring in problem.springs)
 
 
-KIND = Kind("spring_balancing", SpringBalancingProblem, SpringBalancingResult, _solve, brief=_brief)
+KIND = Kind("spring_balancing", SpringBalancingProblem, SpringBalancingResult, _solve, brief=_brief, gallery=GALLERY)

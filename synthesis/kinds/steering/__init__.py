@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synthesis.kinds.steering.design import SteeringResult
+from synthesis.kinds.steering.gallery import GALLERY
 from synthesis.kinds.steering.problem import SteeringProblem
 from synthesis.model.kind import Kind, Progress
 
@@ -15,4 +16,4 @@ def _solve(problem: SteeringProblem, progress: Progress) -> SteeringResult:
     return solve_steering(problem, progress)
 
 
-KIND = Kind("steering", SteeringProblem, SteeringResult, _solve)
+KIND = Kind("steering", SteeringProblem, SteeringResult, _solve, gallery=GALLERY)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synthesis.kinds.straight_line.design import StraightLineResult
+from synthesis.kinds.straight_line.gallery import GALLERY
 from synthesis.kinds.straight_line.problem import StraightLineProblem
 from synthesis.model.kind import Kind, Progress, always
 
@@ -21,4 +22,4 @@ def _warm_up() -> None:
     warm_up()
 
 
-KIND = Kind("straight_line", StraightLineProblem, StraightLineResult, _solve, _warm_up, brief=always)
+KIND = Kind("straight_line", StraightLineProblem, StraightLineResult, _solve, _warm_up, brief=always, gallery=GALLERY)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synthesis.kinds.train_series.design import TrainSeriesResult
+from synthesis.kinds.train_series.gallery import GALLERY
 from synthesis.kinds.train_series.problem import TrainSeriesProblem
 from synthesis.model.kind import Kind, Progress
 
@@ -23,4 +24,4 @@ def _brief(problem: TrainSeriesProblem) -> bool:
     return problem.combinations <= FEW
 
 
-KIND = Kind("train_series", TrainSeriesProblem, TrainSeriesResult, _solve, brief=_brief)
+KIND = Kind("train_series", TrainSeriesProblem, TrainSeriesResult, _solve, brief=_brief, gallery=GALLERY)

@@ -1,0 +1,11 @@
+"""Its examples as a person looks for them, in their order."""
+
+from __future__ import annotations
+
+from synthesis.model.kind import Named
+
+GALLERY = (
+    Named("Indexing arm", "Lift and rest", "An arm swings by 90° and rests while the crank turns by 60°."),
+    Named("Press with two rests", "Lift and rest", "A rocker that rests at both of its ends."),
+    Named("Two rests of unlike length", "Lift and rest", "A rocker that rests longer at one end than at the other."),
+)

@@ -1,0 +1,10 @@
+"""Its examples as a person looks for them, in their order."""
+
+from __future__ import annotations
+
+from synthesis.model.kind import Named
+
+GALLERY = (
+    Named("Punch press", "Run smoothly", "A flywheel that keeps the speed within 5 % through the blow."),
+    Named("Pump with one cylinder", "Run smoothly", "The rim that evens out a slider-crank against its load."),
+)

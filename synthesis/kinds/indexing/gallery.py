@@ -1,0 +1,14 @@
+"""Its examples as a person looks for them, in their order."""
+
+from __future__ import annotations
+
+from synthesis.model.kind import Named
+
+GALLERY = (
+    Named("Geneva wheel, six stations", "Lift and rest", "A step of 60° for each turn of the crank."),
+    Named("Geneva wheel, eight stations", "Lift and rest", "Between shafts and walls of given sizes."),
+    Named("Inner Geneva wheel", "Lift and rest", "The wheel around its crank: long steps, short rests."),
+    Named("Spherical Geneva wheel", "Lift and rest", "Steps about an axis that crosses that of the crank."),
+    Named("Geneva wheel behind a drag link", "Lift and rest", "Other times of step and rest with the same wheel."),
+    Named("Ratchet", "Lift and rest", "Thirty-six stops against a load that wants to turn back."),
+)

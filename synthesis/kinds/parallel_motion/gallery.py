@@ -1,0 +1,7 @@
+"""Its examples as a person looks for them, in their order."""
+
+from __future__ import annotations
+
+from synthesis.model.kind import Named
+
+GALLERY = (Named("Level platform", "Carry a body", "A body that follows a coupler curve and never tilts."),)

@@ -1,0 +1,12 @@
+"""Its examples as a person looks for them, in their order."""
+
+from __future__ import annotations
+
+from synthesis.model.kind import Named
+
+GALLERY = (
+    Named("Arc through five", "Draw a curve", "A point of the coupler passes through five points."),
+    Named("Five points on time", "Draw a curve", "Each point is reached at its own crank angle."),
+    Named("Timed loop", "Draw a curve", "A closed curve of nine points, on time, by a crank-rocker."),
+    Named("Foot path", "Draw a curve", "The whole closed curve is matched, wherever a crank begins on it."),
+)

@@ -1,0 +1,10 @@
+"""Its examples as a person looks for them, in their order."""
+
+from __future__ import annotations
+
+from synthesis.model.kind import Named
+
+GALLERY = (
+    Named("Planetary hub", "Change a speed", "Sun, planets and ring for 5.5 : 1."),
+    Named("Planetary hub for 5 kW", "Change a speed", "The same ratio, strong enough within a face of 12 mm."),
+)

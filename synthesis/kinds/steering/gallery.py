@@ -1,0 +1,13 @@
+"""Its examples as a person looks for them, in their order."""
+
+from __future__ import annotations
+
+from synthesis.model.kind import Named
+
+GALLERY = (
+    Named(
+        "Car steering",
+        "Make an output follow",
+        "Both front wheels turn about one point, as near as four links can do it.",
+    ),
+)
