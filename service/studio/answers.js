@@ -3,7 +3,7 @@
 import * as api from "./api.js";
 import { el, shown, words } from "./dom.js";
 import { Shown } from "./design.js";
-import { amount, figures, text } from "./figures.js";
+import { amount, figures, text, unitFor } from "./figures.js";
 import { thumbnail } from "./thumbnail.js";
 
 /** How long keys must rest on a card before it is shown. */
@@ -13,38 +13,48 @@ const PASSING_MS = 150;
 let chosen = null;
 let passing = 0;
 
-/** Show nothing of the job before. @param {HTMLElement} place */
-export function leave(place) {
+/** Show nothing of the job before. @param {HTMLElement} place @param {import("./desk.js").Desk} desk */
+export function leave(place, desk) {
   chosen?.stop();
   chosen = null;
   place.replaceChildren();
+  desk.clear();
 }
 
-/** @param {HTMLElement} place @param {api.Job} job @param {(problem: any) => void} state begins another statement */
-export function answer(place, job, state) {
-  leave(place);
+/**
+ * @param {HTMLElement} place @param {import("./desk.js").Desk} desk @param {api.Job} job
+ * @param {(problem: any) => void} state begins another statement
+ */
+export function answer(place, desk, job, state) {
+  leave(place, desk);
   if (!job.result) {
     place.append(el("p", { class: job.status === "failed" ? "error" : "note" },
       job.status === "failed" ? `${job.error?.title ?? "Failed"}: ${job.error?.detail ?? ""}` : `The job was ${job.status}.`));
+    desk.stage.offer(false);
     return;
   }
   const { designs, search, summary, nearest_miss } = job.result;
-  const detail = el("div", { id: "design" });
-  const cards = designs.map((/** @type {any} */ design, /** @type {number} */ n) => card(design, n, () => {
+  const cards = designs.map((/** @type {any} */ design, /** @type {number} */ n) => card(design, n, job.problem, () => {
     cards.forEach((/** @type {HTMLElement} */ one, /** @type {number} */ k) => one.setAttribute("aria-pressed", String(k === n)));
     chosen?.stop();
-    chosen = new Shown(detail, job, n, state);
+    chosen = new Shown(desk, job, n, state);
   }));
   place.append(
-    el("p", { class: "summary" }, summary),
-    el("p", { class: "note" }, known(search, designs.length)),
-    ...(nearest_miss ? [missed(nearest_miss, job.problem)] : []),
-    el("div", { class: "cards", role: "group", "aria-label": "Designs, best first; arrow keys choose", onkeydown: (/** @type {KeyboardEvent} */ event) => choose(cards, event) }, ...cards),
-    detail);
+    el("div", { class: "known", tabindex: 0, role: "group", "aria-label": "What is known" },
+      el("p", { class: "summary" }, summary), el("p", { class: "note" }, known(search, designs.length))),
+    el("div", { class: "cards", role: "group", "aria-label": "Designs, best first; arrow keys choose", onkeydown: (/** @type {KeyboardEvent} */ event) => choose(cards, event) }, ...cards));
   cards[0]?.click();
+  if (designs.length) return;
+  desk.stage.offer(true, nearest_miss ? "None found; this comes nearest" : "None found");
+  desk.frame.say(...(nearest_miss ? [missed(nearest_miss, job.problem)] : [el("p", { class: "note" }, summary)]));
+  desk.stage.show("watch");
 }
 
-/** Arrow keys, Home and End go from card to card and choose. @param {HTMLElement[]} cards @param {KeyboardEvent} event */
+/**
+ * Arrow keys, Home and End go from card to card and choose.
+ * @param {HTMLElement[]} cards
+ * @param {KeyboardEvent} event
+ */
 function choose(cards, event) {
   const at = cards.indexOf(/** @type {HTMLElement} */ (document.activeElement));
   const to = { ArrowRight: at + 1, ArrowDown: at + 1, ArrowLeft: at - 1, ArrowUp: at - 1, Home: 0, End: cards.length - 1 }[event.key];
@@ -73,7 +83,7 @@ function known(search, found) {
 function missed({ design, gaps, reachable }, problem) {
   const short = (/** @type {any} */ value) => [value].flat().map((one) => shown(Number(one.toPrecision(4)))).join(" and ");
   const within = Object.entries(reachable).map(([name, value]) => `${words(name).toLowerCase()} ${short(value)}`);
-  return el("section", { id: "miss", class: "card" }, thumbnail(design),
+  return el("section", { id: "miss" }, thumbnail(design),
     el("strong", {}, `Nearest miss: ${words(design.mechanism.type)}`),
     ...gaps.map((/** @type {any} */ gap) => el("span", { class: "bad" }, `✗ ${words(gap.check)}`,
       typeof gap.value === "number" && ` ${amount(gap.value, gap, problem)}`,
@@ -81,12 +91,14 @@ function missed({ design, gaps, reachable }, problem) {
     within.length > 0 && el("span", { class: "note" }, `Within reach beside all other demands: ${within.join("; ")}.`));
 }
 
-/** @param {any} design @param {number} n @param {() => void} choose */
-function card(design, n, choose) {
+/** @param {any} design @param {number} n @param {any} problem @param {() => void} choose */
+function card(design, n, problem, choose) {
   const passed = design.verification?.passed;
   return el("button", { type: "button", class: "card", "aria-pressed": "false", onclick: choose },
     thumbnail(design),
-    el("strong", {}, `${n + 1}. ${words(design.mechanism.type)}`),
-    el("span", { class: passed ? "good" : "bad" }, passed ? "✓ verified" : "✗ fails a check"),
-    ...figures(design).slice(0, 4).map(([name, value]) => el("span", { class: "figure" }, el("span", {}, words(name)), el("span", {}, text(value)))));
+    el("span", { class: "told" },
+      el("strong", {}, `${n + 1}. ${words(design.mechanism.type)}`),
+      el("span", { class: passed ? "good" : "bad" }, passed ? "✓ verified" : "✗ fails a check"),
+      ...figures(design).slice(0, 1).map(([name, value]) => el("span", { class: "figure" },
+        el("span", {}, words(name)), el("span", {}, text(value, unitFor(name, problem)))))));
 }

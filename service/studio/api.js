@@ -4,7 +4,7 @@
 /** @typedef {{fraction: number, message: string}} Progress */
 /** @typedef {{id: string, kind: string, label: string | null, status: string, created_at: string, progress: Progress}} JobItem */
 /** @typedef {JobItem & {problem: any, result: any, error: any}} Job */
-/** @typedef {{kind: string, title: string, description: string, schema: any, example: any, files: Record<string, string[]>}} Kind */
+/** @typedef {{kind: string, title: string, description: string, schema: any, example: any, files: Record<string, string[]>, examples: {name: string, group: string, line: string}[], measures: Record<string, string>}} Kind */
 /** @typedef {{element: string, id: string | null, name: string | null, layer: string | null, polygon: [number, number][] | null, circle: {center: [number, number], radius: number} | null, area: number, joined: number}} Drawn */
 /** @typedef {{element: string, id: string | null, name: string | null, layer: string | null, reason: string}} LeftOut */
 /** @typedef {{millimetres_per_unit: number | null, length_unit: string | null, scale: number, tolerance: number, outlines: Drawn[], left_out: LeftOut[], left_out_count: number}} Outlines */
@@ -90,6 +90,11 @@ export async function kinds() {
   solids = answer.solids;
   built = answer.parts;
   return told;
+}
+
+/** What the numbers of the designs of a kind measure, by their names. @param {string} kind */
+export function measures(kind) {
+  return told.find((one) => one.kind === kind)?.measures ?? {};
 }
 
 /** Whether the service makes solids of parts, and not their outlines alone. */

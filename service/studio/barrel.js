@@ -16,7 +16,7 @@ export class Barrel extends Turning {
     const { cylinder_radius: radius, follower, lower_wall: lower, upper_wall: upper, pitch_curve: pitch } = this.mechanism;
     this.turn = 2 * Math.PI * radius;
     const [floor, ceiling] = [Math.min(...lower.y) - follower.roller_radius, Math.max(...upper.y) + follower.roller_radius];
-    this.view = new View([[-this.turn / 2, floor], [this.turn / 2, ceiling]], 640, 420, 24);
+    this.view = new View([[-this.turn / 2, floor], [this.turn / 2, ceiling]], ...this.size, 32);
     const { view } = this;
     // Three turns side by side, so that one is always in the picture.
     const thrice = (/** @type {any} */ curve) => [-1, 0, 1].flatMap((n) => curve.x.map((/** @type {number} */ x, /** @type {number} */ k) => /** @type {Point} */ ([x + n * this.turn, curve.y[k]])));

@@ -2,10 +2,11 @@
 
 import * as api from "./api.js";
 import { el, shown, svg } from "./dom.js";
+import { roomOf } from "./stage.js";
 import { View } from "./view.js";
 
-const WIDTH = 640;
-const HEIGHT = 420;
+/** Height of what stands above and below the curves, pixels. */
+const WORDS = 84;
 
 /** So long a pivot must stand before its linkage is solved, ms. */
 const REST = 150;
@@ -25,6 +26,7 @@ export class Burmester {
    * @param {(job: api.Job) => void} show called with the job of the new linkage
    */
   constructor(place, job, design, show) {
+    const [width, height] = roomOf(place, WORDS);
     this.problem = job.problem;
     /** @type {Branch[]} */
     this.branches = job.result.curves;
@@ -36,12 +38,12 @@ export class Burmester {
     this.trial = "";
     const { joints } = design.mechanism.skeleton;
     const around = Object.values(joints).concat(job.problem.positions.map((/** @type {any} */ one) => [one.x, one.y]));
-    this.view = new View(/** @type {Point[]} */ (around), WIDTH, HEIGHT, 90);
+    this.view = new View(/** @type {Point[]} */ (around), width, height, Math.min(90, 0.2 * Math.min(width, height)));
     this.dyads = SIDES.map(({ moving }) => this.nearest("circle_points", joints[moving]));
     this.handles = SIDES.flatMap((names, k) => [this.handle(k, "circle_points", names.moving), this.handle(k, "centre_points", names.fixed)]);
     this.lines = SIDES.map((_, k) => svg("line", { class: k ? "arm" : "arm input" }));
-    this.picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas drag", role: "group", "aria-label": "Burmester's curves, pivots to be drawn along them" },
-      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
+    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas drag", role: "group", "aria-label": "Burmester's curves, pivots to be drawn along them" },
+      svg("rect", { class: "paper", width, height }),
       ...this.branches.flatMap((branch) => [
         svg("path", { class: "centre-points", d: this.view.path(branch.centre_points) + (branch.closed ? "Z" : "") }),
         svg("path", { class: "circle-points", d: this.view.path(branch.circle_points) + (branch.closed ? "Z" : "") })]),
@@ -55,7 +57,7 @@ export class Burmester {
     } }, "Keep this linkage as a job");
     place.replaceChildren(el("p", { class: "note" },
       el("span", { class: "key circle-key" }, "Circle points"), ": where the moving pivots may be in the first position; ",
-      el("span", { class: "key centre-key" }, "centre points"), ": their fixed pivots."), this.picture, this.told, this.keep);
+      el("span", { class: "key centre-key" }, "centre points"), ": their fixed pivots."), el("div", { class: "stage" }, this.picture), el("div", { class: "row" }, this.told, this.keep));
     this.draw();
   }
 

@@ -7,9 +7,6 @@ import { plots } from "./plots.js";
 import { along } from "./quantities.js";
 import { View } from "./view.js";
 
-const WIDTH = 640;
-const HEIGHT = 420;
-
 /** Length of a follower's stem beyond its roller or face, as a share of the base radius. */
 const STEM = 0.8;
 
@@ -33,13 +30,14 @@ export function diagrams(mechanism, motion, problem) {
 
 /** What a disc cam and a barrel have in common: clock, gauge and diagrams. */
 export class Turning {
-  /** @param {HTMLElement} place @param {any} design @param {any} motion @param {any} problem */
-  constructor(place, design, motion, problem) {
+  /** @param {import("./stage.js").Frame} frame @param {any} design @param {any} motion @param {any} problem */
+  constructor(frame, design, motion, problem) {
+    this.size = frame.size();
     this.motion = motion;
     this.mechanism = design.mechanism;
     this.count = motion.input_angle.length;
     // What the scene of each kind decides.
-    this.view = new View([], WIDTH, HEIGHT);
+    this.view = new View([], ...this.size);
     this.sense = 1;
     this.radius = 0;
     this.turn = 0;
@@ -52,10 +50,11 @@ export class Turning {
     this.player = new Player({ count: this.count, closed: true, label: "Cam", reading: (at) => this.reading(at), show: (at) => this.show(at) });
     this.marks = plots(diagrams(this.mechanism, motion, problem), motion.input_angle, (at) => this.player.lead(at));
     this.facts = el("dl", { class: "facts" });
-    const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": this.label },
-      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), ...scene);
-    place.replaceChildren(el("div", { class: "stage" }, picture, el("div", { class: "beside" }, this.gauge?.node, this.facts)),
-      this.player.row, el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure)));
+    const [width, height] = this.size;
+    const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": this.label },
+      svg("rect", { class: "paper", width, height }), ...scene);
+    frame.fill({ picture, clock: this.player.row, beside: [this.gauge?.node, this.facts],
+      plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))] });
     this.displacement = /** @type {any} */ (diagrams(this.mechanism, motion, problem)[0].lines)[""];
     this.player.begin();
   }
@@ -105,7 +104,7 @@ export class Disc extends Turning {
     const reach = this.swings ? [follower.pivot_distance + 0.1 * this.base, 0.2 * this.base] : [high + this.radius + STEM * this.base, 0];
     const beside = second ? Math.max(...ring(second.pitch_curve).map(([x, y]) => Math.hypot(x, y))) + this.radius : 0;
     const wide = Math.max(far, high, beside);
-    this.view = new View([[-wide, -wide], [wide, wide], /** @type {Point} */ (reach)], WIDTH, HEIGHT, 24);
+    this.view = new View([[-wide, -wide], [wide, wide], /** @type {Point} */ (reach)], ...this.size, 32);
     const { view } = this;
     const [u, v] = view.at(0, 0);
     const circle = (/** @type {string} */ kind, /** @type {number} */ radius) => svg("circle", { class: kind, cx: u, cy: v, r: view.scale * radius });

@@ -19,6 +19,7 @@ import { checks, dimensions, figures, made, table } from "./figures.js";
 import { Mover, demanded } from "./mover.js";
 import { Ratchet } from "./ratchet.js";
 import { Rotor } from "./rotor.js";
+import { thumbnail } from "./thumbnail.js";
 
 /** Samples of a cycle. */
 const STEPS = 240;
@@ -26,19 +27,22 @@ const STEPS = 240;
 /** Of a turn of what has no toggles: a sample a degree. */
 const TURN_STEPS = 360;
 
-/** What shows a mechanism that is no linkage. @type {Record<string, new (place: HTMLElement, design: any, motion: any, problem: any) => Moving>} */
+/** What shows a mechanism that is no linkage. @type {Record<string, new (frame: import("./stage.js").Frame, design: any, motion: any, problem: any) => Moving>} */
 const VIEWS = {
   cam: Disc, barrel_cam: Barrel, gear_train: Gears, planetary_train: Gears, train_series: Gears, gearbox: Gears, layshaft_gearbox: Gears, rotor: Rotor,
   flywheel: Flywheel, engine: Engine, geneva_external: Geneva, geneva_internal: Geneva, geneva_spherical: Geneva,
   ratchet: Ratchet,
 };
 
+const OF_THE_DESIGN = "Checks, drawing and files are those of the design: choose it above the numbers to see them.";
+
 /** @typedef {{stop: () => void, pause?: () => void}} Moving */
 /** @typedef {{choice: import("./cognates.js").Choice, design: any, motion: any, circuits: any}} Film */
 
 export class Shown {
-  /** @param {HTMLElement} place @param {api.Job} job @param {number} n @param {(problem: any) => void} state begins another statement */
-  constructor(place, job, n, state) {
+  /** @param {import("./desk.js").Desk} desk @param {api.Job} job @param {number} n @param {(problem: any) => void} state begins another statement */
+  constructor(desk, job, n, state) {
+    this.desk = desk;
     this.state = state;
     /** @type {Moving | null} */
     this.curves = null;
@@ -50,20 +54,17 @@ export class Shown {
     this.explorer = null;
     /** @type {Forces | null} */
     this.forces = null;
-    this.forced = el("div", {});
     /** @type {AssemblyView | null} */
     this.assembly = null;
-    this.built = el("div", {});
-    this.title = el("h3", {});
-    this.before = el("div", {});
-    this.stage = el("div", { class: "moving" });
-    this.exploring = el("div", {});
-    this.numbers = el("div", {});
+    /** Whether another design has taken its place. */
+    this.ended = false;
+    this.forced = desk.forced;
     this.drawing = el("figure", { class: "drawing" });
     this.job = job;
     this.n = n;
     this.design = job.result.designs[n];
-    place.replaceChildren(this.title, this.before, this.stage, this.forced, this.built, ...this.burmester(job, n), this.exploring, this.numbers);
+    desk.clear();
+    this.burmester(job, n);
     this.present(job, n, `Design ${n + 1}`);
   }
 
@@ -75,21 +76,29 @@ export class Shown {
     this.design = job.result.designs[n];
     this.gone = new AbortController();
     this.drawing = el("figure", { class: "drawing" });
-    this.title.replaceChildren(`${title}: ${words(this.design.mechanism.type)}`);
-    this.before.replaceChildren();
-    this.exploring.replaceChildren(...this.explored(this.design));
+    const named = `${title}: ${words(this.design.mechanism.type)}`;
+    this.desk.title.replaceChildren(named);
+    this.desk.stage.offer(true, named);
+    this.desk.stage.show("watch");
+    this.desk.before.replaceChildren();
+    this.explored(this.design);
     this.forced.replaceChildren(...this.borne());
-    this.built.replaceChildren(...this.assembled());
-    this.numbers.replaceChildren(...this.tabulated());
+    this.desk.built.replaceChildren(...this.assembled());
+    this.desk.numbers.replaceChildren(...this.tabulated());
+    this.desk.files.replaceChildren(...this.taken());
     this.move(this.gone.signal);
     this.draw(this.gone.signal);
   }
 
-  /** The numbers of the design, with its drawing and files. */
+  /** The numbers of the design. */
   tabulated() {
     const { design, job } = this;
-    return [downloads(job, this.n, this.drawing),
-      el("div", { class: "columns" }, checks(design, job.problem), table("Quantities", figures(design)), ...made(design), dimensions(design)), this.drawing];
+    return [el("div", { class: "columns" }, checks(design, job.problem), table("Quantities", figures(design), job.problem), ...made(design), dimensions(design, job.problem))];
+  }
+
+  /** Its files, and its drawing. */
+  taken() {
+    return [downloads(this.job, this.n, this.drawing), this.drawing];
   }
 
   /** @param {AbortSignal} gone */
@@ -106,12 +115,13 @@ export class Shown {
   /** @param {AbortSignal} gone */
   async move(gone) {
     const { mechanism } = this.design;
-    if (!this.stage.childElementCount) this.stage.append(el("p", { class: "note" }, "The motion is being computed …"));
+    const { frame } = this.desk;
+    if (frame.idle) frame.say(thumbnail(this.design) ?? "", el("p", { class: "note" }, "The motion is being computed …"));
     try {
       const View = VIEWS[mechanism.type];
       if (View) {
         const turning = await api.motion(this.job.id, this.n, TURN_STEPS, gone);
-        if (!gone.aborted) this.show(() => new View(this.stage, this.design, turning, this.job.problem));
+        if (!gone.aborted) this.show(() => new View(frame, this.design, turning, this.job.problem));
         return;
       }
       const at = mechanism.reference_input_angle;
@@ -126,7 +136,7 @@ export class Shown {
       for (const choice of choices.slice(1)) films.push(await this.film(choice));
       if (!gone.aborted) this.offer(films.filter((one) => one !== null));
     } catch (error) {
-      if (!gone.aborted) this.stage.replaceChildren(el("p", { class: "error" }, /** @type {Error} */ (error).message));
+      if (!gone.aborted) frame.say(el("p", { class: "error" }, /** @type {Error} */ (error).message));
     }
   }
 
@@ -136,7 +146,7 @@ export class Shown {
     this.moving = make();
     this.forced.toggleAttribute("hidden", !own);
     this.forces?.attach(this.mover);
-    if (this.explorer) this.moving.pause?.();
+    if (this.desk.stage.mode !== "watch") this.moving.pause?.();
   }
 
   /** The design in motion, where it is a linkage whose motion is shown. */
@@ -158,15 +168,15 @@ export class Shown {
   offer(films) {
     const around = films.length < 2 ? [] : films.flatMap(({ motion }) => Object.values(motion.joints).flatMap((/** @type {any} */ track) =>
       track.x.map((/** @type {number | null} */ x, /** @type {number} */ k) => (x === null ? [NaN, NaN] : [x, track.y[k]]))));
-    const show = (/** @type {Film} */ film) => this.show(() => new Mover(this.stage, film.design, film.motion, this.job.problem, film.circuits, around), film === films[0]);
+    const show = (/** @type {Film} */ film) => this.show(() => new Mover(this.desk.frame, film.design, film.motion, this.job.problem, film.circuits, around), film === films[0]);
     show(films[0]);
     if (films.length > 1) {
-      this.before.replaceChildren(picker(films.map((film) => film.choice), (choice) => {
+      this.desk.before.replaceChildren(picker(films.map((film) => film.choice), (choice) => {
         const film = films.find((one) => one.choice === choice) ?? films[0];
         show(film);
-        this.leaveExplorer();
-        this.exploring.replaceChildren(...this.explored(film.design));
-        this.numbers.replaceChildren(...(film === films[0] ? this.tabulated() : cognateNumbers(film)));
+        this.explored(film.design);
+        this.desk.numbers.replaceChildren(...(film === films[0] ? this.tabulated() : cognateNumbers(film, this.job.problem)));
+        this.desk.files.replaceChildren(...(film === films[0] ? this.taken() : [el("p", { class: "note" }, OF_THE_DESIGN)]));
       }));
     }
   }
@@ -175,15 +185,23 @@ export class Shown {
   explored(design) {
     const { mechanism } = design;
     const { problem } = this.job;
-    if (!mechanism.skeleton) return [];
-    const inside = el("div");
-    const details = el("details", { id: "explore", ontoggle: () => {
-      this.explorer?.stop();
-      // Two motions at once are one too many, for the eye and for the display.
-      if (details.open) this.moving?.pause?.();
-      this.explorer = details.open ? new Explorer(inside, mechanism, problem, demanded(problem, design), this.state) : null;
-    } }, el("summary", {}, "Explore: drag its pins"), inside);
-    return [details];
+    const { drawer, stage, exploring, explore } = this.desk;
+    this.leaveExplorer();
+    this.desk.explored(Boolean(mechanism.skeleton));
+    drawer.on("explore", mechanism.skeleton ? {
+      opened: () => {
+        // Two motions at once are one too many, for the eye and for the display.
+        this.moving?.pause?.();
+        this.leaveExplorer();
+        stage.show("explore");
+        this.explorer = new Explorer(exploring, explore, mechanism, problem, demanded(problem, design), this.state);
+      },
+      closed: () => {
+        this.leaveExplorer();
+        exploring.replaceChildren();
+        if (stage.mode === "explore") stage.show("watch");
+      },
+    } : null);
   }
 
   /** The place of a linkage's forces: open where the problem states what it weighs and carries. */
@@ -201,7 +219,7 @@ export class Shown {
   /** The place of a design's parts in three dimensions; they are made when it is opened. */
   assembled() {
     const { design, job, n } = this;
-    if (!api.hasParts(design.mechanism)) return [];
+    if (!api.hasParts(design.mechanism)) return [el("p", { class: "note" }, "No parts are made of this type of mechanism.")];
     const inside = el("div");
     const details = el("details", { id: "assembly", ontoggle: () => {
       this.assembly?.stop();
@@ -213,14 +231,26 @@ export class Shown {
   /** Burmester's curves, where the job has them. @param {api.Job} job @param {number} n */
   burmester(job, n) {
     const { mechanism } = job.result.designs[n];
-    if (!job.result.curves?.length || mechanism.type !== "fourbar") return [];
-    const inside = el("div");
-    const details = el("details", { id: "burmester", ontoggle: () => {
-      this.curves?.stop();
-      this.curves = details.open ? new Burmester(inside, job, job.result.designs[n], (solved) => this.present(solved, 0, "On these pivots")) : null;
-      if (!details.open && this.job !== job) this.present(job, n, `Design ${n + 1}`);
-    } }, el("summary", {}, "Burmester's curves: draw its pivots along them"), inside);
-    return [details];
+    const { drawer, curves } = this.desk;
+    const there = Boolean(job.result.curves?.length) && mechanism.type === "fourbar";
+    const split = (/** @type {boolean} */ is) => {
+      curves.hidden = !is;
+      curves.parentElement?.classList.toggle("split", is);
+    };
+    drawer.on("curves", there ? {
+      opened: () => {
+        split(true);
+        this.curves = new Burmester(curves, job, job.result.designs[n], (solved) => this.present(solved, 0, "On these pivots"));
+      },
+      closed: () => {
+        split(false);
+        this.curves?.stop();
+        this.curves = null;
+        curves.replaceChildren();
+        if (this.job !== job && !this.ended) this.present(job, n, `Design ${n + 1}`);
+      },
+    } : null);
+    drawer.offer("curves", there);
   }
 
   leaveExplorer() {
@@ -242,16 +272,18 @@ export class Shown {
   }
 
   stop() {
+    this.ended = true;
+    this.desk.drawer.on("explore", null);
+    this.desk.drawer.on("curves", null);
     this.leave();
-    this.curves?.stop();
   }
 }
 
-/** The numbers of a cognate: what was measured of it, and its dimensions. @param {Film} film */
-function cognateNumbers({ choice, design }) {
+/** The numbers of a cognate: what was measured of it, and its dimensions. @param {Film} film @param {any} problem */
+function cognateNumbers({ choice, design }, problem) {
   const measured = figures(design);
   return [
-    el("p", { class: "note" }, "Checks, drawing and files are those of the design: choose it above to see them."),
-    el("div", { class: "columns" }, measured.length > 0 && table(`Quantities of the ${choice.name.toLowerCase()}`, measured), dimensions(design)),
+    el("p", { class: "note" }, OF_THE_DESIGN),
+    el("div", { class: "columns" }, measured.length > 0 && table(`Quantities of the ${choice.name.toLowerCase()}`, measured, problem), dimensions(design, problem)),
   ];
 }

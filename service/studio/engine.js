@@ -3,32 +3,32 @@
 import { el, shown, svg } from "./dom.js";
 import { Player, between } from "./player.js";
 
-const WIDTH = 640;
-const HEIGHT = 420;
-
 /** Room above and below, pixels. */
 const EDGE = 24;
 
 export class Engine {
-  /** @param {HTMLElement} place @param {any} design @param {any} motion */
-  constructor(place, design, motion) {
+  /** @param {import("./stage.js").Frame} frame @param {any} design @param {any} motion */
+  constructor(frame, design, motion) {
+    const [width, height] = frame.size();
     const { mechanism } = design;
     this.motion = motion;
     this.crank = mechanism.crank;
     const count = mechanism.cylinders.length;
-    const column = WIDTH / count;
+    const column = width / count;
     /** Pixels for a length unit. */
-    this.scale = Math.min((HEIGHT - 2 * EDGE) / (mechanism.rod + 2.8 * this.crank), (0.9 * column) / (2 * this.crank));
-    this.low = EDGE + this.scale * (mechanism.rod + 1.7 * this.crank);
-    this.picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": "The cylinders, turning" },
-      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }));
+    this.scale = Math.min((height - 2 * EDGE) / (mechanism.rod + 2.8 * this.crank), (0.9 * column) / (2 * this.crank));
+    // A single cylinder stands in the middle, and not at the top.
+    const top = Math.max(EDGE, 0.5 * (height - this.scale * (mechanism.rod + 2.8 * this.crank)));
+    this.low = top + this.scale * (mechanism.rod + 1.7 * this.crank);
+    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": "The cylinders, turning" },
+      svg("rect", { class: "paper", width, height }));
     this.drawings = mechanism.cylinders.map((/** @type {any} */ cylinder, /** @type {number} */ n) => {
       const middle = column * (n + 0.5);
       const half = 0.75 * this.scale * this.crank;
       const crank = svg("path", { class: "link input" });
       const rod = svg("path", { class: "link" });
       const piston = svg("rect", { class: "pin", x: middle - half, width: 2 * half, height: 0.6 * this.scale * this.crank });
-      const walls = svg("path", { class: "ground", d: `M${middle - half} ${EDGE}V${this.low - this.scale * (mechanism.rod - this.crank)}M${middle + half} ${EDGE}V${this.low - this.scale * (mechanism.rod - this.crank)}` });
+      const walls = svg("path", { class: "ground", d: `M${middle - half} ${top}V${this.low - this.scale * (mechanism.rod - this.crank)}M${middle + half} ${top}V${this.low - this.scale * (mechanism.rod - this.crank)}` });
       this.picture.append(svg("g", {}, svg("title", {}, `Cylinder ${cylinder.number}`), walls, rod, crank, piston,
         svg("circle", { class: "pin", cx: middle, cy: this.low, r: 3.5 })));
       return { cylinder, middle, crank, rod, piston };
@@ -36,10 +36,10 @@ export class Engine {
     const fires = design.firing.orders[0];
     this.player = new Player({ count: motion.input_angle.length, closed: true, endless: true, label: "Crank",
       reading: (at) => `${shown(Math.round(10 * this.degrees(at)) / 10)}°`, show: (at) => this.show(at) });
-    place.replaceChildren(el("div", { class: "stage" }, this.picture,
+    frame.fill({ picture: this.picture, clock: this.player.row, beside: [
       el("dl", { class: "facts speeds" }, el("dt", {}, "Firing order"), el("dd", {}, fires.order.join("-")),
-        ...fires.order.flatMap((/** @type {number} */ number, /** @type {number} */ k) => [el("dt", {}, `Cylinder ${number}`), el("dd", {}, `${shown(fires.angles[k])}°`)]))),
-    this.player.row, el("p", { class: "note" }, "The cylinders from the front to the back; each is seen with its own axis upwards."));
+        ...fires.order.flatMap((/** @type {number} */ number, /** @type {number} */ k) => [el("dt", {}, `Cylinder ${number}`), el("dd", {}, `${shown(fires.angles[k])}°`)])),
+      el("p", { class: "note" }, "The cylinders from the front to the back; each is seen with its own axis upwards.")] });
     this.player.begin();
   }
 

@@ -8,20 +8,21 @@ import { degrees } from "./gauge.js";
 import { Linkage, drawn } from "./linkage.js";
 import { Player, between } from "./player.js";
 import { beginnings } from "./beginnings.js";
+import { CLOCK, roomOf } from "./stage.js";
 import { View } from "./view.js";
+import { Zoom } from "./zoom.js";
 
-const WIDTH = 640;
-const HEIGHT = 420;
 const STEPS = 180;
 
 /** @typedef {[number, number]} Point */
 
 export class Explorer {
   /**
-   * @param {HTMLElement} place @param {any} mechanism with its skeleton @param {any} problem @param {any[]} targets as demanded
+   * @param {HTMLElement} board of the stage @param {HTMLElement} place what is told of it @param {any} mechanism with its skeleton @param {any} problem @param {any[]} targets as demanded
    * @param {(problem: any) => void} state called to begin a statement
    */
-  constructor(place, mechanism, problem, targets, state) {
+  constructor(board, place, mechanism, problem, targets, state) {
+    const [width, height] = roomOf(board, CLOCK);
     this.type = mechanism.type;
     this.problem = problem;
     this.skeleton = structuredClone(mechanism.skeleton);
@@ -35,13 +36,13 @@ export class Explorer {
     this.motion = null;
     this.gone = new AbortController();
     const around = Object.values(this.joints).concat(targets.map((one) => [one.x, one.y]));
-    this.view = new View(around, WIDTH, HEIGHT, 110);
+    this.view = new View(around, width, height, Math.min(110, 0.2 * Math.min(width, height)));
     this.curve = svg("path", { class: "curve" });
     this.linkage = new Linkage(this.view, this.skeleton, { names: false });
     this.ghost = new Linkage(this.view, this.skeleton, { names: false, faint: true });
     this.handles = drawn(this.skeleton).map((name) => this.handle(name));
-    this.picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas drag", role: "group", "aria-label": "The linkage, its pins to be dragged" },
-      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), this.curve,
+    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas drag", role: "group", "aria-label": "The linkage, its pins to be dragged" },
+      svg("rect", { class: "paper", width, height }), this.curve,
       ...targets.map((one) => {
         const [u, v] = this.view.at(one.x, one.y);
         return svg("g", { class: "goal" }, svg("circle", { cx: u, cy: v, r: 5 }));
@@ -53,7 +54,8 @@ export class Explorer {
     this.buttons = el("p", { class: "row" });
     place.replaceChildren(
       el("p", { class: "note" }, "Drag a pin, or move it with the arrow keys: curve, motion and figures are those of the linkage as it is then."),
-      this.picture, this.player.row, el("div", { class: "columns" }, this.facts, this.checks), this.buttons);
+      el("div", { class: "columns" }, this.facts, this.checks), this.buttons);
+    board.replaceChildren(el("div", { class: "stage" }, this.picture, new Zoom(this.picture).buttons), this.player.row);
     this.draw();
     this.ask().then(() => this.motion && this.player.begin());
   }

@@ -40,11 +40,13 @@ export function tell(form, list, refusal) {
       place.control.setAttribute("aria-describedby", said.id);
       place.control.title = fault.detail;
     }
+    for (let above = place.control.closest("details"); above; above = above.parentElement?.closest("details") ?? null) above.open = true;
     first ??= place.control;
   }
   list.append(el("p", { class: "error" }, refusal.message),
     ...(lost.length ? [el("ul", {}, ...lost.map((fault) => el("li", {}, `${fault.path || "the statement"}: ${fault.detail}`)))] : []));
   first?.focus();
+  first?.scrollIntoView({ block: "nearest" });
 }
 
 /** The control at a JSON pointer, or at the nearest place above it. @param {HTMLElement} form @param {string} pointer */

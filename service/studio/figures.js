@@ -1,5 +1,6 @@
 /** The numbers of a design: its metrics, its dimensions, and the checks that it has passed. */
 
+import * as api from "./api.js";
 import { el, shown, words } from "./dom.js";
 import { symbolOf } from "./units.js";
 
@@ -14,15 +15,24 @@ export function figures(design) {
   return all.sort(([a], [b]) => rank(a) - rank(b));
 }
 
-/** @param {any} value */
-export function text(value) {
-  return typeof value === "number" ? shown(value) : typeof value === "boolean" ? (value ? "yes" : "no") : words(String(value));
+/** @param {any} value @param {string} [unit] beside a number */
+export function text(value, unit = "") {
+  return typeof value === "number" ? beside(shown(value), unit) : typeof value === "boolean" ? (value ? "yes" : "no") : words(String(value));
+}
+
+/** The unit of a number of a design by its name; empty for a pure number. @param {string} name @param {any} problem */
+export function unitFor(name, problem) {
+  return symbolOf(api.measures(problem.kind)[name], problem);
+}
+
+/** @param {string} number @param {string} unit */
+function beside(number, unit) {
+  return `${number}${unit === "" || unit === "°" ? unit : ` ${unit}`}`;
 }
 
 /** A number of a check with the unit of what the check measures. @param {number} value @param {any} check @param {any} problem */
 export function amount(value, check, problem) {
-  const unit = symbolOf(check.dimension, problem);
-  return `${shown(value)}${unit === "" || unit === "°" ? unit : ` ${unit}`}`;
+  return beside(shown(value), symbolOf(check.dimension, problem));
 }
 
 /** @param {any} design @param {any} problem */
@@ -35,10 +45,11 @@ export function checks(design, problem) {
       el("span", { class: "hidden" }, check.passed ? " passed" : " failed")))));
 }
 
-/** @param {string} title @param {[string, any][]} rows */
-export function table(title, rows) {
+/** @param {string} title @param {[string, any][]} rows @param {any} [problem] whose units stand beside the numbers */
+export function table(title, rows, problem = null) {
+  const unit = (/** @type {string} */ name) => (problem ? unitFor(name, problem) : "");
   return el("section", {}, el("h4", {}, title), el("table", { class: "figures" }, el("tbody", {},
-    ...rows.map(([name, value]) => el("tr", {}, el("th", { scope: "row" }, words(name)), el("td", {}, text(value)))))));
+    ...rows.map(([name, value]) => el("tr", {}, el("th", { scope: "row" }, words(name)), el("td", {}, text(value, unit(name))))))));
 }
 
 /** What becomes of a design as a shop makes it: nothing where the problem does not ask. @param {any} design @returns {HTMLElement[]} */
@@ -56,19 +67,19 @@ export function made(design) {
   return [table("As it is made", rows.filter(([, value]) => value !== undefined && value !== null))];
 }
 
-/** The dimensions of a mechanism, as deep as they go; curves and skeletons are in the JSON. @param {any} design */
-export function dimensions(design) {
+/** The dimensions of a mechanism, as deep as they go; curves and skeletons are in the JSON. @param {any} design @param {any} problem */
+export function dimensions(design, problem) {
   /** @type {[string, any][]} */
   const rows = [];
-  const walk = (/** @type {string} */ name, /** @type {any} */ value) => {
+  const walk = (/** @type {string} */ name, /** @type {any} */ value, /** @type {string} */ unit) => {
     if (Array.isArray(value)) {
       if (!value.length) return;
-      if (value.length <= 4 && value.every((one) => typeof one === "number")) rows.push([name, value.map(shown).join(", ")]);
-      else if (value.length <= 8 && value.every((one) => typeof one === "object")) value.forEach((one, k) => walk(`${name} ${k + 1}`, one));
+      if (value.length <= 4 && value.every((one) => typeof one === "number")) rows.push([name, beside(value.map(shown).join(", "), unit)]);
+      else if (value.length <= 8 && value.every((one) => typeof one === "object")) value.forEach((one, k) => walk(`${name} ${k + 1}`, one, unit));
     } else if (value && typeof value === "object") {
-      for (const [inner, one] of Object.entries(value)) walk(name ? `${name} ${inner}` : inner, one);
-    } else if (value !== null) rows.push([name, value]);
+      for (const [inner, one] of Object.entries(value)) walk(name ? `${name} ${inner}` : inner, one, unitFor(inner, problem) || unit);
+    } else if (value !== null) rows.push([name, text(value, unit)]);
   };
-  for (const [name, value] of Object.entries(design.mechanism)) if (!["type", "skeleton", "profile", "pitch_curve", "program", "outer_wall"].includes(name)) walk(name, value);
+  for (const [name, value] of Object.entries(design.mechanism)) if (!["type", "skeleton", "profile", "pitch_curve", "program", "outer_wall"].includes(name)) walk(name, value, unitFor(name, problem));
   return table("Dimensions", rows);
 }

@@ -4,33 +4,31 @@ import { el, shown, svg } from "./dom.js";
 import { Player, between } from "./player.js";
 import { View } from "./view.js";
 
-const WIDTH = 640;
-const HEIGHT = 420;
-
 export class Flywheel {
-  /** @param {HTMLElement} place @param {any} design */
-  constructor(place, design) {
+  /** @param {import("./stage.js").Frame} frame @param {any} design */
+  constructor(frame, design) {
+    const [width, height] = frame.size();
     const { mechanism, course } = design;
     const { radius, inner_radius: inner } = mechanism;
     // Places of the player are equal times.
     this.angles = turned(course);
     this.speeds = inTime(course, this.angles, course.speed);
     this.torques = inTime(course, this.angles, course.torque);
-    this.view = new View([[-radius, -radius], [radius, radius]], WIDTH, HEIGHT, 16);
+    this.view = new View([[-radius, -radius], [radius, radius]], width, height, 40);
     this.middle = this.view.at(0, 0);
     const circle = (/** @type {number} */ far, /** @type {string} */ name) =>
       svg("circle", { class: name, cx: this.middle[0], cy: this.middle[1], r: this.view.scale * far });
     this.spoke = svg("path", { class: "spoke", d: `M${(this.view.scale * inner).toFixed(1)} 0H${(this.view.scale * radius).toFixed(1)}` });
-    this.picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": "The flywheel, turning" },
-      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
+    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": "The flywheel, turning" },
+      svg("rect", { class: "paper", width, height }),
       svg("g", { class: "wheel t0" }, circle(radius, "pitch"), inner > 0 && circle(inner, "pitch"), this.spoke,
         svg("circle", { class: "pin", cx: this.middle[0], cy: this.middle[1], r: 3.5 })));
     this.speed = el("dd", {});
     this.torque = el("dd", {});
     this.player = new Player({ count: course.angle.length, closed: true, label: "Shaft",
       reading: (at) => `${shown(Math.round(10 * Number(between(this.angles, at))) / 10)}°`, show: (at) => this.show(at) });
-    place.replaceChildren(el("div", { class: "stage" }, this.picture,
-      el("dl", { class: "facts speeds" }, el("dt", {}, "Speed, rev/min"), this.speed, el("dt", {}, "Torque"), this.torque)), this.player.row);
+    frame.fill({ picture: this.picture, clock: this.player.row,
+      beside: [el("dl", { class: "facts speeds" }, el("dt", {}, "Speed, rev/min"), this.speed, el("dt", {}, "Torque"), this.torque)] });
     this.player.begin();
   }
 

@@ -26,6 +26,9 @@ import { unitOf } from "./units.js";
 /** Fields of every problem that few people touch; they come last. */
 const LAST = ["length_unit", "rank_by", "max_designs", "include_failed", "seed"];
 
+/** Fewer fields than these that nobody has stated need not be folded away. */
+const FOLDED = 3;
+
 let ids = 0;
 
 /**
@@ -42,7 +45,7 @@ export function fill(form, root, problem, changed) {
   const order = [...must, ...may, ...LAST.filter((name) => names.includes(name))];
   const opened = [...form.querySelectorAll("details[open]")].map((one) => one.getAttribute("data-path"));
   const focused = form.contains(document.activeElement) ? document.activeElement?.getAttribute("data-path") : null;
-  form.replaceChildren(...controls(sheet, root, problem, "/problem", order).filter((one) => one !== null));
+  form.replaceChildren(...folded(sheet, root, problem, "/problem", order));
   for (const path of opened) form.querySelector(`details[data-path="${path}"]`)?.setAttribute("open", "");
   /** @type {HTMLElement | null} */ (focused && form.querySelector(`[data-path="${focused}"]`))?.focus();
 }
@@ -53,6 +56,22 @@ function controls(sheet, schema, value, path, order = Object.keys(schema.propert
     const required = schema.required?.includes(name) ?? false;
     return field(sheet, schema.properties[name], name, value, `${path}/${name}`, required);
   });
+}
+
+/**
+ * What is stated, and what must be; the rest is one click away.
+ * @param {Sheet} sheet @param {Schema} schema @param {any} value @param {string} path @param {string[]} [order]
+ * @returns {Node[]}
+ */
+function folded(sheet, schema, value, path, order = Object.keys(schema.properties)) {
+  const used = (/** @type {string} */ name) => schema.required?.includes(name)
+    || (value[name] !== undefined && value[name] !== null && !empty(value[name]));
+  const made = (/** @type {string[]} */ names) => /** @type {Node[]} */ (controls(sheet, schema, value, path, names).filter((one) => one !== null));
+  const [first, rest] = [made(order.filter(used)), made(order.filter((name) => !used(name)))];
+  if (rest.length < FOLDED) return [...first, ...rest];
+  const more = el("details", { class: "more", "data-path": `${path}/*`, onreveal: () => (more.open = true) },
+    el("summary", {}, `${path === "/problem" ? "More" : "More limits"} (${rest.length})`), el("div", { class: "fields" }, ...rest));
+  return [...first, more];
 }
 
 /**
@@ -107,7 +126,7 @@ function field(sheet, schema, name, owner, path, required) {
     case "object":
       return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () => {
         owner[name] ??= {};
-        return controls(sheet, what.options[0], owner[name], path);
+        return folded(sheet, what.options[0], owner[name], path);
       });
     case "union":
       return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () =>

@@ -3,12 +3,15 @@
 /** How many points a stroke becomes. */
 const POINTS = 24;
 
+/** Ends that lie nearer to each other than this share of the way are one: the curve is closed. */
+const CLOSING = 0.1;
+
 /** @typedef {[number, number]} Point */
 
 /**
  * Draw from where the pointer went down to where it is let go.
  * @param {PointerEvent} event @param {import("./view.js").View} view @param {SVGSVGElement} picture @param {SVGElement} pen
- * @param {(points: Point[]) => void} drawn
+ * @param {(points: Point[], closed: boolean) => void} drawn
  */
 export function stroke(event, view, picture, pen, drawn) {
   /** @type {Point[]} */
@@ -22,9 +25,18 @@ export function stroke(event, view, picture, pen, drawn) {
   picture.addEventListener("lostpointercapture", () => {
     picture.removeEventListener("pointermove", move);
     pen.removeAttribute("d");
-    const points = evenly(way, POINTS);
-    if (points.length >= 3) drawn(points.map(([x, y]) => [view.rounded(x), view.rounded(y)]));
+    const closed = meets(way);
+    // Round and back to the first point, which is stated once.
+    const points = closed ? evenly([...way, way[0]], POINTS + 1).slice(0, POINTS) : evenly(way, POINTS);
+    if (points.length >= 3) drawn(points.map(([x, y]) => [view.rounded(x), view.rounded(y)]), closed);
   }, { once: true });
+}
+
+/** Whether a way comes back to where it began. @param {Point[]} way */
+function meets(way) {
+  const far = (/** @type {Point} */ [x, y], /** @type {Point} */ [u, v]) => Math.hypot(u - x, v - y);
+  const length = way.slice(1).reduce((sum, point, k) => sum + far(way[k], point), 0);
+  return way.length > 3 && far(way[0], way[way.length - 1]) < CLOSING * length;
 }
 
 /** Points at equal distances along a way. @param {Point[]} way @param {number} count @returns {Point[]} */

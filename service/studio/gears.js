@@ -7,23 +7,22 @@ import { wheels } from "./trains.js";
 import { View } from "./view.js";
 import { drawn, place, radius } from "./wheels.js";
 
-const WIDTH = 640;
-const HEIGHT = 420;
-
 export class Gears {
-  /** @param {HTMLElement} place @param {any} design @param {any} motion @param {any} problem */
-  constructor(place, design, motion, problem) {
+  /** @param {import("./stage.js").Frame} frame @param {any} design @param {any} motion @param {any} problem */
+  constructor(frame, design, motion, problem) {
+    this.size = frame.size();
+    const [width, height] = this.size;
     this.design = design;
     this.problem = problem;
     this.motion = motion;
     this.gone = new AbortController();
-    this.picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": "The gears, turning" });
+    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": "The gears, turning" });
     this.facts = el("dl", { class: "facts speeds" });
     this.player = new Player({ count: motion.input_angle.length, closed: true, endless: true, label: "Input",
       reading: (at) => `${shown(Math.round(10 * this.degrees(at)) / 10)}°`, show: (at) => this.show(at) });
-    place.replaceChildren(el("div", { class: "stage" }, this.picture, el("div", { class: "beside" }, this.engaging(), this.facts)), this.player.row,
-      el("p", { class: "note" }, "Circles are pitch circles. Each gear turns as fast as the analysis says, one turn of the input in four seconds at speed 1."));
-    this.view = new View([], WIDTH, HEIGHT);
+    frame.fill({ picture: this.picture, clock: this.player.row, beside: [this.engaging(), this.facts, el("p", { class: "note" },
+      "Circles are pitch circles. Each gear turns as fast as the analysis says, one turn of the input in four seconds at speed 1.")] });
+    this.view = new View([], width, height);
     this.build();
     this.player.begin();
   }
@@ -36,14 +35,15 @@ export class Gears {
       const [x, y] = place(wheel, wheel.orbit ? (quarter * Math.PI) / 2 / wheel.orbit : 0);
       return /** @type {[number, number][]} */ ([[x - far, y - far], [x + far, y + far]]);
     }));
-    const view = new View(corners, WIDTH, HEIGHT, 16);
+    const [width, height] = this.size;
+    const view = new View(corners, width, height, 40);
     // Rings lie behind, and what is not engaged behind those.
     const order = [...listed].sort((one, other) => Number(other.internal ?? false) - Number(one.internal ?? false));
     this.drawings = order.map((wheel) => drawn(view, wheel));
     const arms = listed.filter((wheel) => wheel.orbit !== undefined && (wheel.centre[0] !== (wheel.axis?.[0] ?? 0) || wheel.centre[1]));
     this.arms = arms.map((wheel) => ({ wheel, line: svg("line", { class: "arm" }) }));
     this.view = view;
-    this.picture.replaceChildren(svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
+    this.picture.replaceChildren(svg("rect", { class: "paper", width, height }),
       ...this.drawings.map((one) => one.node), ...this.arms.map((one) => one.line));
     this.facts.replaceChildren(...this.speeds().flatMap(([name, speed]) => [el("dt", {}, name), el("dd", {}, speed)]));
   }

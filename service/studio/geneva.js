@@ -5,9 +5,6 @@ import { Player, between } from "./player.js";
 import { plots } from "./plots.js";
 import { View } from "./view.js";
 
-const WIDTH = 640;
-const HEIGHT = 420;
-
 /** Steps of a drawn arc. */
 const STEPS = 48;
 
@@ -17,8 +14,9 @@ const BESIDE = 2.4;
 /** @typedef {[number, number]} Point */
 
 export class Geneva {
-  /** @param {HTMLElement} place @param {any} design @param {any} motion */
-  constructor(place, design, motion) {
+  /** @param {import("./stage.js").Frame} frame @param {any} design @param {any} motion */
+  constructor(frame, design, motion) {
+    const [width, height] = frame.size();
     const { mechanism } = design;
     this.motion = motion;
     const external = mechanism.type === "geneva_external";
@@ -37,7 +35,7 @@ export class Geneva {
     this.link = mechanism.drag_link ?? null;
     this.centre = centre;
     const wide = this.link ? [[this.link.input_pivot[0] - this.link.input, -this.link.input], [this.link.input_pivot[0] + this.link.input, this.link.input]] : [];
-    const view = new View(/** @type {Point[]} */ ([[-outside, -outside], [outside, outside], [centre - far, -far], [centre + far, far], ...wide]), WIDTH, HEIGHT, 12);
+    const view = new View(/** @type {Point[]} */ ([[-outside, -outside], [outside, outside], [centre - far, -far], [centre + far, far], ...wide]), width, height, 40);
     this.view = view;
     this.bars = svg("path", { class: "link" });
     this.axes = [view.at(0, 0), view.at(centre, 0)];
@@ -48,8 +46,8 @@ export class Geneva {
         const [across, down] = view.at(x + centre, y);
         return svg("circle", { class: "pin", cx: across, cy: down, r: (view.scale * mechanism.roller_diameter) / 2 });
       }));
-    const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": "The Geneva drive, turning" },
-      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
+    const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": "The Geneva drive, turning" },
+      svg("rect", { class: "paper", width, height }),
       mechanism.ring_radius && svg("g", { class: "wheel t0" }, svg("circle", { class: "pitch", cx: u, cy: v, r: view.scale * mechanism.ring_radius })),
       svg("g", { class: "wheel t0" }, this.wheel), svg("g", { class: "wheel t1" }, this.crank),
       this.link && this.bars, ...this.axes.map(([cx, cy]) => svg("circle", { class: "pin", cx, cy, r: 3.5 })));
@@ -62,9 +60,9 @@ export class Geneva {
       { title: "Velocity v (rad by rad)", lines: { "": motion.omega } },
       { title: "Acceleration a (rad by rad²)", lines: { "": motion.alpha } },
     ], motion.input_angle, (at) => this.player.lead(at));
-    place.replaceChildren(el("div", { class: "stage" }, picture,
-      el("dl", { class: "facts speeds" }, el("dt", {}, "Wheel"), this.angle, el("dt", {}, "State"), this.state)),
-    this.player.row, el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure)));
+    frame.fill({ picture, clock: this.player.row,
+      beside: [el("dl", { class: "facts speeds" }, el("dt", {}, "Wheel"), this.angle, el("dt", {}, "State"), this.state)],
+      plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))] });
     this.player.begin();
   }
 

@@ -78,8 +78,20 @@ function path(problem) {
   return { handles: [...listed(problem.points, "points", "Point", false), ...chosenPivots(problem)],
     lines: () => [problem.points.map((/** @type {any} */ one) => [one.x, one.y])], word: "point", freehand: true,
     add: (x, y) => problem.points.push({ x, y }),
-    offers: pivots ? [{ text: "Leave the pivots open", make: () => (problem.fixed_pivots = null) }]
-      : [{ text: "Choose the fixed pivots", make: ([x, y], size) => (problem.fixed_pivots = { input: [x - 0.5 * size, y - 0.7 * size], output: [x + 0.5 * size, y - 0.7 * size] }) }] };
+    offers: [...(problem.closed && problem.method === "curve_match" ? [{ text: "Keep it open", make: () => opened(problem) }] : []), pivots ? { text: "Leave the pivots open", make: () => (problem.fixed_pivots = null) }
+      : { text: "Choose the fixed pivots", make: (/** @type {Point} */ [x, y], /** @type {number} */ size) => (problem.fixed_pivots = { input: [x - 0.5 * size, y - 0.7 * size], output: [x + 0.5 * size, y - 0.7 * size] }) }] };
+}
+
+/** A curve that is closed is matched as a whole; a curve has no timing. @param {any} problem */
+export function matched(problem) {
+  Object.assign(problem, { closed: true, method: "curve_match" });
+  delete problem.timing;
+}
+
+/** A curve that ends somewhere else than it begins. @param {any} problem */
+export function opened(problem) {
+  delete problem.closed;
+  if (problem.method === "curve_match") delete problem.method;
 }
 
 /** @param {any} problem @returns {Stated} */

@@ -12,8 +12,8 @@ import { RoomView } from "./room_view.js";
 import { Sweep, jointsAt, placeOf, rangeOf } from "./sweep.js";
 import { View } from "./view.js";
 
-const WIDTH = 640;
-const HEIGHT = 420;
+/** Height of the side view beneath a linkage in planes, with what stands below it, pixels. */
+const PLANES = 300;
 
 /** @typedef {[number, number]} Point */
 /** @typedef {{x: (number | null)[], y: (number | null)[]}} Track */
@@ -29,11 +29,14 @@ const HEIGHT = 420;
 
 export class Mover {
   /**
-   * @param {HTMLElement} place @param {any} design @param {any} motion @param {any} problem
+   * @param {import("./stage.js").Frame} frame @param {any} design @param {any} motion @param {any} problem
    * @param {any} [circuits] an analysis with `branches`, where there is one
    * @param {Point[]} [around] what else is to lie in the picture
    */
-  constructor(place, design, motion, problem, circuits, around = []) {
+  constructor(frame, design, motion, problem, circuits, around = []) {
+    this.frame = frame;
+    const layered = design.layout && problem.layout;
+    this.size = frame.size(layered ? PLANES : 0);
     this.motion = motion;
     this.skeleton = design.mechanism.skeleton;
     this.count = motion.input_angle.length;
@@ -42,7 +45,7 @@ export class Mover {
     this.room = new RoomView(problem, design.mechanism);
     const points = [...around, ...this.room.extent, ...Object.keys(motion.joints).flatMap((joint) => this.track(joint)), ...this.targets.map((one) => /** @type {Point} */ ([one.x, one.y])),
       ...others(circuits).flatMap((branch) => track(branch, name))];
-    this.view = new View(points, WIDTH, HEIGHT, 34);
+    this.view = new View(points, ...this.size, 44);
     const planes = design.layout?.planes ?? {};
     this.linkage = new Linkage(this.view, this.skeleton, { classes: Object.fromEntries(Object.entries(planes).map(([name, plane]) => [name, planeClass(Number(plane))])) });
     this.circuits = new Circuits(this.view, this.skeleton, circuits);
@@ -52,7 +55,7 @@ export class Mover {
     const range = rangeOf(motion, this.room.cycle ? null : design.metrics?.used_range ?? design.metrics?.used_stroke, closed);
     this.sweep = new Sweep(this.view, this.skeleton, this.room, (at) => jointsAt(motion, at), range, () => this.player.keep(this.sweep.on ? range : null));
     this.closed = closed;
-    this.planes = design.layout && problem.layout ? new Planes(this.view, design, problem, (input) => this.lead(input)) : null;
+    this.planes = layered ? new Planes(this.view, design, problem, (input) => this.lead(input)) : null;
     this.gauge = motion.transmission_angle?.some((/** @type {any} */ one) => one !== null)
       ? new Gauge("Transmission angle", motion.transmission_angle, {
         limit: problem.constraints?.min_transmission_angle, used: partly(design) ? design.metrics.min_transmission_angle : null }) : null;
@@ -60,7 +63,7 @@ export class Mover {
     this.marks = [];
     /** @type {Companion | null} */
     this.companion = null;
-    this.build(place, design, problem);
+    this.build(design, problem);
     this.player.begin();
   }
 
@@ -70,13 +73,14 @@ export class Mover {
     return x.map((/** @type {number} */ one, /** @type {number} */ k) => (one === null ? [NaN, NaN] : [one, y[k]]));
   }
 
-  /** @param {HTMLElement} place @param {any} design @param {any} problem */
-  build(place, design, problem) {
+  /** @param {any} design @param {any} problem */
+  build(design, problem) {
     const { view, skeleton } = this;
+    const [width, height] = this.size;
     const still = grounded(skeleton);
     const moving = drawn(skeleton).filter((name) => !still.includes(name));
-    this.picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": "The linkage in motion" },
-      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), this.sweep.node, this.room.draw(view), this.circuits.node,
+    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": "The linkage in motion" },
+      svg("rect", { class: "paper", width, height }), this.sweep.node, this.room.draw(view), this.circuits.node,
       ...moving.map((name) => svg("path", { class: name === "P" ? "curve" : "trail", d: view.path(this.track(name)) })),
       ...this.toggles(), ...this.targets.map((one, k) => this.target(one, k)), this.linkage.node);
     this.drags(still);
@@ -90,11 +94,10 @@ export class Mover {
     };
     const pick = el("select", { id: "part", onchange: () => choose(pick.value) },
       ...choices.map((part) => el("option", { value: part }, words(part))));
-    place.replaceChildren(
-      el("div", { class: "stage" }, this.picture, el("div", { class: "beside" }, this.gauge?.node, this.sweep.control, this.circuits.control)),
-      ...this.room.legend, this.player.row, ...(this.planes ? [this.planes.node] : []),
-      el("div", { class: "row" }, el("label", { for: "part" }, "Plots of"), pick,
-        el("span", { class: "note" }, "Rates are by the radian of the input; click in a plot to go there.")), box);
+    this.frame.fill({ picture: this.picture, clock: this.player.row, below: [this.planes?.node],
+      beside: [this.gauge?.node, this.sweep.control, this.circuits.control, ...this.room.legend],
+      plots: [el("div", { class: "row" }, el("label", { for: "part" }, "Plots of"), pick,
+        el("span", { class: "note" }, "Rates are by the radian of the input; click in a plot to go there.")), box] });
     if (choices.length) choose(choices[0]);
   }
 
@@ -176,8 +179,8 @@ export class Mover {
     this.companion = companion;
     if (companion) this.picture.append(companion.node);
     const more = companion?.beyond ?? 0;
-    const frame = { x: -more, y: -more, width: WIDTH + 2 * more, height: HEIGHT + 2 * more };
-    this.picture.setAttribute("viewBox", Object.values(frame).join(" "));
+    const frame = { x: -more, y: -more, width: this.size[0] + 2 * more, height: this.size[1] + 2 * more };
+    this.frame.zoom?.fit(frame);
     for (const [name, value] of Object.entries(frame)) this.picture.firstElementChild.setAttribute(name, String(value));
     this.planes?.widen(more);
     this.show(this.player.at);

@@ -38,12 +38,18 @@ export function plots(wanted, input, lead, unit = "°") {
     .map((one) => plot(one, input, lead, unit));
 }
 
-/** @param {Plotted} plotted @param {number[] | undefined} input @param {(at: number) => void} lead @param {string} unit */
-function plot({ title, lines, limit, used, gaps, least = 0 }, input, lead, unit) {
+/**
+ * @param {Plotted} plotted @param {number[] | undefined} input @param {(at: number) => void} lead @param {string} unit
+ * @param {boolean} [whole] whether peaks are shown whatever becomes of the rest
+ * @returns {{figure: HTMLElement, show: (at: number) => void}}
+ */
+function plot(plotted, input, lead, unit, whole = false) {
+  const { title, lines, limit, used, gaps, least = 0 } = plotted;
   const all = Object.values(lines);
   const known = /** @type {number[]} */ (all.flat().filter(Number.isFinite));
   const extremes = [known.reduce((a, b) => Math.min(a, b)), known.reduce((a, b) => Math.max(a, b))];
-  const telling = middle(known, extremes);
+  const telling = whole ? extremes : middle(known, extremes);
+  const cut = extremes.filter((one, k) => one !== telling[k]);
   let [low, high] = typeof limit === "number" ? [Math.min(telling[0], limit), Math.max(telling[1], limit)] : telling;
   const steady = high - low <= NOISE * Math.max(Math.abs(low), Math.abs(high), least);
   const range = steady ? Math.max(1, Math.abs(high)) : high - low;
@@ -79,7 +85,8 @@ function plot({ title, lines, limit, used, gaps, least = 0 }, input, lead, unit)
     typeof limit === "number" && svg("line", { class: "limit", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(limit), y2: y(limit) }),
     input && svg("text", { class: "tick", x: EDGE.left, y: HEIGHT - 5 }, `${Math.round(input[0])}${unit}`),
     input && svg("text", { class: "tick", x: WIDTH - EDGE.right, y: HEIGHT - 5, "text-anchor": "end" }, `${Math.round(input[last])}${unit}`),
-    ...all.map((series, k) => svg("path", { class: `series s${k}`, d: data(series) })), mark);
+    ...all.map((series, k) => svg("path", { class: `series s${k}`, d: data(series) })),
+    ...all.flatMap((series) => peaks(series, telling).map(([k, value]) => beyond(x(k), y(value), value > telling[1]))), mark);
   const follow = (/** @type {PointerEvent} */ event) => {
     const box = picture.getBoundingClientRect();
     const u = ((event.clientX - box.left) / box.width) * WIDTH;
@@ -93,12 +100,42 @@ function plot({ title, lines, limit, used, gaps, least = 0 }, input, lead, unit)
   });
   const caption = el("figcaption", {}, el("span", {}, title,
     ...(names.length > 1 ? names.flatMap((name, k) => [" ", el("span", { class: `key s${k}` }, name)]) : [])), reading);
-  const show = (/** @type {number} */ at) => {
+  let at = 0;
+  /** @type {((at: number) => void) | null} the plot in its other range, which has taken the place of this one */
+  let other = null;
+  const turn = () => {
+    const next = plot(plotted, input, lead, unit, !whole);
+    other = next.show;
+    figure.replaceChildren(...next.figure.childNodes);
+    other(at);
+  };
+  const button = (cut.length > 0 || whole) && el("button", { type: "button", class: "small cut", onclick: turn },
+    whole ? "Cut the peaks" : `${cut.length > 1 ? "Peaks" : "Peak"} ${cut.map((one) => brief(one)).join(" and ")} cut; show all`);
+  const figure = el("figure", { class: "plot" }, caption, picture, button);
+  const show = (/** @type {number} */ now) => {
+    at = now;
+    if (other) return other(now);
     mark.setAttribute("x1", String(x(at)));
     mark.setAttribute("x2", String(x(at)));
     reading.textContent = all.map((series) => brief(series[Math.round(at)], NOISE * range)).join(", ");
   };
-  return { figure: el("figure", { class: "plot" }, caption, picture), show };
+  return { figure, show };
+}
+
+/** The places at which a line leaves the range, and how far it goes there. @param {Series} series @param {number[]} range @returns {[number, number][]} */
+function peaks(series, [low, high]) {
+  const out = series.map((one) => one !== null && Number.isFinite(one) && (one < low || one > high));
+  return runs(out).map(([from, to]) => {
+    let at = from;
+    for (let k = from; k <= to; k++) if (Math.abs(Number(series[k])) > Math.abs(Number(series[at]))) at = k;
+    return [at, Number(series[at])];
+  });
+}
+
+/** A mark where a line goes on beyond the picture. @param {number} u @param {number} v @param {boolean} up */
+function beyond(u, v, up) {
+  const way = up ? 5 : -5;
+  return svg("path", { class: "beyond-mark", d: `M${u - 4} ${v}h8l-4 ${-way}Z` });
 }
 
 /** The range worth seeing: towards a toggle rates grow beyond all bounds, and would flatten what is between. @param {number[]} known @param {number[]} extremes */

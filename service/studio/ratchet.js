@@ -5,36 +5,35 @@ import { Player, between } from "./player.js";
 import { plots } from "./plots.js";
 import { View } from "./view.js";
 
-const WIDTH = 640;
-const HEIGHT = 420;
-
 /** @typedef {[number, number]} Point */
 
 export class Ratchet {
-  /** @param {HTMLElement} place @param {any} design @param {any} motion */
-  constructor(place, design, motion) {
+  /** @param {import("./stage.js").Frame} frame @param {any} design @param {any} motion */
+  constructor(frame, design, motion) {
+    const [width, height] = frame.size();
     const { mechanism } = design;
     this.motion = motion;
     const teeth = /** @type {Point[]} */ (mechanism.profile.x.map((/** @type {number} */ x, /** @type {number} */ k) => [x, mechanism.profile.y[k]]));
     const radius = mechanism.wheel_radius;
     const pivots = mechanism.pawls.map((/** @type {any} */ pawl) => pawl.pivot);
-    const view = new View([[-radius, -radius], [radius, radius], ...pivots], WIDTH, HEIGHT, 24);
+    const view = new View([[-radius, -radius], [radius, radius], ...pivots], width, height, 40);
     this.axis = view.at(0, 0);
     this.wheel = svg("path", { class: "pitch", d: `${view.path(teeth)}Z` });
     this.pawls = mechanism.pawls.map((/** @type {any} */ pawl) => {
       const [u, v] = view.at(pawl.pivot[0], pawl.pivot[1]);
       return { at: [u, v], bar: svg("path", { class: "link", d: view.path([pawl.pivot, over(pawl, mechanism.tooth_height), pawl.nose]) }) };
     });
-    const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": "The ratchet, turning" },
-      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), svg("g", { class: "wheel t0" }, this.wheel),
+    const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": "The ratchet, turning" },
+      svg("rect", { class: "paper", width, height }), svg("g", { class: "wheel t0" }, this.wheel),
       ...this.pawls.map((/** @type {any} */ pawl) => pawl.bar),
       ...[this.axis, ...this.pawls.map((/** @type {any} */ pawl) => pawl.at)].map(([cx, cy]) => svg("circle", { class: "pin", cx, cy, r: 3.5 })));
     this.player = new Player({ count: motion.input_angle.length, closed: true, label: "Wheel",
       reading: (at) => `${shown(Math.round(10 * Number(between(motion.input_angle, at))) / 10)}°`, show: (at) => this.show(at) });
     this.marks = plots([{ title: "Lift of pawls (°)", lines: Object.fromEntries(motion.pawls.map((/** @type {any} */ pawl, /** @type {number} */ k) => [motion.pawls.length > 1 ? `${k + 1}` : "", pawl.lift])) }],
       motion.input_angle, (at) => this.player.lead(at));
-    place.replaceChildren(el("div", { class: "stage" }, picture), this.player.row, el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure)),
-      el("p", { class: "note" }, "The wheel turns on; turning back it is held at the next stop."));
+    frame.fill({ picture, clock: this.player.row,
+      beside: [el("p", { class: "note" }, "The wheel turns on; turning back it is held at the next stop.")],
+      plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))] });
     this.player.begin();
   }
 

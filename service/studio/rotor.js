@@ -5,15 +5,14 @@ import { Player, between } from "./player.js";
 import { plots } from "./plots.js";
 import { symbolOf } from "./units.js";
 
-const WIDTH = 640;
-const HEIGHT = 320;
-
 /** Radius of a face as a share of the room that it has. */
 const RIM = 0.4;
 
 export class Rotor {
-  /** @param {HTMLElement} place @param {any} design @param {any} motion @param {any} problem */
-  constructor(place, design, motion, problem) {
+  /** @param {import("./stage.js").Frame} frame @param {any} design @param {any} motion @param {any} problem */
+  constructor(frame, design, motion, problem) {
+    this.size = frame.size();
+    const [width, height] = this.size;
     const { mechanism, metrics } = design;
     this.motion = motion;
     this.player = new Player({ count: motion.input_angle.length, closed: true, label: "Rotor",
@@ -22,19 +21,21 @@ export class Rotor {
     const names = ["Before", "After"];
     const facts = (metrics.bearings ?? []).flatMap((/** @type {any} */ bearing) => [bearing.before, bearing.after].flatMap((force, k) =>
       [el("dt", {}, `${names[k]}, bearing at ${shown(bearing.z)} ${problem.length_unit}`), el("dd", {}, `${shown(Number(force.toPrecision(4)))} ${symbolOf("force", problem)}`)]));
-    const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": "The planes of correction, turning with the rotor" },
-      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), ...this.faces.map((/** @type {any} */ one) => one.node));
+    const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": "The planes of correction, turning with the rotor" },
+      svg("rect", { class: "paper", width, height }), ...this.faces.map((/** @type {any} */ one) => one.node));
     const lines = Object.fromEntries(motion.bearings.map((/** @type {any} */ bearing, /** @type {number} */ n) => [`bearing ${n + 1}`, bearing.force.x]));
     this.marks = motion.bearings.length ? plots([{ title: "Force on the bearings at 1 rad/s, along x", lines, least: 1e-9 }], motion.input_angle, (at) => this.player.lead(at)) : [];
-    place.replaceChildren(el("div", { class: "stage" }, picture, el("div", { class: "beside" }, el("dl", { class: "facts" }, ...facts))), this.player.row,
-      el("p", { class: "note" }, "Filled: masses that are added. Open: masses that are taken away."), el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure)));
+    frame.fill({ picture, clock: this.player.row,
+      beside: [el("dl", { class: "facts" }, ...facts), el("p", { class: "note" }, "Filled: masses that are added. Open: masses that are taken away.")],
+      plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))] });
     this.player.begin();
   }
 
   /** @param {any} mechanism @param {number} plane */
   face(mechanism, plane) {
-    const room = WIDTH / mechanism.planes.length;
-    const [u, v, rim] = [room * (plane + 0.5), HEIGHT / 2, RIM * Math.min(room, HEIGHT)];
+    const [width, height] = this.size;
+    const room = width / mechanism.planes.length;
+    const [u, v, rim] = [room * (plane + 0.5), height / 2, RIM * Math.min(room, height)];
     const all = mechanism.corrections;
     const reach = Math.max(...all.map((/** @type {any} */ one) => one.radius ?? one.unbalance), 1e-300);
     const heaviest = Math.max(...all.map((/** @type {any} */ one) => one.unbalance), 1e-300);

@@ -4,12 +4,17 @@ import * as api from "./api.js";
 import * as answers from "./answers.js";
 import { Backdrop } from "./backdrop.js";
 import { CurveImport } from "./curve_import.js";
+import { Desk } from "./desk.js";
 import { byId, el } from "./dom.js";
 import * as faults from "./faults.js";
 import { fill } from "./form.js";
+import { Gallery } from "./gallery.js";
 import { History } from "./history.js";
+import { Keys, scrub, scrubTo, visible } from "./keys.js";
+import { Opening } from "./opening.js";
 import * as running from "./run.js";
 import { canvas } from "./targets.js";
+import { Undo } from "./undo.js";
 
 /** @type {api.Kind[]} */
 let kinds = [];
@@ -23,9 +28,23 @@ let posted = { id: "", problem: null };
 let answered = null;
 /** @type {CurveImport | undefined} */
 let imported;
+/** @type {Gallery | undefined} */
+let gallery;
 
 const fields = byId("fields");
 const text = byId("json-text");
+const desk = new Desk();
+/** What is shown until somebody states something. */
+const opening = new Opening(desk, "Hatch lid");
+const undo = new Undo((statement) => {
+  opening.leave();
+  if (statement.kind === problem.kind) {
+    problem = statement;
+    byId("example").value = "";
+    show();
+  } else begun(statement);
+  if (answered === null) desk.stage.show("state");
+}, byId("undo"), byId("redo"));
 
 const backdrop = new Backdrop(() => {
   if (kinds.length) show({ form: false, json: false });
@@ -53,12 +72,25 @@ function roomy() {
 function show({ form = true, sketch = true, json = true } = {}) {
   if (form) fill(fields, kind().schema, problem, (rebuilt) => edited({ form: rebuilt }));
   if (sketch) canvas(byId("sketch"), problem, roomy(), (rebuilt) => edited({ form: rebuilt, sketch: rebuilt }), backdrop);
+  if (sketch && !byId("sketch").childElementCount) outlined();
   if (json) {
     text.value = JSON.stringify(problem, null, 2);
     text.removeAttribute("aria-invalid");
     byId("json-error").replaceChildren();
   }
   compare();
+}
+
+/** What is not placed in the plane is shown as its example looks, so that the stage is not empty. */
+async function outlined() {
+  const { kind: of } = problem;
+  const place = el("div", { class: "said" }, el("p", { class: "note" },
+    "Nothing of this is placed in the plane: it is stated beside the stage. Solve shows it in motion."));
+  byId("sketch").replaceChildren(place);
+  // The example is chosen when its statement has been shown.
+  await Promise.resolve();
+  const picture = await gallery?.picture(`${of}-${byId("example").value || 0}`);
+  if (picture && problem.kind === of && place.isConnected) place.prepend(picture);
 }
 
 /** Say so where the answers that are shown are not those to the statement as it is now. */
@@ -77,11 +109,22 @@ function spelt(statement) {
 function edited(parts) {
   byId("example").value = "";
   show(parts);
+  undo.note(problem);
+  opening.leave();
+  if (answered === null) desk.stage.show("state");
 }
 
 /** Begin with another statement. @param {any} statement */
 function state(statement) {
+  opening.leave();
+  begun(statement);
+  desk.stage.show("state");
+}
+
+/** Have another statement in the form and on the canvas. @param {any} statement */
+function begun(statement) {
   problem = structuredClone(statement);
+  undo.note(problem, true);
   introduce();
   faults.clear(fields, byId("faults"));
   fields.replaceChildren();
@@ -93,7 +136,7 @@ function introduce() {
   byId("kind").value = problem.kind;
   const examples = kind().schema.examples ?? [kind().example];
   byId("example").replaceChildren(el("option", { value: "" }, "as edited"),
-    ...examples.map((/** @type {any} */ _, /** @type {number} */ n) => el("option", { value: n }, `Example ${n + 1}`)));
+    ...examples.map((/** @type {any} */ _, /** @type {number} */ n) => el("option", { value: n }, kind().examples[n].name)));
   byId("about").textContent = kind().description.split("\n\n")[0].replaceAll("\n", " ");
 }
 
@@ -110,25 +153,40 @@ function choices() {
     example.value = chosen;
   } });
   byId("choices").replaceChildren(
-    el("div", { class: "row" }, el("label", { for: "kind" }, "Kind"), pick, el("label", { for: "example" }, "Example"), example),
+    el("div", { class: "choices" }, el("label", { for: "kind" }, "Kind"), pick,
+      el("label", { for: "example" }, "Example"), example),
     el("p", { class: "note", id: "about" }));
 }
 
 async function solve() {
   const button = byId("solve");
   button.disabled = true;
+  busy(true);
   tell("");
   faults.clear(fields, byId("faults"));
   try {
     const statement = structuredClone(problem);
     const job = await api.solve(statement, byId("label").value || null);
     posted = { id: job.id, problem: statement };
+    desk.drawer.select("answers");
+    const note = el("p", { class: "note" }, "Designs stand here as soon as they are found.");
+    if (answered === null) byId("result").replaceChildren(note);
     location.hash = `job=${job.id}`;
   } catch (error) {
+    busy(false);
+    desk.drawer.select("task");
     if (error instanceof api.Refused) faults.tell(fields, byId("faults"), error);
     else tell(error);
   } finally {
     button.disabled = false;
+  }
+}
+
+/** An answer is awaited: what is shown of the one before is faint. @param {boolean} is */
+function busy(is) {
+  for (const place of [byId("answers"), byId("watch"), byId("numbers"), byId("beside")]) {
+    if (is) place.setAttribute("aria-busy", "true");
+    else place.removeAttribute("aria-busy");
   }
 }
 
@@ -138,7 +196,7 @@ async function restore() {
   if (!id) return;
   tell("");
   running.leave(byId("progress"));
-  answers.leave(byId("result"));
+  busy(true);
   try {
     let job = await api.job(id);
     if (posted.id !== id) state(job.problem);
@@ -148,12 +206,18 @@ async function restore() {
     if (["queued", "running"].includes(job.status)) {
       history.load().catch(tell);
       const ended = await running.run(byId("progress"), id);
-      if (!ended) return;
+      if (location.hash !== `#job=${id}`) return;
+      if (!ended) return busy(false);
       job = ended;
     }
-    answers.answer(byId("result"), job, state);
+    busy(false);
+    opening.leave();
+    answers.answer(byId("result"), desk, job, state);
+    // Where what had the focus is hidden now, the keys go on at the answers.
+    if (document.activeElement === document.body) byId("answers").focus({ preventScroll: true });
     history.load().catch(tell);
   } catch (error) {
+    busy(false);
     tell(error);
   }
 }
@@ -169,7 +233,13 @@ async function begin() {
   choices();
   imported ??= new CurveImport(byId("import"), backdrop, () => ({ problem, roomy: roomy() }), () => edited({}));
   history = new History(byId("jobs"), kinds);
-  state(kinds[0].example);
+  gallery = new Gallery(kinds, (example) => {
+    state(example.problem);
+    byId("example").value = String(example.n);
+    byId("label").value = example.name;
+    solve();
+  });
+  begun(kinds[0].example);
   byId("example").value = "0";
   history.load().catch(tell);
   await restore();
@@ -179,6 +249,46 @@ fields.addEventListener("submit", (/** @type {Event} */ event) => {
   event.preventDefault();
   solve();
 });
+/** Choose a design by its number, or one that many further. @param {number} number @param {number} [further] */
+function choose(number, further = 0) {
+  const cards = [...document.querySelectorAll(".card")];
+  const at = cards.findIndex((one) => one.getAttribute("aria-pressed") === "true");
+  /** @type {HTMLElement | undefined} */ (cards[further ? at + further : number - 1])?.click();
+}
+
+/** @param {string} name of a button on the board that is shown */
+const press = (name) => () => visible(`.board button[aria-label="${name}"]`)?.click();
+
+const keys = new Keys([
+  { keys: ["Ctrl+Enter"], shown: "Ctrl Enter", text: "Solve", everywhere: true, act: () => {
+    if (!byId("solve").disabled) solve();
+  } },
+  { keys: ["Ctrl+z"], shown: "Ctrl Z", text: "Undo", everywhere: true, act: () => undo.undo() },
+  { keys: ["Ctrl+Shift+z", "Ctrl+y"], shown: "Ctrl Shift Z", text: "Redo", everywhere: true, act: () => undo.redo() },
+  { keys: [" "], shown: "Space", text: "Play and pause", act: () => visible(".player button")?.click() },
+  { keys: ["ArrowLeft"], shown: "← or →", text: "One degree back or on; ten with Shift", act: () => scrub(-1) },
+  { keys: ["ArrowRight"], shown: "", text: "", act: () => scrub(1) },
+  { keys: ["Shift+ArrowLeft"], shown: "", text: "", act: () => scrub(-10) },
+  { keys: ["Shift+ArrowRight"], shown: "", text: "", act: () => scrub(10) },
+  { keys: ["Home"], shown: "Home or End", text: "Beginning and end of the motion", act: () => scrubTo(0) },
+  { keys: ["End"], shown: "", text: "", act: () => scrubTo(1) },
+  { keys: [..."123456789"], shown: "1 … 9", text: "Choose a design", act: (event) => choose(Number(event.key)) },
+  { keys: ["["], shown: "[ or ]", text: "The design before, the next one", act: () => choose(0, -1) },
+  { keys: ["]"], shown: "", text: "", act: () => choose(0, 1) },
+  { keys: ["+", "="], shown: "+ or −", text: "Nearer, farther", act: press("Nearer") },
+  { keys: ["-"], shown: "", text: "", act: press("Farther") },
+  { keys: ["f"], shown: "F", text: "Fit everything", act: press("Fit everything") },
+  { keys: ["s"], shown: "S or W", text: "The stage states, or watches", act: () => desk.stage.show("state") },
+  { keys: ["w"], shown: "", text: "", act: () => desk.stage.show("watch") },
+  { keys: ["n"], shown: "N", text: "Numbers", act: () => desk.drawer.press("numbers") },
+  { keys: ["p"], shown: "P", text: "Plots", act: () => desk.drawer.press("plots") },
+  { keys: ["e"], shown: "E", text: "Explore", act: () => desk.drawer.press("explore") },
+  { keys: ["g"], shown: "G", text: "Gallery", act: () => gallery?.open() },
+  { keys: ["?"], shown: "?", text: "These keys", act: () => keys.open() },
+  { keys: [], shown: "Esc", text: "Close what lies over the stage; put the pen away", act: () => {} },
+]);
+byId("gallery-open").addEventListener("click", () => gallery?.open());
+byId("keys-open").addEventListener("click", () => keys.open());
 text.addEventListener("input", () => {
   try {
     const stated = JSON.parse(text.value);
@@ -202,4 +312,5 @@ byId("key").querySelector("form").addEventListener("submit", (/** @type {Event} 
   begin();
 });
 window.addEventListener("hashchange", restore);
+if (!location.hash) opening.show();
 begin();

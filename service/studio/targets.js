@@ -3,15 +3,17 @@
 import { el, shown, svg } from "./dom.js";
 import { stroke } from "./freehand.js";
 import { grid } from "./grid.js";
-import { chosenPivots, stated } from "./handles.js";
+import { chosenPivots, matched, opened, stated } from "./handles.js";
 import { areas } from "./room.js";
 import { RoomEditor } from "./room_editor.js";
+import { roomOf } from "./stage.js";
 import { View } from "./view.js";
 
 /** @typedef {import("./handles.js").Handle} Handle */
 
-const WIDTH = 640;
-const HEIGHT = 380;
+/** Height of the tools below a canvas, pixels. */
+const TOOLS = 117;
+
 const ARM = 44;
 
 /** How much nearer or farther a press of a button takes the view. */
@@ -44,9 +46,13 @@ export function canvas(place, problem, roomy, changed, backdrop) {
   kept.set(place, memory);
   const graph = problem.kind === "function";
   const grip = place.contains(document.activeElement) ? document.activeElement?.getAttribute("data-grip") : null;
-  place.replaceChildren(...(found ? drawnPlane(place, problem, found, roomy && !graph, memory, changed, graph ? null : backdrop) : []),
+  const both = graph && roomy && found && (found.handles.length > 0 || found.add);
+  const [width, height] = roomOf(place, TOOLS);
+  /** @type {[number, number]} */
+  const size = [both ? width / 2 : width, height];
+  place.replaceChildren(...(found ? [drawnPlane(place, problem, found, roomy && !graph, memory, changed, graph ? null : backdrop, size)] : []),
     // The graph of a function is not the plane in which its linkage lies.
-    ...(graph && roomy ? drawnPlane(place, problem, bare(problem), true, memory, changed, backdrop) : []));
+    ...(graph && roomy ? [drawnPlane(place, problem, bare(problem), true, memory, changed, backdrop, size)] : []));
   if (grip) /** @type {SVGElement | null} */ (place.querySelector(`[data-grip="${CSS.escape(grip)}"]`))?.focus({ preventScroll: true });
 }
 
@@ -58,22 +64,24 @@ function bare(problem) {
 /**
  * A picture of a plane, and what is done in it.
  * @param {HTMLElement} place @param {any} problem @param {import("./handles.js").Stated} found @param {boolean} roomy @param {Kept} memory
- * @param {(rebuilt: boolean) => void} changed @param {import("./backdrop.js").Backdrop | null} backdrop
+ * @param {(rebuilt: boolean) => void} changed @param {import("./backdrop.js").Backdrop | null} backdrop @param {[number, number]} room pixels
+ * @returns {HTMLElement}
  */
-function drawnPlane(place, problem, { handles, lines, word, add, offers, freehand }, roomy, memory, changed, backdrop) {
+function drawnPlane(place, problem, { handles, lines, word, add, offers, freehand }, roomy, memory, changed, backdrop, room) {
   const corners = roomy ? areas(problem.space).flatMap((area) => area.extent) : [];
   const points = [...handles.flatMap(({ get, name }) => (name === "ground" ? [] : [get()])), ...corners];
-  const view = roomy && memory.view && (memory.led || memory.view.suits(points)) ? memory.view : new View(points, WIDTH, HEIGHT, corners.length ? 40 : 80);
+  const view = roomy && memory.view && (memory.led || memory.view.suits(points)) ? memory.view : new View(points, ...room, corners.length ? 40 : 0.2 * Math.min(...room));
+  const { width, height } = view;
   if (roomy) memory.view = view;
   const led = (/** @type {boolean} */ somewhere) => {
     Object.assign(memory, { view: somewhere ? view : null, led: somewhere });
     if (backdrop) canvas(place, problem, roomy, changed, backdrop);
   };
-  const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "group", "aria-label": "The problem in the plane" });
+  const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "group", "aria-label": "The problem in the plane" });
   const trail = svg("path", { class: "trail" });
   const pen = svg("path", { class: "pen" });
-  const room = roomy ? new RoomEditor(picture, view, problem, memory.room, changed) : null;
-  picture.append(svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), ...(backdrop?.drawn(view, picture) ?? []), ...grid(view), ...(room ? [room.node] : []), trail, pen);
+  const areasOf = roomy ? new RoomEditor(picture, view, problem, memory.room, changed) : null;
+  picture.append(svg("rect", { class: "paper", width, height }), ...(backdrop?.drawn(view, picture) ?? []), ...grid(view), ...(areasOf ? [areasOf.node] : []), trail, pen);
   const redraw = () => trail.setAttribute("d", lines().map((/** @type {any} */ line) => view.path(line)).join(""));
   const drawn = handles.map((handle, k) => held(handle, `${word ?? "handle"}${k}`, view, picture, () => drawn.forEach((one) => one.show()), redraw, changed));
   picture.append(...drawn.map((one) => one.group));
@@ -92,25 +100,27 @@ function drawnPlane(place, problem, { handles, lines, word, add, offers, freehan
   }
   picture.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
     if (mode.checked) {
-      stroke(event, view, picture, pen, (way) => {
+      stroke(event, view, picture, pen, (way, closed) => {
         problem.points = way.map(([x, y]) => ({ x, y }));
+        if (closed) matched(problem);
+        else opened(problem);
         changed(true);
       });
     } else if (roomy) pan(event, view, picture, () => led(true));
   });
   const last = handles.at(-1)?.get() ?? [0, 0];
-  const size = (0.4 * WIDTH) / view.scale;
-  const how = `Drag to move${handles.some((one) => one.turn) ? ", drag the end to turn" : ""}${add ? "; double-click adds one" : ""}.`;
+  const size = (0.4 * Math.min(width, 640)) / view.scale;
+  const how = `${freehand && problem.closed ? "Closed: the whole curve is matched. " : ""}Drag to move${handles.some((one) => one.turn) ? ", drag the end to turn" : ""}${add ? "; double-click adds one" : ""}.`;
   // An empty plane says nothing: what may be placed in it stands below.
   picture.toggleAttribute("hidden", !handles.length && !add && !roomy);
-  return [picture, el("div", { class: "row" },
+  return el("div", { class: "plane" }, el("div", { class: "stage" }, picture), el("div", { class: "bar" }, el("div", { class: "row" },
     add && el("button", { type: "button", class: "small", onclick: () => put([last[0] + 40 / view.scale, last[1]]) }, `Add a ${word}`),
     ...offers.map(({ text, make }) => el("button", { type: "button", class: "small", onclick: () => {
       make([view.rounded(view.middle[0]), view.rounded(view.middle[1])], view.rounded(size));
       changed(true);
     } }, text)),
     freehand && el("label", { class: "flag", for: "freehand" }, mode, "Draw freehand"),
-    roomy && zooming(view, led), handles.length > 0 && el("span", { class: "note" }, how)), ...(room ? [room.tools] : [])];
+    roomy && zooming(view, led), handles.length > 0 && el("span", { class: "note" }, how)), areasOf?.tools));
 }
 
 /** Buttons that take the view nearer or farther, and back to all there is. @param {View} view @param {(somewhere: boolean) => void} led */
@@ -133,7 +143,7 @@ function pan(event, view, picture, seen) {
   picture.setPointerCapture(event.pointerId);
   picture.addEventListener("pointermove", (now) => {
     by = [(now.clientX - clientX) / size, (now.clientY - clientY) / size];
-    if (Math.hypot(...by) >= CLICK) picture.setAttribute("viewBox", `${-by[0]} ${-by[1]} ${WIDTH} ${HEIGHT}`);
+    if (Math.hypot(...by) >= CLICK) picture.setAttribute("viewBox", `${-by[0]} ${-by[1]} ${view.width} ${view.height}`);
   }, { signal: gone.signal });
   picture.addEventListener("lostpointercapture", () => {
     gone.abort();

@@ -9,15 +9,15 @@ const HEIGHT = 84;
 /** @typedef {[number, number]} Point */
 /** @typedef {{centre: Point, radius: number}} Circle */
 
-/** @param {any} design */
-export function thumbnail(design) {
-  const drawing = drawn(design);
+/** @param {any} design @param {Point[]} [curve] the path of a linkage's telling point */
+export function thumbnail(design, curve = []) {
+  const drawing = drawn(design, curve);
   return drawing && svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "thumbnail", "aria-hidden": "true" }, ...drawing);
 }
 
-/** @param {any} design @returns {Element[] | null} */
-function drawn({ mechanism, metrics }) {
-  if (mechanism.skeleton?.joints) return linkage(mechanism.skeleton);
+/** @param {any} design @param {Point[]} curve @returns {Element[] | null} */
+function drawn({ mechanism, metrics }, curve) {
+  if (mechanism.skeleton?.joints) return linkage(mechanism.skeleton, curve);
   if (mechanism.profile) return outlines([mechanism.profile, mechanism.outer_wall, mechanism.second?.profile].filter(Boolean), true);
   if (mechanism.upper_wall) return outlines([mechanism.lower_wall, mechanism.upper_wall], false);
   const listed = circles(mechanism, metrics);
@@ -29,11 +29,12 @@ function drawn({ mechanism, metrics }) {
   });
 }
 
-/** In its first position. @param {any} skeleton */
-function linkage(skeleton) {
-  const view = new View(Object.values(skeleton.joints), WIDTH, HEIGHT, 12);
-  return [...skeleton.links.filter((/** @type {any} */ link) => link.name !== "ground").map((/** @type {any} */ link) =>
-    svg("path", { class: "link", d: `${view.path(link.joints.map((/** @type {string} */ name) => skeleton.joints[name]))}${link.joints.length > 2 ? "Z" : ""}` })),
+/** In its first position. @param {any} skeleton @param {Point[]} curve */
+function linkage(skeleton, curve) {
+  const view = new View([...Object.values(skeleton.joints), ...curve], WIDTH, HEIGHT, curve.length ? 6 : 12);
+  const path = view.path(curve);
+  return [...(path ? [svg("path", { class: "curve", d: path })] : []), ...skeleton.links.filter((/** @type {any} */ link) => link.name !== "ground").map((/** @type {any} */ link) =>
+    svg("path", { class: `link ${link.name === skeleton.input_link ? "input" : ""}`, d: `${view.path(link.joints.map((/** @type {string} */ name) => skeleton.joints[name]))}${link.joints.length > 2 ? "Z" : ""}` })),
   ...Object.values(skeleton.joints).map((/** @type {any} */ [x, y]) => {
     const [u, v] = view.at(x, y);
     return svg("circle", { class: "pin", r: 2.5, cx: u, cy: v });

@@ -3,8 +3,9 @@
 /** @param {any} problem */
 function symbols(problem) {
   const length = problem.length_unit ?? "mm";
-  const arm = String(problem.follower?.type ?? "").startsWith("oscillating");
+  const arm = problem.kind === "indexing" || String(problem.follower?.type ?? "").startsWith("oscillating");
   const slides = problem.mechanism === "slider_crank" || problem.output?.type === "slider" || (problem.stroke ?? null) !== null;
+  const way = slides ? length : "rad";
   const [lift, rate] = arm ? ["°", "rad"] : [length, length];
   const inches = length === "in";
   // Masses and loads come with units of their own, but for those of cams.
@@ -18,7 +19,9 @@ function symbols(problem) {
   return /** @type {Record<string, string>} */ ({
     length, area: `${length}²`, "inverse length": `1/${length}`, angle: "°",
     displacement: lift, velocity: `${rate}/rad`, acceleration: `${rate}/rad²`, jerk: `${rate}/rad³`,
-    output: slides ? length : "°", "length per radian": `${length}/rad`,
+    "acceleration squared": `${rate}²/rad³`, output: slides ? length : "°", "output per radian": `${way}/rad`,
+    "output per radian squared": `${way}/rad²`, "length per radian": `${length}/rad`, "angle per length": `°/${length}`,
+    "radian frequency": "rad/s",
     "rotational speed": "1/min", percent: "%", "balance grade": "mm/s", ...forces,
   });
 }

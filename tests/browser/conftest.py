@@ -19,6 +19,8 @@ FOURBAR = {
     }
 }
 
+ANSWERED = "#answers:not([aria-busy]) .known"
+
 REPORT_VIOLATIONS = """
 addEventListener("securitypolicyviolation", (event) =>
   console.error(`policy violated: ${event.violatedDirective} ${event.blockedURI}`));
@@ -90,7 +92,11 @@ class Studio:
 
     def solve(self):
         self.page.click("#solve")
-        self.page.wait_for_selector(".card", timeout=200_000)
+        self.answered()
+
+    def answered(self):
+        """Wait for the designs of the statement that was sent last."""
+        self.page.wait_for_selector(ANSWERED, timeout=200_000)
 
     def screen(self, name, page=None):
         SCREENS.mkdir(parents=True, exist_ok=True)

@@ -4,7 +4,7 @@ import pytest
 
 from synthesis.registry import examples
 from tests.browser.test_form import OPEN_ALL
-from tests.browser.test_studio import PLAIN, drawn, state
+from tests.browser.test_studio import PLAIN, drawn, state, unfold
 from tests.service.running import ROOT, until
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
@@ -17,6 +17,8 @@ CASES = {
     "cam": examples("cam")[0],
     "gear_train": examples("gear_train")[0],
 }
+
+TABS = ("task", "answers", "explore", "files", "jobs", "plots", "numbers")
 
 RUN = """async () => {
   const found = await axe.run(document, {resultTypes: ["violations"]});
@@ -47,17 +49,27 @@ def test_no_serious_violation(open_studio, kind):
     studio.solve()
     until(lambda: drawn(page), 90, "the drawing")
     page.evaluate(OPEN_ALL)
-    page.locator("details:not(#fields details)").evaluate_all("all => all.forEach(one => { one.open = true; })")
+    page.locator("details:not(#fields details, #key)").evaluate_all("all => all.forEach(one => { one.open = true; })")
     for scheme in ("light", "dark"):
         for width, height in ((1360, 1000), (390, 844)):
             page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
             page.set_viewport_size({"width": width, "height": height})
-            assert serious(page) == [], (scheme, width)
+            tabs = [one for one in TABS if width < 860 or one not in ("task", "answers")]
+            for tab in tabs:
+                page.click(f"#tab-{tab}")
+                assert serious(page) == [], (scheme, width, tab)
             studio.screen(f"{kind}-{scheme}-{width}")
+            page.click("#mode-state")
+            assert serious(page) == [], (scheme, width, "state")
+            page.click("#mode-watch")
+            page.click("#key summary")
+            assert serious(page) == [], (scheme, width, "key")
+            page.click("#key summary")
 
 
 def test_a_refused_statement_and_a_report_have_no_serious_violation(studio):
     page = studio.page
+    unfold(page)
     page.fill('[data-path="/problem/max_designs"]', "0")
     page.click("#solve")
     page.wait_for_selector('[data-path="/problem/max_designs"][aria-invalid="true"]')

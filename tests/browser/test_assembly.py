@@ -34,6 +34,7 @@ def opened(studio, problem=MOTION):
     page.wait_for_selector("#scrub")
     page.focus("#scrub")
     page.keyboard.press("Home")
+    page.click("#tab-parts")
     page.locator("#assembly > summary").click()
     page.wait_for_selector("#assembly .parts li", timeout=120_000)
     return page

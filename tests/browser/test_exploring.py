@@ -23,7 +23,7 @@ def test_a_pivot_is_drawn_along_burmesters_curve_and_solved(studio, server):
     page = studio.page
     solved(studio, FOUR)
     first = page.url
-    page.click("#burmester summary")
+    page.click("#tab-curves")
     page.wait_for_selector("#burmester .circle-points")
     curve = page.locator("#burmester .circle-points").evaluate_all(
         "paths => paths.map(one => one.getAttribute('d')).join('')"
@@ -40,7 +40,7 @@ def test_a_pivot_is_drawn_along_burmesters_curve_and_solved(studio, server):
     assert min(math.dist(after, place) for place in places) < 0.2, "it stays on the curve"
     until(lambda: "Solved" in page.inner_text("#burmester [role=status]"), 60, "the linkage on these pivots")
     until(lambda: page.locator(".live .link").first.get_attribute("d") != drawn, 30, "the new linkage")
-    assert "On these pivots: Fourbar" in page.inner_text("#design h3")
+    assert "On these pivots: Fourbar" in page.text_content("#design-title")
     assert page.locator(".checks li").count() >= 4
     studio.screen("burmester")
     page.get_by_role("button", name="Keep this linkage").click()
@@ -56,7 +56,7 @@ def test_a_pivot_is_drawn_along_burmesters_curve_and_solved(studio, server):
 def test_a_pivot_is_dragged_along_burmesters_curve(studio):
     page = studio.page
     solved(studio, FOUR)
-    page.click("#burmester summary")
+    page.click("#tab-curves")
     page.wait_for_selector("#burmester .dot.centre")
     before = at(page, "#burmester .dot.centre")
     moving = at(page, "#burmester .dot.circle")
@@ -71,8 +71,8 @@ def test_a_pivot_is_dragged_along_burmesters_curve(studio):
         60,
         "an answer",
     )
-    page.click("#burmester summary")
-    until(lambda: page.inner_text("#design h3") == "Design 1: Fourbar", 30, "the design again")
+    page.click("#tab-numbers")
+    until(lambda: page.inner_text("#design-title") == "Design 1: Fourbar", 30, "the design again")
 
 
 @pytest.mark.parametrize(
@@ -85,19 +85,19 @@ def test_a_pivot_is_dragged_along_burmesters_curve(studio):
 def test_the_pins_of_any_linkage_are_dragged(studio, kind, n, pin):
     page = studio.page
     solved(studio, examples(kind)[n])
-    page.click("#explore summary")
-    until(lambda: page.get_attribute("#explore .curve", "d"), 30, "the curve")
-    curve, angle = page.get_attribute("#explore .curve", "d"), page.inner_text("#explore .facts")
-    page.locator(f"#explore .target:has(text:text-is('{pin}'))").focus()
+    page.click("#tab-explore")
+    until(lambda: page.get_attribute("#exploring .curve", "d"), 30, "the curve")
+    curve, angle = page.get_attribute("#exploring .curve", "d"), page.inner_text("#explore .facts")
+    page.locator(f"#exploring .target:has(text:text-is('{pin}'))").focus()
     page.keyboard.press("ArrowUp")
     page.keyboard.press("ArrowRight")
     until(
-        lambda: page.inner_text("#explore .facts") != angle or page.get_attribute("#explore .curve", "d") != curve,
+        lambda: page.inner_text("#explore .facts") != angle or page.get_attribute("#exploring .curve", "d") != curve,
         30,
         "another answer",
     )
     assert "Refused" not in page.inner_text("#explore .facts")
-    ghost = page.locator("#explore .faint .link").last
+    ghost = page.locator("#exploring .faint .link").last
     before = ghost.get_attribute("d")
     page.focus("#explore-scrub")
     for _ in range(3):
@@ -109,11 +109,11 @@ def test_the_pins_of_any_linkage_are_dragged(studio, kind, n, pin):
 def test_a_statement_begins_with_what_was_found(studio):
     page = studio.page
     solved(studio, {**examples("motion")[0], "constraints": {"full_rotation": True}})
-    page.click("#explore summary")
+    page.click("#tab-explore")
     page.wait_for_selector("#explore button:has-text('positions')")
     assert page.locator("#explore .checks li").count() == 2
     given = stated(page)["positions"]
-    drag(page, "#explore .target:has(text:text-is('B')) .dot", (12, -9))
+    drag(page, "#exploring .target:has(text:text-is('B')) .dot", (12, -9))
     page.get_by_role("button", name="the positions that it takes").click()
     taken = stated(page)["positions"]
     assert len(taken) == len(given)
@@ -131,12 +131,12 @@ def test_what_cannot_be_assembled_is_said(studio):
     """A link of no length drives nothing: the reason stands there, and the page goes on."""
     page = studio.page
     solved(studio, examples("quick_return")[0])
-    page.click("#explore summary")
-    until(lambda: page.get_attribute("#explore .curve", "d"), 30, "the curve")
-    pivot, pin = "#explore .target:has(text:text-is('O2')) .dot", "#explore .target:has(text:text-is('A')) .dot"
+    page.click("#tab-explore")
+    until(lambda: page.get_attribute("#exploring .curve", "d"), 30, "the curve")
+    pivot, pin = "#exploring .target:has(text:text-is('O2')) .dot", "#exploring .target:has(text:text-is('A')) .dot"
     (u, v), (x, y) = at(page, pivot), at(page, pin)
-    box = page.locator("#explore .canvas").bounding_box()
-    scale = box["width"] / 640
+    box = page.locator("#exploring .canvas").bounding_box()
+    scale = box["width"] / float(page.get_attribute("#exploring .canvas", "viewBox").split()[2])
     drag(page, pin, ((u - x) * scale, (v - y) * scale))
     angle = page.locator("#explore dd")
     until(lambda: angle.count() > 0, 30, "an answer")

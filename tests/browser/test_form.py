@@ -144,43 +144,48 @@ def test_the_page_is_worked_by_keys_alone(studio):
     state(page, {**PLAIN, "input_side": {"fixed_pivot": [0.0, -20.0], "rotations": [None]}, "max_designs": 4})
     page.click("h1")
 
-    def tab_to(condition, most=120):
+    def tab_to(condition, most=120, key="Tab"):
         for _ in range(most):
-            page.keyboard.press("Tab")
+            page.keyboard.press(key)
             assert page.evaluate("document.activeElement !== document.body"), "the way of the keys ends"
             if page.evaluate(f"(one => {condition})(document.activeElement)"):
                 return
         raise AssertionError(condition)
 
     tab_to("one.id === 'kind'")
-    tab_to("one.matches('.target')")
-    page.keyboard.press("ArrowRight")
-    assert stated(page)["positions"][0]["x"] > 0.0
     tab_to("one.dataset.path === '/problem/positions/1/angle'")
     page.keyboard.press("Control+A")
     page.keyboard.type("28")
     assert stated(page)["positions"][1]["angle"] == 28
-    page.keyboard.press("Enter")
-    page.wait_for_selector(".card", timeout=200_000)
+    tab_to("one.matches('.target')")
+    page.keyboard.press("ArrowRight")
+    assert stated(page)["positions"][0]["x"] > 0.0
+    page.keyboard.press("Control+Enter")
+    studio.answered()
     cards = page.locator(".card")
     assert cards.count() > 1
     tab_to("one.matches('.card')")
     page.keyboard.press("Home")
     page.keyboard.press("ArrowRight")
     assert cards.nth(1).evaluate("one => one === document.activeElement")
-    page.wait_for_selector("#design h3:has-text('Design 2')")
+    page.wait_for_selector("#design-title:has-text('Design 2')")
     assert cards.nth(1).get_attribute("aria-pressed") == "true"
     assert cards.nth(0).get_attribute("aria-pressed") == "false"
     page.wait_for_selector(".moving svg")
-    tab_to("one.id === 'scrub'")
+    tab_to("one.id === 'scrub'", key="Shift+Tab")
     before = page.input_value("#scrub")
     page.keyboard.press("ArrowRight")
     page.keyboard.press("ArrowRight")
     assert page.input_value("#scrub") != before
+    tab_to("one.matches('[role=tab]')")
+    for _ in range(3):
+        page.keyboard.press("ArrowRight")
     tab_to("one.matches('#downloads button') && one.textContent === 'SVG'")
     with page.expect_download() as waiting:
         page.keyboard.press("Enter")
     assert re.fullmatch(r"motion-\d+\.svg", waiting.value.suggested_filename)
+    tab_to("one.matches('[role=tab]')", key="Shift+Tab")
+    page.keyboard.press("End")
     tab_to("one.matches('#job-words')")
     page.keyboard.type("succeeded")
     assert page.locator(".jobs li:visible").count() > 0

@@ -28,6 +28,7 @@ def test_a_key_opens_the_service(chromium, tmp_path):
         studio.solve()
         page.wait_for_selector(".moving .live .link")
         until(lambda: drawn(page), 30, "the drawing")
+        page.click("#tab-files")
         with page.expect_download():
             page.get_by_role("button", name="DXF", exact=True).click()
         assert key not in page.content()

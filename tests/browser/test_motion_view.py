@@ -65,14 +65,21 @@ def test_nothing_below_moves_while_the_motion_plays(studio, problem, width):
     solved(studio, problem)
     until(lambda: test_studio.drawn(page), 90, "the drawing")
     places = page.evaluate("""async () => {
-      const places = new Set();
-      for (let left = 240; left > 0; left--) {
-        await new Promise(requestAnimationFrame);
-        places.add(document.querySelector("#downloads").getBoundingClientRect().top + scrollY);
+      const below = ["#scrub", "#solve", ".player button", ".columns", ".checks li:last-child", ".plot:last-child svg"];
+      const places = Object.fromEntries(below.map(one => [one, new Set()]));
+      for (const tab of ["numbers", "plots"]) {
+        document.querySelector(`#tab-${tab}`).click();
+        for (let left = 120; left > 0; left--) {
+          await new Promise(requestAnimationFrame);
+          for (const one of below) {
+            const found = [...document.querySelectorAll(one)].at(-1).getBoundingClientRect();
+            if (found.height) places[one].add(`${found.left} ${found.top}`);
+          }
+        }
       }
-      return [...places];
+      return Object.fromEntries(below.map(one => [one, [...places[one]]]));
     }""")
-    assert len(places) == 1, places
+    assert all(len(found) == 1 for found in places.values()), places
 
 
 def test_a_rocker_shows_its_toggles(studio, server):
@@ -96,6 +103,7 @@ def test_the_gauge_and_the_plots_say_what_the_analysis_says(studio, server):
     assert number(page.inner_text(".gauge .reading")) == pytest.approx(expected, abs=0.05)
     plotted = page.locator(".plot", has_text="Transmission angle").locator(".reading")
     assert number(plotted.inner_text()) == pytest.approx(expected, rel=5e-3)
+    page.click("#tab-plots")
     page.select_option("#part", "link output")
     for title, series in (("Angle of output", "angle"), ("Angular velocity", "omega"), ("Angular accel", "alpha")):
         reading = page.locator(".plot", has_text=title).locator(".reading").inner_text()
@@ -105,6 +113,7 @@ def test_the_gauge_and_the_plots_say_what_the_analysis_says(studio, server):
 def test_a_click_in_a_plot_leads_the_motion(studio):
     page = studio.page
     solved(studio, PLAIN)
+    page.click("#tab-plots")
     picture = page.locator(".plot svg").nth(1)
     picture.scroll_into_view_if_needed()
     box = picture.bounding_box()
@@ -115,6 +124,38 @@ def test_a_click_in_a_plot_leads_the_motion(studio):
     marks = page.locator(".plot .mark").evaluate_all("marks => marks.map(one => one.getAttribute('x1'))")
     assert len(set(marks)) == 1, "all plots stand at the same input"
     assert page.inner_text(".player button") == "Play", "it stands still"
+
+
+def test_a_peak_that_is_cut_is_marked_and_told(studio, server):
+    """Towards a toggle rates grow beyond all bounds."""
+    page = studio.page
+    solved(studio, examples("function")[1])
+    page.click("#tab-plots")
+    page.select_option("#part", "link output")
+    motion = motion_of(studio, server)
+    known = [one for one in motion["links"]["output"]["alpha"] if one is not None]
+    plot = page.locator(".plot", has_text="Angular accel")
+    button = plot.locator(".cut")
+    told = [number(one) for one in re.findall(r"−?[\d.]+", button.inner_text())]
+    assert told
+    for value in told:
+        assert min(abs(value / extreme - 1.0) for extreme in (min(known), max(known))) < 6e-3
+    assert plot.locator(".beyond-mark").count() >= len(told)
+    ticks = [number(one) for one in plot.locator(".tick").all_text_contents()[:2]]
+    assert max(map(abs, ticks)) < max(map(abs, known))
+    page.focus("#scrub")
+    page.keyboard.press("PageUp")
+    reading = plot.locator(".reading").inner_text()
+    button.click()
+    ticks = [number(one) for one in plot.locator(".tick").all_text_contents()[:2]]
+    assert ticks == pytest.approx([min(known), max(known)], rel=6e-3)
+    assert plot.locator(".beyond-mark").count() == 0
+    assert plot.locator(".reading").inner_text() == reading
+    before = plot.locator(".mark").get_attribute("x1")
+    page.keyboard.press("Escape")
+    page.focus("#scrub")
+    page.keyboard.press("PageUp")
+    assert plot.locator(".mark").get_attribute("x1") != before, "it goes on with the motion"
 
 
 @pytest.mark.parametrize(
@@ -190,13 +231,14 @@ def test_every_number_beside_a_cognate_is_the_cognates_own(studio, server):
     assert page.locator(".drawing img").count() == 0
     assert f"{cognate['min_transmission_angle']:.4g}"[:4] in page.inner_text("#design table.figures >> nth=0")
     page.get_by_label("Right cognate").check()
-    page.locator("#explore summary").click()
+    page.click("#tab-explore")
     facts = page.locator("#explore .facts")
     right = next(each for each in design["cognates"] if each["side"] == "right")
     whole = least_transmission(right["mechanism"]["links"])
     until(lambda: re.search(r"Least transmission angle\s+[\d.]+°", facts.inner_text()), what="the explorer's answer")
     told = float(re.search(r"Least transmission angle\s+([\d.]+)°", facts.inner_text()).group(1))
     assert told == pytest.approx(whole, abs=0.1)
+    page.click("#tab-numbers")
     page.check("#cognate-0")
     until(lambda: f"least {own:g}°" in gauge(), what="the design's angle again")
     assert page.locator("#design .checks li").count() == checked

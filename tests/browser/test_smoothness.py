@@ -53,7 +53,7 @@ def test_two_hundred_designs_are_shown_and_one_of_them_moves_smoothly(own_studio
     last = page.locator(".card").last
     last.scroll_into_view_if_needed()
     last.click()
-    page.wait_for_selector("#design h3:has-text('Design 200')")
+    page.wait_for_selector("#design-title:has-text('Design 200')")
     studio.screen("two-hundred")
 
 
@@ -77,11 +77,11 @@ def test_the_picture_follows_a_dragged_pin_within_50_ms(own_studio):
     state(page, PLAIN)
     studio.solve()
     page.wait_for_selector(".moving .live .link")
-    page.click("#explore summary")
-    page.wait_for_selector("#explore .curve[d]")
+    page.click("#tab-explore")
+    page.wait_for_selector("#exploring .curve[d]")
     page.evaluate(FRAMES)
     curves = set()
-    dot = page.locator("#explore .target").last.locator(".dot")
+    dot = page.locator("#exploring .target").last.locator(".dot")
     dot.scroll_into_view_if_needed()
     box = dot.bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
@@ -89,7 +89,7 @@ def test_the_picture_follows_a_dragged_pin_within_50_ms(own_studio):
     page.mouse.down()
     for k in range(40):
         page.mouse.move(x + k, y - 0.5 * k)
-        curves.add(page.get_attribute("#explore .curve", "d"))
+        curves.add(page.get_attribute("#exploring .curve", "d"))
     page.mouse.up()
     taken = page.evaluate("frames_ms")
     assert len(taken) >= 40

@@ -1,6 +1,7 @@
 """A person states a problem, solves it, sees it move and takes it home."""
 
 import json
+import math
 import re
 
 import pytest
@@ -30,6 +31,18 @@ def stated(page):
 def state(page, problem):
     page.locator("#json").evaluate("details => details.open = true")
     page.fill("#json-text", json.dumps(problem))
+
+
+def unfold(page):
+    """Show the fields that nobody has stated."""
+    page.locator("#fields details.more").evaluate_all("all => all.forEach(one => { one.open = true; })")
+
+
+def written(page):
+    """All words of an answer, whichever tab is shown."""
+    return page.evaluate(
+        "['#answers', '#stage', '#design'].map(at => document.querySelector(at).textContent).join(' ')"
+    )
 
 
 def solved(studio, problem, shown="#scrub"):
@@ -79,7 +92,7 @@ def test_a_linkage_is_stated_solved_and_moves(open_studio, name, options):
     before = link_now(page)
     until(lambda: link_now(page) != before, what="another frame")
     until(lambda: drawn(page), 60, "the drawing")
-    assert not re.search(r"\b(null|undefined|NaN)\b", page.inner_text("#answers"))
+    assert not re.search(r"\b(null|undefined|NaN)\b", written(page))
     assert page.locator(".checks .good").count() == page.locator(".checks li").count() > 0
     wider = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
     assert wider <= 0, "the page is wider than the window"
@@ -152,6 +165,29 @@ def test_a_curve_is_sketched(studio):
     assert points[-1]["y"] < points[0]["y"], "y is up"
 
 
+def test_a_stroke_whose_ends_meet_is_a_closed_curve(studio):
+    page = studio.page
+    state(page, {"kind": "path", "points": [{"x": 0, "y": 0}, {"x": 100, "y": 0}, {"x": 100, "y": 60}]})
+    page.check("#freehand")
+    box = page.locator("#sketch svg").bounding_box()
+    middle = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(middle[0] + 120, middle[1])
+    page.mouse.down()
+    for k in range(1, 40):
+        page.mouse.move(middle[0] + 120 * math.cos(k * math.pi / 20), middle[1] - 80 * math.sin(k * math.pi / 20))
+    page.mouse.up()
+    drawn = stated(page)
+    assert (drawn["closed"], drawn["method"]) == (True, "curve_match")
+    points = [(one["x"], one["y"]) for one in drawn["points"]]
+    assert len(set(points)) == 24
+    steps = [math.dist(one, points[(k + 1) % 24]) for k, one in enumerate(points)]
+    assert max(steps) < 1.5 * min(steps), "evenly, from the last to the first too"
+    assert "Closed: the whole curve is matched" in page.inner_text("#sketch")
+    page.get_by_role("button", name="Keep it open").click()
+    assert not {"closed", "method"} & set(stated(page))
+    assert page.get_by_role("button", name="Keep it open").count() == 0
+
+
 def test_rows_are_pasted_from_a_spreadsheet(studio):
     page = studio.page
     state(page, PLAIN)
@@ -171,6 +207,7 @@ def test_rows_are_pasted_from_a_spreadsheet(studio):
 
 def test_a_fault_stands_at_its_field(studio):
     page = studio.page
+    unfold(page)
     page.fill('[data-path="/problem/max_designs"]', "0")
     page.fill('[data-path="/problem/positions/1/angle"]', "1e12")
     page.click("#solve")
@@ -220,6 +257,7 @@ def test_a_link_restores_a_job(studio):
     page.wait_for_selector(".card")
     assert page.input_value("#label") == "hinge of a lid"
     assert stated(page)["positions"] == [dict(one, tolerance=None, exact=False) for one in PLAIN["positions"]]
+    page.click("#tab-jobs")
     page.fill("#job-words", "hinge")
     shown = page.locator(".jobs li:visible")
     assert shown.count() == 1
@@ -240,12 +278,12 @@ def test_a_pin_is_dragged_and_the_analysis_follows(studio):
     state(page, PLAIN)
     studio.solve()
     page.wait_for_selector(".moving .live .link")
-    page.click("#explore summary")
-    page.wait_for_selector("#explore .curve[d]")
+    page.click("#tab-explore")
+    page.wait_for_selector("#exploring .curve[d]")
     until(lambda: page.locator("#explore dd").count() == 5, 30, "the figures")
-    curve, figures = page.get_attribute("#explore .curve", "d"), page.inner_text("#explore .facts")
-    drag(page, "#explore .target:has(text:text-is('O4')) .dot", (40, 25))
-    until(lambda: page.get_attribute("#explore .curve", "d") != curve, 30, "another curve")
+    curve, figures = page.get_attribute("#exploring .curve", "d"), page.inner_text("#explore .facts")
+    drag(page, "#exploring .target:has(text:text-is('O4')) .dot", (40, 25))
+    until(lambda: page.get_attribute("#exploring .curve", "d") != curve, 30, "another curve")
     until(lambda: page.inner_text("#explore .facts") != figures, 30, "other figures")
     page.get_by_role("button", name="Begin a statement with these fixed pivots").click()
     begun = stated(page)

@@ -17,7 +17,7 @@ from playwright.sync_api import TimeoutError
 
 from service.parts.extra import installed
 from synthesis.registry import KINDS
-from tests.browser.test_studio import drawn, stated
+from tests.browser.test_studio import drawn, stated, unfold, written
 from tests.service.running import until
 
 pytestmark = pytest.mark.browser
@@ -54,11 +54,13 @@ STILL = {"gearbox", "layshaft_gearbox", "balancing", "flywheel", "engine"}
 
 def reveal(page, path):
     """Open the groups above a field."""
+    unfold(page)
     parts = path.split("/")
     for k in range(1, len(parts)):
         group = page.locator(f'details[data-path="/problem/{"/".join(parts[:k])}"]')
         if group.count():
             group.evaluate("one => { one.open = true; }")
+            unfold(page)
             page.wait_for_selector(f'[data-path="/problem/{"/".join(parts[: k + 1])}"]')
 
 
@@ -87,6 +89,7 @@ class Words(HTMLParser):
 
 
 def taken(page, name):
+    page.click("#tab-files")
     try:
         with page.expect_download(timeout=90_000) as waiting:
             page.locator("#downloads").get_by_role("button", name=name, exact=True).click()
@@ -190,10 +193,10 @@ def test_each_kind_is_stated_solved_moves_and_is_taken_home(studio, kind):
     assert value_at(stated(page), path) == value
     # The statement is sent by the key that ends every form.
     page.press(f'[data-path="/problem/{path}"]', "Enter")
-    page.wait_for_selector(".card", timeout=200_000)
+    studio.answered()
     assert page.locator(".card .good").count() >= 1
     until(lambda: drawn(page), 90, "the drawing")
-    assert not re.search(r"\b(null|undefined|NaN)\b", page.inner_text("#answers"))
+    assert not re.search(r"\b(null|undefined|NaN)\b", written(page))
     if kind not in STILL:
         page.wait_for_selector(".moving svg")
         before = picture_now(page)
@@ -218,6 +221,7 @@ def test_the_report_opens_in_a_page_of_its_own_and_looks_as_it_should(studio):
     page = studio.page
     page.select_option("#kind", "gear_train")
     studio.solve()
+    page.click("#tab-files")
     with studio.context.expect_page() as opening:
         page.get_by_role("link", name="Open the report").click()
     report = opening.value
@@ -251,6 +255,7 @@ def test_what_leaves_no_room_for_parts_is_said_beside_the_button(studio):
     page = studio.page
     page.select_option("#kind", "parallel_motion")
     studio.solve()
+    page.click("#tab-files")
     page.locator("#downloads").get_by_role("button", name="Parts", exact=True).click()
     said = page.locator("#downloads .error")
     until(lambda: "There is no room for links" in said.inner_text(), 90, "the reason")
@@ -262,6 +267,7 @@ def test_no_file_is_offered_that_there_is_not(studio):
     page = studio.page
     page.select_option("#kind", "flywheel")
     studio.solve()
+    page.click("#tab-files")
     offered = page.locator("#downloads").get_by_role("button", name="DXF", exact=True)
     offered.first.wait_for()
     assert page.locator("#downloads").get_by_role("button", name="GIF", exact=True).count() == 0

@@ -96,6 +96,7 @@ def test_the_roller_rolls_without_slip(studio, server):
 def test_the_diagrams_have_their_marks_and_lead(studio, server):
     page = studio.page
     solved(studio, FOLLOWERS["translating_roller"])
+    page.click("#tab-plots")
     names = page.locator(".plot figcaption").all_inner_texts()
     assert [name.split()[0] for name in names] == ["Displacement", "Velocity", "Acceleration", "Jerk", "Pressure"]
     job = server.job(re.search(r"#job=(\w+)", page.url).group(1))

@@ -1,0 +1,52 @@
+/** The parts of the window in which a design is shown: the stage, the drawer beside it, and what stands in both. */
+
+import { byId, el } from "./dom.js";
+import { Drawer } from "./drawer.js";
+import { Stage } from "./stage.js";
+
+export class Desk {
+  constructor() {
+    this.stage = new Stage();
+    this.drawer = new Drawer(byId("design"), byId("tabs"));
+    this.title = byId("design-title");
+    this.before = byId("before");
+    this.numbers = byId("numbers");
+    this.forced = byId("forced");
+    this.built = byId("built");
+    this.files = byId("files");
+    this.explore = byId("explore");
+    this.exploring = byId("exploring");
+    this.curves = byId("burmester");
+    for (const [name, text] of [["task", "Task"], ["answers", "Answers"]]) {
+      this.drawer.add(name, text, byId(name === "task" ? "statement" : "answers"), true);
+    }
+    for (const text of ["Numbers", "Plots", "Explore", "Curves", "Parts", "Files", "Jobs"]) {
+      this.drawer.add(text.toLowerCase(), text, byId(`pane-${text.toLowerCase()}`));
+    }
+    this.drawer.offer("curves", false);
+  }
+
+  get frame() {
+    return this.stage.frame;
+  }
+
+  /** Show no design any more. */
+  clear() {
+    this.title.replaceChildren();
+    this.frame.say();
+    this.before.replaceChildren();
+    this.forced.replaceChildren();
+    for (const [place, what] of /** @type {[HTMLElement, string][]} */ ([[this.numbers, "numbers"],
+      [this.frame.plots, "plots"], [this.built, "parts"], [this.files, "files"]])) {
+      place.replaceChildren(el("p", { class: "note" }, `The ${what} of a design stand here when there is one.`));
+    }
+    this.explored(false);
+  }
+
+  /** Say whether a linkage can be explored. @param {boolean} is */
+  explored(is) {
+    this.exploring.replaceChildren();
+    const note = "Linkages are explored: their pins are dragged, and what they do then is told here.";
+    this.explore.replaceChildren(...(is ? [] : [el("p", { class: "note" }, note)]));
+  }
+}

@@ -1,0 +1,42 @@
+/** What moves when the page opens: an example with its answer, made of the service's own by `tools/studio`. */
+
+import { el, words } from "./dom.js";
+import { checks, figures, table } from "./figures.js";
+import { Mover } from "./mover.js";
+
+export class Opening {
+  /** @param {import("./desk.js").Desk} desk @param {string} name of the example */
+  constructor(desk, name) {
+    this.desk = desk;
+    this.name = name;
+    /** @type {Mover | null} */
+    this.moving = null;
+    this.gone = new AbortController();
+  }
+
+  /** Show it, unless something else is shown by then. */
+  async show() {
+    const { desk, gone } = this;
+    const answer = await fetch("/studio/opening.json", { signal: gone.signal })
+      .then((one) => (one.ok ? one.json() : null), () => null);
+    if (!answer || gone.signal.aborted) return;
+    const { problem, design, motion, circuits, found, summary } = answer;
+    desk.stage.offer(true, `Example: ${this.name}`);
+    desk.stage.show("watch");
+    this.moving = new Mover(desk.frame, design, motion, problem, circuits);
+    desk.title.replaceChildren(`Example: ${this.name}, ${words(design.mechanism.type).toLowerCase()}`);
+    desk.numbers.replaceChildren(el("p", { class: "note" }, `The best of ${found}. ${summary}`),
+      el("p", { class: "note" }, "Solve it to have all of them, with drawings and files; or state something else."),
+      el("div", { class: "columns" }, checks(design, problem), table("Quantities", figures(design), problem)));
+  }
+
+  /** Make room for something else. */
+  leave() {
+    if (this.gone.signal.aborted) return;
+    this.gone.abort();
+    this.moving?.stop();
+    this.moving = null;
+    this.desk.clear();
+    this.desk.stage.offer(false);
+  }
+}

@@ -1,0 +1,199 @@
+"""The stage is in the middle of the window: what moves, its player, progress and Cancel are always in view."""
+
+import pytest
+
+from synthesis.registry import KINDS, examples
+from tests.browser.conftest import ANSWERED
+from tests.browser.test_studio import PLAIN, state
+from tests.browser.test_taking_home import EXAMPLES
+
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
+
+SIZES = {"desktop": (1440, 900), "wide": (1920, 1080), "tablet": (1024, 768), "phone": (390, 844)}
+EVERYWHERE = ("motion", "cam", "gear_train")
+"""Kinds that are looked at in every size, light and dark; the others in the first and the last size."""
+
+OFTEN = [(kind, size, "light") for kind in KINDS for size in ("desktop", "phone")] + [
+    (kind, size, scheme)
+    for kind in EVERYWHERE
+    for size, scheme in (("desktop", "dark"), ("wide", "light"), ("tablet", "dark"), ("phone", "dark"))
+]
+SELDOM = [
+    pytest.param(kind, size, scheme, marks=pytest.mark.campaign)
+    for kind in KINDS
+    for size in SIZES
+    for scheme in ("light", "dark")
+    if (kind, size, scheme) not in OFTEN
+]
+
+WATCH = """
+window.outside = [];
+window.seen = new Set();
+const look = () => {
+  if (window.watching) {
+    const parts = {stage: "#boards", progress: "progress", cancel: "#cancel"};
+    for (const [name, selector] of Object.entries(parts)) {
+      const box = document.querySelector(selector)?.getBoundingClientRect();
+      if (!box?.width || !box.height) continue;
+      seen.add(name);
+      if (box.left < -0.5 || box.top < -0.5 || box.right > innerWidth + 0.5 || box.bottom > innerHeight + 0.5) {
+        outside.push(`${name}: ${Math.round(box.left)} ${Math.round(box.top)} `
+          + `${Math.round(box.right)} ${Math.round(box.bottom)}`);
+      }
+    }
+  }
+  requestAnimationFrame(look);
+};
+requestAnimationFrame(look);
+"""
+
+COVERED = """selector => {
+  const place = document.querySelector(selector);
+  const box = place.getBoundingClientRect();
+  const middle = document.elementFromPoint(box.left + box.width / 2, box.top + box.height / 2);
+  return !place.contains(middle) && !middle?.contains(place);
+}"""
+
+
+def inside(page, selector):
+    """Whether a part of the page lies in the window, and nothing over it."""
+    box = page.locator(selector).first.bounding_box()
+    assert box is not None, f"{selector} is not shown"
+    size = page.viewport_size
+    assert box["width"] > 0, selector
+    assert box["height"] > 0, selector
+    within = (
+        box["x"] > -0.5
+        and box["y"] > -0.5
+        and box["x"] + box["width"] < size["width"] + 0.5
+        and box["y"] + box["height"] < size["height"] + 0.5
+    )
+    assert within, (selector, box)
+    assert not page.evaluate(COVERED, selector), f"{selector} is covered"
+    return box
+
+
+@pytest.mark.parametrize(("kind", "size", "scheme"), [*OFTEN, *SELDOM])
+def test_stage_and_player_and_progress_are_in_view_from_solve_to_the_end(open_studio, kind, size, scheme):
+    studio = open_studio(has_touch=size == "phone")
+    page = studio.page
+    width, height = SIZES[size]
+    page.set_viewport_size({"width": width, "height": height})
+    page.emulate_media(color_scheme=scheme)
+    page.select_option("#kind", kind)
+    page.select_option("#example", str(EXAMPLES.get(kind, 0)))
+    inside(page, "#solve")
+    page.evaluate(f"{WATCH}; window.watching = true")
+    page.click("#solve")
+    page.wait_for_selector(ANSWERED, state="attached", timeout=200_000)
+    page.wait_for_selector(".moving .stage .canvas")
+    assert page.evaluate("outside") == []
+    assert "stage" in page.evaluate("[...seen]")
+    stage = inside(page, ".moving .stage .canvas")
+    assert stage["width"] >= 0.4 * width, "the stage is the largest part"
+    assert stage["height"] >= 0.25 * height
+    inside(page, ".moving .player button")
+    inside(page, "#scrub")
+    inside(page, "#solve")
+    # The page itself does not scroll, and is no wider than the window.
+    away = page.evaluate("""() => {
+      const whole = document.documentElement;
+      return [whole.scrollWidth - innerWidth, whole.scrollHeight - innerHeight];
+    }""")
+    assert max(away) <= 0, away
+    # The drawing lies on the stage, and fills a fair part of it.
+    drawn = page.evaluate("""() => {
+      const boxes = [...document.querySelectorAll(
+        ".moving .canvas :is(.live, .wheel, .cam, .profile, .link, .drum)")].map(one => one.getBoundingClientRect())
+        .filter(one => one.width && one.height);
+      return [Math.min(...boxes.map(one => one.left)), Math.min(...boxes.map(one => one.top)),
+              Math.max(...boxes.map(one => one.right)), Math.max(...boxes.map(one => one.bottom))];
+    }""")
+    share = max((drawn[2] - drawn[0]) / stage["width"], (drawn[3] - drawn[1]) / stage["height"])
+    assert share > 0.25, "what moves can be seen"
+    studio.screen(f"layout-{kind}-{size}-{scheme}")
+
+
+def test_progress_and_cancel_stand_where_solve_stood(open_studio):
+    for size in SIZES:
+        studio = open_studio(viewport={"width": SIZES[size][0], "height": SIZES[size][1]})
+        page = studio.page
+        state(page, {**examples("path")[0], "rounds": 10})
+        before = inside(page, "#solve")
+        page.evaluate(f"{WATCH}; window.watching = true")
+        page.click("#solve")
+        page.wait_for_selector("#cancel")
+        bar = inside(page, "progress")
+        inside(page, "#cancel")
+        assert not page.is_visible("#solve"), "one thing at a time"
+        assert abs(bar["y"] - before["y"]) < 60
+        assert abs(bar["x"] - before["x"]) < 60
+        page.click("#cancel")
+        page.get_by_text("The job was cancelled.").wait_for()
+        assert page.evaluate("outside") == []
+        assert {"progress", "cancel"} <= set(page.evaluate("[...seen]"))
+        inside(page, "#solve")
+
+
+def test_a_phone_goes_to_the_answers_and_keeps_the_stage(open_studio):
+    studio = open_studio(viewport={"width": 390, "height": 844}, has_touch=True)
+    page = studio.page
+    state(page, PLAIN)
+    before = inside(page, "#boards")
+    assert page.get_attribute("#tab-task", "aria-selected") == "true"
+    studio.solve()
+    assert page.get_attribute("#tab-answers", "aria-selected") == "true"
+    inside(page, ".card")
+    for tab in ("numbers", "plots", "files", "jobs", "task"):
+        page.click(f"#tab-{tab}")
+        assert page.get_attribute(f"#tab-{tab}", "aria-selected") == "true"
+        assert inside(page, "#boards") == before, "the stage stays put"
+        inside(page, "#scrub")
+        inside(page, "#solve")
+
+
+def test_on_a_tablet_the_drawer_is_opened_and_shut(open_studio):
+    studio = open_studio(viewport={"width": 1024, "height": 768})
+    page = studio.page
+    state(page, PLAIN)
+    studio.solve()
+    page.wait_for_selector(".moving .live .link")
+    assert not page.is_visible("#pane-numbers")
+    page.click("#tab-plots")
+    inside(page, "#pane-plots")
+    inside(page, "#scrub")
+    page.click("#tab-plots")
+    assert not page.is_visible("#pane-plots")
+    page.click("#tab-numbers")
+    page.keyboard.press("Escape")
+    assert not page.is_visible("#pane-numbers")
+
+
+def test_the_stage_is_brought_nearer_led_along_and_fitted(studio):
+    page = studio.page
+    state(page, PLAIN)
+    studio.solve()
+    picture = page.locator(".moving .stage .canvas")
+    picture.wait_for()
+    page.click(".player button")
+    box = picture.bounding_box()
+
+    def pin():
+        at = page.locator(".moving .live .pin").first.bounding_box()
+        return at["x"] + at["width"] / 2, at["y"] + at["height"] / 2
+
+    x, y = pin()
+    page.mouse.move(x, y)
+    page.mouse.wheel(0, -400)
+    assert pin() == pytest.approx((x, y), abs=1.5), "what is under the pointer stays there"
+    nearer = picture.get_attribute("viewBox").split()
+    assert float(nearer[2]) < 0.8 * box["width"]
+    page.mouse.move(box["x"] + 12, box["y"] + 12)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 52, box["y"] + 42)
+    page.mouse.up()
+    assert pin() == pytest.approx((x + 40, y + 30), abs=1.5)
+    page.get_by_role("button", name="Fit everything").click()
+    assert pin() == pytest.approx((x, y), abs=1.5)
+    links = page.locator(".moving .live .link").first
+    assert links.evaluate("one => getComputedStyle(one).vectorEffect") == "non-scaling-stroke"

@@ -1,0 +1,165 @@
+"""The page is never empty: a machine moves when it opens, and any example of the gallery is two clicks away."""
+
+import json
+
+import pytest
+
+from synthesis.registry import KINDS, examples
+from tests.browser.conftest import ANSWERED
+from tests.browser.test_accessibility import serious
+from tests.browser.test_studio import PLAIN, drag, state, stated
+from tests.service.running import until
+
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
+
+FIRST_S = 1.5
+"""Until the first machine moves, on a server that has served the page before."""
+
+BUSY = 4.0
+"""So many times as long as that on a machine that does other things too."""
+
+MOVES = """() => {
+  const link = document.querySelector(".moving .live .link")?.getAttribute("d");
+  window.firstLink ??= link;
+  return link && link !== window.firstLink ? performance.now() / 1000 : 0;
+}"""
+
+
+def test_a_machine_moves_when_the_page_opens(studio):
+    page = studio.page
+
+    def jobs():
+        return page.evaluate("fetch('/v1/jobs?limit=100').then(answer => answer.json())")["jobs"]
+
+    before = len(jobs())
+    page.reload()
+    took = page.wait_for_function(MOVES, polling="raf").json_value()
+    print(f"the first machine moves {took:.2f} s after the page was asked for")
+    assert took <= FIRST_S * BUSY
+    assert page.inner_text("#caption") == "Example: Hatch lid"
+    assert page.evaluate("location.hash") == "", "no job was made for it"
+    assert len(jobs()) == before
+    # What is stated beside it is what it answers.
+    kept = page.evaluate("fetch('/studio/opening.json').then(answer => answer.json())")
+    assert stated(page) == kept["problem"] == examples("motion")[0]
+    assert page.locator("#design-title").inner_text().startswith("Example: Hatch lid")
+    # It makes room for whatever else is stated.
+    page.fill('[data-path="/problem/positions/1/angle"]', "-20")
+    assert page.is_visible("#sketch .target >> nth=1")
+    assert page.locator(".moving .live").count() == 0
+    assert page.inner_text("#caption") == ""
+    assert page.is_disabled("#mode-watch")
+
+
+def test_with_little_motion_asked_for_it_stands_still(open_studio):
+    page = open_studio().page
+    page.emulate_media(reduced_motion="reduce")
+    page.reload()
+    page.wait_for_selector(".moving .live .link")
+    assert page.inner_text(".moving .player button") == "Play"
+
+
+def test_the_gallery_has_every_example_and_solves_it_by_two_clicks(studio):
+    page = studio.page
+    page.click("#gallery-open")
+    page.wait_for_selector("#gallery[open] .thumbnail")
+    cards = page.locator(".gallery-card").evaluate_all(
+        "all => all.map(one => [one.dataset.example, one.querySelector('strong').textContent, "
+        "one.querySelector('.note').textContent, one.querySelectorAll('.thumbnail *').length])"
+    )
+    told = page.evaluate("fetch('/v1/problems').then(answer => answer.json())")["problems"]
+    named = {f"{kind['kind']}-{n}": one for kind in told for n, one in enumerate(kind["examples"])}
+    assert set(named) == {f"{kind}-{n}" for kind in KINDS for n in range(len(examples(kind)))}
+    assert len(cards) == len(named)
+    for key, name, line, drawn in cards:
+        assert (name, line) == (named[key]["name"], named[key]["line"])
+        assert drawn > 0, f"{key} has no picture"
+    headings = page.locator("#gallery h3").all_inner_texts()
+    assert headings[:5] == [
+        "Carry a body", "Draw a curve", "Make an output follow", "Change a speed", "Lift and rest",
+    ]  # fmt: skip
+    assert serious(page) == []
+    studio.screen("gallery")
+    page.click('[data-example="motion-3"]')
+    page.wait_for_selector(ANSWERED, timeout=200_000)
+    assert stated(page) == examples("motion")[3]
+    assert page.input_value("#label") == "Arm, five positions"
+    page.wait_for_selector(".moving .live .link")
+
+
+def test_the_gallery_and_the_sheet_of_keys_work_by_keys(studio):
+    page = studio.page
+    page.wait_for_selector("#fields .field")
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("?")
+    sheet = page.locator("#keys")
+    assert sheet.is_visible()
+    assert serious(page) == []
+    studio.screen("keys")
+    page.keyboard.press("Escape")
+    assert not sheet.is_visible()
+    page.keyboard.press("g")
+    assert page.locator("#gallery").is_visible()
+    while page.evaluate("document.activeElement.dataset.example") != "cam-0":
+        page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    page.wait_for_selector(ANSWERED, timeout=200_000)
+    page.wait_for_selector(".moving .cam")
+    page.evaluate("document.activeElement.blur()")
+    playing = page.inner_text(".moving .player button")
+    page.keyboard.press("Space")
+    assert page.inner_text(".moving .player button") != playing
+    page.keyboard.press("Home")
+    assert float(page.input_value("#scrub")) == 0.0
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("Shift+ArrowRight")
+    assert float(page.input_value("#scrub")) == pytest.approx(11.0)
+    page.keyboard.press("p")
+    assert page.is_visible("#pane-plots .plot")
+    before = page.get_attribute(".moving .canvas", "viewBox")
+    page.keyboard.press("+")
+    assert page.get_attribute(".moving .canvas", "viewBox") != before
+    page.keyboard.press("f")
+    assert page.get_attribute(".moving .canvas", "viewBox") == before
+    # A letter that is typed into a field is a letter.
+    page.click("#label")
+    page.keyboard.type("gnp?")
+    assert page.input_value("#label").endswith("gnp?")
+    assert not page.locator("#gallery").is_visible()
+    # And they can be switched off.
+    page.click("#keys-open")
+    page.uncheck("#letters")
+    page.keyboard.press("Escape")
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("g")
+    assert not page.locator("#gallery").is_visible()
+
+
+def test_steps_of_a_statement_are_undone_and_done_again(studio):
+    page = studio.page
+    state(page, PLAIN)
+    page.wait_for_timeout(800)
+    first = stated(page)
+    drag(page, ".target >> nth=1 >> .dot", (60, -40))
+    dragged = stated(page)
+    assert dragged != first
+    page.wait_for_timeout(800)
+    page.fill('[data-path="/problem/positions/0/angle"]', "12")
+    typed = stated(page)
+    page.keyboard.press("Control+z")
+    assert stated(page) == dragged
+    assert page.input_value('[data-path="/problem/positions/0/angle"]') == "0"
+    page.click("#undo")
+    assert stated(page) == first
+    page.keyboard.press("Control+Shift+Z")
+    assert stated(page) == dragged
+    page.click("#redo")
+    assert stated(page) == typed
+    assert page.is_disabled("#redo")
+    # Another kind is one step, too.
+    page.select_option("#kind", "cam")
+    assert stated(page)["kind"] == "cam"
+    page.click("#undo")
+    assert stated(page) == typed
+    assert page.input_value("#kind") == "motion"
+    until(lambda: json.loads(page.input_value("#json-text")) == typed, what="the JSON")

@@ -1,0 +1,1 @@
+"""Makes what the studio shows before anybody has asked for anything, from the answers of a running service."""

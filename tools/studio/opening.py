@@ -1,0 +1,77 @@
+"""What moves on the studio's stage when its page opens: the first example of all, with the service's own answer.
+
+The page shows it without a job, so that it moves at once, and on a service that wants a key as well. A test asks the
+service again, and fails where the file says anything else.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import httpx
+
+from synthesis.registry import KINDS, example
+
+KIND = next(iter(KINDS))
+STEPS = 180
+"""Samples of the motion."""
+
+DIGITS = 6
+"""Significant digits of its numbers: more than a screen shows."""
+
+WAIT_S = 60
+
+MOTION = ("input_angle", "joints", "links", "transmission_angle", "toggles", "circuits", "valid")
+"""What a picture of a motion needs of an analysis."""
+
+NOT_PLOTTED = ("jx", "jy", "jerk")
+
+
+def opening(client: httpx.Client) -> dict[str, Any]:
+    """Solve the first example, and answer it with the motion of its best design.
+
+    Raises
+    ------
+    httpx.HTTPStatusError
+        Where the service refuses.
+    """
+    problem = example(KIND)
+    job = _json(
+        client.post("/v1/jobs", json={"problem": problem}, headers={"Prefer": f"wait={WAIT_S}"}, timeout=2 * WAIT_S)
+    )
+    result = job["result"]
+    design = result["designs"][0]
+    at = f"/v1/jobs/{job['id']}"
+    motion = _json(client.get(f"{at}/designs/0/motion", params={"steps": STEPS}))
+    mechanism = design["mechanism"]
+    question = {"mechanism": mechanism, "motion": {"at": mechanism["reference_input_angle"]}, "include": ["branches"]}
+    circuits = _json(client.post("/v1/analyses", json=question))
+    client.delete(at).raise_for_status()
+    for kept in (*motion["joints"].values(), *motion["links"].values()):
+        for name in NOT_PLOTTED:
+            kept.pop(name, None)
+    answer: dict[str, Any] = rounded(
+        {
+            "problem": problem,
+            "found": len(result["designs"]),
+            "summary": result["summary"],
+            "design": design,
+            "motion": {name: motion[name] for name in MOTION if name in motion},
+            "circuits": {"circuits": circuits["circuits"]},
+        }
+    )
+    return answer
+
+
+def rounded(value: Any) -> Any:
+    """The same with all floats to :data:`DIGITS` significant digits."""
+    if isinstance(value, float):
+        short = float(f"{value:.{DIGITS}g}")
+        return int(short) if short.is_integer() and abs(short) < 1e15 else short
+    if isinstance(value, dict):
+        return {name: rounded(one) for name, one in value.items()}
+    return [rounded(one) for one in value] if isinstance(value, list) else value
+
+
+def _json(answer: httpx.Response) -> Any:
+    return answer.raise_for_status().json()
