@@ -141,6 +141,7 @@ bench: $(STAMP)
 	$(BIN)/python -m benchmarks.cam_core
 	$(BIN)/python -m benchmarks.cam
 	$(BIN)/python -m benchmarks.service
+	$(BIN)/python -m benchmarks.opening
 	$(BIN)/python -m benchmarks.geometry_fuzz --cases 200
 
 docs: $(SITE)

@@ -21,7 +21,7 @@ export class Flywheel {
     this.spoke = svg("path", { class: "spoke", d: `M${(this.view.scale * inner).toFixed(1)} 0H${(this.view.scale * radius).toFixed(1)}` });
     this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": "The flywheel, turning" },
       svg("rect", { class: "paper", width, height }),
-      svg("g", { class: "wheel t0" }, circle(radius, "pitch"), inner > 0 && circle(inner, "pitch"), this.spoke,
+      svg("g", { class: "wheel t0" }, circle(radius, "teeth"), inner > 0 && circle(inner, "hollow"), this.spoke,
         svg("circle", { class: "pin", cx: this.middle[0], cy: this.middle[1], r: 3.5 })));
     this.speed = el("dd", {});
     this.torque = el("dd", {});

@@ -40,8 +40,8 @@ export class Geneva {
     this.bars = svg("path", { class: "link" });
     this.axes = [view.at(0, 0), view.at(centre, 0)];
     const [[u, v]] = this.axes;
-    this.wheel = svg("path", { class: "pitch", d: `${view.path(wheel)}Z` });
-    this.crank = svg("g", {}, svg("path", { class: "pitch", d: `${view.path(disc.map(([x, y]) => /** @type {Point} */ ([x + centre, y])))}Z` }),
+    this.wheel = svg("path", { class: "teeth", d: `${view.path(wheel)}Z` });
+    this.crank = svg("g", {}, svg("path", { class: "teeth", d: `${view.path(disc.map(([x, y]) => /** @type {Point} */ ([x + centre, y])))}Z` }),
       ...rollers.map(([x, y]) => {
         const [across, down] = view.at(x + centre, y);
         return svg("circle", { class: "pin", cx: across, cy: down, r: (view.scale * mechanism.roller_diameter) / 2 });

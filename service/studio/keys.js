@@ -28,7 +28,8 @@ export class Keys {
       else localStorage.setItem(OFF, "1");
     });
     this.letters = letters;
-    const caps = (/** @type {string} */ shown) => shown.split(" ").map((one) => (one === "or" ? " or " : el("kbd", {}, one)));
+    const cap = (/** @type {string} */ one) => (one === "or" ? " or " : el("kbd", {}, one));
+    const caps = (/** @type {string} */ shown) => shown.split(" ").map(cap);
     byId("keys-list").replaceChildren(...bindings.filter(({ shown }) => shown).map(({ shown, text }) =>
       el("div", {}, el("dt", {}, ...caps(shown)), el("dd", {}, text))));
     document.addEventListener("keydown", (event) => this.pressed(event));

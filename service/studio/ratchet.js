@@ -18,7 +18,7 @@ export class Ratchet {
     const pivots = mechanism.pawls.map((/** @type {any} */ pawl) => pawl.pivot);
     const view = new View([[-radius, -radius], [radius, radius], ...pivots], width, height, 40);
     this.axis = view.at(0, 0);
-    this.wheel = svg("path", { class: "pitch", d: `${view.path(teeth)}Z` });
+    this.wheel = svg("path", { class: "teeth", d: `${view.path(teeth)}Z` });
     this.pawls = mechanism.pawls.map((/** @type {any} */ pawl) => {
       const [u, v] = view.at(pawl.pivot[0], pawl.pivot[1]);
       return { at: [u, v], bar: svg("path", { class: "link", d: view.path([pawl.pivot, over(pawl, mechanism.tooth_height), pawl.nose]) }) };

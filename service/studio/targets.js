@@ -120,7 +120,7 @@ function drawnPlane(place, problem, { handles, lines, word, add, offers, freehan
       changed(true);
     } }, text)),
     freehand && el("label", { class: "flag", for: "freehand" }, mode, "Draw freehand"),
-    roomy && zooming(view, led), handles.length > 0 && el("span", { class: "note" }, how)), areasOf?.tools));
+    roomy && zooming(view, led), handles.length > 0 && el("span", { class: "note", title: how }, how)), areasOf?.tools));
 }
 
 /** Buttons that take the view nearer or farther, and back to all there is. @param {View} view @param {(somewhere: boolean) => void} led */

@@ -37,6 +37,7 @@ def test_a_machine_moves_when_the_page_opens(studio):
     print(f"the first machine moves {took:.2f} s after the page was asked for")
     assert took <= FIRST_S * BUSY
     assert page.inner_text("#caption") == "Example: Hatch lid"
+    studio.screen("opening")
     assert page.evaluate("location.hash") == "", "no job was made for it"
     assert len(jobs()) == before
     # What is stated beside it is what it answers.
