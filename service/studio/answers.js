@@ -23,9 +23,9 @@ export function leave(place, desk) {
 
 /**
  * @param {HTMLElement} place @param {import("./desk.js").Desk} desk @param {api.Job} job
- * @param {(problem: any) => void} state begins another statement
+ * @param {(problem: any) => void} state begins another statement @param {(problem: any) => void} solve states and solves one
  */
-export function answer(place, desk, job, state) {
+export function answer(place, desk, job, state, solve) {
   leave(place, desk);
   if (!job.result) {
     place.append(el("p", { class: job.status === "failed" ? "error" : "note" },
@@ -46,7 +46,7 @@ export function answer(place, desk, job, state) {
   cards[0]?.click();
   if (designs.length) return;
   desk.stage.offer(true, nearest_miss ? "None found; this comes nearest" : "None found");
-  desk.frame.say(...(nearest_miss ? [missed(nearest_miss, job.problem)] : [el("p", { class: "note" }, summary)]));
+  desk.frame.say(...(nearest_miss ? [missed(nearest_miss, job.problem, solve)] : [el("p", { class: "note" }, summary)]));
   desk.stage.show("watch");
 }
 
@@ -79,8 +79,11 @@ function known(search, found) {
   return `${sure} ${counted.length ? `Left out: ${counted.join(", ")}.` : ""}`;
 }
 
-/** What comes nearest where no design satisfies all demands. @param {any} miss @param {any} problem */
-function missed({ design, gaps, reachable }, problem) {
+/**
+ * What comes nearest where no design satisfies all demands, and the same problem with what is within reach.
+ * @param {any} miss @param {any} problem @param {(problem: any) => void} solve
+ */
+function missed({ design, gaps, reachable }, problem, solve) {
   const short = (/** @type {any} */ value) => [value].flat().map((one) => shown(Number(one.toPrecision(4)))).join(" and ");
   const within = Object.entries(reachable).map(([name, value]) => `${words(name).toLowerCase()} ${short(value)}`);
   return el("section", { id: "miss" }, thumbnail(design),
@@ -88,7 +91,26 @@ function missed({ design, gaps, reachable }, problem) {
     ...gaps.map((/** @type {any} */ gap) => el("span", { class: "bad" }, `✗ ${words(gap.check)}`,
       typeof gap.value === "number" && ` ${amount(gap.value, gap, problem)}`,
       typeof gap.limit === "number" && `, demanded ${amount(gap.limit, gap, problem)}`)),
-    within.length > 0 && el("span", { class: "note" }, `Within reach beside all other demands: ${within.join("; ")}.`));
+    within.length > 0 && el("span", { class: "note" }, `Within reach beside all other demands: ${within.join("; ")}.`),
+    ...Object.entries(reachable).flatMap(([name, value]) => eased(problem, name, value)).map(({ text: said, statement }) =>
+      el("button", { type: "button", class: "main", onclick: () => solve(statement) }, said)));
+}
+
+/** Digits of a limit that is eased. */
+const DIGITS = 4;
+
+/**
+ * The problem with a limit that is within reach; nothing where the limit is no single number.
+ * @param {any} problem @param {string} name @param {any} value that is reached @returns {{text: string, statement: any}[]}
+ */
+function eased(problem, name, value) {
+  if (typeof value !== "number" || typeof problem.constraints?.[name] !== "number") return [];
+  // Rounded to the side on which it is reached.
+  const step = 10 ** (Math.floor(Math.log10(Math.abs(value) || 1)) + 1 - DIGITS);
+  const least = problem.constraints[name] > value;
+  const limit = Number(((least ? Math.floor : Math.ceil)(value / step) * step).toPrecision(DIGITS));
+  const unit = name.endsWith("angle") ? "°" : "";
+  return [{ text: `Solve with ${shown(limit)}${unit}`, statement: { ...problem, constraints: { ...problem.constraints, [name]: limit } } }];
 }
 
 /** @param {any} design @param {number} n @param {any} problem @param {() => void} choose */

@@ -212,7 +212,10 @@ async function restore() {
     }
     busy(false);
     opening.leave();
-    answers.answer(byId("result"), desk, job, state);
+    answers.answer(byId("result"), desk, job, state, (statement) => {
+      begun(statement);
+      solve();
+    });
     // Where what had the focus is hidden now, the keys go on at the answers.
     if (document.activeElement === document.body) byId("answers").focus({ preventScroll: true });
     history.load().catch(tell);
@@ -287,6 +290,8 @@ const keys = new Keys([
   { keys: ["?"], shown: "?", text: "These keys", act: () => keys.open() },
   { keys: [], shown: "Esc", text: "Close what lies over the stage; put the pen away", act: () => {} },
 ]);
+byId("stale-solve").addEventListener("click", () => solve());
+byId("stale-back").addEventListener("click", () => begun(answered));
 byId("gallery-open").addEventListener("click", () => gallery?.open());
 byId("keys-open").addEventListener("click", () => keys.open());
 text.addEventListener("input", () => {

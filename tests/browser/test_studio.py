@@ -305,6 +305,13 @@ def test_where_nothing_is_found_the_page_shows_what_comes_nearest(studio):
     assert float(gap.group(1)) == pytest.approx(float(reach.group(1)), abs=0.01)
     assert page.locator("#miss svg").count() == 1
     studio.screen("nearest-miss")
+    # It is offered, and has an answer.
+    page.get_by_role("button", name="Solve with").click()
+    page.wait_for_selector("#answers:not([aria-busy]) .card", timeout=100_000)
+    eased = stated(page)["constraints"]["min_transmission_angle"]
+    assert eased <= float(reach.group(1)) + 0.005
+    assert eased == pytest.approx(float(gap.group(1)), abs=0.02)
+    assert page.locator("#miss").count() == 0
 
 
 def test_answers_to_an_earlier_statement_say_so(studio):
@@ -314,8 +321,9 @@ def test_answers_to_an_earlier_statement_say_so(studio):
     assert not note.is_visible()
     state(page, {**PLAIN, "input_side": {**PLAIN["input_side"], "rotations": [55.0]}})
     until(note.is_visible, what="the note")
-    state(page, PLAIN)
+    page.get_by_role("button", name="Go back to it").click()
     until(lambda: not note.is_visible(), what="the statement of the answers again")
+    assert stated(page)["input_side"]["rotations"] == PLAIN["input_side"]["rotations"]
     state(page, {**PLAIN, "length_unit": "in"})
     until(note.is_visible, what="the note")
     studio.solve()

@@ -15,7 +15,7 @@ NAMES = sorted(OWN + VENDORED)
 NAMESPACE = "http://www.w3.org/2000/svg"
 IMPORTED = re.compile(r'(?:from ?|import\()"\./([^"]+)"')
 TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml",
-         ".LICENSE": "text/plain", ".json": "application/json"}  # fmt: skip
+         ".json": "application/json", ".LICENSE": "text/plain"}  # fmt: skip
 
 
 def path_of(name):
@@ -65,14 +65,26 @@ def test_every_file_that_is_referred_to_exists(client, name):
         assert not re.search(r"<style|style=|\son\w+=|<script(?![^>]*src=)", text), "inline code or styles"
 
 
-def test_every_module_is_needed():
+def imported(statement):
+    """The modules that the page's own imports by such statements, and those that these import."""
     seen, new = set(), {"studio.js"}
     while new:
         seen |= new
         texts = [(FOLDER / name).read_text() for name in new]
-        new = {one for text in texts for one in IMPORTED.findall(text)} - seen
+        new = {one for text in texts for one in statement.findall(text)} - seen
         new = {f"vendor/{one}" if one not in OWN and f"vendor/{one}" in VENDORED else one for one in new} - seen
-    assert seen == {name for name in NAMES if name.endswith(".js")}
+    return seen
+
+
+def test_every_module_is_needed():
+    assert imported(IMPORTED) == {name for name in NAMES if name.endswith(".js")}
+
+
+def test_no_module_waits_for_another_to_be_read():
+    """All are asked for at once, but for what is imported when it is needed."""
+    page = (FOLDER / "index.html").read_text()
+    asked = re.findall(r'<link rel="modulepreload" href="/studio/([^"]+)">', page)
+    assert asked == sorted(imported(re.compile(r'from "\./([^"]+)"')) - {"studio.js"})
 
 
 def test_what_is_of_others_has_its_licence_and_only_its_names_are_ours():
@@ -83,18 +95,6 @@ def test_what_is_of_others_has_its_licence_and_only_its_names_are_ours():
         text = re.sub(r"/\*.*?\*/", "", (FOLDER / "vendor" / name).read_text(), flags=re.DOTALL)
         assert set(re.findall(r'from ?["\']([^"\']+)["\']', text)) <= {f"./{one}" for one in modules}
         assert not re.search(r"\beval\(|new Function\(|import\(", text)
-
-
-def test_no_module_waits_for_another_to_be_read():
-    """All are asked for at once, but for what is imported when it is needed."""
-    page = (FOLDER / "index.html").read_text()
-    asked = re.findall(r'<link rel="modulepreload" href="/studio/([^"]+)">', page)
-    seen, new = set(), {"studio.js"}
-    while new:
-        seen |= new
-        texts = [(FOLDER / name).read_text() for name in new]
-        new = {one for text in texts for one in re.findall(r'from "\./([^"]+)"', text)} - seen
-    assert asked == sorted(seen - {"studio.js"})
 
 
 @pytest.mark.parametrize("path", ["/studio/", "/studio/nope.js", "/studio/index.html", "/studio/..%2fapp.py"])
