@@ -88,7 +88,8 @@ def too_thin(assembly: Assembly, wall: float) -> list[Thin]:
     for part in assembly.parts:
         if part.sort not in FLAT:
             continue
-        for region in (body.region for body in part.bodies[:1]):
+        # Bosses of a base are rings about their holes; of a cam in one piece each wall is looked at.
+        for region in (body.region for body in (part.bodies if part.sort == "cam" else part.bodies[:1])):
             holes = [shapely.Polygon(_pairs(ring_of(hole, beyond=True))) for hole in region.holes]
             edge = shapely.LinearRing(_pairs(ring_of(region.outer, beyond=False)))
             inside = shapely.Polygon(edge)

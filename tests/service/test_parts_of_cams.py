@@ -18,9 +18,14 @@ from ezdxf.math import bulge_center
 import service
 from kinematics.cam.contact import Contour
 from service.parts.cam_contours import outline
+from service.parts.cams import CamBuilder, Planes
 from service.parts.extra import installed
 from service.parts.made import LINKAGE, MAKERS, NotMade
+from service.parts.overlaps import too_thin
+from service.parts.sizes import WALL, Sizes
 from synthesis.analyses.cam import CamAnalysisRequest
+from synthesis.dispatch import solve
+from synthesis.registry import parse_problem
 from tests.service.answers import finished
 from tests.service.test_parts import bill, parts, refused
 
@@ -276,6 +281,14 @@ def test_what_is_not_built_says_why(client: Any) -> None:
         job = finished(client, problem)
         answer = refused(client, f"/v1/jobs/{job['id']}/designs/0", 409)
         assert word in answer["detail"]
+
+
+def test_the_inner_wall_of_a_groove_in_one_piece_is_looked_at() -> None:
+    design = solve(parse_problem(PROBLEMS["groove"]), lambda _fraction, _message: None).designs[0]
+    for pin, thin in ((8.0, False), (26.0, True)):
+        sizes = Sizes("mill", 2.5 * pin, pin, 5.0, 0.1)
+        whole = CamBuilder(design.mechanism, sizes, 1.0, Planes(2, 3, back=1)).assembled(1.0)
+        assert ("cam" in {found.part for found in too_thin(whole, WALL * pin)}) == thin
 
 
 def test_a_contour_with_an_edge_is_not_drawn_as_a_spline() -> None:
