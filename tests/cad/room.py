@@ -15,6 +15,24 @@ FLAT = 1e-4
 """Millimetres of height or width that two boxes may share: the kernel's boxes are a little too large."""
 
 
+IN_TOUCH = 3e-3
+"""By how much one of two parts is smaller that touch: where solids are exactly tangent the kernel may see one in the
+other whole."""
+
+
+def smaller(shape: Any) -> Any:
+    """A solid that is a little smaller about the middle of its box."""
+    from build123d import Solid
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+    from OCP.gp import gp_Pnt, gp_Trsf
+
+    box = shape.bounding_box()
+    middle, size = box.center(), max(box.size.X, box.size.Y)
+    scaled = gp_Trsf()
+    scaled.SetScale(gp_Pnt(middle.X, middle.Y, middle.Z), 1.0 - 2.0 * IN_TOUCH / size)
+    return Solid(BRepBuilderAPI_Transform(shape.wrapped, scaled, True).Shape())
+
+
 def shared_room(whole: Assembly, solids: list[Any], inputs: NDArray[np.float64]) -> tuple[int, dict[str, float]]:
     """How many pairs were intersected, and the greatest volume that each pair shares that shares any."""
     resting: dict[tuple[int, int], tuple[complex, complex]] = {}
@@ -42,7 +60,8 @@ def shared_room(whole: Assembly, solids: list[Any], inputs: NDArray[np.float64])
                 continue
             resting[n, m] = towards
             tried += 1
-            common = placed[n].intersect(placed[m])
+            touch = frozenset((whole.parts[n].name, whole.parts[m].name)) in whole.touching
+            common = (smaller(placed[n]) if touch else placed[n]).intersect(placed[m])
             volume = sum(getattr(body, "volume", 0.0) for body in ([] if common is None else list(common)))
             if volume > 0.0:
                 pair = f"{whole.parts[n].name} {whole.parts[m].name}"
