@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import io
-import json
 import math
-import re
-from pathlib import Path
 from typing import Any
 
 import ezdxf
@@ -15,12 +12,11 @@ import pytest
 import shapely
 from ezdxf.math import bulge_center
 
-import service
 from kinematics.cam.contact import Contour
 from service.parts.cam_contours import outline
 from service.parts.cams import CamBuilder, Planes
 from service.parts.extra import installed
-from service.parts.made import LINKAGE, MAKERS, NotMade
+from service.parts.made import NotMade
 from service.parts.overlaps import too_thin
 from service.parts.sizes import WALL, Sizes
 from synthesis.analyses.cam import CamAnalysisRequest
@@ -299,7 +295,7 @@ def test_a_contour_with_an_edge_is_not_drawn_as_a_spline() -> None:
         outline(Contour(40.0 * square), 1.0)
 
 
-def test_the_studio_has_buttons_for_all_that_has_makers() -> None:
-    script = (Path(service.__file__).parent / "studio" / "downloads.js").read_text("utf-8")
-    (listed,) = re.findall(r"const BUILT = (\[.*?\]);", script, re.DOTALL)
-    assert set(json.loads(listed)) == MAKERS.keys() - {LINKAGE}
+def test_the_studio_is_told_that_cams_and_drives_are_had_as_parts(client: Any) -> None:
+    told = client.get("/v1/problems").json()["parts"]
+    assert {"cam", "geneva_external", "geneva_internal", "ratchet"} <= set(told)
+    assert not {"barrel_cam", "geneva_spherical"} & set(told)
