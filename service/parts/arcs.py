@@ -20,6 +20,10 @@ STRAIGHT = 1e-9
 """Bulge below which an edge is a line."""
 
 
+CORNER, SHARPER = 0.12, 3.0
+"""A corner turns by more than this, radians, and by so many times more than the curve does before it and after it."""
+
+
 class Chain:
     """Corners from the first point to the last, and the bulge from each to the next."""
 
@@ -57,7 +61,7 @@ class Chain:
 
 
 def fitted(points: Complex, tolerance: float = TOLERANCE) -> Chain:
-    """The chain of as long arcs as keep to the points; its corners are some of them.
+    """The chain of as long arcs as keep to the points; its corners are some of them, those of the curve among them.
 
     Parameters
     ----------
@@ -65,17 +69,37 @@ def fitted(points: Complex, tolerance: float = TOLERANCE) -> Chain:
         Shape (n,), two at least, near enough to one another that an arc through three of them is the curve.
     """
     corners, bulges, at, last = [complex(points[0])], [], 0, len(points) - 1
+    sharp = [*_corners(points), last]
     while at < last:
-        end, bulge = at + 1, 0.0
-        for far in range(at + 2, last + 1):
-            tried = _bulge(points[at], points[(at + far) // 2], points[far])
-            if _away(points[at : far + 1], tried) > tolerance:
+        stop = min(k for k in sharp if k > at)
+        end = at + 1
+        # An arc through three points keeps to all of them, even around a corner.
+        for far in range(at + 2, stop + 1):
+            if _away(points[at : far + 1], _through(points, at, far)) > tolerance:
                 break
-            end, bulge = far, tried
+            end = far
+        if end == stop - 1 and end > at + 2:
+            # What is left before a corner is to be an arc too, of two steps at least.
+            end -= 1
+        bulge = _through(points, at, end) if end > at + 1 else 0.0
         corners.append(complex(points[end]))
         bulges.append(bulge)
         at = end
     return Chain(corners, bulges)
+
+
+def _corners(points: Complex) -> list[int]:
+    """Points at which the curve turns sharply."""
+    along = np.diff(points)
+    turns = np.abs(np.angle(along[1:] / along[:-1]))
+    beside = np.pad(turns, 1)
+    most = np.maximum(beside[:-2], beside[2:])
+    return [int(k) + 1 for k in np.flatnonzero((turns > CORNER) & (turns > SHARPER * most))]
+
+
+def _through(points: Complex, first: int, last: int) -> float:
+    """Bulge of the arc from one point to another through that in the middle."""
+    return _bulge(points[first], points[(first + last) // 2], points[last])
 
 
 def _bulge(start: complex, middle: complex, end: complex) -> float:

@@ -69,6 +69,19 @@ def _ratchets() -> Make:
 ONE_CYCLE = frozenset({"process", "width", "pin", "thickness", "clearance", "scale"})
 """What is stated of parts on shafts of one base that turn on and on."""
 
+
+def _series() -> Make:
+    from service.parts.gears.series import series_parts
+
+    return series_parts
+
+
+def _layshaft_gearboxes() -> Make:
+    from service.parts.gears.layshaft import layshaft_parts
+
+    return layshaft_parts
+
+
 OF_GEARS = frozenset({"process", "thickness", "clearance", "bore", "face_width", "scale"})
 """What is asked of trains of gears."""
 
@@ -78,6 +91,8 @@ MAKERS: dict[str, Maker] = {
     ),
     "gear_train": Maker(_trains, OF_GEARS),
     "planetary_train": Maker(_planetary_trains, OF_GEARS),
+    "train_series": Maker(_series, OF_GEARS),
+    "layshaft_gearbox": Maker(_layshaft_gearboxes, OF_GEARS),
     "cam": Maker(_cams, ONE_CYCLE),
     "geneva_external": Maker(_genevas, ONE_CYCLE),
     "geneva_internal": Maker(_genevas, ONE_CYCLE),
@@ -87,6 +102,7 @@ MAKERS: dict[str, Maker] = {
 
 
 NOT_BUILT = {
+    "gearbox": "its gears are shifted along their shafts so that one pair of a stage is in mesh at a time",
     "barrel_cam": "the groove of a barrel is no contour of a plate, and what slides along its axis stands square: "
     "parts are made of radial cams",
     "geneva_spherical": "a hemisphere and its cap are cut from solids along crossing axes, not from plates; parts are "

@@ -243,3 +243,48 @@ def test_trains_that_are_not_built_are_refused_with_the_reason(client: Any) -> N
         job = finished(client, problem)
         answer = refused(client, f"/v1/jobs/{job['id']}/designs/0", 409)
         assert words in answer["detail"]
+
+
+def test_trains_in_series_stand_between_two_plates(client: Any) -> None:
+    unit = {"type": "gear_train", "max_stages": 1, "teeth": {"min": 18, "max": 60}}
+    job = finished(
+        client, {"kind": "train_series", "ratio": 6, "units": [{**unit, "module": 1.5}, unit], "max_designs": 1}
+    )
+    design = job["result"]["designs"][0]
+    files = parts(client, f"/v1/jobs/{job['id']}/designs/0", bore=6)
+    rows = bill(files)
+    for number, mechanism in enumerate(design["mechanism"]["units"], 1):
+        stage = mechanism["stages"][0]
+        for role in ("driver", "driven"):
+            tip = stage["module"] * (stage[role] + 2)
+            assert float(rows[f"gear_{number}_{role}"]["length"]) == pytest.approx(tip, rel=0.01)
+    places = centres(cut(files, "base"))
+    apart = [abs(a - b) for n, a in enumerate(places) for b in places[n + 1 :]]
+    for metrics in design["metrics"]["units"]:
+        assert min(abs(one - metrics["centre_distances"][0]) for one in apart) < 1e-9
+
+
+def test_a_layshaft_gearbox_has_its_first_gear_keyed_and_the_others_free(client: Any) -> None:
+    job = finished(
+        client, {"kind": "layshaft_gearbox", "ratios": [3.5, 2.1, 1.4], "reverse": 3.3, "module": 3.0,
+                 "teeth": {"min": 14, "max": 60}, "tooth_sum": {"min": 50, "max": 70}, "max_designs": 1}
+    )  # fmt: skip
+    mechanism = job["result"]["designs"][0]["mechanism"]
+    place = f"/v1/jobs/{job['id']}/designs/0"
+    rows = bill(parts(client, place, face_width=20))
+    for number, pair in enumerate(mechanism["gears"], 1):
+        holes = rows[f"gear_{number}_main"]["holes"]
+        assert holes.startswith("bore with keyway" if number == 1 else "1 x")
+        assert rows[f"gear_{number}_layshaft"]["holes"].startswith("bore with keyway")
+        tip = 3.0 * (pair["layshaft"] + 2)
+        assert float(rows[f"gear_{number}_layshaft"]["length"]) == pytest.approx(tip, rel=0.01)
+    assert rows["gear_head_input"]["thickness"] == "20"
+    assert "gear_reverse_idler" in rows
+
+
+def test_gearboxes_that_are_shifted_have_no_parts_and_a_word_why(client: Any) -> None:
+    problem = {"kind": "gearbox", "input_speed": 200.0, "speeds": {"min": 25.0, "max": 800.0, "count": 6},
+               "stage_ratio": {"min": 0.25, "max": 2.0}, "tooth_sum": {"min": 80, "max": 120},
+               "max_designs": 1}  # fmt: skip
+    job = finished(client, problem)
+    assert "shifted" in refused(client, f"/v1/jobs/{job['id']}/designs/0", 409)["detail"]

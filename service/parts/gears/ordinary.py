@@ -19,6 +19,7 @@ from service.parts.model import Assembly, Carrier, Part
 from service.parts.sizes import NotMade, PartsQuery, Sizes
 from service.render.gears.train_layout import in_line
 from synthesis.kinds.gear_train.verification import driven_train
+from synthesis.model.gear_answer import MeshGeometry
 
 MOST_TURNS = 400
 """Turns of the input over which a train is looked at."""
@@ -40,16 +41,23 @@ def train_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
         Where its shafts are not parallel, or there is no room for such shafts.
     """
     stages = driven_train(design.mechanism).stages
-    backlash = [mesh.backlash or 0.0 for mesh in design.metrics.meshes]
-    plays: list[float] = []
-    for stage in stages:
-        own, backlash = backlash[: len(stage.gears) - 1], backlash[len(stage.gears) - 1 :]
-        plays.append(min(own))
+    plays = backlash_of(stages, design.metrics.meshes)
     widths = [stage.face_width for stage in design.mechanism.stages]
     made = OrdinaryParts(
         stages, math.radians(design.mechanism.pressure_angle), plays, widths, problem.reverted, problem.length_unit
     )
     return made.assembly(query)
+
+
+def backlash_of(stages: Sequence[TrainStage], meshes: Sequence[MeshGeometry]) -> list[float]:
+    """The least backlash of each stage's meshes, 0 where none is told."""
+    left = [mesh.backlash or 0.0 for mesh in meshes]
+    found: list[float] = []
+    for stage in stages:
+        count = len(stage.gears) - 1
+        found.append(min(left[:count]))
+        left = left[count:]
+    return found
 
 
 @dataclass(frozen=True)
