@@ -211,3 +211,21 @@ def test_printed_gears_are_watertight_meshes(name: str) -> None:
         assert mesh.is_watertight
         assert mesh.volume == pytest.approx(item.part.volume, rel=0.02)
         assert mesh.bounds[0][2] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_planets_go_round_with_the_carrier_and_turn_about_themselves() -> None:
+    """Four turns of the sun are one of the carrier; the planet's place and the carrier's pins go together."""
+    whole = assembly("planetary")
+    _, design = solved("planetary")
+    numbers = {part.name: n for n, part in enumerate(whole.parts)}
+    teeth = design.mechanism.teeth
+    away = 0.5 * (teeth["sun"] + teeth["planet"])
+    for angle in (0.0, 1.0, 7.0):
+        placed = cad.placed(whole, [*solids("planetary").values()], angle)
+        middle = placed[numbers["gear_planet_1"]].center()
+        assert abs(complex(middle.X, middle.Y) - away * np.exp(0.25j * angle)) < 1e-6
+        axle = placed[numbers["pin_axle_of_planet_1"]].center()
+        assert abs(complex(axle.X, axle.Y) - away * np.exp(0.25j * angle)) < 1e-6
+    carrier, planet = (whole.motion.bodies[name] for name in ("carrier", "planet_1"))  # type: ignore[attr-defined]
+    # Past the carrier sun and planet turn as their teeth say: (ω_p - ω_c) z_p = -(ω_s - ω_c) z_s.
+    assert (planet.speed - carrier.speed) * teeth["planet"] == pytest.approx(-(1.0 - carrier.speed) * teeth["sun"])
