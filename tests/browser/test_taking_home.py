@@ -172,7 +172,6 @@ def check_script(path, job):
     assert {"MODEL", "MOTION"} <= set(names)
 
 
-BUILT = ("cam", "gear_train", "geneva_external", "geneva_internal", "planetary_train", "ratchet")
 SIMULATIONS = {"mjcf": "MuJoCo", "urdf": "URDF", "mo": "Modelica", "sim.py": "Simulation"}
 CHECKS = {
     "MuJoCo": check_mujoco, "URDF": check_urdf, "Modelica": check_modelica, "Simulation": check_script,
