@@ -13,7 +13,7 @@ from service.parts.shapes import arc
 
 Complex = NDArray[np.complex128]
 
-TOLERANCE = 1e-4
+TOLERANCE = 1e-3
 """How far arcs may be from the points of a curve, millimetres."""
 
 STRAIGHT = 1e-9

@@ -12,11 +12,8 @@ import numpy as np
 
 from kinematics.gear.profile import half_space
 from kinematics.gear.teeth import Gear
-from service.parts.arcs import TOLERANCE, Chain, fitted
+from service.parts.arcs import Chain, fitted
 from service.parts.shapes import Loop
-
-HELICAL = 1e-3
-"""How far arcs may be from the profile of helical teeth, millimetres: every arc is a swept face of its own."""
 
 NEAR_AXIS = 1e-6
 """Share of a gear's radius within which an arc's centre is the axis."""
@@ -42,7 +39,7 @@ def toothed(gear: Gear, centre: complex, tooth_at: float, helix_angle: float = 0
     DimensionError
         Where the cutter would come to a point.
     """
-    half = _half(gear, helix_angle, play, HELICAL if helix_angle else TOLERANCE)
+    half = _half(gear, helix_angle, play)
     # From the middle of a tooth through a space to the middle of the next.
     space = half.reversed().mirrored().then(half)
     space = space.joined(len(half.corners) - 1, 0j, NEAR_AXIS * gear.pitch_radius)
@@ -59,7 +56,7 @@ def toothed(gear: Gear, centre: complex, tooth_at: float, helix_angle: float = 0
     return Loop(tuple(centre + turn * z for z in around.corners[:-1]), tuple(around.bulges))
 
 
-def _half(gear: Gear, helix_angle: float, play: float, tolerance: float) -> Chain:
+def _half(gear: Gear, helix_angle: float, play: float) -> Chain:
     """From the middle of a space along root, fillet and flank to the middle of a tip."""
     points = half_space(gear, helix_angle)
     if play > 0.0:
@@ -72,4 +69,4 @@ def _half(gear: Gear, helix_angle: float, play: float, tolerance: float) -> Chai
         # Flanks that meet below the tip leave a pointed tooth.
         share = (end - angles[beyond - 1]) / (angles[beyond] - angles[beyond - 1])
         points = np.append(points[:beyond], points[beyond - 1] + share * (points[beyond] - points[beyond - 1]))
-    return fitted(points, tolerance)
+    return fitted(points)
