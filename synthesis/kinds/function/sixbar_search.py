@@ -140,7 +140,7 @@ class SixbarSearch:
         """The best sixbars of a type that were found, the best first."""
         pairs = self.task.problem.function is None and not self.exact
         count = FOR_PAIRS[name].drawn if pairs else DRAWN[name]
-        drawn = starts(KINDS[name], self.task, self.places.points[0], self.places.points[1], count, rng)
+        drawn = starts(KINDS[name], self.task, self.places.points[0], self.places.points[1], count, rng, wider=pairs)
         self.weighed += len(drawn.at)
         progress(0.1, f"{len(drawn.at)} sixbars of type {name}")
         if pairs:

@@ -24,8 +24,8 @@ from synthesis.kinds.function.task import FunctionTask
 
 Real = NDArray[np.float64]
 
-WIDEST = 1.3
-"""Logarithm of the drawn lengths, either way, in grounds."""
+WIDEST, WIDER, SELDOM = 1.3, 2.1, 0.3
+"""Logarithm of the drawn lengths, either way, in grounds; and of the share of them that are drawn wider, if asked."""
 
 LEAST_SWING, GREATEST_SWING = 0.15, math.radians(170.0)
 """What the rocker of a Watt II, the first step, turns at least, as a share of the input, and at most."""
@@ -41,13 +41,26 @@ class Starts(NamedTuple):
     assemblies: NDArray[np.int64]
 
 
-def starts(kind: int, task: FunctionTask, inputs: Real, outputs: Real, count: int, rng: np.random.Generator) -> Starts:
+def starts(
+    kind: int,
+    task: FunctionTask,
+    inputs: Real,
+    outputs: Real,
+    count: int,
+    rng: np.random.Generator,
+    *,
+    wider: bool = False,
+) -> Starts:
     """Sixbars of a type to begin with, of so many drawn ones.
 
-    ``inputs``, ``outputs`` (m,): places that they are to follow, in the order of the input.
+    ``inputs``, ``outputs`` (m,): places that they are to follow, in the order of the input; ``wider``: whether some have
+    a first fourbar with a short ground, or a long one.
     """
     at = np.zeros((count, kernels.NUMBERS))
-    at[:, :3] = np.exp(rng.uniform(-WIDEST, WIDEST, (count, 3)))
+    logs = rng.uniform(-WIDEST, WIDEST, (count, 3))
+    if wider:
+        logs[rng.random(count) < SELDOM] *= WIDER / WIDEST
+    at[:, :3] = np.exp(logs)
     at[:, kernels.START] = rng.uniform(-math.pi, math.pi, count)
     for side, column in ((0, kernels.K), (1, kernels.L)):
         choices = task.scales[side]
