@@ -64,7 +64,9 @@ const TAKEN = "input, select, textarea, button, a, summary, .target, .held, .gri
 /** Whether what has the focus has a use of its own for keys, or a dialog is open. @param {EventTarget | null} target */
 function busy(target) {
   if (document.querySelector("dialog[open]")) return true;
-  return target instanceof Element && target.closest(TAKEN) !== null;
+  const taken = target instanceof Element ? target.closest(TAKEN) : null;
+  // What stands in a dialog that has been closed may have the focus for a moment.
+  return taken !== null && taken.getClientRects().length > 0;
 }
 
 /** The first of some elements that is shown. @param {string} selector @returns {any} */

@@ -53,8 +53,8 @@ def starts(
 ) -> Starts:
     """Sixbars of a type to begin with, of so many drawn ones.
 
-    ``inputs``, ``outputs`` (m,): places that they are to follow, in the order of the input; ``wider``: whether some have
-    a first fourbar with a short ground, or a long one.
+    ``inputs``, ``outputs`` (m,): places that they are to follow, in the order of the input; ``wider``: whether some
+    have a first fourbar with a short ground, or a long one.
     """
     at = np.zeros((count, kernels.NUMBERS))
     logs = rng.uniform(-WIDEST, WIDEST, (count, 3))
