@@ -23,6 +23,7 @@ from benchmarks.closed_shapes import SHAPES, outline
 from benchmarks.sixbars.spread import each
 from benchmarks.walking_legs import LEGS, foot
 from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.dispatch import solve
 from synthesis.proof.rebuilt import rebuilt
 from synthesis.registry import parse_problem
@@ -60,9 +61,8 @@ def off(places: Complex, points: Complex) -> NDArray[np.float64]:
     return np.asarray(np.abs(gaps - share * sides).min(axis=1))
 
 
-def both_ways(design: Any, points: Complex) -> float:
-    """The root mean square of the distances both ways over a turn of the design."""
-    mechanism = rebuilt(design.mechanism)
+def both_ways(mechanism: Mechanism, points: Complex) -> float:
+    """The root mean square of the distances both ways over a turn of a mechanism."""
     motion = drive(mechanism, float(mechanism.reference_input) + TURN, order=0)
     curve = motion.joints["P"][0]
     steps, back = np.abs(np.diff(curve)), off(0.5 * (curve[1:] + curve[:-1]), points)
@@ -87,7 +87,7 @@ def solved(points: Complex, **more: Any) -> tuple[Any, float, float]:
 def least(result: Any, points: Complex, angle: float = 0.0) -> Any:
     """The error and the design of the nearest that transmits with an angle; infinity where there is none."""
     passed = [d for d in result.designs if d.verification.passed and d.metrics.min_transmission_angle >= angle]
-    errors = [(both_ways(design, points), design) for design in passed]
+    errors = [(both_ways(rebuilt(design.mechanism), points), design) for design in passed]
     return min(errors, key=lambda one: one[0], default=(math.inf, None))
 
 

@@ -1,9 +1,10 @@
-"""Planted curves: random sixbars, each with 24 points of its own coupler curve, and whether one is found that draws it.
+"""Planted curves: random sixbars, each with 24 points of its own coupler curve, and whether one as good is found.
 
 A planted sixbar has a crank that turns fully, transmission angles of 15° at least, and P on a link that is not joined
-to the ground. The task is the points, the type, the planted transmission angle and twice the link ratio. ``met`` are
-the tasks whose points lie on the curve of a sixbar to a millionth of the box's diagonal, root mean square; ``near``
-those to a ten-thousandth.
+to the ground. The task is the points, the type, the planted transmission angle and twice the link ratio. What is made
+least is the distance both ways between the curve and the polygon through the points, which the planted sixbar does not
+make zero either: *as good* are the tasks with a design that has no more of it than the planted sixbar. ``near`` are
+those whose points lie on the curve of a design to a thousandth of their box's diagonal, root mean square.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.sixbars.path import off, solved
+from benchmarks.sixbars.path import both_ways, off, solved
 from benchmarks.sixbars.planted_functions import ratio_of
 from benchmarks.sixbars.spread import each
 from kinematics.linkage.planar import catalogue
@@ -25,14 +26,14 @@ TASKS = 100
 
 SAMPLES, DENSE, FINE = 24, 240, 28_800
 LEAST, WIDEST = 15.0, 10.0
-MET, NEAR = 1e-6, 1e-4
+NEAR = 1e-3
 TYPES = ["watt_1", "stephenson_1", "stephenson_3"]
 
 Complex = NDArray[np.complex128]
 
 
-def planted(kind: str, rng: np.random.Generator) -> tuple[Complex, dict[str, float]]:
-    """Points of a random sixbar's curve, and what it keeps."""
+def planted(kind: str, rng: np.random.Generator) -> tuple[Complex, float, dict[str, float]]:
+    """Points of a random sixbar's curve, its distance from them both ways, and what it keeps."""
     names = sorted({joint for listed in catalogue.SIXBAR_LINKS[kind].values() for joint in listed})
     turn = np.linspace(0.0, 2.0 * math.pi, DENSE, endpoint=False)
     while True:
@@ -50,7 +51,11 @@ def planted(kind: str, rng: np.random.Generator) -> tuple[Complex, dict[str, flo
         if least < LEAST or math.hypot(float(np.ptp(curve.real)), float(np.ptp(curve.imag))) < 0.2:
             continue
         points = curve[:: DENSE // SAMPLES]
-        return points, {"min_transmission_angle": least - 0.5, "max_link_ratio": 2.0 * ratio}
+        return (
+            points,
+            both_ways(mechanism, points),
+            {"min_transmission_angle": least - 0.5, "max_link_ratio": 2.0 * ratio},
+        )
 
 
 def distance(design: Any, points: Complex) -> float:
@@ -62,21 +67,26 @@ def distance(design: Any, points: Complex) -> float:
     return float(np.sqrt(np.mean(off(points, curve) ** 2))) / size
 
 
-def tried(kind: str, points: Complex, constraints: dict[str, float]) -> tuple[float, float]:
-    """The least distance of the designs of a task, infinite where there is none, and the processor time."""
+def tried(kind: str, points: Complex, own: float, constraints: dict[str, float]) -> tuple[float, float, float]:
+    """The least distance both ways in those of the planted, and of the points in diagonals; and the processor time."""
     result, processor, _ = solved(points, mechanisms=[kind], constraints=constraints, max_designs=3)
     passed = [design for design in result.designs if design.verification.passed]
-    return min((distance(design, points) for design in passed), default=math.inf), processor
+    both = min((both_ways(rebuilt(design.mechanism), points) for design in passed), default=math.inf)
+    return both / own, min((distance(design, points) for design in passed), default=math.inf), processor
 
 
 def table(tasks: int, seed: int) -> None:
-    print(f"{'planted':<14}{'tasks':>6}{'met %':>8}{'near %':>8}{'median':>11}{'worst':>11}{'CPU s':>7}{'most':>7}")
+    print(
+        f"{'planted':<14}{'tasks':>6}{'as good %':>10}{'median share':>13}{'worst':>8}{'near %':>8}{'median off':>11}"
+        f"{'CPU s':>7}{'most':>7}"
+    )
     for kind in TYPES:
         rng = np.random.default_rng([seed, TYPES.index(kind)])
-        found, times = zip(*each(tried, [(kind, *planted(kind, rng)) for _ in range(tasks)]), strict=True)
-        errors = np.array(found)
+        rows = list(each(tried, [(kind, *planted(kind, rng)) for _ in range(tasks)]))
+        shares, errors, times = (np.array(column) for column in zip(*rows, strict=True))
         print(
-            f"{kind:<14}{tasks:>6}{100.0 * np.mean(errors <= MET):>8.1f}{100.0 * np.mean(errors <= NEAR):>8.1f}"
-            f"{np.median(errors):>11.2e}{errors.max():>11.2e}{np.median(times):>7.2f}{max(times):>7.1f}",
+            f"{kind:<14}{tasks:>6}{100.0 * np.mean(shares <= 1.0):>10.1f}{np.median(shares):>13.3f}{shares.max():>8.3f}"
+            f"{100.0 * np.mean(errors <= NEAR):>8.1f}{np.median(errors):>11.2e}{np.median(times):>7.2f}"
+            f"{max(times):>7.1f}",
             flush=True,
         )
