@@ -18,6 +18,7 @@ export function leave(place, desk) {
   chosen?.stop();
   chosen = null;
   place.replaceChildren();
+  desk.drawer.offer("assembly", false);
   desk.clear();
 }
 

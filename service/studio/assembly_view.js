@@ -19,8 +19,13 @@ const SCALE = /fit from scale ([\d.e+]+) on|; scale ([\d.e+-]+) is the greatest/
 const PROCESSES = { laser: "cut by laser", print: "printed", mill: "milled" };
 
 export class AssemblyView {
-  /** @param {HTMLElement} place @param {api.Job} job @param {number} n @param {() => any} moving what moves in the drawing now, if anything does */
-  constructor(place, job, n, moving) {
+  /**
+   * @param {HTMLElement} place of the list of parts @param {api.Job} job @param {number} n
+   * @param {() => any} moving what moves in the drawing now, if anything does
+   * @param {HTMLElement} board of the picture
+   */
+  constructor(place, job, n, moving, board) {
+    this.board = board;
     this.job = job;
     this.n = n;
     this.moving = moving;
@@ -98,6 +103,7 @@ export class AssemblyView {
     this.words.textContent = "The parts are being made …";
     this.body.setAttribute("aria-busy", "true");
     this.clear();
+    if (!this.scene) this.said("The parts are being made …");
     try {
       const query = this.stated();
       const [assembly, drawing] = await Promise.all([api.assembly(this.job.id, this.n, { ...query, positions: String(POSITIONS) }, asked.signal),
@@ -109,11 +115,17 @@ export class AssemblyView {
       if (asked.signal.aborted || this.gone.signal.aborted) return;
       this.words.replaceChildren();
       this.body.hidden = true;
+      this.said("There are no such parts.");
       this.scene?.stop();
       this.scene = null;
       this.refused(error);
     }
     this.body.removeAttribute("aria-busy");
+  }
+
+  /** Say something in the place of the picture. @param {string} what */
+  said(what) {
+    this.board.replaceChildren(el("div", { class: "said" }, el("p", { class: "note" }, what)));
   }
 
   /** Nothing is wrong any more. */
@@ -151,7 +163,8 @@ export class AssemblyView {
     this.body.hidden = false;
     if (!this.drawing) {
       const reason = "This browser does not draw in three dimensions (WebGL 2 is missing or switched off). The parts are listed, and their files are there.";
-      this.body.replaceChildren(el("p", { class: "note" }, reason), this.list);
+      this.said(reason);
+      this.body.replaceChildren(this.list);
       return;
     }
     const canvas = el("canvas", { class: "canvas solid", tabindex: 0, role: "application", "aria-describedby": "assembly-keys",
@@ -159,9 +172,10 @@ export class AssemblyView {
       onkeydown: (/** @type {KeyboardEvent} */ event) => {
         if (!event.ctrlKey && !event.metaKey && !event.altKey && this.scene?.key(event)) event.preventDefault();
       } });
-    this.body.replaceChildren(el("figure", { class: "solids" }, this.tools(), canvas, this.sliders(),
+    this.body.replaceChildren(this.list);
+    this.board.replaceChildren(el("figure", { class: "solids" }, this.tools(), canvas, this.sliders(),
       el("p", { class: "note", id: "assembly-keys" }, "Drag to turn, with the right button or two fingers to move, the wheel or + and − to zoom; arrow keys turn, with Shift they move; Home shows all."),
-      this.beyond, ...assembly.notes.map((note) => el("p", { class: "note" }, note))), this.list);
+      this.beyond, ...assembly.notes.map((note) => el("p", { class: "note" }, note))));
     this.scene = new this.drawing.AssemblyScene(canvas, assembly, { hover: (item) => this.hover(item), choose: (item) => this.choose(item) });
     for (const item of this.hidden) this.scene.hide(item, false);
     this.scene.explode(this.explosion);
@@ -176,10 +190,10 @@ export class AssemblyView {
     return el("div", { class: "row", role: "toolbar", "aria-label": "View of the assembly" },
       ...Object.keys(this.drawing?.VIEWS ?? {}).map((name) => button(name, () => this.scene?.look(name))),
       button("Fit", () => this.scene?.fit()),
-      button("Save picture", async () => this.scene && saved(URL.createObjectURL(await this.scene.picture()), `${this.job.kind}-${this.n}-assembly.png`)));
+      button("Save picture", async () => this.scene && saved(URL.createObjectURL(await this.scene.picture()), `${this.job.kind}-${this.n + 1}-assembly.png`)));
   }
 
-  /** How far its planes are apart, and the motion: that of the drawing above. */
+  /** How far its planes are apart, and the motion: that of the drawing beside it. */
   sliders() {
     const apart = el("input", { type: "range", id: "explode", min: 0, max: 1, step: 0.01, value: this.explosion, oninput: () => {
       this.explosion = apart.valueAsNumber;

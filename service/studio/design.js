@@ -83,9 +83,9 @@ export class Shown {
     this.desk.before.replaceChildren();
     this.explored(this.design);
     this.forced.replaceChildren(...this.borne());
-    this.desk.built.replaceChildren(...this.assembled());
     this.desk.numbers.replaceChildren(...this.tabulated());
     this.desk.files.replaceChildren(...this.taken());
+    this.assembled();
     this.move(this.gone.signal);
     this.draw(this.gone.signal);
   }
@@ -216,16 +216,28 @@ export class Shown {
     return [details];
   }
 
-  /** The place of a design's parts in three dimensions; they are made when it is opened. */
+  /** The place of a design's parts in three dimensions, beside what moves; they are made when it is opened. */
   assembled() {
-    const { design, job, n } = this;
-    if (!api.hasParts(design.mechanism)) return [el("p", { class: "note" }, "No parts are made of this type of mechanism.")];
-    const inside = el("div");
-    const details = el("details", { id: "assembly", ontoggle: () => {
-      this.assembly?.stop();
-      this.assembly = details.open && details.isConnected ? new AssemblyView(inside, job, n, () => (this.forced.hidden ? null : this.moving)) : null;
-    } }, el("summary", {}, "Assembly: its parts in three dimensions"), inside);
-    return [details];
+    const { drawer, stage, built, assembly } = this.desk;
+    const there = api.hasParts(this.design.mechanism);
+    drawer.on("assembly", there ? {
+      opened: () => {
+        this.assembly?.stop();
+        stage.show("watch");
+        built.hidden = false;
+        built.parentElement?.classList.add("split");
+        this.assembly = new AssemblyView(assembly, this.job, this.n, () => (this.forced.hidden ? null : this.moving), built);
+      },
+      closed: () => {
+        this.assembly?.stop();
+        this.assembly = null;
+        built.hidden = true;
+        built.parentElement?.classList.remove("split");
+        built.replaceChildren();
+        assembly.replaceChildren();
+      },
+    } : null);
+    drawer.offer("assembly", there);
   }
 
   /** Burmester's curves, where the job has them. @param {api.Job} job @param {number} n */
@@ -275,6 +287,7 @@ export class Shown {
     this.ended = true;
     this.desk.drawer.on("explore", null);
     this.desk.drawer.on("curves", null);
+    this.desk.drawer.on("assembly", null);
     this.leave();
   }
 }

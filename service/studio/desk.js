@@ -12,18 +12,20 @@ export class Desk {
     this.before = byId("before");
     this.numbers = byId("numbers");
     this.forced = byId("forced");
-    this.built = byId("built");
     this.files = byId("files");
     this.explore = byId("explore");
     this.exploring = byId("exploring");
     this.curves = byId("burmester");
+    this.built = byId("built");
+    this.assembly = byId("assembly");
     for (const [name, text] of [["task", "Task"], ["answers", "Answers"]]) {
       this.drawer.add(name, text, byId(name === "task" ? "statement" : "answers"), true);
     }
-    for (const text of ["Numbers", "Plots", "Explore", "Curves", "Parts", "Files", "Jobs"]) {
+    for (const text of ["Numbers", "Plots", "Explore", "Curves", "Assembly", "Files", "Jobs"]) {
       this.drawer.add(text.toLowerCase(), text, byId(`pane-${text.toLowerCase()}`));
     }
     this.drawer.offer("curves", false);
+    this.drawer.offer("assembly", false);
   }
 
   get frame() {
@@ -37,7 +39,7 @@ export class Desk {
     this.before.replaceChildren();
     this.forced.replaceChildren();
     for (const [place, what] of /** @type {[HTMLElement, string][]} */ ([[this.numbers, "numbers"],
-      [this.frame.plots, "plots"], [this.built, "parts"], [this.files, "files"]])) {
+      [this.frame.plots, "plots"], [this.files, "files"]])) {
       place.replaceChildren(el("p", { class: "note" }, `The ${what} of a design stand here when there is one.`));
     }
     this.explored(false);

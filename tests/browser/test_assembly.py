@@ -17,7 +17,8 @@ from tests.service.test_parts import MOTION
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(400)]
 
-CANVAS = "#assembly canvas"
+CANVAS = "#built canvas"
+PLACES = "#built, #assembly"
 NO_WEBGL = """
 const had = HTMLCanvasElement.prototype.getContext;
 HTMLCanvasElement.prototype.getContext = function (form, ...more) {
@@ -34,8 +35,7 @@ def opened(studio, problem=MOTION):
     page.wait_for_selector("#scrub")
     page.focus("#scrub")
     page.keyboard.press("Home")
-    page.click("#tab-parts")
-    page.locator("#assembly > summary").click()
+    page.click("#tab-assembly")
     page.wait_for_selector("#assembly .parts li", timeout=120_000)
     return page
 
@@ -57,7 +57,7 @@ def coloured(image):
 
 def taken(page, described):
     with page.expect_download(timeout=90_000) as waiting:
-        page.locator("#assembly").get_by_role("button", name=described, exact=True).click()
+        page.locator(PLACES).get_by_role("button", name=described, exact=True).click()
     return waiting.value
 
 
@@ -83,21 +83,21 @@ def test_it_is_drawn_moves_comes_apart_and_is_taken_home(open_studio):
     # Each way of looking at it is another.
     seen = [first]
     for name in ("Top", "Front", "Side"):
-        page.locator("#assembly").get_by_role("button", name=name, exact=True).click()
+        page.locator(PLACES).get_by_role("button", name=name, exact=True).click()
         seen.append(picture(page))
     assert all(differs(one, other) for k, one in enumerate(seen) for other in seen[:k])
     assert all(coloured(one) > 300 for one in seen)
-    page.locator("#assembly").get_by_role("button", name="Isometric", exact=True).click()
+    page.locator(PLACES).get_by_role("button", name="Isometric", exact=True).click()
 
     # Parts come apart: the same parts reach higher.
     together = picture(page)
     page.fill("#explode", "1")
     apart = picture(page)
     assert differs(together, apart)
-    page.locator("#assembly").get_by_role("button", name="Fit", exact=True).click()
+    page.locator(PLACES).get_by_role("button", name="Fit", exact=True).click()
     SCREENS.mkdir(parents=True, exist_ok=True)
     picture(page)
-    page.locator("#assembly").screenshot(path=SCREENS / "assembly.png")
+    page.screenshot(path=SCREENS / "assembly.png")
     with Image.open(taken(page, "Save picture").path()) as saved:
         assert saved.format == "PNG"
         assert coloured(saved.convert("RGB")) > 0.02 * saved.width * saved.height
@@ -107,7 +107,7 @@ def test_it_is_drawn_moves_comes_apart_and_is_taken_home(open_studio):
     assert len(document.modelspace().query("CIRCLE")) == 3
     with zipfile.ZipFile(taken(page, "All files as a zip").path()) as archive:
         assert {"bom.csv", "isometric.svg"} <= set(archive.namelist())
-    assert page.locator("#assembly").get_by_role("button", name="coupler as STL").count() == int(installed())
+    assert page.locator(PLACES).get_by_role("button", name="coupler as STL").count() == int(installed())
     report = taken_of_design(page, "Report").read_text(encoding="utf-8")
     assert 'data-panel="isometric"' in report
 
@@ -117,12 +117,12 @@ def test_parts_are_hidden_chosen_and_led_by_keys(open_studio):
     page = opened(studio)
     whole = picture(page)
     kinds = page.locator("#assembly .parts li").count()
-    page.locator("#assembly").get_by_role("checkbox", name="Show coupler").uncheck()
+    page.locator(PLACES).get_by_role("checkbox", name="Show coupler").uncheck()
     without = picture(page)
     assert coloured(without) < coloured(whole)
-    page.locator("#assembly").get_by_role("button", name="Hide all").click()
+    page.locator(PLACES).get_by_role("button", name="Hide all").click()
     assert coloured(picture(page)) == 0
-    page.locator("#assembly").get_by_role("button", name="Show all").click()
+    page.locator(PLACES).get_by_role("button", name="Show all").click()
     assert not differs(picture(page), whole)
     assert page.locator("#assembly .parts input:checked").count() == kinds
 
@@ -159,8 +159,13 @@ def test_parts_are_hidden_chosen_and_led_by_keys(open_studio):
         assert serious(page) == [], (scheme, width)
         wider = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
         assert wider <= 0
+        # The whole picture is on the stage, and the player below it.
+        drawn, stage = (page.locator(one).bounding_box() for one in (CANVAS, "#boards"))
+        assert drawn["y"] + drawn["height"] <= stage["y"] + stage["height"], (scheme, width)
+        assert drawn["height"] >= 140
+        assert page.is_visible("#watch .player")
         picture(page)
-        page.locator("#assembly").screenshot(path=SCREENS / f"assembly-{scheme}-{width}.png")
+        page.screenshot(path=SCREENS / f"assembly-{scheme}-{width}.png")
 
 
 def orange(image, x, y):
@@ -192,6 +197,6 @@ def test_without_webgl_the_parts_are_listed(own_studio):
     own_studio.page.add_init_script(NO_WEBGL)
     own_studio.load()
     page = opened(own_studio)
-    assert "does not draw in three dimensions" in page.locator("#assembly").inner_text()
+    assert "does not draw in three dimensions" in page.locator("#built").inner_text()
     assert page.locator(CANVAS).count() == 0
     assert ezdxf.readfile(taken(page, "base as DXF").path()).modelspace().query("CIRCLE")
