@@ -3,7 +3,7 @@
 import * as api from "./api.js";
 import { el, shown, words } from "./dom.js";
 import { Shown } from "./design.js";
-import { amount, figures, text, unitFor } from "./figures.js";
+import { amount, figure, figures } from "./figures.js";
 import { thumbnail } from "./thumbnail.js";
 
 /** How long keys must rest on a card before it is shown. */
@@ -122,6 +122,8 @@ function card(design, n, problem, choose) {
     el("span", { class: "told" },
       el("strong", {}, `${n + 1}. ${words(design.mechanism.type)}`),
       el("span", { class: passed ? "good" : "bad" }, passed ? "✓ verified" : "✗ fails a check"),
-      ...figures(design).slice(0, 1).map(([name, value]) => el("span", { class: "figure" },
-        el("span", {}, words(name)), el("span", {}, text(value, unitFor(name, problem)))))));
+      ...figures(design).slice(0, 1).map(([name, value]) => {
+        const told = figure(name, value, problem, design.metrics?.size);
+        return el("span", { class: "figure", title: told.title }, el("span", {}, words(name)), el("span", {}, told.text));
+      })));
 }

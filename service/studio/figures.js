@@ -15,6 +15,47 @@ export function figures(design) {
   return all.sort(([a], [b]) => rank(a) - rank(b));
 }
 
+/** Digits of a number for reading, where it is no dimension that is made; all of them are told where the pointer rests. */
+const DIGITS = 3;
+
+/** What only misses something by rounding, of its size. */
+const ROUNDING = 1e-9;
+
+/** Names of what measures by how much something is missed. */
+const MISSES = /^(reaches|meets|keeps|reproduces)_|^(dials|ratio)$|(^|_)(residual|error)$|^(rms|max)_distance$|^sum_of_squares$/;
+
+/** What has no scale of its own, so that it says by itself whether it is rounding alone. */
+const BARE = [undefined, "angle", "percent"];
+
+/** A number for reading, with few digits: a whole one has all of its digits. @param {number} value */
+export function brief(value) {
+  if (!Number.isFinite(value) || Number.isInteger(value)) return shown(value);
+  return shown(Math.abs(value) >= 10 ** DIGITS ? Math.round(value) : Number(value.toPrecision(DIGITS)));
+}
+
+/**
+ * Whether a number says that nothing is missed, but for the rounding of the computer.
+ * @param {string} name @param {any} value @param {string | undefined} dimension @param {number} [size] of the mechanism, where lengths are asked for
+ */
+export function exact(name, value, dimension, size = 0) {
+  if (typeof value !== "number" || !MISSES.test(name)) return false;
+  const whole = ROUNDING * size;
+  const least = BARE.includes(dimension) ? ROUNDING : { length: whole, area: whole * whole }[dimension ?? ""] ?? 0;
+  return least > 0 && Math.abs(value) <= least;
+}
+
+/**
+ * A figure of a design: few digits, `exact` where nothing is missed, and all of its digits where the pointer rests.
+ * @param {string} name @param {any} value @param {any} problem whose units stand beside it @param {number} [size] of the mechanism
+ * @returns {{text: string, title: string | null}}
+ */
+export function figure(name, value, problem, size) {
+  const unit = problem ? unitFor(name, problem) : "";
+  if (typeof value !== "number") return { text: text(value), title: null };
+  const plain = problem && exact(name, value, api.measures(problem.kind)[name], size);
+  return { text: plain ? "exact" : beside(brief(value), unit), title: beside(String(value), unit) };
+}
+
 /** @param {any} value @param {string} [unit] beside a number */
 export function text(value, unit = "") {
   return typeof value === "number" ? beside(shown(value), unit) : typeof value === "boolean" ? (value ? "yes" : "no") : words(String(value));
@@ -35,21 +76,35 @@ export function amount(value, check, problem) {
   return beside(shown(value), symbolOf(check.dimension, problem));
 }
 
+/** Value and limit of a check; with as many digits as it takes to tell the two apart. @param {any} check @param {any} problem */
+function measured(check, problem) {
+  const { name, value, passed, dimension } = check;
+  const unit = symbolOf(dimension, problem);
+  const limit = typeof check.limit === "number" ? check.limit : null;
+  const close = !passed || (limit !== null && brief(value) === brief(limit));
+  const told = (/** @type {(value: number) => string} */ as) => `${beside(as(value), unit)}${limit === null ? "" : `, limit ${beside(as(limit), unit)}`}`;
+  return el("span", { class: "note", title: told(String) }, passed && exact(name, value, dimension) ? " exact" : ` ${told(close ? shown : brief)}`);
+}
+
 /** @param {any} design @param {any} problem */
 export function checks(design, problem) {
   return el("section", {}, el("h4", {}, "Checks"), el("ul", { class: "checks" },
     ...(design.verification?.checks ?? []).map((/** @type {any} */ check) => el("li", { class: check.passed ? "good" : "bad" },
       el("span", {}, check.passed ? "✓ " : "✗ "), words(check.name),
-      typeof check.value === "number" && el("span", { class: "note" },
-        ` ${amount(check.value, check, problem)}${typeof check.limit === "number" ? `, limit ${amount(check.limit, check, problem)}` : ""}`),
+      typeof check.value === "number" && measured(check, problem),
       el("span", { class: "hidden" }, check.passed ? " passed" : " failed")))));
 }
 
 /** @param {string} title @param {[string, any][]} rows @param {any} [problem] whose units stand beside the numbers */
 export function table(title, rows, problem = null) {
-  const unit = (/** @type {string} */ name) => (problem ? unitFor(name, problem) : "");
+  const size = rows.find(([name]) => name === "size")?.[1];
+  return rowed(title, rows.map(([name, value]) => [name, figure(name, value, problem, size)]));
+}
+
+/** @param {string} title @param {[string, {text: string, title: string | null}][]} rows */
+function rowed(title, rows) {
   return el("section", {}, el("h4", {}, title), el("table", { class: "figures" }, el("tbody", {},
-    ...rows.map(([name, value]) => el("tr", {}, el("th", { scope: "row" }, words(name)), el("td", {}, text(value, unit(name))))))));
+    ...rows.map(([name, told]) => el("tr", {}, el("th", { scope: "row" }, words(name)), el("td", { title: told.title }, told.text))))));
 }
 
 /** What becomes of a design as a shop makes it: nothing where the problem does not ask. @param {any} design @returns {HTMLElement[]} */
@@ -67,19 +122,22 @@ export function made(design) {
   return [table("As it is made", rows.filter(([, value]) => value !== undefined && value !== null))];
 }
 
-/** The dimensions of a mechanism, as deep as they go; curves and skeletons are in the JSON. @param {any} design @param {any} problem */
+/** The dimensions of a mechanism, as they are made, as deep as they go; curves and skeletons are in the JSON. @param {any} design @param {any} problem */
 export function dimensions(design, problem) {
-  /** @type {[string, any][]} */
+  /** @type {[string, {text: string, title: string | null}][]} */
   const rows = [];
+  const row = (/** @type {string} */ name, /** @type {number[]} */ all, /** @type {string} */ unit) =>
+    rows.push([name, { text: beside(all.map(shown).join(", "), unit), title: beside(all.join(", "), unit) }]);
   const walk = (/** @type {string} */ name, /** @type {any} */ value, /** @type {string} */ unit) => {
     if (Array.isArray(value)) {
       if (!value.length) return;
-      if (value.length <= 4 && value.every((one) => typeof one === "number")) rows.push([name, beside(value.map(shown).join(", "), unit)]);
+      if (value.length <= 4 && value.every((one) => typeof one === "number")) row(name, value, unit);
       else if (value.length <= 8 && value.every((one) => typeof one === "object")) value.forEach((one, k) => walk(`${name} ${k + 1}`, one, unit));
     } else if (value && typeof value === "object") {
       for (const [inner, one] of Object.entries(value)) walk(name ? `${name} ${inner}` : inner, one, unitFor(inner, problem) || unit);
-    } else if (value !== null) rows.push([name, text(value, unit)]);
+    } else if (typeof value === "number") row(name, [value], unit);
+    else if (value !== null) rows.push([name, { text: text(value), title: null }]);
   };
   for (const [name, value] of Object.entries(design.mechanism)) if (!["type", "skeleton", "profile", "pitch_curve", "program", "outer_wall"].includes(name)) walk(name, value, unitFor(name, problem));
-  return table("Dimensions", rows);
+  return rowed("Dimensions", rows);
 }

@@ -229,7 +229,9 @@ def test_every_number_beside_a_cognate_is_the_cognates_own(studio, server):
     assert crank() != pytest.approx(design["mechanism"]["links"]["input"], rel=1e-3)
     assert page.locator("#design .checks li").count() == 0, "its checks are the design's"
     assert page.locator(".drawing img").count() == 0
-    assert f"{cognate['min_transmission_angle']:.4g}"[:4] in page.inner_text("#design table.figures >> nth=0")
+    least = page.get_by_role("row", name="Min transmission angle").locator("td").first
+    assert float(least.get_attribute("title").rstrip("°")) == cognate["min_transmission_angle"]
+    assert float(least.inner_text().rstrip("°")) == float(f"{cognate['min_transmission_angle']:.3g}")
     page.get_by_label("Right cognate").check()
     page.click("#tab-explore")
     facts = page.locator("#explore .facts")
