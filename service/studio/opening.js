@@ -12,6 +12,8 @@ export class Opening {
     /** @type {Mover | null} */
     this.moving = null;
     this.gone = new AbortController();
+    /** @type {(() => void) | null} */
+    this.tabulate = null;
   }
 
   /** Show it, unless something else is shown by then. */
@@ -25,9 +27,15 @@ export class Opening {
     desk.stage.show("watch");
     this.moving = new Mover(desk.frame, design, motion, problem, circuits);
     desk.title.replaceChildren(`Example: ${this.name}, ${words(design.mechanism.type).toLowerCase()}`);
-    desk.numbers.replaceChildren(el("p", { class: "note" }, `The best of ${found}. ${summary}`),
+    this.tabulate = () => desk.numbers.replaceChildren(el("p", { class: "note" }, `The best of ${found}. ${summary}`),
       el("p", { class: "note" }, "Solve it to have all of them, with drawings and files; or state something else."),
       el("div", { class: "columns" }, checks(design, problem), table("Quantities", figures(design), problem)));
+    this.tabulate();
+  }
+
+  /** The service has told what numbers measure: their units stand beside them now. */
+  measured() {
+    if (!this.gone.signal.aborted) this.tabulate?.();
   }
 
   /** Make room for something else. */

@@ -30,6 +30,8 @@ let answered = null;
 let imported;
 /** @type {Gallery | undefined} */
 let gallery;
+/** Whether the gallery has been asked for before it was there. */
+let wanted = false;
 
 const fields = byId("fields");
 const text = byId("json-text");
@@ -242,6 +244,8 @@ async function begin() {
     byId("label").value = example.name;
     solve();
   });
+  if (wanted) gallery.open();
+  opening.measured();
   begun(kinds[0].example);
   byId("example").value = "0";
   history.load().catch(tell);
@@ -252,6 +256,13 @@ fields.addEventListener("submit", (/** @type {Event} */ event) => {
   event.preventDefault();
   solve();
 });
+
+/** Open the gallery, as soon as the service has said what it has. */
+function browse() {
+  wanted = !gallery;
+  gallery?.open();
+}
+
 /** Choose a design by its number, or one that many further. @param {number} number @param {number} [further] */
 function choose(number, further = 0) {
   const cards = [...document.querySelectorAll(".card")];
@@ -286,13 +297,13 @@ const keys = new Keys([
   { keys: ["n"], shown: "N", text: "Numbers", act: () => desk.drawer.press("numbers") },
   { keys: ["p"], shown: "P", text: "Plots", act: () => desk.drawer.press("plots") },
   { keys: ["e"], shown: "E", text: "Explore", act: () => desk.drawer.press("explore") },
-  { keys: ["g"], shown: "G", text: "Gallery", act: () => gallery?.open() },
+  { keys: ["g"], shown: "G", text: "Gallery", act: () => browse() },
   { keys: ["?"], shown: "?", text: "These keys", act: () => keys.open() },
   { keys: [], shown: "Esc", text: "Close what lies over the stage; put the pen away", act: () => {} },
 ]);
 byId("stale-solve").addEventListener("click", () => solve());
 byId("stale-back").addEventListener("click", () => begun(answered));
-byId("gallery-open").addEventListener("click", () => gallery?.open());
+byId("gallery-open").addEventListener("click", () => browse());
 byId("keys-open").addEventListener("click", () => keys.open());
 text.addEventListener("input", () => {
   try {
