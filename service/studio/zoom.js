@@ -25,6 +25,8 @@ export class Zoom {
     /** @type {Map<number, PointerEvent>} */
     this.fingers = new Map();
     this.nearness = 1;
+    /** What the picture has of the window, pixels: nothing while it is hidden. */
+    this.room = [0, 0];
     const { x, y, width, height } = picture.viewBox.baseVal;
     /** All there is to be seen. @type {Box} */
     this.whole = { x, y, width, height };
@@ -33,6 +35,11 @@ export class Zoom {
       el("button", { type: "button", class: "small", "aria-label": label, title: label, onclick: act }, text);
     this.buttons = el("div", { class: "zoom" }, button("−", "Farther", () => this.by(1 / PRESS)),
       button("+", "Nearer", () => this.by(PRESS)), button("Fit", "Fit everything", () => this.fit()));
+    // The window, or what else stands on the stage, gives it another size: words and lines keep theirs.
+    new ResizeObserver(([{ contentRect }]) => {
+      this.room = [contentRect.width, contentRect.height];
+      this.tell();
+    }).observe(picture);
     picture.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.by(WHEEL ** -event.deltaY, this.under(event));
@@ -65,7 +72,13 @@ export class Zoom {
     const [width, height] = [this.whole.width / this.nearness, this.whole.height / this.nearness];
     const [x, y] = [this.middle[0] - width / 2, this.middle[1] - height / 2];
     this.picture.setAttribute("viewBox", `${x} ${y} ${width} ${height}`);
-    this.picture.style.setProperty("--nearness", String(this.nearness));
+    this.tell();
+  }
+
+  /** What keeps its size on the screen is told how much larger all else is. */
+  tell() {
+    const scale = Math.min(this.room[0] / this.whole.width, this.room[1] / this.whole.height) || 1;
+    this.picture.style.setProperty("--nearness", String(this.nearness * scale));
   }
 
   /** Where of the picture a pointer is. @param {{clientX: number, clientY: number}} pointer @returns {number[]} */

@@ -165,3 +165,20 @@ def test_steps_of_a_statement_are_undone_and_done_again(studio):
     assert stated(page) == typed
     assert page.input_value("#kind") == "motion"
     until(lambda: json.loads(page.input_value("#json-text")) == typed, what="the JSON")
+
+
+def test_the_gallery_opens_for_who_asks_before_the_service_has_told_its_examples(own_studio):
+    page = own_studio.page
+    held = []
+    page.route("**/v1/problems", held.append)
+    page.goto(f"{own_studio.url}/")
+    # The first machine moves already; what its numbers measure is told by the service.
+    size = page.get_by_role("row", name="Size").locator("td")
+    size.wait_for()
+    assert size.inner_text().replace(".", "").isdigit()
+    page.keyboard.press("g")
+    assert not page.is_visible("#gallery")
+    until(lambda: page.evaluate("1") and held, 30, "the page asks for the examples")
+    held.pop().continue_()
+    page.wait_for_selector("#gallery[open] .gallery-card")
+    assert size.inner_text().endswith(" mm")
