@@ -170,7 +170,7 @@ def test_steps_of_a_statement_are_undone_and_done_again(studio):
 def test_the_gallery_opens_for_who_asks_before_the_service_has_told_its_examples(own_studio):
     page = own_studio.page
     held = []
-    page.route("**/v1/problems", held.append)
+    page.route("**/v1/problems", lambda route: held.append(route))
     page.goto(f"{own_studio.url}/")
     # The first machine moves already; what its numbers measure is told by the service.
     size = page.get_by_role("row", name="Size").locator("td")
