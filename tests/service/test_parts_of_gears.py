@@ -216,6 +216,15 @@ def test_planets_stand_where_the_teeth_want_them(client: Any, trains: Any, held:
     assert keys == 2 + (held == "sun")
 
 
+def test_a_long_planet_goes_through_both_planes_with_nothing_between(client: Any) -> None:
+    problem = {"kind": "planetary_train", "ratio": 3, "arrangement": "ravigneaux", "input": "sun_small",
+               "output": "ring", "fixed": "carrier", "max_designs": 1}  # fmt: skip
+    files = parts(client, f"/v1/jobs/{finished(client, problem)['id']}/designs/0", bore=6, face_width=6)
+    rows = bill(files)
+    assert rows["gear_planet_long"]["quantity"] == rows["gear_planet_short"]["quantity"] == "3"
+    assert float(rows["gear_planet_long"]["thickness"]) > 2 * float(rows["gear_planet_short"]["thickness"]) == 12.0
+
+
 def test_the_face_width_of_a_plane_is_that_of_the_answer(client: Any) -> None:
     stage = {"type": "helical", "helix_angle": 15.0, "face_width": 21.0}
     job = finished(client, {"kind": "gear_train", "ratio": "2", "stages": [stage], "max_designs": 1})

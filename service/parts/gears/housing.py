@@ -46,6 +46,8 @@ class Shaft:
         Levels of what turns with it.
     free : tuple of int
         Levels of what turns on it.
+    spanned : tuple of int
+        Levels from which a wheel goes on to the next, so that nothing stands between these on the shaft.
     ends : bool
         Whether one end stands out of its plate, to be turned, or to turn something.
     below : bool
@@ -63,6 +65,7 @@ class Shaft:
     ends: bool = False
     below: bool = False
     towards: complex = 1.0 + 0.0j
+    spanned: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -165,7 +168,9 @@ class Housing:
         stub = STUB * sizes.pin if shaft.ends else 0.0
         down = shaft.reach[1] < self.top or shaft.below
         return [
-            *self._stack(name, shaft.name, shaft.carrier, shaft.axis, shaft.reach, levels, seats, stub, down),
+            *self._stack(
+                name, shaft.name, shaft.carrier, shaft.axis, shaft.reach, levels, seats, stub, down, shaft.spanned
+            ),
             *keys,
         ]
 
@@ -180,6 +185,7 @@ class Housing:
         seats: Sequence[Prism] = (),
         stub: float = 0.0,
         upside_down: bool = False,
+        spanned: Sequence[int] = (),
     ) -> list[Part]:
         ends = self.levels[reach[0]].low, self.levels[reach[1]].high
         parts = held_pin(
@@ -187,6 +193,8 @@ class Housing:
             seats=seats, stub=stub, upside_down=upside_down,
         )  # fmt: skip
         for lower, upper in pairwise(levels):
+            if lower in spanned:
+                continue
             gap = self.levels[lower].high, self.levels[upper].low
             parts += fillers(name, carrier, place, gap, (lower, upper), self.sizes)
         return parts

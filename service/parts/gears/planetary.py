@@ -234,7 +234,7 @@ class _Task:
             return Shaft(f"axle of {words}", Carrier(name, None), centre, reach, keyed, (plate,),
                          towards=self._towards(own[0]))  # fmt: skip
         carrier = Carrier(self.carried(self.carrier).link, None)
-        return Shaft(f"axle of {words}", carrier, centre, reach, (), (plate, *levels))
+        return Shaft(f"axle of {words}", carrier, centre, reach, (), (plate, *levels), spanned=tuple(levels[:-1]))
 
     def _carrier_plate(self, level: int) -> Part:
         sizes = self.sizes
