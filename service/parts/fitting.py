@@ -125,6 +125,11 @@ class Fitting(ABC):
                 f"Pins of {pin / unit:.6g} {self._words} are none that are made; from {THINNEST_PIN / unit:g} to "
                 f"{WIDEST_PIN / unit:g} {self._words} they are.", path,
             )  # fmt: skip
+        if width is not None and width > LARGEST_ASSEMBLY:
+            raise NotMade(
+                f"Parts are made up to {LARGEST_ASSEMBLY / unit:g} {self._words}, and links are narrower than that.",
+                "/query/width",
+            )
         sizes = self._with(WIDTH * pin if width is None else width, pin)
         self._judged(sizes)
         return sizes
@@ -192,6 +197,10 @@ class Fitting(ABC):
         known = f"There is no room for links {sizes.width / unit:.4g} {self._words} wide: {reason}."
         least = self._least_scale(sizes, scale)
         if least is None:
+            largest = rounded_down(LARGEST_ASSEMBLY / (self._size * unit))
+            if self.tried(self._with(WIDTH * THINNEST_PIN, THINNEST_PIN), largest).assembly is not None:
+                words = f"{known} Narrower ones fit, but these at no scale up to {largest:g}, the greatest."
+                return NotMade(words, path)
             return NotMade(f"{known} Nor is there for narrower ones: the mechanism cannot be built in planes.")
         words = f"{known} These sizes fit from scale {least:.4g} on"
         widest, thinner = sizes.width * scale / least, sizes.pin * scale / least
@@ -205,8 +214,12 @@ class Fitting(ABC):
     def _least_scale(self, sizes: Sizes, scale: float) -> float | None:
         """The least scale, up to a few hundredths, at which these sizes fit."""
         too_small, fits = scale, None
-        factor = 2.0
-        while factor <= LEAST_FACTOR and self._size * self._unit * scale * factor <= LARGEST_ASSEMBLY:
+        size, factor = self._size * self._unit * scale, 2.0
+        # No mechanism has room for a pin that is twice as thick as all of it is large.
+        while 2.0 * size * factor < sizes.pin:
+            too_small, factor = scale * factor, 2.0 * factor
+        most = LEAST_FACTOR * factor / 2.0
+        while factor <= most and size * factor <= LARGEST_ASSEMBLY:
             if self.tried(sizes, scale * factor).assembly is not None:
                 fits = scale * factor
                 break

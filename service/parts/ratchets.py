@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import shapely
 
 from kinematics.indexing.ratchet import Ratchet
 from kinematics.linkage.planar.mechanism import GROUND
@@ -19,7 +20,7 @@ from service.parts.building import LINK_COLOURS
 from service.parts.cam_motion import TURN, Turning, still, turned
 from service.parts.fitting import Fitting, Trial, fault_of
 from service.parts.model import Assembly, Carrier, Part, Placed, Real
-from service.parts.shapes import Disc, Loop, Region, widened
+from service.parts.shapes import Disc, Loop, Region, ring_of, widened
 from service.parts.sizes import MILLIMETRES, WIDTH, NotMade, PartsQuery, Sizes
 from service.parts.stack import STILL, Stack
 from synthesis.kinds.indexing.design import RatchetMechanism
@@ -111,6 +112,10 @@ class _Ratchet(Fitting):
     def tried(self, sizes: Sizes, scale: float) -> Trial:
         """The assembly in these sizes."""
         assembly = _Builder(self._mechanism, sizes, self._unit * scale).assembled(scale, self._size)
+        pawl = next(part for part in assembly.parts if part.carrier.link.startswith(PAWL))
+        around = ring_of(pawl.region.outer, beyond=True)
+        if not shapely.Polygon(np.column_stack([around.real, around.imag])).is_valid:
+            return Trial(None, "the round end of a pawl about its pivot would reach over its nose")
         fault = fault_of(assembly, sizes)
         return Trial(None, fault) if fault else Trial(assembly, "")
 

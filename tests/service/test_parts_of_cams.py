@@ -255,6 +255,20 @@ def test_sizes_that_contradict_one_another_are_refused(client: Any, jobs: Any, f
     assert [fault["path"] for fault in answer["errors"]] == [f"/query/{field}"]
 
 
+@pytest.mark.parametrize("sizes", [{"width": 40, "pin": 4}, {"width": 1e6}, {"width": 1e4, "pin": 20}])
+def test_pawls_that_are_wider_than_long_are_refused(client: Any, jobs: Any, sizes: dict[str, float]) -> None:
+    (fault,) = refused(client, jobs["ratchet"][0], 422, **sizes)["errors"]
+    assert fault["path"] == "/query/width"
+    assert "cannot be built" not in fault["detail"]
+
+
+def test_however_small_a_mechanism_is_the_scale_that_works_is_told(client: Any, jobs: Any) -> None:
+    (fault,) = refused(client, jobs["ratchet"][0], 422, scale=1e-6)["errors"]
+    assert fault["path"] == "/query/scale"
+    words = fault["detail"].rstrip(".").split()
+    assert parts(client, jobs["ratchet"][0], pin=0.5, scale=float(words[words.index("scale") + 1]))
+
+
 @pytest.mark.parametrize("name", ["roller", "external", *also("arm", "flat", "groove", "internal", "ratchet")])
 def test_sizes_are_found_where_none_are_stated(client: Any, jobs: Any, name: str) -> None:
     files = parts(client, jobs[name][0])
