@@ -26,11 +26,17 @@ def simulated():
             mujoco.mj_step(model, data, STEPS)
 
 
+def apart(one, other):
+    """How far two numbers are apart: infinitely, where one is none."""
+    between = abs(one - other)
+    return between if between == between else float("inf")
+
+
 def run(path):
     """Compare the motion, write it to a table where ``path`` says so, and return the largest difference."""
     worst, peak, table = [0.0] * len(JOINTS), 0.0, []
     for expected, (time, found, force) in zip(MOTION, simulated(), strict=True):
-        worst = [max(most, abs(one - other)) for most, one, other in zip(worst, found, expected, strict=True)]
+        worst = [max(most, apart(one, other)) for most, one, other in zip(worst, found, expected, strict=True)]
         peak = max(peak, abs(force))
         table.append([time, *found, force])
     if path:
@@ -68,6 +74,9 @@ def main():
     parser.add_argument("--view", action="store_true", help="show the motion in MuJoCo's viewer")
     parser.add_argument("--csv", help="write the motion and the drive to this file")
     parser.add_argument("--tolerance", type=float, default=1e-4, help="radians, or shares of the size (1e-4)")
+    # A title may have letters that this console has not.
+    if hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(errors="replace")
     stated = parser.parse_args()
     print(TITLE)
     for remark in REMARKS:

@@ -1,8 +1,9 @@
 """The URDF of a machine.
 
-URDF knows trees alone. The tree stands as it is; the pins that close its loops are in a block ``<gazebo>`` as joints of
-SDF, which Gazebo adds to the model, and in comments for everything else. Gears between two joints of the ground are
-``mimic``; other relations are comments.
+URDF knows trees alone. Its root is called :data:`ROOT`, which readers hold fast: Gazebo takes a root of another name
+for a body that may move, and leaves it out where it has no mass, with all that hangs from it. The tree stands as it is;
+the pins that close its loops are in a block ``<gazebo>`` as joints of SDF, which Gazebo adds to the model, and in
+comments for everything else. Gears between two joints of the ground are ``mimic``; other relations are comments.
 """
 
 from __future__ import annotations
@@ -12,6 +13,9 @@ from collections.abc import Iterator
 from service.simulation.mjcf import inertias
 from service.simulation.model import GROUND, Body, Multibody, Vector
 from service.simulation.naming import attribute, comment, number, numbers
+
+ROOT = "world"
+"""The ground, by the name that readers of URDF hold fast."""
 
 
 def urdf(machine: Multibody) -> str:
@@ -30,8 +34,8 @@ def _lines(machine: Multibody) -> Iterator[str]:
             "do not read it have to add these pins themselves; the MJCF file of this design has all of them. -->"
         )
     yield f'<robot name="{attribute(machine.title)}">'
-    yield "  <!-- The ground has the design's coordinates in metres; at the start of the motion joints are at 0. -->"
-    yield f'  <link name="{GROUND}"/>'
+    yield "  <!-- The world has the design's coordinates in metres; at the start of the motion joints are at 0. -->"
+    yield f'  <link name="{ROOT}"/>'
     origins: dict[str, Vector] = {GROUND: (0.0, 0.0, 0.0)}
     mimics, told = _mimics(machine)
     for body in machine.bodies:
@@ -58,7 +62,7 @@ def _link(body: Body) -> Iterator[str]:
 
 def _joint(machine: Multibody, body: Body, origin: Vector, mimic: str) -> Iterator[str]:
     yield f'  <joint name="{body.joint}" type="{"continuous" if body.sort == "hinge" else "prismatic"}">'
-    yield f'    <parent link="{body.parent}"/>'
+    yield f'    <parent link="{_named(body.parent)}"/>'
     yield f'    <child link="{body.name}"/>'
     yield f'    <origin xyz="{numbers(*_from(origin, body.place))}" rpy="0 0 0"/>'
     yield f'    <axis xyz="{numbers(*body.axis)}"/>'
@@ -92,15 +96,19 @@ def _mimics(machine: Multibody) -> tuple[dict[str, str], list[str]]:
 def _closure(name: str, first: str, second: str, place: Vector, origins: dict[str, Vector]) -> Iterator[str]:
     own = numbers(*_from(origins[first], place))
     other = numbers(*_from(origins[second], place))
-    yield f"  <!-- {name}: a pin at {own} of {first} and at {other} of {second} closes a loop. -->"
+    yield f"  <!-- {name}: a pin at {own} of {_named(first)} and at {other} of {second} closes a loop. -->"
     yield "  <gazebo>"
     yield f'    <joint name="{name}" type="revolute">'
-    yield f"      <parent>{'world' if first == GROUND else first}</parent>"
+    yield f"      <parent>{_named(first)}</parent>"
     yield f"      <child>{second}</child>"
     yield f"      <pose>{other} 0 0 0</pose>"
     yield "      <axis><xyz>0 0 1</xyz></axis>"
     yield "    </joint>"
     yield "  </gazebo>"
+
+
+def _named(name: str) -> str:
+    return ROOT if name == GROUND else name
 
 
 def _from(origin: Vector, place: Vector) -> Vector:

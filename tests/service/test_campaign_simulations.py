@@ -247,6 +247,9 @@ def test_a_script_says_so_where_joints_miss(tmp_path: Path) -> None:
     path.write_text(text.replace("MOTION = [\n", "MOTION = [\n    [0.001, 0, 0],\n", 1))
     ran = subprocess.run([sys.executable, str(path)], capture_output=True, text=True, check=False)
     assert ran.returncode == 1
+    # It ran to its end, and did not break down.
+    assert "greatest drive" in ran.stdout
+    assert not ran.stderr
 
 
 def test_mujoco_reads_the_urdf() -> None:
