@@ -91,7 +91,7 @@ chromium:
 test-cad:
 	@$(MAKE) --no-print-directory VENV=.venv-cad cad-suite
 
-cad-suite: $(VENV)/.cad-tests
+cad-suite: $(VENV)/.cad-tests $(NODE)
 	$(BIN)/pytest -m "cad or not slow" -q tests/cad tests/service/test_parts.py
 
 $(VENV)/.cad-tests: requirements-dev.lock requirements-cad.lock tests/cad/mesh.lock pyproject.toml

@@ -24,6 +24,7 @@ from service.parts.sizes import PartsQuery
 from service.stated import written
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
+from tests.cad.readers import assert_valid_3mf, assert_valid_glb
 from tests.cad.room import shared_room
 from tests.service.test_parts_of_cams import PROBLEMS
 
@@ -139,7 +140,12 @@ def test_printed_parts_are_watertight_meshes_on_the_plate(name: str) -> None:
         assert mesh.is_watertight
         assert mesh.volume == pytest.approx(item.part.volume, rel=0.02)
         assert mesh.bounds[0][2] == pytest.approx(0.0, abs=1e-6)
-        assert f"3mf/{item.name}.3mf" in files
+        assert_valid_3mf(files[f"3mf/{item.name}.3mf"])
+
+
+@pytest.mark.parametrize("name", TYPES)
+def test_the_validator_of_khronos_finds_no_fault_in_glb_files(name: str) -> None:
+    assert_valid_glb(cad.glb(solids(name), "assembly"))
 
 
 def test_an_assembly_is_shown_at_the_input_that_is_asked_for() -> None:

@@ -28,6 +28,7 @@ from service.parts.shapes import Disc, arc
 from service.parts.sizes import PartsQuery
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
+from tests.cad.readers import assert_valid_3mf, assert_valid_glb
 from tests.service.test_parts_of_gears import PAIR, SET
 
 pytestmark = [pytest.mark.cad, pytest.mark.timeout(300)]
@@ -73,6 +74,11 @@ def test_solids_are_valid_and_as_large_as_the_model_says(name: str) -> None:
         assert solid.volume == pytest.approx(part.volume, rel=1e-5 if name in SWEPT else 1e-6)
         box = solid.bounding_box()
         assert pytest.approx((part.low, part.high), abs=1e-5) == (box.min.Z, box.max.Z)
+
+
+@pytest.mark.parametrize("name", SOLID)
+def test_the_validator_of_khronos_finds_no_fault_in_glb_files(name: str) -> None:
+    assert_valid_glb(cad.glb(list(solids(name).values()), "assembly"))
 
 
 @pytest.mark.parametrize("name", ["pair", "internal"])
@@ -207,6 +213,7 @@ def test_printed_gears_are_watertight_meshes(name: str) -> None:
     listed = items(whole)
     assert {one for one in files if one.startswith("stl/")} == {f"stl/{item.name}.stl" for item in listed}
     for item in listed:
+        assert_valid_3mf(files[f"3mf/{item.name}.3mf"])
         mesh = trimesh.load_mesh(io.BytesIO(files[f"stl/{item.name}.stl"]), file_type="stl")
         assert mesh.is_watertight
         assert mesh.volume == pytest.approx(item.part.volume, rel=0.02)

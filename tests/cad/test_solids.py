@@ -25,6 +25,7 @@ from service.parts.sizes import PartsQuery, Refused
 from service.stated import written
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
+from tests.cad.readers import assert_valid_3mf, assert_valid_glb
 from tests.service.stated.linkages import DWELL, LINE, STEERING
 from tests.service.test_parts import MOTION, SLIDER
 
@@ -176,6 +177,7 @@ def test_printed_parts_are_watertight_meshes_that_lie_on_the_plate(kind: str) ->
         assert mesh.bounds[0][2] == pytest.approx(0.0, abs=1e-6)
         vertices, triangles, unit = three_mf(files[f"3mf/{item.name}.3mf"])
         assert unit == "millimeter"
+        assert_valid_3mf(files[f"3mf/{item.name}.3mf"])
         other = trimesh.Trimesh(vertices, triangles)
         assert other.is_watertight
         assert other.volume == pytest.approx(item.part.volume, rel=0.02)
@@ -191,6 +193,16 @@ def three_mf(content: bytes) -> tuple[Any, Any, str | None]:
     return np.array(vertices), np.array(triangles), root.get("unit")
 
 
+@pytest.mark.parametrize("kind", TYPES)
+def test_the_validator_of_khronos_finds_no_fault_in_glb_files(kind: str) -> None:
+    assert_valid_glb(cad.glb(solids(kind), "assembly"))
+
+
+def test_a_file_that_is_cut_short_is_not_valid() -> None:
+    with pytest.raises(AssertionError, match="GLB_"):
+        assert_valid_glb(cad.glb(solids("fourbar")[:1], "assembly")[:-8])
+
+
 def test_a_glb_file_is_in_metres_with_the_shafts_along_y_and_moves_with_the_input() -> None:
     import trimesh
 
@@ -203,6 +215,7 @@ def test_a_glb_file_is_in_metres_with_the_shafts_along_y_and_moves_with_the_inpu
             problem.kind, written(problem), None, result.model_dump_json(), 0, {"input_angle": degrees}, "glb"
         )
         assert isinstance(content, bytes)
+        assert_valid_glb(content)
         scene = trimesh.load(io.BytesIO(content), file_type="glb")
         assert set(scene.geometry) or scene.graph
         bounds.append(scene.bounds)
