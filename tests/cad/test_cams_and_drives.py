@@ -21,9 +21,9 @@ from service.parts.orders import filled
 from service.parts.package import package
 from service.parts.shapes import Disc
 from service.parts.sizes import PartsQuery
-from service.stated import written
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
+from tests.cad.orders import order
 from tests.cad.readers import assert_valid_3mf, assert_valid_glb
 from tests.cad.room import shared_room
 from tests.service.test_parts_of_cams import PROBLEMS
@@ -155,7 +155,7 @@ def test_an_assembly_is_shown_at_the_input_that_is_asked_for() -> None:
 
     def shown(degrees: float) -> Any:
         query = {"input_angle": degrees}
-        content = filled(problem.kind, written(problem), None, result.model_dump_json(), 0, query, "glb")
+        content = filled(order(problem, result, query), "glb")
         assert isinstance(content, bytes)
         return trimesh.load(io.BytesIO(content), file_type="glb").bounds
 

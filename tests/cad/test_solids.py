@@ -22,9 +22,9 @@ from service.parts.orders import filled
 from service.parts.package import package
 from service.parts.shapes import Disc
 from service.parts.sizes import PartsQuery, Refused
-from service.stated import written
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
+from tests.cad.orders import order
 from tests.cad.readers import assert_valid_3mf, assert_valid_glb
 from tests.service.stated.linkages import DWELL, LINE, STEERING
 from tests.service.test_parts import MOTION, SLIDER
@@ -211,9 +211,7 @@ def test_a_glb_file_is_in_metres_with_the_shafts_along_y_and_moves_with_the_inpu
     stated = [float(np.degrees(x)) for x in (whole.motion.low, whole.motion.high)]
     bounds = []
     for degrees in stated:
-        content = filled(
-            problem.kind, written(problem), None, result.model_dump_json(), 0, {"input_angle": degrees}, "glb"
-        )
+        content = filled(order(problem, result, {"input_angle": degrees}), "glb")
         assert isinstance(content, bytes)
         assert_valid_glb(content)
         scene = trimesh.load(io.BytesIO(content), file_type="glb")
@@ -236,6 +234,6 @@ def test_an_input_that_is_none_is_refused_by_its_path(query: dict[str, float], p
     )
     if "input_angle" in query:
         query = {"input_angle": 0.5 * (low + high) + (0.0 if high < low else 180.0)}
-    answer = filled(problem.kind, written(problem), None, result.model_dump_json(), 0, query, "step")
+    answer = filled(order(problem, result, query), "step")
     assert isinstance(answer, Refused)
     assert answer.path == path
