@@ -137,7 +137,7 @@ class LinkShape(Shape):
         pydantic.ValidationError
             Where it is none.
         """
-        stated = self.model_dump(exclude_unset=True)
+        stated = {name: value for name, value in self.model_dump(exclude_unset=True).items() if value is not None}
         if self.polygon is None and not self.parts and width is not None:
             stated.setdefault("width", width)
         if ("width" in stated or "polygon" in stated) and thickness is not None:

@@ -47,6 +47,7 @@ def test_plates_of_a_material_are_those_of_the_layout_where_no_sizes_are_stated(
         for name, force in plates.items():
             assert lighter[name] == pytest.approx(DENSITIES[material] / DENSITIES["steel"] * force, rel=1e-6)
     assert plates == of(density=7850.0, width=0.5, thickness=3.0)
+    assert plates == of(material="steel", density=None, width=None, thickness=None)
     assert of(material="steel", thickness=6.0)["shaking_force"] == pytest.approx(
         2.0 * plates["shaking_force"], rel=1e-6
     )
