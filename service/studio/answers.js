@@ -120,7 +120,7 @@ function card(design, n, problem, choose) {
   return el("button", { type: "button", class: "card", "aria-pressed": "false", onclick: choose },
     thumbnail(design),
     el("span", { class: "told" },
-      el("strong", {}, `${n + 1}. ${words(design.mechanism.type)}`),
+      el("strong", { title: words(design.mechanism.type) }, `${n + 1}. ${words(design.mechanism.type)}`),
       el("span", { class: passed ? "good" : "bad" }, passed ? "✓ verified" : "✗ fails a check"),
       ...figures(design).slice(0, 1).map(([name, value]) => {
         const told = figure(name, value, problem, design.metrics?.size);
