@@ -178,8 +178,10 @@ def test_the_page_is_worked_by_keys_alone(studio):
     page.keyboard.press("ArrowRight")
     assert page.input_value("#scrub") != before
     tab_to("one.matches('[role=tab]')")
-    for _ in range(3):
+    # Plots, Explore, Assembly, Files.
+    for _ in range(4):
         page.keyboard.press("ArrowRight")
+    assert page.evaluate("document.activeElement.id") == "tab-files"
     tab_to("one.matches('#downloads button') && one.textContent === 'SVG'")
     with page.expect_download() as waiting:
         page.keyboard.press("Enter")
