@@ -22,6 +22,7 @@ from service.parts.sizes import WALL, Sizes
 from synthesis.analyses.cam import CamAnalysisRequest
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
+from tests.campaign import further
 from tests.service.answers import finished
 from tests.service.test_parts import bill, parts, refused
 
@@ -119,7 +120,7 @@ def analysed(mechanism: dict[str, Any], points: np.ndarray) -> tuple[np.ndarray,
     return np.array(answer["input_angle"]), np.array(answer["follower"]["position"])
 
 
-@pytest.mark.parametrize("name", ["roller", "arm", "flat", "flat_arm", "conjugate"])
+@pytest.mark.parametrize("name", further(["roller", "arm", "flat", "flat_arm", "conjugate"], ["roller", "flat_arm"]))
 def test_a_follower_on_the_contour_that_is_cut_does_what_the_program_says(client: Any, jobs: Any, name: str) -> None:
     """The analysis lays the follower against points of the drawing's spline."""
     place, mechanism = jobs[name]
@@ -208,7 +209,7 @@ def test_every_field_counts_for_a_cam(client: Any, jobs: Any, field: str, value:
 
 
 @pytest.mark.parametrize("field", ["width", "pin", "thickness", "clearance", "scale"])
-@pytest.mark.parametrize("name", ["external", "ratchet"])
+@pytest.mark.parametrize("name", further(["external", "ratchet"], ["external"]))
 def test_every_field_counts_for_an_indexing_drive(client: Any, jobs: Any, name: str, field: str) -> None:
     place, base = jobs[name][0], SIZES | THIN
     value = {"width": 12, "pin": 3, "thickness": 5, "clearance": 0.2, "scale": 1.2}[field]
@@ -234,12 +235,7 @@ def test_what_means_nothing_here_is_refused_by_its_path(
     assert [fault["path"] for fault in answer["errors"]] == [f"/query/{field}"]
 
 
-def also(*names: str) -> list[Any]:
-    """Names whose tests take longer."""
-    return [pytest.param(name, marks=pytest.mark.campaign) for name in names]
-
-
-@pytest.mark.parametrize("name", ["roller", *also("external", "ratchet")])
+@pytest.mark.parametrize("name", further(["roller", "external", "ratchet"], ["roller"]))
 def test_too_thick_pins_are_refused_with_the_scale_that_works(client: Any, jobs: Any, name: str) -> None:
     (fault,) = refused(client, jobs[name][0], 422, pin=25)["errors"]
     assert fault["path"] == "/query/pin"
@@ -269,7 +265,10 @@ def test_however_small_a_mechanism_is_the_scale_that_works_is_told(client: Any, 
     assert parts(client, jobs["ratchet"][0], pin=0.5, scale=float(words[words.index("scale") + 1]))
 
 
-@pytest.mark.parametrize("name", ["roller", "external", *also("arm", "flat", "groove", "internal", "ratchet")])
+SIZED = ["roller", "external", "arm", "flat", "groove", "internal", "ratchet"]
+
+
+@pytest.mark.parametrize("name", further(SIZED, ["roller", "external"]))
 def test_sizes_are_found_where_none_are_stated(client: Any, jobs: Any, name: str) -> None:
     files = parts(client, jobs[name][0])
     rows = bill(files)
@@ -278,6 +277,7 @@ def test_sizes_are_found_where_none_are_stated(client: Any, jobs: Any, name: str
     assert b"shaft" in files["README.txt"]
 
 
+@pytest.mark.campaign
 def test_what_is_not_built_says_why(client: Any) -> None:
     linked = {name: value for name, value in DRIVE.items() if name != "rollers"} | {
         "driver": "drag_link",
@@ -293,6 +293,7 @@ def test_what_is_not_built_says_why(client: Any) -> None:
         assert word in answer["detail"]
 
 
+@pytest.mark.campaign
 def test_the_inner_wall_of_a_groove_in_one_piece_is_looked_at() -> None:
     design = solve(parse_problem(PROBLEMS["groove"]), lambda _fraction, _message: None).designs[0]
     for pin, thin in ((8.0, False), (26.0, True)):

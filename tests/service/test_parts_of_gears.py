@@ -13,6 +13,7 @@ import shapely
 
 from kinematics.gear.teeth import involute
 from service.parts.extra import installed
+from tests.campaign import further
 from tests.service.answers import finished
 from tests.service.test_parts import bill, parts, refused
 
@@ -191,7 +192,7 @@ def centres(space: ezdxf.layouts.Modelspace) -> list[complex]:
     return [complex(one.dxf.center.x, one.dxf.center.y) for one in space.query("CIRCLE")]
 
 
-@pytest.mark.parametrize("held", ["ring", "carrier", "sun"])
+@pytest.mark.parametrize("held", further(["ring", "carrier", "sun"], ["ring"]))
 def test_planets_stand_where_the_teeth_want_them(client: Any, trains: Any, held: str) -> None:
     mechanism = trains[held]["mechanism"]
     files = parts(client, trains[held]["place"])
@@ -216,6 +217,7 @@ def test_planets_stand_where_the_teeth_want_them(client: Any, trains: Any, held:
     assert keys == 2 + (held == "sun")
 
 
+@pytest.mark.campaign
 def test_a_long_planet_goes_through_both_planes_with_nothing_between(client: Any) -> None:
     problem = {"kind": "planetary_train", "ratio": 3, "arrangement": "ravigneaux", "input": "sun_small",
                "output": "ring", "fixed": "carrier", "max_designs": 1}  # fmt: skip
@@ -225,6 +227,7 @@ def test_a_long_planet_goes_through_both_planes_with_nothing_between(client: Any
     assert float(rows["gear_planet_long"]["thickness"]) > 2 * float(rows["gear_planet_short"]["thickness"]) == 12.0
 
 
+@pytest.mark.campaign
 def test_the_face_width_of_a_plane_is_that_of_the_answer(client: Any) -> None:
     stage = {"type": "helical", "helix_angle": 15.0, "face_width": 21.0}
     job = finished(client, {"kind": "gear_train", "ratio": "2", "stages": [stage], "max_designs": 1})
@@ -273,6 +276,7 @@ def test_trains_in_series_stand_between_two_plates(client: Any) -> None:
         assert min(abs(one - metrics["centre_distances"][0]) for one in apart) < 1e-9
 
 
+@pytest.mark.campaign
 def test_a_layshaft_gearbox_has_its_first_gear_keyed_and_the_others_free(client: Any) -> None:
     job = finished(
         client, {"kind": "layshaft_gearbox", "ratios": [3.5, 2.1, 1.4], "reverse": 3.3, "module": 3.0,
