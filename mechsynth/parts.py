@@ -114,6 +114,7 @@ from synthesis.kinds.spring_balancing.stated_springs import (
 )
 from synthesis.kinds.steering.problem import ArmLimits
 from synthesis.model.bodies import (
+    LinkShape,
     Part,
     PointMass,
     PolarPlace,
@@ -238,6 +239,7 @@ __all__ = [
     "Least",
     "LengthLimits",
     "LengthRange",
+    "LinkShape",
     "Machine",
     "Manufacture",
     "Most",

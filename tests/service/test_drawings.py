@@ -71,7 +71,7 @@ def test_a_drawing_that_finds_no_turn_is_refused():
         raise Busy
 
     with pytest.raises(Refusal) as refused:
-        asyncio.run(designs._drawn(SimpleNamespace(call=never), divmod, 7, 2))
+        asyncio.run(designs.drawn(SimpleNamespace(call=never), divmod, 7, 2))
     assert (refused.value.status, refused.value.type) == (503, "/problems/busy")
 
 

@@ -97,7 +97,7 @@ def test_every_kind_is_listed_with_an_example_that_runs(client):
     kinds = client.get("/v1/problems").json()["problems"]
     assert [kind["kind"] for kind in kinds] == list(KINDS)
     for kind in kinds:
-        assert set(kind) == {"kind", "title", "description", "schema", "example", "files"}
+        assert set(kind) == {"kind", "title", "description", "schema", "example", "examples", "files", "measures"}
         assert kind["schema"]["type"] == "object"
         assert kind["title"]
         job = finished(client, kind["example"])

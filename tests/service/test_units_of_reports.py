@@ -235,7 +235,7 @@ def test_numbers_of_a_report_are_those_of_the_answer_with_their_units(kind, n):
     page = Tables(report(problem, result, OCCASION, len(result.designs)))
     check_written(page.under("Problem", ""), problem, units)
     check_written(page.under("What was searched", ""), result.search, units)
-    for number, design in enumerate(result.designs):
+    for number, design in enumerate(result.designs, 1):
         section = f"Design {number}: {words(design.mechanism.type)}"
         (checks,) = page.under(section, "Checks")
         for row, check in zip(checks["rows"][1:], design.verification.checks, strict=True):
