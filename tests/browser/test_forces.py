@@ -243,13 +243,16 @@ def test_a_load_is_stated_on_the_drawing_and_a_fault_is_told_at_its_field(open_s
     loaded = torques()
     assert abs(loaded - bare) > 0.1 * abs(bare)
 
-    # What is wrong is said at its field, in words, and the field has the focus.
+    # What is wrong is said at its field, in words: what a field holds first, and what fields want of one another then.
     page.fill('[data-path="/dynamics/point_masses/0/mass"]', "-1")
     page.fill('[data-path="/dynamics/links/thickness"]', "")
     page.click("text=Show the forces")
-    page.wait_for_selector('[data-path="/dynamics/links"][aria-invalid="true"]')
+    page.wait_for_selector('[data-path="/dynamics/point_masses/0/mass"][aria-invalid="true"]')
     mass = page.locator(".field", has=page.locator('> [data-path="/dynamics/point_masses/0/mass"]'))
     assert "greater than or equal to 0" in mass.locator("> .error").inner_text()
+    page.fill('[data-path="/dynamics/point_masses/0/mass"]', "0.5")
+    page.click("text=Show the forces")
+    page.wait_for_selector('[data-path="/dynamics/links"][aria-invalid="true"]')
     assert "has a thickness" in page.inner_text('[data-path="/dynamics/links"] > .error')
     assert "what was stated before" in page.inner_text(".load-editor")
     page.set_viewport_size({"width": 390, "height": 844})
