@@ -102,7 +102,7 @@ $(VENV)/.cad-tests: requirements-dev.lock requirements-cad.lock tests/cad/mesh.l
 SHARE := 0.1
 
 campaign: $(STAMP) $(MULTIBODY)
-	$(BIN)/pytest -m "campaign and not browser" --campaign-share $(SHARE) $(SPREAD) $(shell grep -rlE campaign tests --include='test_*.py')
+	$(BIN)/pytest -m "campaign and not browser and not cad" --campaign-share $(SHARE) $(SPREAD) $(shell grep -rlE campaign tests --include='test_*.py' --exclude-dir=cad)
 
 fuzz: $(STAMP)
 	$(BIN)/pytest -m fuzz -s
