@@ -88,6 +88,9 @@ def test_nothing_is_loaded_from_elsewhere(made: Path, pages: dict[Path, Page]) -
         "",
         "doi.org",
         "127.0.0.1:8000",
+        # The programs that exported models are for.
+        "app.pmksplus.com",
+        "mujoco.readthedocs.io",
     }
 
 
