@@ -80,7 +80,7 @@ def _offer(form: Form, export: Simulation) -> None:
             n, content = await drawn(board, _simulation, job, result, number, form, query)
         headers = {
             "X-Content-Type-Options": "nosniff",
-            "Content-Disposition": f'attachment; filename="{job.kind}-{n}.{form}"',
+            "Content-Disposition": f'attachment; filename="{job.kind}-{n + 1}.{form}"',
         }
         return Response(content, media_type=export.media_type, headers=headers)
 

@@ -228,7 +228,7 @@ export class AssemblyView {
     const all = el("div", { class: "row" },
       el("button", { type: "button", class: "small", onclick: () => this.shown([...kinds.keys()], true) }, "Show all"),
       el("button", { type: "button", class: "small", onclick: () => this.shown([...kinds.keys()], false) }, "Hide all"),
-      this.file("All files", "All files as a zip", `${this.job.kind}-${this.n}-parts.zip`, () => api.parts(this.job.id, this.n, query)));
+      this.file("All files", "All files as a zip", `${this.job.kind}-${this.n + 1}-parts.zip`, () => api.parts(this.job.id, this.n, query)));
     const rows = [...kinds].map(([item, [part, ...others]]) => {
       const called = others.length ? item.replaceAll("_", " ") : part.described;
       const box = el("input", { type: "checkbox", id: `show-${item}`, "aria-label": `Show ${called}`, onchange: () => this.shown([item], box.checked) });

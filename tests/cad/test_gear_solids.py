@@ -20,6 +20,7 @@ import pytest
 import shapely
 
 from service.parts import cad
+from service.parts.gears.motion import TrainMotion
 from service.parts.items import items
 from service.parts.made import made
 from service.parts.model import Assembly, Part
@@ -233,6 +234,7 @@ def test_planets_go_round_with_the_carrier_and_turn_about_themselves() -> None:
         assert abs(complex(middle.X, middle.Y) - away * np.exp(0.25j * angle)) < 1e-6
         axle = placed[numbers["pin_axle_of_planet_1"]].center()
         assert abs(complex(axle.X, axle.Y) - away * np.exp(0.25j * angle)) < 1e-6
-    carrier, planet = (whole.motion.bodies[name] for name in ("carrier", "planet_1"))  # type: ignore[attr-defined]
+    assert isinstance(whole.motion, TrainMotion)
+    carrier, planet = (whole.motion.bodies[name] for name in ("carrier", "planet_1"))
     # Past the carrier sun and planet turn as their teeth say: (ω_p - ω_c) z_p = -(ω_s - ω_c) z_s.
     assert (planet.speed - carrier.speed) * teeth["planet"] == pytest.approx(-(1.0 - carrier.speed) * teeth["sun"])

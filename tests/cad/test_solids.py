@@ -26,6 +26,7 @@ from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.cad.orders import order
 from tests.cad.readers import assert_valid_3mf, assert_valid_glb
+from tests.cad.room import shared_room
 from tests.service.stated.linkages import DWELL, LINE, STEERING
 from tests.service.test_parts import MOTION, SLIDER
 
@@ -117,36 +118,9 @@ def test_no_two_solids_share_room_at_72_inputs(kind: str, process: str) -> None:
     whole = assembly(kind, process)
     made_ = solids(kind, process)
     inputs = whole.motion.inputs(72)
-    shared = 0.0
-    tried = 0
-    resting: dict[tuple[int, int], tuple[complex, complex]] = {}
-    for input_ in inputs:
-        driven = whole.motion.at(np.array([input_]))
-        placed = cad.placed(whole, made_, float(input_))
-        boxes = [one.bounding_box(optimal=False) for one in placed]
-        for n, m in combinations(range(len(placed)), 2):
-            one, other = boxes[n], boxes[m]
-            if any(
-                min(getattr(one.max, axis), getattr(other.max, axis))
-                - max(getattr(one.min, axis), getattr(other.min, axis)) < 1e-4
-                for axis in "XYZ"
-            ):  # fmt: skip
-                continue
-            # Two that have not moved towards each other since need not be tried again.
-            a, b = (whole.motion.placed(whole.parts[k].carrier, driven) for k in (n, m))
-            towards = complex((b.shift[0] - a.shift[0]) / a.turn[0]), complex(b.turn[0] / a.turn[0])
-            if (
-                resting.get((n, m)) is not None
-                and max(abs(x - y) for x, y in zip(resting[n, m], towards, strict=True)) < 1e-9 * whole.size
-            ):
-                continue
-            resting[n, m] = towards
-            tried += 1
-            common = placed[n].intersect(placed[m])
-            bodies = [] if common is None else list(common)
-            shared += sum(getattr(body, "volume", 0.0) for body in bodies)
+    tried, found = shared_room(whole, made_, inputs)
     assert tried > 0
-    assert shared < 1e-6 * min(solid.volume for solid in made_)
+    assert len(inputs) * sum(found.values()) < 1e-6 * min(solid.volume for solid in made_)
 
 
 def test_two_solids_in_one_place_are_seen_to_share_room() -> None:

@@ -113,7 +113,7 @@ def _drawn(client: httpx.Client, page: Page, problem: dict[str, Any], patience_s
         if time.monotonic() > deadline:
             client.delete(at).raise_for_status()
             raise TooSlow
-        time.sleep(POLL_S)
+        time.sleep(POLL_S)  # the job is another process's; this is a tool that waits for it
         job = _json(client.get(at))
     if not job["result"] or not job["result"]["designs"]:
         raise RuntimeError(f"an example is {job['status']} without a design: {job['error']}: {problem}")
