@@ -7,7 +7,7 @@
 #              generated TypeScript client in node (Chromium and node are installed where they are missing and we are root)
 # make test-cad  the tests of solids, in an environment of their own with the extra cad (.venv-cad, a gigabyte)
 # make campaign  the checks with thousands of random problems: a tenth of them, or all with SHARE=1 (independent
-#              multibody programs are installed for them)
+#              multibody programs are installed for them), and the studio's kinds on a phone
 # make fuzz    hundreds of requests of each operation, and of absurd problems of each kind; half an hour
 # make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
 # make docs    the site, in var/site: all pages, the references, and a gallery of machines that are solved for it
@@ -79,7 +79,7 @@ engines:
 TIMED := tests/browser/test_smoothness.py
 
 test-browser: $(STAMP) $(NODE) chromium
-	$(BIN)/pytest -m browser $(SPREAD) --ignore $(TIMED)
+	$(BIN)/pytest -m "browser and not campaign" $(SPREAD) --ignore $(TIMED)
 	$(BIN)/pytest -m browser $(TIMED)
 
 chromium:
@@ -101,8 +101,9 @@ $(VENV)/.cad-tests: requirements-dev.lock requirements-cad.lock tests/cad/mesh.l
 
 SHARE := 0.1
 
-campaign: $(STAMP) $(MULTIBODY)
+campaign: $(STAMP) $(MULTIBODY) chromium
 	$(BIN)/pytest -m "campaign and not browser and not cad" --campaign-share $(SHARE) $(SPREAD) $(shell grep -rlE campaign tests --include='test_*.py' --exclude-dir=cad)
+	$(BIN)/pytest -m "campaign and browser" --campaign-share $(SHARE) tests/browser/test_layout.py
 
 fuzz: $(STAMP)
 	$(BIN)/pytest -m fuzz -s

@@ -38,7 +38,7 @@ export function answer(place, desk, job, state, solve) {
   const cards = designs.map((/** @type {any} */ design, /** @type {number} */ n) => card(design, n, job.problem, () => {
     cards.forEach((/** @type {HTMLElement} */ one, /** @type {number} */ k) => one.setAttribute("aria-pressed", String(k === n)));
     chosen?.stop();
-    chosen = new Shown(desk, job, n, state);
+    chosen = new Shown(desk, job, n, state, chosen?.before);
   }));
   place.append(
     el("div", { class: "known", tabindex: 0, role: "group", "aria-label": "What is known" },

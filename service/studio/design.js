@@ -40,8 +40,11 @@ const OF_THE_DESIGN = "Checks, drawing and files are those of the design: choose
 /** @typedef {{choice: import("./cognates.js").Choice, design: any, motion: any, circuits: any}} Film */
 
 export class Shown {
-  /** @param {import("./desk.js").Desk} desk @param {api.Job} job @param {number} n @param {(problem: any) => void} state begins another statement */
-  constructor(desk, job, n, state) {
+  /**
+   * @param {import("./desk.js").Desk} desk @param {api.Job} job @param {number} n @param {(problem: any) => void} state begins another statement
+   * @param {Moving | null} [before] what stands still on the stage until this design moves there
+   */
+  constructor(desk, job, n, state, before = null) {
     this.desk = desk;
     this.state = state;
     /** @type {Moving | null} */
@@ -50,6 +53,7 @@ export class Shown {
     this.url = "";
     /** @type {Moving | null} */
     this.moving = null;
+    this.before = before;
     /** @type {Moving | null} */
     this.explorer = null;
     /** @type {Forces | null} */
@@ -63,7 +67,6 @@ export class Shown {
     this.job = job;
     this.n = n;
     this.design = job.result.designs[n];
-    desk.clear();
     this.burmester(job, n);
     this.present(job, n, `Design ${n + 1}`);
   }
@@ -116,7 +119,8 @@ export class Shown {
   async move(gone) {
     const { mechanism } = this.design;
     const { frame } = this.desk;
-    if (frame.idle) frame.say(thumbnail(this.design) ?? "", el("p", { class: "note" }, "The motion is being computed …"));
+    if (!frame.idle) frame.wait(true);
+    else frame.say(thumbnail(this.design) ?? "", el("p", { class: "note" }, "The motion is being computed …"));
     try {
       const View = VIEWS[mechanism.type];
       if (View) {
@@ -143,6 +147,8 @@ export class Shown {
   /** @param {() => Moving} make @param {boolean} [own] whether it is the design that moves, and not a cognate of it */
   show(make, own = true) {
     this.moving?.stop();
+    this.before?.stop();
+    this.before = null;
     this.moving = make();
     this.forced.toggleAttribute("hidden", !own);
     this.forces?.attach(this.mover);
@@ -273,6 +279,7 @@ export class Shown {
   leave() {
     this.gone.abort();
     this.moving?.stop();
+    this.before = this.moving ?? this.before;
     this.moving = null;
     this.leaveExplorer();
     this.forces?.stop();

@@ -62,6 +62,29 @@ export function byId(id) {
   return found;
 }
 
+/** What stands for an element that is made anew: its id, or what it is called. @param {Element} one */
+function called(one) {
+  return one.id || one.getAttribute("data-grip") || one.getAttribute("aria-label") || one.textContent;
+}
+
+/**
+ * Make anew what stands in some places. What had the focus in one of them has it again, by its id or its name; where it is
+ * gone, the place itself has it: whoever goes by keys keeps the place.
+ * @param {HTMLElement[]} places
+ * @param {() => void} make
+ */
+export function remade(places, make) {
+  const before = document.activeElement;
+  const place = before ? places.find((one) => one.contains(before)) : undefined;
+  const name = before && called(before);
+  make();
+  if (!place || !before || before.isConnected) return;
+  const all = [...place.querySelectorAll("a, button, input, select, summary, [tabindex]")];
+  const again = all.find((one) => one.tagName === before.tagName && called(one) === name);
+  if (!again && !place.hasAttribute("tabindex")) place.tabIndex = -1;
+  /** @type {HTMLElement} */ (again ?? place).focus({ preventScroll: true });
+}
+
 /**
  * `min_transmission_angle` as words: `Min transmission angle`.
  * @param {string} name

@@ -29,7 +29,7 @@ export class Player {
     /** Where it goes back and forth, instead of over all of it. @type {[number, number] | null} */
     this.range = null;
     this.last = moved.count - 1;
-    this.button = el("button", { type: "button", class: "small", onclick: () => (this.playing ? this.stop() : this.play()) }, "Play");
+    this.button = el("button", { type: "button", id: `${moved.name ?? ""}play`, class: "small", onclick: () => (this.playing ? this.stop() : this.play()) }, "Play");
     this.slider = el("input", { type: "range", id: scrub, min: 0, max: this.last, step: "any", value: 0,
       oninput: () => this.lead(this.slider.valueAsNumber),
       onkeydown: (/** @type {KeyboardEvent} */ event) => {

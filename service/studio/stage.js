@@ -2,7 +2,7 @@
  * The stage in the middle of the window: a statement is drawn on it, a design moves on it, a linkage is explored on it.
  */
 
-import { byId, el } from "./dom.js";
+import { byId, el, remade } from "./dom.js";
 import { Zoom } from "./zoom.js";
 
 /** @typedef {"state" | "watch" | "explore"} Mode */
@@ -47,14 +47,23 @@ export class Frame {
   fill({ picture, clock, below = [], beside = [], plots = [] }) {
     this.zoom = picture instanceof SVGSVGElement ? new Zoom(picture) : null;
     const stage = el("div", { class: "stage" }, picture, this.zoom?.buttons, ...below);
-    this.board.replaceChildren(stage, ...(clock ? [clock] : []));
-    this.beside.replaceChildren(el("div", { class: "beside" }, ...beside));
-    this.plots.replaceChildren(...plots.filter((one) => one instanceof Node));
+    this.wait(false);
+    remade([this.board, this.beside, this.plots], () => {
+      this.board.replaceChildren(stage, ...(clock ? [clock] : []));
+      this.beside.replaceChildren(el("div", { class: "beside" }, ...beside));
+      this.plots.replaceChildren(...plots.filter((one) => one instanceof Node));
+    });
+  }
+
+  /** What is shown is of the design before, until the motion of the next one is there. @param {boolean} is */
+  wait(is) {
+    for (const place of [this.board, this.beside, this.plots]) place.classList.toggle("waiting", is);
   }
 
   /** Say something in the place of a picture. @param {...(Node | string)} said */
   say(...said) {
     this.zoom = null;
+    this.wait(false);
     this.board.replaceChildren(el("div", { class: "said" }, ...said));
     this.beside.replaceChildren();
     this.plots.replaceChildren();

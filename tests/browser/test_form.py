@@ -6,6 +6,7 @@ import pytest
 
 from synthesis.registry import KINDS, example, examples
 from tests.browser.test_studio import PLAIN, state, stated
+from tests.service.running import until
 
 pytestmark = pytest.mark.browser
 
@@ -191,3 +192,21 @@ def test_the_page_is_worked_by_keys_alone(studio):
     tab_to("one.matches('#job-words')")
     page.keyboard.type("succeeded")
     assert page.locator(".jobs li:visible").count() > 0
+
+
+def test_the_focus_stays_where_it_is_while_another_design_is_awaited(studio):
+    page = studio.page
+    state(page, {**PLAIN, "input_side": {"fixed_pivot": [0.0, -20.0], "rotations": [None]}, "max_designs": 2})
+    studio.solve()
+    page.wait_for_selector("#scrub")
+    held = []
+    page.route("**/designs/1/motion*", lambda route: held.append(route))
+    page.locator(".card").nth(1).click()
+    page.wait_for_selector("#watch.waiting .live")
+    page.focus("#scrub")
+    page.locator("#scrub").evaluate("one => { one.dataset.before = 'yes'; }")
+    until(lambda: page.evaluate("1") and held, 30, "the motion is asked for")
+    held.pop().continue_()
+    page.wait_for_selector("#watch:not(.waiting) .live")
+    assert page.evaluate("document.activeElement.id") == "scrub"
+    assert page.evaluate("document.activeElement.dataset.before") is None, "it is the player of the other design"
