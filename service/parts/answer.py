@@ -107,7 +107,9 @@ class ViewedPart(BaseModel):
     colour: str = Field(description="As `#rrggbb`.")
     standard: str = Field(description="What it is bought as; empty where it is made.")
     planes: tuple[int, int] = Field(description="The lowest and the highest plane in which it is; the base is in 0.")
-    lift: float = Field(description="How far up it goes where the planes are drawn apart.")
+    lift: float = Field(
+        description="How far up it goes where the planes are drawn apart; along the normal of a `frame`."
+    )
     carrier: int = Field(description="Which of `carriers` it moves with, counted from 0.")
     shapes: list[Shape] = Field(description="What it is made of: it is the union of these.")
     item: str = Field(description="Name of its files and in the bill; parts that are made alike have one.")
@@ -175,8 +177,8 @@ class AssemblyView(BaseModel):
     scale: float = Field(description="How much larger than the design it is built.")
     planes: int = Field(description="Of moving links; the base is plane 0, and a second one lies above them.")
     bases: int = Field(description="1, or 2 where the shafts stand between two.")
-    low: float = Field(description="Height of the lowest face.")
-    high: float = Field(description="Height of the uppermost face.")
+    low: float = Field(description="Height of the lowest face, of parts whose plane is that of the assembly.")
+    high: float = Field(description="Height of their uppermost face.")
     notes: list[str] = Field(description="What else there is to say to who puts it together.")
     input: Driven
     carriers: list[Carried]

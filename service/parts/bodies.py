@@ -102,7 +102,7 @@ class Twisted(NamedTuple):
     @property
     def region(self) -> Region:
         """Its shadow: a disc with its holes."""
-        outer = ring_of(self.section.outer, beyond=True)
+        outer = ring_of(self.section.outer, beyond=False)
         return Region(Disc(self.centre, float(np.abs(outer - self.centre).max())), self.section.holes)
 
     @property

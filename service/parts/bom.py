@@ -36,7 +36,8 @@ def holes(part: Part) -> str:
     """The holes of a part by their diameters, its slots by width and length, and other shapes by their extents."""
     round_ones = Counter(millimetres(2.0 * hole.radius) for hole in part.region.holes if isinstance(hole, Disc))
     told = [f"{count} x {diameter}" for diameter, count in round_ones.items()]
-    told += [_shaped(hole) for hole in part.region.holes if not isinstance(hole, Disc)]
+    shaped = Counter(_shaped(hole) for hole in part.region.holes if not isinstance(hole, Disc))
+    told += [words if count == 1 else f"{count} x {words}" for words, count in shaped.items()]
     return "; ".join(told)
 
 

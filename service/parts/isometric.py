@@ -185,13 +185,6 @@ def _coarse_outline(outline: Outline, finest: float) -> Outline:
     return Loop(corners, (0.0,) * len(corners))
 
 
-def drawable(assembly: Assembly) -> bool:
-    """Whether all parts stand upright on one plane."""
-    motion = assembly.motion
-    state = motion.at(np.array([motion.reference]))
-    return all(motion.placed(part.carrier, state).frame is None for part in assembly.parts)
-
-
 def _moved(outline: Outline, placed: Placed) -> Outline:
     turn, shift = (complex(np.ravel(values)[0]) for values in (placed.turn, placed.shift))
     if isinstance(outline, Disc):

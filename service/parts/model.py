@@ -214,6 +214,18 @@ class Assembly:
         """How large the mechanism is."""
         return self.motion.size
 
+    @cached_property
+    def frames(self) -> dict[str, Frame]:
+        """The planes of parts by their names, of those that do not lie in that of the assembly."""
+        state = self.motion.at(np.array([self.motion.reference]))
+        placed = {part.name: self.motion.placed(part.carrier, state).frame for part in self.parts}
+        return {name: frame for name, frame in placed.items() if frame is not None}
+
+    @property
+    def parallel(self) -> bool:
+        """Whether all axes are parallel."""
+        return not self.frames
+
 
 def plain(name: str) -> str:
     """A name as files and CAD programs take it."""

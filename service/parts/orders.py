@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from service.parts import cad
-from service.parts.isometric import drawable, isometric_sheet
+from service.parts.isometric import isometric_sheet
 from service.parts.items import items
 from service.parts.made import made
 from service.parts.model import Assembly, InputField
@@ -60,7 +60,7 @@ def _file(order: Order, file: File) -> bytes:
         return viewed(assembly, query.positions).model_dump_json().encode()
     at = _input(assembly, AssemblyQuery.model_validate(order.query))
     if file == "svg":
-        if not drawable(assembly):
+        if not assembly.parallel:
             raise NotMade("Assemblies are drawn whose shafts are parallel; the axes of this one are not.")
         return isometric_sheet(assembly, _title(order), at).encode()
     solids = cad.placed(assembly, [cad.solid(part) for part in assembly.parts], at)

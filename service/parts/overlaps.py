@@ -5,7 +5,7 @@ share some height, and intersects what they take of the plane there (:mod:`servi
 of what is solid lies outside of its arcs, one of a hole inside, so that prisms that are free of overlaps here are so in
 truth at the inputs looked at. Rings about one axis that go together are compared by their radii.
 
-Parts whose axes are not parallel move in planes of different frames. Such pairs are left to their maker.
+Parts whose axes are not parallel move in planes of different frames: :mod:`service.parts.crossing` compares them.
 """
 
 from __future__ import annotations
@@ -19,11 +19,15 @@ import shapely
 from numpy.typing import NDArray
 
 from service.parts.bodies import slices
+from service.parts.crossing import Crossing
 from service.parts.model import FLAT, Assembly, Carrier, Part
 from service.parts.shapes import Disc, Outline, Region, ring_of
 
 POSITIONS = 144
 """Inputs at which parts are looked at."""
+
+CROSSED = 3
+"""Every so many inputs parts of crossing axes are looked at."""
 
 ROUNDING = 1e-9
 """Share of the assembly's size by which faces that touch may seem to overlap."""
@@ -39,7 +43,10 @@ TOUCH_SHARE = 2e-5
 
 
 class Overlap(NamedTuple):
-    """Two parts that want one place, and the input at which they want the most of it."""
+    """Two parts that want one place, and the input at which they want the most of it.
+
+    The area is what sections of the two share, or what of their surfaces lies in each other where their axes cross.
+    """
 
     parts: tuple[str, str]
     at: float
@@ -65,10 +72,17 @@ def overlaps(assembly: Assembly, count: int = POSITIONS) -> list[Overlap]:
     inputs = assembly.motion.inputs(count)
     size = assembly.size
     moved = _Moved(assembly, inputs)
+    crossed = np.arange(0, count, CROSSED)
+    crossing = Crossing(assembly, inputs[crossed])
     found = []
     for one, other in combinations(assembly.parts, 2):
         most = np.zeros(count)
         if not moved.in_one_frame(one.carrier, other.carrier):
+            shared = crossing.shared(one, other)
+            most[crossed] = shared
+            if shared.max() > 0.0:
+                worst = int(np.argmax(most))
+                found.append(Overlap((one.name, other.name), float(inputs[worst]), float(most[worst])))
             continue
         for first, second in _meeting(one, other, ROUNDING * size):
             if one.carrier == other.carrier and _about_one_axis(first, second):
@@ -141,7 +155,7 @@ class _Moved:
         self._placed = {carrier: assembly.motion.placed(carrier, state) for carrier in carriers}
         self._touch = max(TOUCH, TOUCH_SHARE * assembly.size)
         self._boxes: dict[Carried, NDArray[np.float64]] = {}
-        self._polygons: dict[tuple[Carried, bool], NDArray[np.object_]] = {}
+        self._polygons: dict[tuple[Carried, bool, bool], NDArray[np.object_]] = {}
 
     def in_one_frame(self, one: Carrier, other: Carrier) -> bool:
         """Whether what two carriers carry moves in parallel planes."""
@@ -151,12 +165,16 @@ class _Moved:
         """The area that two regions share at each input, of those that touch each other what is beyond rounding."""
         a, b = self._box(first), self._box(second)
         near = np.asarray(np.concatenate([a[:, :2] < b[:, 2:], b[:, :2] < a[:, 2:]], axis=1).all(axis=1))
-        if first[0] == second[0]:
+        still = first[0] == second[0]
+        if still:
             # They do not move against each other.
             near[1:] = False
         areas = np.zeros(len(near))
         if near.any():
-            one, other = (self._solid(carried, beyond=not touch)[near] for carried in (first, second))
+            one, other = (
+                self._solid(carried, beyond=not touch, still=still)[near[:1] if still else near]
+                for carried in (first, second)
+            )
             if touch:
                 one = shapely.buffer(one, -self._touch)
             # Most do not meet, which is seen sooner than what they share.
@@ -164,10 +182,10 @@ class _Moved:
             areas[np.flatnonzero(near)[meets]] = shapely.area(shapely.intersection(one[meets], other[meets]))
         return areas
 
-    def _ring(self, carried: Carried, outline: Outline, *, beyond: bool) -> NDArray[np.float64]:
-        """An outline at each input, shape (n, m, 2)."""
-        placed = self._placed[carried[0]]
-        places = placed.turn[:, None] * ring_of(outline, beyond=beyond, sag=SAG) + placed.shift[:, None]
+    def _ring(self, carried: Carried, outline: Outline, *, beyond: bool, still: bool = False) -> NDArray[np.float64]:
+        """An outline at each input, shape (n, m, 2), or at the first alone."""
+        placed, some = self._placed[carried[0]], slice(1 if still else None)
+        places = placed.turn[some, None] * ring_of(outline, beyond=beyond, sag=SAG) + placed.shift[some, None]
         return np.stack([places.real, places.imag], axis=-1)
 
     def _box(self, carried: Carried) -> NDArray[np.float64]:
@@ -177,13 +195,15 @@ class _Moved:
             self._boxes[carried] = np.concatenate([outer.min(axis=1), outer.max(axis=1)], axis=1)
         return self._boxes[carried]
 
-    def _solid(self, carried: Carried, *, beyond: bool) -> NDArray[np.object_]:
-        """A region as a polygon at each input, which lies outside of it (``beyond``), or inside."""
-        key = carried, beyond
+    def _solid(self, carried: Carried, *, beyond: bool, still: bool) -> NDArray[np.object_]:
+        """A region as a polygon at each input, or at the first alone; outside of it (``beyond``), or inside."""
+        key = carried, beyond, still
         if key not in self._polygons:
             region = carried[1]
-            holes = [shapely.linearrings(self._ring(carried, hole, beyond=not beyond)) for hole in region.holes]
-            outer = shapely.linearrings(self._ring(carried, region.outer, beyond=beyond))
+            holes = [
+                shapely.linearrings(self._ring(carried, hole, beyond=not beyond, still=still)) for hole in region.holes
+            ]
+            outer = shapely.linearrings(self._ring(carried, region.outer, beyond=beyond, still=still))
             solid = shapely.polygons(outer, holes=np.stack(holes, axis=1)) if holes else shapely.polygons(outer)
             self._polygons[key] = solid
         return self._polygons[key]

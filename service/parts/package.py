@@ -5,7 +5,8 @@ file              what it is                                               for w
 ================  =======================================================  =========================
 README.txt        what is in it, and how it is put together                all
 bom.csv           what is made and bought                                  all
-assembly.svg      the planes as an exploded side view, to scale            all
+assembly.svg      the planes as an exploded side view, to scale;           all
+                  views from above and from the front where shafts cross
 isometric.svg     a picture of it, as built and with its planes apart      all whose shafts are parallel
 dxf/NAME.dxf      outlines of plates and blocks, with their holes          all
 assembly.step     all parts at their places, with names and colours        all, where CAD is installed
@@ -21,9 +22,10 @@ import zipfile
 
 from service.parts import cad
 from service.parts.bom import bill, millimetres
+from service.parts.crossed_sheet import crossed_sheet
 from service.parts.dxf import cutting
 from service.parts.extra import installed
-from service.parts.isometric import drawable, isometric_sheet
+from service.parts.isometric import isometric_sheet
 from service.parts.items import Item, items
 from service.parts.model import FLAT, Assembly
 from service.parts.sheet import assembly_sheet
@@ -50,9 +52,9 @@ def package(assembly: Assembly, process: Process, title: str, at: float) -> byte
     listed = items(assembly)
     files: dict[str, bytes] = {
         "bom.csv": bill(listed).encode(),
-        "assembly.svg": assembly_sheet(assembly, listed, title).encode(),
+        "assembly.svg": (assembly_sheet if assembly.parallel else crossed_sheet)(assembly, listed, title).encode(),
     }
-    if drawable(assembly):
+    if assembly.parallel:
         files["isometric.svg"] = isometric_sheet(assembly, title, at).encode()
     for item in listed:
         if "dxf" in files_of(item.part):
@@ -114,10 +116,8 @@ def _read_me(assembly: Assembly, listed: list[Item], process: Process, title: st
         title,
         "",
         f"{len(assembly.parts)} parts of {len(listed)} kinds (bom.csv), all lengths in millimetres.",
-        f"Put together from below{_thickness(assembly)}:",
-        *(f"  {_plane(plane, assembly)}: {', '.join(names)}" for plane, names in sorted(plates.items())),
+        *_order(assembly, plates),
         _HOLDING[process],
-        "Washers and spacers fill the gaps between the planes; assembly.svg shows where they lie.",
         *assembly.notes,
         "",
         "Files:",
@@ -126,6 +126,19 @@ def _read_me(assembly: Assembly, listed: list[Item], process: Process, title: st
     if "assembly.step" not in files:
         lines += ["", "There are no solids: the service runs without its extra `cad`."]
     return "\n".join(lines) + "\n"
+
+
+def _order(assembly: Assembly, plates: dict[int, list[str]]) -> list[str]:
+    """How it is put together."""
+    if not assembly.parallel:
+        told = [f"  {', '.join(names)}" for _, names in sorted(plates.items())]
+        return ["Put together shaft by shaft, then set into the base:", *told,
+                "Spacers fill the gaps on the shafts; assembly.svg shows where they lie."]  # fmt: skip
+    return [
+        f"Put together from below{_thickness(assembly)}:",
+        *(f"  {_plane(plane, assembly)}: {', '.join(names)}" for plane, names in sorted(plates.items())),
+        "Washers and spacers fill the gaps between the planes; assembly.svg shows where they lie.",
+    ]
 
 
 def _plane(plane: int, assembly: Assembly) -> str:

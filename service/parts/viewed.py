@@ -51,13 +51,14 @@ def viewed(assembly: Assembly, positions: int) -> AssemblyView:
     carriers = list(dict.fromkeys(part.carrier for part in assembly.parts))
     names = {part.name: item.name for item in items(assembly) for part in item.parts}
     lifted = lifts(assembly)
+    level = [part for part in assembly.parts if part.name not in assembly.frames]
     return AssemblyView(
         unit=assembly.unit,
         scale=assembly.scale,
         planes=assembly.planes,
         bases=assembly.sides,
-        low=min(part.low for part in assembly.parts),
-        high=max(part.high for part in assembly.parts),
+        low=min(part.low for part in level),
+        high=max(part.high for part in level),
         notes=list(assembly.notes),
         input=_driven(assembly, positions),
         carriers=_carried(assembly, carriers, positions),

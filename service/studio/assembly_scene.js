@@ -6,7 +6,7 @@ import { AssemblyMotion } from "./assembly_motion.js";
 import { Surface } from "./solids.js";
 
 /** @typedef {import("./assembly_view.js").Assembly} Assembly */
-/** @typedef {{item: string, colour: string, group: THREE.Group, mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>, lift: number, low: number}} Solid */
+/** @typedef {{item: string, colour: string, group: THREE.Group, mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>, lift: number, low: number, along: THREE.Vector3}} Solid */
 
 /** Field of view, degrees. */
 const FIELD = 30;
@@ -112,7 +112,11 @@ export class AssemblyScene {
     group.add(mesh, edges);
     this.carriers[part.carrier].add(group);
     geometry.computeBoundingBox();
-    return { item: part.item, colour: part.colour, group, mesh, lift: part.lift, low: geometry.boundingBox?.min.z ?? 0 };
+    // Parts of a plane of their own stand over others: the lowest are never among them.
+    const frame = this.motion.carriers[part.carrier].frame;
+    const along = frame ? new THREE.Vector3(...frame.normals[0]) : new THREE.Vector3(0, 0, 1);
+    const low = frame ? Infinity : (geometry.boundingBox?.min.z ?? 0);
+    return { item: part.item, colour: part.colour, group, mesh, lift: part.lift, low, along };
   }
 
   /** Light from above at the left, and from all around; shadows reach as far as the assembly goes. */
@@ -155,16 +159,16 @@ export class AssemblyScene {
   /** What the assembly reaches over its whole motion. */
   around() {
     const count = this.motion.inputs.values.length;
-    /** Corners of the boxes of all parts, and how far they go up. @type {{place: THREE.Vector3, lift: number}[]} */
+    /** Corners of the boxes of all parts, and how far they go which way. @type {{place: THREE.Vector3, lift: number, along: THREE.Vector3}[]} */
     const corners = [];
     for (let k = 0; k < SEEN_AT; k++) {
       this.show(((count - 1) * k) / (SEEN_AT - 1));
       this.root.updateMatrixWorld(true);
-      for (const { mesh, lift } of this.solids) {
+      for (const { mesh, lift, along } of this.solids) {
         const { min, max } = /** @type {THREE.Box3} */ (mesh.geometry.boundingBox);
         for (let n = 0; n < 8; n++) {
           const place = new THREE.Vector3(n & 1 ? max.x : min.x, n & 2 ? max.y : min.y, n & 4 ? max.z : min.z);
-          corners.push({ place: place.applyMatrix4(mesh.matrixWorld), lift });
+          corners.push({ place: place.applyMatrix4(mesh.matrixWorld), lift, along });
         }
       }
     }
@@ -270,7 +274,7 @@ export class AssemblyScene {
   /** @param {THREE.Vector3} direction @param {boolean} animated */
   go(direction, animated) {
     this.fitted = true;
-    const corners = this.reach.corners.map(({ place, lift }) => place.clone().setZ(place.z + this.explosion * lift));
+    const corners = this.reach.corners.map(({ place, lift, along }) => place.clone().addScaledVector(along, this.explosion * lift));
     const toward = direction.clone().normalize();
     const right = new THREE.Vector3(0, 0, 1).cross(toward).normalize();
     const up = toward.clone().cross(right);

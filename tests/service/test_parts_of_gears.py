@@ -301,3 +301,48 @@ def test_gearboxes_that_are_shifted_have_no_parts_and_a_word_why(client: Any) ->
                "max_designs": 1}  # fmt: skip
     job = finished(client, problem)
     assert "shifted" in refused(client, f"/v1/jobs/{job['id']}/designs/0", 409)["detail"]
+
+
+WORM = {"kind": "gear_train", "ratio": 20, "max_designs": 1, "module": 1.5,
+        "stages": [{"type": "worm", "driver": 2, "driven": 40, "hand": "left"}]}  # fmt: skip
+
+
+def assembled(client: Any, problem: dict[str, Any]) -> tuple[str, dict[str, Any], dict[str, Any]]:
+    """Where a design is, itself, and its assembly at nine inputs."""
+    job = finished(client, problem)
+    place = f"/v1/jobs/{job['id']}/designs/0"
+    answer = client.get(f"{place}/assembly", params={"positions": 9})
+    assert answer.status_code == 200, answer.text
+    return place, job["result"]["designs"][0], answer.json()
+
+
+def axis(view: dict[str, Any], link: str) -> tuple[np.ndarray, np.ndarray, float]:
+    """A point and the direction of a shaft's axis, and how fast it turns over the input."""
+    carrier = next(one for one in view["carriers"] if one["link"] == link)
+    (origin,), (normal,) = carrier["frame"]["origins"], carrier["frame"]["normals"]
+    turned = np.diff(carrier["angles"]) / np.diff(view["input"]["values"])
+    assert np.ptp(turned) < 1e-9
+    return np.array(origin), np.array(normal), float(turned[0])
+
+
+def test_a_worm_crosses_under_its_gear_at_the_centre_distance(client: Any) -> None:
+    place, design, view = assembled(client, WORM)
+    (one, along, first), (other, across, second) = axis(view, "shaft_1"), axis(view, "shaft_2")
+    between = np.cross(along, across)
+    assert along @ across == pytest.approx(0.0, abs=1e-12)
+    assert (other - one) @ between == pytest.approx(design["metrics"]["centre_distances"][0], rel=1e-9)
+    # About d × w, d from the worm to its gear: a left-handed worm turns it backwards.
+    assert across == pytest.approx(np.cross(other - one, along) / np.linalg.norm(other - one))
+    assert (first, second) == (pytest.approx(1.0), pytest.approx(-2.0 / 40.0))
+    files = parts(client, place)
+    rows = bill(files)
+    tips = 1.5 * (10 + 2), 1.5 * (40 + 2)
+    assert float(rows["worm_1_driver"]["width"]) == pytest.approx(tips[0], abs=1e-3)
+    assert float(rows["gear_1_driven"]["width"]) == pytest.approx(tips[1], abs=1e-3)
+    slots = [corners(one) for one in cut(files, "base").query("LWPOLYLINE")]
+    assert len(slots) == 5  # the edge, and a slot for each bearing plate
+    assert len(cut(files, "base").query("CIRCLE")) == 4
+    assert "lead angle 11.31°, left-handed" in files["README.txt"].decode()
+    picture = client.get(f"{place}/assembly.svg")
+    assert picture.status_code == 409
+    assert "parallel" in picture.json()["detail"]

@@ -143,26 +143,12 @@ class Housing:
 
     def _on(self, shaft: Shaft) -> list[Part]:
         """A shaft with its keys, and what parts its wheels."""
-        sizes, key = self.sizes, key_for(self.sizes.pin)
-        name = plain(shaft.name)
-        seats, keys = [], []
-        for level in sorted(shaft.keyed):
-            low, high = self.levels[level].low + sizes.play, self.levels[level].high - sizes.play
-            seats.append(Prism(Region(keyed_shaft(shaft.axis, sizes.pin, key, shaft.towards)), low, high))
-            keys.append(
-                Part(
-                    name=f"key_{name}_{level}",
-                    described=f"key of the {shaft.name}",
-                    sort="key",
-                    carrier=shaft.carrier,
-                    bodies=(Prism(Region(key_section(shaft.axis, sizes.pin, key, shaft.towards)), low, high),),
-                    along=shaft.towards,
-                    planes=(level, level),
-                    material=MATERIALS[sizes.process][1],
-                    colour=FASTENER_COLOUR,
-                    standard=f"{key.standard} x {high - low:g}" if key.standard else "",
-                )
-            )
+        sizes, name = self.sizes, plain(shaft.name)
+        seated = [
+            seat(shaft.name, str(level), shaft.carrier, shaft.axis, self.levels[level], level, sizes, shaft.towards)
+            for level in sorted(shaft.keyed)
+        ]
+        seats, keys = [prism for prism, _ in seated], [key for _, key in seated]
         inside = {level for level in (0, self.top) if level in shaft.reach}
         levels = sorted({*shaft.keyed, *shaft.free, *inside})
         stub = STUB * sizes.pin if shaft.ends else 0.0
@@ -198,6 +184,27 @@ class Housing:
             gap = self.levels[lower].high, self.levels[upper].low
             parts += fillers(name, carrier, place, gap, (lower, upper), self.sizes)
         return parts
+
+
+def seat(
+    shaft: str, number: str, carrier: Carrier, axis: complex, level: Level, plane: int, sizes: Sizes,
+    towards: complex = 1.0 + 0.0j,
+) -> tuple[Prism, Part]:  # fmt: skip
+    """What a shaft is where it has a wheel on it, and the key there."""
+    key, low, high = key_for(sizes.pin), level.low + sizes.play, level.high - sizes.play
+    part = Part(
+        name=f"key_{plain(shaft)}_{number}",
+        described=f"key of the {shaft}",
+        sort="key",
+        carrier=carrier,
+        bodies=(Prism(Region(key_section(axis, sizes.pin, key, towards)), low, high),),
+        along=towards,
+        planes=(plane, plane),
+        material=MATERIALS[sizes.process][1],
+        colour=FASTENER_COLOUR,
+        standard=f"{key.standard} x {high - low:g}" if key.standard else "",
+    )
+    return Prism(Region(keyed_shaft(axis, sizes.pin, key, towards)), low, high), part
 
 
 def stacked(heights: Sequence[float], sizes: Sizes) -> tuple[Level, ...]:

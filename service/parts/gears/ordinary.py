@@ -10,6 +10,7 @@ from typing import Any
 
 from kinematics.errors import DimensionError
 from kinematics.gear.train import OrdinaryTrain, TrainStage
+from service.parts.gears.crossing_stages import worm_parts
 from service.parts.gears.housing import Housing, Level, Shaft, stacked
 from service.parts.gears.motion import TrainMotion, Turning
 from service.parts.gears.sizing import GearSizing
@@ -87,10 +88,10 @@ class OrdinaryParts:
 
     def assembly(self, query: PartsQuery) -> Assembly:
         """The parts, looked at in motion."""
-        if not all(stage.is_parallel for stage in self.stages):
-            raise NotMade("Parts are made of trains on parallel shafts; this one has bevel gears or a worm.")
         sizing = GearSizing(query, self.length_unit)
         train = self._scaled(sizing.factor)
+        if not train.is_parallel:
+            return self._crossing(train, sizing)
         smallest = min((gear for stage in train.stages for gear in stage.cut_gears(train.pressure_angle)
                         if not gear.internal), key=lambda gear: gear.root_radius)  # fmt: skip
         sizing.judge_size(2.0 * sum(train.centre_distances))
@@ -103,6 +104,15 @@ class OrdinaryParts:
             "There is no room for the shafts: in every stand one of them, or what is on it, would pass through a gear. "
             "Thinner ones may do, or another scale.", sizing.path,
         )  # fmt: skip
+
+    def _crossing(self, train: OrdinaryTrain, sizing: GearSizing) -> Assembly:
+        """The parts of a train whose shafts are not parallel."""
+        if len(train.stages) > 1:
+            raise NotMade(
+                "Bevel gears and worms are made as trains of one stage: with other stages there would be boxes of "
+                "plates that stand across one another."
+            )
+        return worm_parts(train, self.backlash[0], self.face_widths[0], sizing)
 
     def _scaled(self, factor: float) -> OrdinaryTrain:
         try:

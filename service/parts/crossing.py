@@ -1,0 +1,262 @@
+"""Whether parts meet whose axes are not parallel: points on the surface of each are looked for inside of the other.
+
+Bodies of crossing axes share no planes in which their sections could be intersected. So the surface of each is covered
+with points, a *step* apart along edges and over faces, the outlines of teeth with all corners of their polygons, and
+every point that lies in the other body, deeper than rounding, is counted. Both are asked of each other, so that what is
+missed is a wedge between neighbouring points: less than half a step deep.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from itertools import pairwise, product
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
+
+from service.parts.bodies import Body, Mesh, Prism, Turned, Twisted
+from service.parts.model import Assembly, Carrier, Part
+from service.parts.shapes import Outline, Region, ring_of
+
+Real = NDArray[np.float64]
+Truth = NDArray[np.bool_]
+
+STEPS = 160.0
+"""Steps to the size of an assembly."""
+
+HEAP = 8.0
+"""Edge of the cubes in which points are looked at together, steps."""
+
+DEEP = 4e-3
+"""How deep a point is to lie in a body to be counted, millimetres: more than polygons are away from arcs."""
+
+SAG = 2e-3
+"""How far polygons are from arcs, millimetres."""
+
+
+class Heaps(NamedTuple):
+    """Points in heaps, none farther from the middle of its heap, shape (m, 3), than a radius."""
+
+    points: list[Real]
+    middles: Real
+    radius: float
+
+
+class Surface:
+    """A body that is asked for points of its surface, and which points lie in it, in the coordinates of its plane."""
+
+    def __init__(self, body: Body, step: float) -> None:
+        assert not isinstance(body, Mesh), "meshes are not compared across planes"
+        self._body, self._step = body, step
+
+    @cached_property
+    def points(self) -> Real:
+        """Shape (n, 3): x, y and height."""
+        body = self._body
+        if isinstance(body, Turned):
+            return self._turned(body)
+        assert isinstance(body, Prism | Twisted)
+        region = body.section if isinstance(body, Twisted) else body.region
+        heights = _steps(body.low, body.high, self._step)
+        found = []
+        for outline in (region.outer, *region.holes):
+            around = _dense(outline, self._step)
+            turns = np.ones(len(heights), np.complex128)
+            centre = 0j
+            if isinstance(body, Twisted) and outline is region.outer:
+                centre = body.centre
+                turns = np.exp(1j * body.twist * (heights - body.low) / (body.high - body.low))
+            places = centre + turns[:, None] * (around - centre)
+            found.append(np.stack([places.real, places.imag, np.broadcast_to(heights[:, None], places.shape)], axis=-1))
+        sides = np.concatenate([one.reshape(-1, 3) for one in found])
+        return np.concatenate([sides, *self._faces(region, body)])
+
+    @cached_property
+    def hull(self) -> Real:
+        """The points that its convex hull has as corners."""
+        return np.asarray(self.points[ConvexHull(self.points).vertices])
+
+    @cached_property
+    def bounds(self) -> tuple[Real, Real]:
+        """Lowest and highest corner of a box around it."""
+        return self.points.min(axis=0), self.points.max(axis=0)
+
+    @cached_property
+    def heaps(self) -> Heaps:
+        """The points by the cubes in which they lie, so that most need not be looked at one by one."""
+        edge = HEAP * self._step
+        _, cube = np.unique(np.floor(self.points / edge), axis=0, return_inverse=True)
+        order = np.argsort(cube, kind="stable")
+        points = np.split(self.points[order], np.cumsum(np.bincount(cube))[:-1])
+        middles = np.array([0.5 * (one.min(axis=0) + one.max(axis=0)) for one in points])
+        return Heaps(points, middles, 0.5 * math.sqrt(3.0) * edge)
+
+    def within(self, points: Real) -> Truth:
+        """Which of the points, shape (n, 3), lie inside."""
+        body = self._body
+        deep = (points[:, 2] > body.low + DEEP) & (points[:, 2] < body.high - DEEP)
+        found = np.zeros(len(points), np.bool_)
+        if not deep.any():
+            return found
+        x, y, z = points[deep].T
+        if isinstance(body, Turned):
+            radii = np.hypot(x - body.centre.real, y - body.centre.imag)
+            found[deep] = shapely.contains_xy(self._section, radii, z)
+            return found
+        if isinstance(body, Twisted):
+            back = np.exp(-1j * body.twist * (z - body.low) / (body.high - body.low))
+            turned = body.centre + back * (x + 1j * y - body.centre)
+            inside = shapely.contains_xy(self._section, turned.real, turned.imag)
+            found[deep] = inside & ~shapely.contains_xy(self._holes, x, y)
+            return found
+        found[deep] = shapely.contains_xy(self._section, x, y) & ~shapely.contains_xy(self._holes, x, y)
+        return found
+
+    @cached_property
+    def _section(self) -> shapely.Geometry:
+        body = self._body
+        if isinstance(body, Turned):
+            outer = shapely.Polygon([(z.real, z.imag) for z in body.profile])
+        else:
+            region = body.section if isinstance(body, Twisted) else body.region
+            outer = _polygon(region.outer)
+        inner = shapely.buffer(outer, -DEEP)
+        shapely.prepare(inner)
+        return inner
+
+    @cached_property
+    def _holes(self) -> shapely.Geometry:
+        body = self._body
+        region = body.section if isinstance(body, Twisted) else body.region
+        wider = shapely.buffer(shapely.union_all([_polygon(hole) for hole in region.holes]), DEEP)
+        shapely.prepare(wider)
+        return wider
+
+    def _turned(self, body: Turned) -> Real:
+        corners = [*body.profile, body.profile[0]]
+        edges = [
+            start + (end - start) * np.linspace(0.0, 1.0, math.ceil(abs(end - start) / self._step) + 1)
+            for start, end in pairwise(corners)
+        ]
+        profile = np.concatenate(edges)
+        angles = np.linspace(0.0, 2.0 * math.pi, math.ceil(2.0 * math.pi * profile.real.max() / self._step) + 8)
+        around = body.centre + profile.real[:, None] * np.exp(1j * angles)
+        heights = np.broadcast_to(profile.imag[:, None], around.shape)
+        return np.stack([around.real, around.imag, heights], axis=-1).reshape(-1, 3)
+
+    def _faces(self, region: Region, body: Prism | Twisted) -> list[Real]:
+        """Points over the lower and the upper face."""
+        outer = _polygon(region.outer)
+        holes = shapely.union_all([_polygon(hole) for hole in region.holes])
+        left, low, right, high = outer.bounds
+        x, y = (each.ravel() for each in np.meshgrid(_steps(left, right, self._step), _steps(low, high, self._step)))
+        solid = shapely.contains_xy(outer, x, y)
+        faces = []
+        for height in (body.low, body.high):
+            place = x + 1j * y
+            if isinstance(body, Twisted) and height == body.high:
+                place = body.centre + np.exp(1j * body.twist) * (place - body.centre)
+            open_ = shapely.contains_xy(holes, place.real, place.imag)
+            kept = place[solid & ~open_]
+            faces.append(np.column_stack([kept.real, kept.imag, np.full(len(kept), height)]))
+        return faces
+
+
+class Crossing:
+    """The parts of an assembly at inputs, shape (n,), of which pairs in different planes are compared."""
+
+    def __init__(self, assembly: Assembly, inputs: Real) -> None:
+        state, carriers = assembly.motion.at(inputs), dict.fromkeys(part.carrier for part in assembly.parts)
+        self._placed = {carrier: assembly.motion.placed(carrier, state) for carrier in carriers}
+        self._count = len(inputs)
+        self._step = assembly.size / STEPS
+        self._surfaces: dict[str, list[Surface]] = {}
+        self._places: dict[Carrier, tuple[Real, Real]] = {}
+        self._boxes: dict[tuple[str, int], tuple[Real, Real]] = {}
+
+    def shared(self, one: Part, other: Part) -> Real:
+        """About what area of their surfaces lies in each other at each input, shape (n,)."""
+        most = np.zeros(self._count)
+        for (n, first), (m, second) in product(enumerate(self._bodies(one)), enumerate(self._bodies(other))):
+            (low, high), (bottom, top) = self._box(one, n), self._box(other, m)
+            near = np.flatnonzero(((low < top) & (bottom < high)).all(axis=1))
+            if not self._moves(one) and not self._moves(other):
+                near = near[:1]
+            for k in near:
+                found = self._inside(one, first, other, second, int(k)) + self._inside(
+                    other, second, one, first, int(k)
+                )
+                most[k] += found * self._step**2
+        return most
+
+    def _bodies(self, part: Part) -> list[Surface]:
+        if part.name not in self._surfaces:
+            self._surfaces[part.name] = [Surface(body, self._step) for body in part.bodies]
+        return self._surfaces[part.name]
+
+    def _moves(self, part: Part) -> bool:
+        placed = self._placed[part.carrier]
+        return bool(np.ptp(np.abs(placed.turn - placed.turn[0])) > 0.0 or np.ptp(np.abs(placed.shift)) > 0.0)
+
+    def _place(self, carrier: Carrier) -> tuple[Real, Real]:
+        """Rotation and place in space at each input, shapes (count, 3, 3) and (count, 3)."""
+        if carrier not in self._places:
+            placed = self._placed[carrier]
+            turn, shift = (np.broadcast_to(values, self._count) for values in (placed.turn, placed.shift))
+            zero, unit = np.zeros(self._count), np.ones(self._count)
+            turned = np.array([[turn.real, -turn.imag, zero], [turn.imag, turn.real, zero], [zero, zero, unit]])
+            moved = np.array([shift.real, shift.imag, zero])
+            rotation, place = np.moveaxis(turned, -1, 0), np.moveaxis(moved, -1, 0)
+            if placed.frame is not None:
+                axes, origin = placed.frame.axes.reshape(-1, 3, 3), placed.frame.origin.reshape(-1, 3)
+                rotation = axes @ rotation
+                place = origin + np.einsum("kij,kj->ki", np.broadcast_to(axes, rotation.shape), place)
+            self._places[carrier] = rotation, place
+        return self._places[carrier]
+
+    def _box(self, part: Part, number: int) -> tuple[Real, Real]:
+        """Lowest and highest corner of a body in space at each input."""
+        if (part.name, number) not in self._boxes:
+            rotation, place = self._place(part.carrier)
+            points = np.einsum("kij,nj->kni", rotation, self._bodies(part)[number].hull) + place[:, None]
+            self._boxes[part.name, number] = points.min(axis=1), points.max(axis=1)
+        return self._boxes[part.name, number]
+
+    def _inside(self, one: Part, first: Surface, other: Part, second: Surface, k: int) -> int:
+        """How many points of the first lie in the second at an input."""
+        (turn, place), (turned, moved) = self._place(one.carrier), self._place(other.carrier)
+        rotation, shift = turned[k].T @ turn[k], turned[k].T @ (place[k] - moved[k])
+        low, high = second.bounds
+        heaps = first.heaps
+        middles = heaps.middles @ rotation.T + shift
+        reached = ((middles > low - heaps.radius) & (middles < high + heaps.radius)).all(axis=1)
+        if not reached.any():
+            return 0
+        points = np.concatenate([heaps.points[n] for n in np.flatnonzero(reached)]) @ rotation.T + shift
+        for axis in range(3):
+            points = points[(points[:, axis] > low[axis]) & (points[:, axis] < high[axis])]
+        return int(np.count_nonzero(second.within(points))) if len(points) else 0
+
+
+def _polygon(outline: Outline) -> shapely.Polygon:
+    places = ring_of(outline, beyond=False, sag=SAG)
+    return shapely.Polygon(np.column_stack([places.real, places.imag]))
+
+
+def _dense(outline: Outline, step: float) -> NDArray[np.complex128]:
+    """The corners of an outline's polygon, and points between those that are farther apart than a step."""
+    corners = ring_of(outline, beyond=False, sag=SAG)
+    pieces = [
+        start + (end - start) * np.arange(count) / count
+        for start, end in zip(corners, np.roll(corners, -1), strict=True)
+        for count in (max(1, math.ceil(abs(end - start) / step)),)
+    ]
+    return np.concatenate(pieces)
+
+
+def _steps(low: float, high: float, step: float) -> Real:
+    return np.linspace(low, high, math.ceil((high - low) / step) + 1)
