@@ -16,7 +16,10 @@ import numpy as np
 
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from service.parts.bodies import Prism
-from service.parts.fasteners import MATERIALS, fillers, held_pin
+from service.parts.fasteners import FASTENER_COLOUR, MATERIALS, fillers, held_pin
+from service.parts.geared import PairWheel
+from service.parts.gears.keys import key_for, key_section, keyed_bore, keyed_shaft
+from service.parts.gears.teeth import toothed
 from service.parts.linkage_motion import LinkageMotion
 from service.parts.model import Assembly, Carrier, Part, plain
 from service.parts.shapes import Disc, Loop, Outline, Region, ring, widened
@@ -61,9 +64,10 @@ class Slot(NamedTuple):
 
 
 def assembled(
-    motion: LinkageMotion, planes: Planes, slots: Sequence[Slot], sizes: Sizes, unit: float, scale: float
-) -> Assembly:
-    """The assembly of a mechanism without gears.
+    motion: LinkageMotion, planes: Planes, slots: Sequence[Slot], wheels: Sequence[PairWheel], sizes: Sizes,
+    unit: float, scale: float,
+) -> Assembly:  # fmt: skip
+    """The assembly of a mechanism.
 
     Parameters
     ----------
@@ -73,20 +77,46 @@ def assembled(
         With ``highest + 1`` for the second base.
     slots : sequence of Slot
         Of each slide.
+    wheels : sequence of PairWheel
+        Gears, and an idler between them.
     sizes : Sizes
     unit, scale : float
         As the assembly tells them.
     """
-    builder = _Builder(motion.mechanism, planes, slots, sizes)
-    parts = (*builder.plates(), *builder.blocks(), *builder.bases(motion), *builder.on_pins())
-    return Assembly(parts, motion, planes.highest, builder.sides, unit, scale)
+    builder = _Builder(motion.mechanism, planes, slots, wheels, sizes)
+    parts = (
+        *builder.plates(), *builder.gears(), *builder.blocks(), *builder.bases(motion), *builder.on_pins(),
+    )  # fmt: skip
+    return Assembly(parts, motion, planes.highest, builder.sides, unit, scale, _notes(wheels))
+
+
+def _notes(wheels: Sequence[PairWheel]) -> tuple[str, ...]:
+    if not wheels:
+        return ()
+    teeth = ", ".join(f"{round(wheel.gear.teeth)} of the {wheel.name}" for wheel in wheels)
+    return (
+        f"Teeth: {teeth}; module {wheels[0].gear.module:.6g} mm, which the distance of the fixed pivots asks for.",
+        "Keys join the gears and their links to one shaft; how they stand to each other is the phase of the linkage.",
+    )
+
+
+def keyway_reach(sizes: Sizes) -> float:
+    """From the axis of a keyed hole to the corners of its keyway."""
+    key = key_for(sizes.pin)
+    return math.hypot(0.5 * sizes.pin + key.in_hub + sizes.clearance, 0.5 * key.width + sizes.clearance)
 
 
 class _Builder:
-    def __init__(self, mechanism: Mechanism, planes: Planes, slots: Sequence[Slot], sizes: Sizes) -> None:
+    def __init__(
+        self, mechanism: Mechanism, planes: Planes, slots: Sequence[Slot], wheels: Sequence[PairWheel], sizes: Sizes
+    ) -> None:
         self._mechanism, self._planes, self._slots, self._sizes = mechanism, planes, slots, sizes
+        self._wheels = wheels
+        self._shafts = {wheel.joint: wheel.link for wheel in wheels if wheel.joint is not None}
         self._at = {name: complex(z) for name, z in mechanism.joints.items()}
+        self._at |= {wheel.name: wheel.centre for wheel in wheels if wheel.joint is None}
         size = max(abs(z - w) for z, w in combinations(self._at.values(), 2))
+        self._key = key_for(sizes.pin)
         self._near = ONE_PLACE * size
         self._groups = {joint: self._place(joint) for joint in planes.pins}
         self.sides = 2 if any(high > planes.highest for _, high in planes.pins.values()) else 1
@@ -147,7 +177,7 @@ class _Builder:
         radius = 0.5 * self._sizes.hole
         own = set(self._mechanism.links[link])
         cuts = [
-            Cut(Disc(self._at[next(iter(own & group))], radius), joint)
+            Cut(self._hole(self._at[next(iter(own & group))], self._keyed(joint) is not None), joint)
             for joint, group in self._groups.items()
             if own & group
         ]
@@ -163,6 +193,39 @@ class _Builder:
                 if all(_distance(place, cut.outline) >= spare for cut in cuts):
                     cuts.append(Cut(Disc(place, radius), joint))
         return cuts
+
+    def _hole(self, place: complex, keyed: bool) -> Outline:
+        """Of a pin; of a shaft that a key holds with its keyway."""
+        if keyed:
+            return keyed_bore(place, self._sizes.pin, self._key, self._sizes.clearance)
+        return Disc(place, 0.5 * self._sizes.hole)
+
+    def _keyed(self, joint: str) -> str | None:
+        """The link that is keyed to the pin at a joint: with a gear on its shaft."""
+        return next((self._shafts[one] for one in self._groups[joint] if one in self._shafts), None)
+
+    def gears(self) -> list[Part]:
+        """The gears of links, and an idler that turns on a pin of its own."""
+        found = []
+        for n, wheel in enumerate(self._wheels, len(self._mechanism.links) - 1):
+            teeth = toothed(wheel.gear, wheel.centre, wheel.tooth_at, play=0.5 * self._sizes.clearance)
+            plane = self._planes.links[wheel.name]
+            found.append(
+                Part(
+                    name=plain(wheel.name),
+                    described=f"{wheel.name.replace('_', ' ')}, {round(wheel.gear.teeth)} teeth",
+                    sort="gear",
+                    carrier=Carrier(wheel.name if wheel.joint is None else wheel.link, wheel.joint),
+                    bodies=(
+                        Prism(Region(teeth, (self._hole(wheel.centre, wheel.joint is not None),)), *self._level(plane)),
+                    ),
+                    along=1.0 + 0.0j,
+                    planes=(plane, plane),
+                    material=MATERIALS[self._sizes.process][0],
+                    colour=LINK_COLOURS[n % len(LINK_COLOURS)],
+                )
+            )
+        return found
 
     def _slot_ends(self, slot: Slot) -> list[complex]:
         """Centres of the round ends of a slot."""
@@ -298,8 +361,14 @@ class _Builder:
         links |= {slot.link for slot in self._slots if slot.joint in group and slot.link != GROUND}
         low, high = self._planes.pins[joint]
         levels = {self._planes.links[link] for link in links}
+        levels |= self._on_shaft(joint)
         levels |= {plane for plane in (0, self._planes.highest + 1) if plane in (low, high)}
         return sorted(levels)
+
+    def _on_shaft(self, joint: str) -> set[int]:
+        """Planes of gears on the pin at a joint."""
+        group = self._groups[joint]
+        return {self._planes.links[wheel.name] for wheel in self._wheels if (wheel.joint or wheel.name) in group}
 
     def on_pins(self) -> list[Part]:
         """Pins, and what holds and parts the plates on them."""
@@ -310,7 +379,15 @@ class _Builder:
             if self._sizes.process == "print" and not self._slides_on_ground(joint):
                 # A printed base has bosses there.
                 spans = [(a, b) for a, b in spans if a != 0 and b <= self._planes.highest]
-            parts += self._pin(plain(joint), f"pin {joint}", Carrier(GROUND, joint), self._at[joint], levels, spans)
+            link = self._keyed(joint)
+            if link is None:
+                carrier = Carrier(GROUND, None if joint not in self._mechanism.joints else joint)
+                parts += self._pin(plain(joint), f"pin {joint}", carrier, self._at[joint], levels, spans)
+                continue
+            keyed = sorted({self._planes.links[link], *self._on_shaft(joint)})
+            parts += self._pin(
+                plain(joint), f"shaft {joint}", Carrier(link, joint), self._at[joint], levels, spans, keyed
+            )
         for name, place in self._posts.items():
             levels = [0, self._planes.highest + 1]
             spans = [(levels[0], levels[1])]
@@ -319,15 +396,28 @@ class _Builder:
 
     def _pin(
         self, name: str, described: str, carrier: Carrier, place: complex, levels: Sequence[int],
-        spans: Sequence[tuple[int, int]],
+        spans: Sequence[tuple[int, int]], keyed: Sequence[int] = (),
     ) -> list[Part]:  # fmt: skip
-        """A pin through its planes, with what fills the gaps between them."""
+        """A pin through its planes, with what fills the gaps between them, and keys in those that turn with it."""
         ends = self._level(levels[0])[0], self._level(levels[-1])[1]
-        parts = held_pin(name, described, carrier, place, ends, (levels[0], levels[-1]), self._sizes)
+        section = Region(keyed_shaft(place, self._sizes.pin, self._key))
+        seats = [Prism(section, *self._level(plane)) for plane in keyed]
+        parts = held_pin(
+            name, described, carrier, place, ends, (levels[0], levels[-1]), self._sizes, seats=seats
+        )  # fmt: skip
+        parts += [self._key_in(name, carrier, place, plane) for plane in keyed]
         for span in spans:
             gap = self._level(span[0])[1], self._level(span[1])[0]
             parts += fillers(name, carrier, place, gap, span, self._sizes)
         return parts
+
+    def _key_in(self, name: str, carrier: Carrier, place: complex, plane: int) -> Part:
+        bodies = (Prism(Region(key_section(place, self._sizes.pin, self._key)), *self._level(plane)),)
+        told = self._key.standard and f"{self._key.standard} x {self._sizes.thickness:g}"
+        return Part(
+            f"key_{name}_{plane}", "key", "key", carrier, bodies, 1.0 + 0.0j, (plane, plane),
+            MATERIALS[self._sizes.process][1], FASTENER_COLOUR, told,
+        )  # fmt: skip
 
 
 def _distance(place: complex, outline: Outline) -> float:

@@ -19,8 +19,10 @@ from kinematics.errors import MechanismError
 from kinematics.linkage.layout import Layout, laid_out
 from kinematics.linkage.planar.branches import cycle
 from kinematics.linkage.planar.mechanism import Mechanism
-from service.parts.building import Planes, Slot, assembled
+from service.parts.building import Planes, Slot, assembled, keyway_reach
 from service.parts.fitting import Fitting, Trial, fault_of
+from service.parts.geared import pair_wheels
+from service.parts.gears.sizing import MOST_PLAY
 from service.parts.linkage_motion import LinkageMotion
 from service.parts.model import Assembly
 from service.parts.sizes import MILLIMETRES, THINNEST_PIN, WIDEST_PIN, NotMade, PartsQuery, Sizes
@@ -53,7 +55,7 @@ def linkage_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     Raises
     ------
     NotMade
-        Where the mechanism has gears, cannot be driven, or leaves no room for such parts.
+        Where the mechanism cannot be driven, no gears have its ratio, or there is no room for such parts.
     """
     return _Linkage(design, problem, query).assembly()
 
@@ -65,8 +67,8 @@ class _Linkage(Fitting):
         mechanism = rebuilt(design.mechanism, from_skeleton=True)
         if mechanism is None:
             raise NotMade("The design is of a size that is not built.")
-        if mechanism.gears:
-            raise NotMade("Parts are made of linkages with pins and slides; this one has gears.")
+        if len(mechanism.gears) > 1 or any(gear.first != mechanism.input for gear in mechanism.gears):
+            raise NotMade("Parts are made of linkages with one pair of gears, driven by the input.")
         self._mechanism = mechanism
         self._block = getattr(problem, "layout", None)
         over = query.over or getattr(self._block, "over", None)
@@ -95,6 +97,8 @@ class _Linkage(Fitting):
         """Slots of slides are wider than holes."""
         if self._mechanism.slides:
             return sizes.block[1] + 2.0 * sizes.clearance, "blocks on pins"
+        if self._mechanism.gears:
+            return 2.0 * keyway_reach(sizes), "keyed shafts"
         return sizes.hole, "pins"
 
     def of_the_problem(self) -> Iterator[Sizes]:
@@ -133,7 +137,12 @@ class _Linkage(Fitting):
         factor = self._unit * scale
         mechanism = _scaled(self._mechanism, factor)
         larger = factor if mechanism.driven_by_slide else 1.0
-        motion = LinkageMotion(mechanism, larger * self._low, larger * self._high, self._closed)
+        wheels = [wheel for pair in mechanism.gears for wheel in pair_wheels(mechanism, pair)]
+        module = max((wheel.gear.module for wheel in wheels), default=0.0)
+        if wheels and sizes.clearance > MOST_PLAY * module:
+            return Trial(None, f"the clearance is the play of teeth too, and wider than {MOST_PLAY:g} of their module")
+        idlers = {wheel.name: (wheel.centre, wheel.speed) for wheel in wheels if wheel.joint is None}
+        motion = LinkageMotion(mechanism, larger * self._low, larger * self._high, self._closed, idlers)
         length, width = sizes.block
         try:
             layout = laid_out(
@@ -146,13 +155,15 @@ class _Linkage(Fitting):
                 through=shafts == "both_sides",
                 closed=motion.closed,
                 slot_ends=0.5 * (length - width),
+                addendum=module,
                 whole=True,
             )
         except MechanismError as error:
             return Trial(None, str(error))
         if layout.clashes:
             return Trial(None, self._clashing(layout))
-        assembly = assembled(motion, Planes(layout.planes, layout.pins), _slots(motion), sizes, factor, scale)
+        planes = Planes(layout.planes, layout.pins)
+        assembly = assembled(motion, planes, _slots(motion), wheels, sizes, factor, scale)
         fault = fault_of(assembly, sizes)
         return Trial(None, fault) if fault else Trial(assembly, "")
 

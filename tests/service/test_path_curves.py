@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import math
 import xml.etree.ElementTree as ET
+import zipfile
 
 import numpy as np
 
@@ -91,3 +93,8 @@ def test_a_geared_fivebar_is_fitted_drawn_and_driven(server, client):
     drawing = client.get(f"/v1/jobs/{job['id']}/designs/0.svg")
     assert drawing.status_code == 200
     assert "gear ratio" in drawing.text
+    built = client.get(f"/v1/jobs/{job['id']}/designs/0/parts", params={"scale": 20.0})
+    assert built.status_code == 200, built.text
+    with zipfile.ZipFile(io.BytesIO(built.content)) as archive:
+        assert {"dxf/gear_of_input.dxf", "dxf/gear_of_output.dxf"} <= set(archive.namelist())
+        assert "18 of the gear of input, 18 of the gear of output" in archive.read("README.txt").decode()

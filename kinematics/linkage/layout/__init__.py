@@ -6,6 +6,7 @@ in the motion has to be kept apart as well. :mod:`~kinematics.linkage.layout.par
 motion and puts both together.
 """
 
+from kinematics.linkage.layout.parts import GearDisc, gear_discs
 from kinematics.linkage.layout.plan import Clash, Layout, laid_out
 
-__all__ = ["Clash", "Layout", "laid_out"]
+__all__ = ["Clash", "GearDisc", "Layout", "gear_discs", "laid_out"]

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from kinematics.linkage.clearance import Part
 from kinematics.linkage.planar.drive import drive
-from kinematics.linkage.planar.mechanism import GROUND, Mechanism, TopologyError
+from kinematics.linkage.planar.mechanism import GROUND, GearPair, Mechanism, TopologyError
 
 Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
@@ -67,6 +67,16 @@ class Pin(NamedTuple):
         return f"pin {self.joint}"
 
 
+class GearDisc(NamedTuple):
+    """The pitch circle of a gear that ties links; ``joint`` is that of its shaft, None of an idler's own."""
+
+    joint: str | None
+    name: str
+    link: str
+    centre: complex
+    radius: float
+
+
 class Parts(NamedTuple):
     """Plates and pins; ``meshes`` are the gears that lie in one plane, plates by their numbers."""
 
@@ -76,7 +86,13 @@ class Parts(NamedTuple):
 
 
 def parts_of(
-    mechanism: Mechanism, link_width: float, pin_diameter: float, low: float, high: float, slot_ends: float = 0.0
+    mechanism: Mechanism,
+    link_width: float,
+    pin_diameter: float,
+    low: float,
+    high: float,
+    slot_ends: float = 0.0,
+    addendum: float = 0.0,
 ) -> Parts:
     """The parts of one design.
 
@@ -91,6 +107,8 @@ def parts_of(
         needs them.
     slot_ends : float
         How much farther than its joint goes a slot of a link reaches at either end.
+    addendum : float
+        How far the teeth of gears reach beyond their pitch circles.
 
     Raises
     ------
@@ -114,8 +132,8 @@ def parts_of(
     for n, gear in enumerate(mechanism.gears):
         number = f" {n + 1}" if len(mechanism.gears) > 1 else ""
         mesh = []
-        for joint, name, link, place, radius in _wheels(mechanism, gear.first, gear.second, gear.ratio):
-            disc = Part(GROUND, np.array([place]), radius)
+        for joint, name, link, place, radius in gear_discs(mechanism, gear):
+            disc = Part(GROUND, np.array([place]), radius + addendum)
             mesh.append(len(plates))
             if joint is None:
                 pins.append(
@@ -169,14 +187,18 @@ def _places(mechanism: Mechanism, near: float) -> list[set[str]]:
     return places
 
 
-def _wheels(
-    mechanism: Mechanism, first: str, second: str, ratio: float
-) -> list[tuple[str | None, str, str, complex, float]]:
-    """Gears that tie two links by a ratio: joint of the shaft, name, link, centre and pitch radius of each.
+def gear_discs(mechanism: Mechanism, gear: GearPair) -> list[GearDisc]:
+    """Gears that tie two links by a ratio: of the first, of the second, and an idler where both turn the same way.
 
     With radii in the ratio |λ| to 1 the discs touch on the line of the pivots: r + |λ| r = d, and with an idler as
     large as the smaller one between them r + |λ| r + 2 min(r, |λ| r) = d.
+
+    Raises
+    ------
+    TopologyError
+        For a link that is not pinned to the ground, the ratio 0, or one shaft for both.
     """
+    first, second, ratio = gear
     pivots = []
     for link in (first, second):
         shared = [joint for joint in mechanism.links[link] if joint in mechanism.links[GROUND]]
@@ -188,14 +210,14 @@ def _wheels(
         raise TopologyError(f"gears of {first!r} and {second!r} need a ratio other than 0 and shafts apart")
     idled = 2.0 * min(1.0, abs(ratio)) if ratio > 0.0 else 0.0
     unit = abs(q - o) / (1.0 + abs(ratio) + idled)
-    wheels: list[tuple[str | None, str, str, complex, float]] = [
-        (pivots[0], f"gear of {first}", first, o, abs(ratio) * unit),
-        (pivots[1], f"gear of {second}", second, q, unit),
+    found = [
+        GearDisc(pivots[0], f"gear of {first}", first, o, abs(ratio) * unit),
+        GearDisc(pivots[1], f"gear of {second}", second, q, unit),
     ]
     if idled:
         share = (abs(ratio) + 0.5 * idled) / (1.0 + abs(ratio) + idled)
-        wheels.append((None, "idler", GROUND, o + share * (q - o), 0.5 * idled * unit))
-    return wheels
+        found.append(GearDisc(None, "idler", GROUND, o + share * (q - o), 0.5 * idled * unit))
+    return found
 
 
 def _hull(points: Sequence[complex], near: float) -> Complex:

@@ -107,6 +107,7 @@ def laid_out(
     through: bool = False,
     closed: bool = False,
     slot_ends: float = 0.0,
+    addendum: float = 0.0,
     whole: bool = False,
 ) -> Layout:
     """Lay a linkage out in planes.
@@ -127,6 +128,8 @@ def laid_out(
     slot_ends : float
         How much farther than its joint goes a slot of a link reaches at either end, for a block that is longer than
         the pin in it.
+    addendum : float
+        How far the teeth of gears reach beyond their pitch circles.
     whole : bool
         Whether only the whole motion will do: then no free range is looked for, which takes the longest.
 
@@ -137,7 +140,7 @@ def laid_out(
     DimensionError
         For more plates, or stub shafts among them, than can be arranged.
     """
-    parts = parts_of(mechanism, link_width, pin_diameter, low, high, slot_ends)
+    parts = parts_of(mechanism, link_width, pin_diameter, low, high, slot_ends, addendum)
     scene = _Scene(mechanism, parts, low, high, gap)
     found = scene.met()
     shafts = {n for n, pin in enumerate(parts.pins) if through and pin.grounded}
