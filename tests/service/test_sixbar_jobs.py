@@ -5,12 +5,15 @@ from __future__ import annotations
 import cmath
 import math
 import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from benchmarks.sixbars.motion import on_a_way
 from synthesis.kinds.motion import by_type
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.model.answer import Search
@@ -43,15 +46,16 @@ def passed(body) -> list[dict[str, Any]]:
     return [design for design in body["result"]["designs"] if design["verification"]["passed"]]
 
 
-def held_against_loops(design, positions) -> None:
-    """The design follows its loops through all positions on one branch, and transmits as it says."""
+def held_against_loops(design, positions, only: Sequence[int] | None = None) -> None:
+    """The design follows its loops through all positions, or some, on one branch, and transmits as it says."""
     inputs = np.radians([target["input_angle"] for target in design["targets"]])
     assert np.all(np.diff(inputs) > 0.0) or np.all(np.diff(inputs) < 0.0)
     loops = Loops(design["mechanism"]["skeleton"])
     met = loops.followed(inputs - inputs[0])
     assert met.branch > 0.0
     size = max(abs(complex(p["x"] - q["x"], p["y"] - q["y"])) for p in positions for q in positions)
-    for k, position in enumerate(positions):
+    for k in range(len(positions)) if only is None else only:
+        position = positions[k]
         assert abs(met.points[k] - complex(position["x"], position["y"])) < 1e-7 * size
         turn = np.radians(position["angle"] - positions[0]["angle"])
         assert abs(np.exp(1j * met.turns[k]) - np.exp(1j * turn)) < 1e-7
@@ -182,7 +186,7 @@ def _as_of(sort: str, least: float) -> SimpleNamespace:
     ],
 )
 def test_what_is_offered_beside_a_fourbar_is_what_is_told(monkeypatch, fourbar, sixbars, most, offered, told):
-    monkeypatch.setattr(by_type, "ranked", lambda designs, _: sorted(designs, key=_least, reverse=True))
+    monkeypatch.setattr(by_type, "order_of", lambda _: partial(sorted, key=_least, reverse=True))
     problem = SimpleNamespace(max_designs=most, rank_by="quality", listed_later=False)
     results = [
         MotionResult.model_construct(
@@ -204,14 +208,39 @@ def _least(design) -> float:
     return design.metrics.min_transmission_angle
 
 
+def test_seven_positions_are_met_by_sixbars(client):
+    positions = on_a_way(np.random.default_rng(2), 7)
+    body = answered(client, positions=positions, mechanisms=list(SIXBARS), seed=2)
+    designs = passed(body)
+    assert designs
+    for design in designs:
+        held_against_loops(design, positions)
+        assert design["metrics"]["min_transmission_angle"] >= 20.0
+
+
 @pytest.mark.campaign
-def test_more_than_five_positions_are_fitted_by_fourbars_under_auto(client):
+def test_of_nine_positions_the_ends_are_met_and_the_rest_nearer_than_by_fourbars(client):
+    positions = on_a_way(np.random.default_rng(1), 9)
+    for end in (positions[0], positions[-1]):
+        end["exact"] = True
+    body = answered(client, positions=positions, mechanisms="auto", max_designs=3)
+    designs = passed(body)
+    assert designs[0]["mechanism"]["type"] in SIXBARS
+    held_against_loops(designs[0], positions, only=[0, 8])
+    alone = passed(finished(client, {k: v for k, v in TASK.items() if k != "mechanisms"} | {"positions": positions}))
+    errors = [one["metrics"]["rms_residual"] for one in (designs[0], *alone)]
+    assert all(2.0 * errors[0] < error for error in errors[1:])
+    assert errors[0] < 0.05
+
+
+@pytest.mark.campaign
+def test_more_than_five_positions_are_fitted_by_fourbars_where_sixbars_lack_something(client):
     stated = {"positions": SIX, "input_side": {"fixed_pivot": [40.0, -80.0]}, "include_failed": True}
     result = answered(client, mechanisms="auto", **stated)["result"]
     without = finished(client, {k: v for k, v in TASK.items() if k != "mechanisms"} | stated)["result"]
     assert result["designs"] == without["designs"]
     assert [design["mechanism"]["fixed_pivots"]["input"] for design in result["designs"]] == 2 * [[40.0, -80.0]]
-    assert "Sixbars meet up to five positions; they were not looked for." in result["summary"]
+    assert "Sixbars were not looked for: they cannot keep input_side." in result["summary"]
 
 
 @pytest.mark.campaign
@@ -379,8 +408,9 @@ def test_room_planes_and_forces_hold_together(client):
         ({"driver_dyad": True}, "/problem/driver_dyad"),
         ({"manufacture": {"tolerances": {"length": 0.1}}}, "/problem/manufacture"),
         ({"space": {"fixed_pivots": {"input": {"circle": {"center": [0, 0], "radius": 9}}}}}, "/problem/space"),
-        ({"positions": SIX}, "/problem/mechanisms"),
-        ({"method": "least_squares"}, "/problem/mechanisms"),
+        ({"positions": on_a_way(np.random.default_rng(0), 21)}, "/problem/mechanisms"),
+        ({"positions": SIX, "chain": {"elbow": "left"}}, "/problem/chain"),
+        ({"method": "least_squares", "chain": {"elbow": "left"}}, "/problem/chain"),
         ({"mechanisms": ["fourbar"], "chain": {"elbow": "left"}}, "/problem/chain"),
         ({"chain": {"elbow": "up"}}, "/problem/chain/elbow"),
         ({"chain": {"links": [1.0, 0.0]}}, "/problem/chain/links"),

@@ -17,8 +17,9 @@ LIMITS = {
     "angles": {rows.COSINE: 0.6},
     "sizes": {rows.REACH: 1.5, rows.SHORTEST: 0.7, rows.LONGEST: 1.4, rows.RATIO: 1.5},
     "pivots": {n: (-0.5, 0.5)[n % 2 == 0] for n in range(rows.FIXED_BOX, rows.ROOM)},
-    "room": {n: (-0.5, 0.5)[n % 2 == 0] for n in range(rows.ROOM, rows.SETTINGS)},
+    "room": {n: (-0.5, 0.5)[n % 2 == 0] for n in range(rows.ROOM, rows.WANTED_X)},
 }
+LIMITS["first pose"] = LIMITS["sizes"] | LIMITS["room"] | {rows.WANTED_X: 0.3, rows.WANTED_Y: -0.2}
 
 
 def drawn(rng: np.random.Generator, make: int, limits: dict[int, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -33,7 +34,9 @@ def drawn(rng: np.random.Generator, make: int, limits: dict[int, float]) -> tupl
     )
     for place, limit in limits.items():
         setting[place] = limit
-    later = np.column_stack([rng.normal(size=(4, 3)), rng.choice([0.0, 0.1], (4, 3))])
+    later = np.column_stack([rng.normal(size=(4, 3)), rng.choice([0.0, 0.1], (4, 3)), rng.uniform(0.1, 2.0, (4, 2))])
+    if rows.WANTED_X in limits:
+        x = np.concatenate([x, rng.normal(size=rows.FREE)])
     return x, later, setting
 
 

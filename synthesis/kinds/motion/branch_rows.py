@@ -1,9 +1,10 @@
 """A sixbar that carries a body through poses on one branch, in order: residuals of its dimensions and of its input.
 
 The unknowns x are the seven joints in the first position (:data:`chain_kernels.O2` …) and, from each position to the
-next, the logarithm of the input's turn, so that the input never turns back. The linkage is driven by its closures, each
-on the side on which it stands first. What does not close at one of :data:`SAMPLES` inputs on the way is impossible, so
-that a descent never leaves the branch. There remain as residuals, each 0 where it holds:
+next, the logarithm of the input's turn, so that the input never turns back. Three more, where they are there, are the
+body's first pose, which is fitted then as the later ones are. The linkage is driven by its closures, each on the side
+on which it stands first. What does not close at one of :data:`SAMPLES` inputs on the way is impossible, so that a
+descent never leaves the branch. There remain as residuals, each 0 where it holds:
 
 * P's distance and the body's angle from each later position, or what either has beyond its tolerance;
 * |cos μ| beyond that of the least transmission angle, of both dyads, at the samples;
@@ -52,19 +53,25 @@ SAMPLES = 24
 """Steps of the drive from the first position to the last, beside the positions themselves."""
 
 MAKE, WAY, FIRST_SIDE, SECOND_SIDE, COSINE, REACH, SHORTEST, LONGEST, RATIO, FIRST_X, FIRST_Y = range(11)
-FIXED_BOX, MOVING_BOX, ROOM, SETTINGS = 11, 15, 19, 23
+FIXED_BOX, MOVING_BOX, ROOM, WANTED_X, WANTED_Y, SETTINGS = 11, 15, 19, 23, 24, 25
 """Places in a setting: the number of the make; ±1, the sense in which the input turns; the sides of both dyads; the
 cosine of the least transmission angle; limits of sizes as those of :data:`chain_kernels.MOST_REACH`; P in the first
-position; boxes (x from, to, y from, to) as there. Task coordinates."""
+position; boxes (x from, to, y from, to) as there; where P is wanted in the first position, if that is fitted. Task
+coordinates."""
 
-OF_POSE = 6
-"""Numbers of a later position, a row of ``points``: x, y, the body's turn from the first, how far each may be off."""
+OF_POSE = 8
+"""Numbers of a later position, a row of ``points``: x, y, the body's turn from the first, how far each may be off, and
+the weights of a distance of P and of an angle."""
+
+FREE = 3
+"""Unknowns of a first pose that is fitted: P, and how far the body is turned from where it is wanted."""
 
 ALONE, TO_P = 6, 7
 """How many of the links are bars for themselves in a list of pairs; P in such a list."""
 
 BY_ANGLE, BY_COSINE, BY_SIZE, BY_BOX = 0.7, 0.5, 0.3, 1.0
-"""Weights of residuals beside distances of P in task sizes: radians, cosines, lengths, distances from boxes."""
+"""Weights of residuals beside distances of P in task sizes: radians (where a pose does not say it), cosines, lengths,
+distances from boxes."""
 
 BARRIER = math.cos(math.radians(3.0))
 """Cosine at which a dyad counts as one that does not close."""
@@ -93,7 +100,7 @@ PAIRS = _pairs()
 @njit(cache=True, nogil=True, error_model="numpy")
 def most_rows(positions: int) -> int:
     """Greatest number of residuals."""
-    return 3 * positions + (2 + 12) * (SAMPLES + positions) + 16 + 1 + 14
+    return 3 * positions + (2 + 12) * (SAMPLES + positions) + 16 + 1 + 14 + FREE
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -228,7 +235,7 @@ def _outside(at: float, low: float, high: float) -> float:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _sizes(z: Complex, setting: Real, residuals: Real, jacobian: Real, m: int) -> int:
+def _sizes(z: Complex, setting: Real, residuals: Real, jacobian: Real, m: int, free: int) -> int:
     """Adds residuals of links and of pivots in the first position; the number of rows, −1 where a link vanishes."""
     make, derived = int(setting[MAKE]), len(jacobian) > 0
     start = complex(setting[FIRST_X], setting[FIRST_Y])
@@ -252,7 +259,7 @@ def _sizes(z: Complex, setting: Real, residuals: Real, jacobian: Real, m: int) -
             residuals[m] = BY_SIZE * off
             if derived:
                 jacobian[m] = 0.0
-                _along(i, k, BY_SIZE * way / length, jacobian[m])
+                _along(i, k, free, BY_SIZE * way / length, jacobian[m])
             m += 1
     if most > setting[RATIO] * least:
         residuals[m] = BY_SIZE * math.log(most / (setting[RATIO] * least))
@@ -261,7 +268,7 @@ def _sizes(z: Complex, setting: Real, residuals: Real, jacobian: Real, m: int) -
             for n, sense in ((longest, 1.0), (shortest, -1.0)):
                 i, k = PAIRS[make, n]
                 way = z[i] - z[k]
-                _along(i, k, sense * BY_SIZE * way / abs(way) ** 2, jacobian[m])
+                _along(i, k, free, sense * BY_SIZE * way / abs(way) ** 2, jacobian[m])
         m += 1
     for i in range(7):
         fixed = i in (O2, O4) or (i == Q2 and MAKES[make, 1] == GROUND)
@@ -278,13 +285,16 @@ def _sizes(z: Complex, setting: Real, residuals: Real, jacobian: Real, m: int) -
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _along(i: int, k: int, way: complex, row: Real) -> None:
-    """Adds to a row the rate of a function of z_i − z_k whose gradient is ``way``."""
+def _along(i: int, k: int, free: int, way: complex, row: Real) -> None:
+    """Adds to a row the rate of a function of z_i − z_k whose gradient is ``way``; P is unknown from ``free`` on."""
     row[2 * i] += way.real
     row[2 * i + 1] += way.imag
     if k != TO_P:
         row[2 * k] -= way.real
         row[2 * k + 1] -= way.imag
+    elif free > 0:
+        row[free] -= way.real
+        row[free + 1] -= way.imag
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -292,8 +302,17 @@ def _row(rates: Real, weight: float, by_turn: Real, row: Real) -> None:
     """A row by rates of the joints and of the input, and those of the input by its unknowns."""
     for m in range(JOINTS):
         row[m] = weight * rates[m]
-    for m in range(JOINTS, row.size):
-        row[m] = weight * rates[JOINTS] * by_turn[m - JOINTS]
+    for m in range(by_turn.size):
+        row[JOINTS + m] = weight * rates[JOINTS] * by_turn[m]
+    for m in range(JOINTS + by_turn.size, row.size):
+        row[m] = 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _of_body(turn: complex, axis: int, weight: float, row: Real) -> None:
+    """The entries of P's place on the body in the row of a coordinate of P."""
+    row[0] = weight * (turn.imag if axis else turn.real)
+    row[1] = weight * (turn.real if axis else -turn.imag)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -302,12 +321,12 @@ def branch_rows(x: Real, points: Real, setting: Real, residuals: Real, jacobian:
 
     Parameters
     ----------
-    x : float, shape (14 + positions − 1,)
+    x : float, shape (14 + positions − 1,) or three more
         The unknowns.
-    points : float, shape (positions − 1, 6)
+    points : float, shape (positions − 1, 8)
         See :data:`OF_POSE`.
     setting : float
-        See :data:`MAKE`.
+        See :data:`MAKE`; P of a first pose that is fitted is put into it.
     residuals, jacobian : float, shape (most_rows, ), (most_rows, unknowns)
         Filled; the second may have no rows, and is left as it is then.
 
@@ -316,7 +335,10 @@ def branch_rows(x: Real, points: Real, setting: Real, residuals: Real, jacobian:
     int
         The number of rows; −1 where the linkage does not close.
     """
-    intervals, derived = x.size - JOINTS, len(jacobian) > 0
+    intervals, derived = len(points), len(jacobian) > 0
+    free, stands = JOINTS + intervals if x.size > JOINTS + intervals else -1, 0.0
+    if free > 0:
+        setting[FIRST_X], setting[FIRST_Y], stands = x[free], x[free + 1], x[free + 2]
     z, at, turns = np.empty(7, np.complex128), np.empty(6, np.complex128), np.empty(4, np.complex128)
     lengths, inverses = np.empty(4), np.empty(4, np.complex128)
     parts, by_turn = np.empty(intervals), np.empty(intervals)
@@ -336,6 +358,14 @@ def branch_rows(x: Real, points: Real, setting: Real, residuals: Real, jacobian:
     room = setting[ROOM : ROOM + 4]
     everywhere = math.isinf(room[1] - room[0]) and math.isinf(room[3] - room[2])
     m, angle = 0, 0.0
+    if free > 0:
+        for axis in range(FREE):
+            weight = points[0, 7 if axis == 2 else 6]
+            residuals[m] = weight * (stands if axis == 2 else setting[FIRST_X + axis] - setting[WANTED_X + axis])
+            if derived:
+                jacobian[m] = 0.0
+                jacobian[m, free + axis] = weight
+            m += 1
     for n in range(SAMPLES + intervals):
         target = n - SAMPLES
         angle = total * n / SAMPLES if target < 0 else parts[target] + (angle if target > 0 else 0.0)
@@ -362,21 +392,27 @@ def branch_rows(x: Real, points: Real, setting: Real, residuals: Real, jacobian:
                     residuals[m] = BY_BOX * off
                     if derived:
                         _row(rates[j].imag if axis else rates[j].real, BY_BOX, by_turn, jacobian[m])
+                        if free > 0 and j == 5:
+                            _of_body(turns[3], axis, BY_BOX, jacobian[m, free:])
                     m += 1
         if target < 0:
             continue
         pose = points[target]
         back = turns[3] * complex(math.cos(pose[2]), -math.sin(pose[2]))
         for axis in range(3):
-            weight, at_axis = 1.0, rates[5].real
+            weight, at_axis = pose[6], rates[5].real
             off = at[5].real - pose[0]
             if axis == 1:
                 off, at_axis = at[5].imag - pose[1], rates[5].imag
             elif axis == 2:
-                off, at_axis, weight = math.atan2(back.imag, back.real), turning, BY_ANGLE
+                off, at_axis, weight = math.atan2(back.imag, back.real) + stands, turning, pose[7]
             if pose[3 + axis] == 0.0 or abs(off) > pose[3 + axis]:
                 residuals[m] = weight * _beyond(off, pose[3 + axis])
                 if derived:
                     _row(at_axis, weight, by_turn, jacobian[m])
+                    if free > 0 and axis < 2:
+                        _of_body(turns[3], axis, weight, jacobian[m, free:])
+                    elif free > 0:
+                        jacobian[m, free + 2] = weight
                 m += 1
-    return int(_sizes(z, setting, residuals, jacobian, m))
+    return int(_sizes(z, setting, residuals, jacobian, m, free))

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from synthesis.kinds.motion import branch_fit as fit
 from synthesis.kinds.motion import branch_rows as rows
 from synthesis.kinds.motion import branch_walk as walk
 from synthesis.kinds.motion import chain_kernels as kernels
@@ -14,10 +15,11 @@ from synthesis.kinds.motion.chain_draws import needed
 from synthesis.kinds.motion.demanded import Demanded, Real
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sixbar_makes import Found
+from synthesis.kinds.motion.stated_positions import MOST_HELD
 from synthesis.kinds.motion.task import MotionTask
 
 DESCENTS = 1500
-"""Descents of a round, about a third of a second."""
+"""Descents of a round, about a third of a second, of up to five positions; of more as many fewer as there are more."""
 
 KEPT = 400
 """Linkages that are kept of a round."""
@@ -54,7 +56,9 @@ class BranchSearch:
         self, problem: MotionProblem, task: MotionTask, target: Demanded, wanted: NDArray[np.bool_], limits: Real
     ) -> None:
         self.makes = np.repeat(np.arange(len(wanted)), np.where(wanted, DRAWN, 0))
-        self.first, self.later = _poses(task, target, np.random.default_rng(problem.seed))
+        self.first, self.later = _poses(problem, task, target, np.random.default_rng(problem.seed))
+        self.held: NDArray[np.bool_] = np.all(target.held, axis=1)
+        self.each = math.ceil(DESCENTS * min(1.0, MOST_HELD / len(self.held)))
         self.needed, self.limits = needed(task), limits
         self.settings = _aims(problem, limits, relaxed=False), _aims(problem, limits, relaxed=True)
         self.pools = _empty(len(self.later)), _empty(len(self.later))
@@ -66,15 +70,31 @@ class BranchSearch:
         starts, counts = np.empty(KEPT, np.int64), np.zeros(3, np.int64)
         arrived = walk.Arrived(joints, makes, np.empty(KEPT), starts, counts)
         poses = walk.Poses(self.first, self.later, self.needed, self.limits)
-        walk.walked(rng, DESCENTS, self.makes, self.settings[relaxed], poses, self.pools[relaxed], arrived)
+        walk.walked(rng, self.each, self.makes, self.settings[relaxed], poses, self.pools[relaxed], arrived)
         self.descents += int(counts[1])
         n = int(counts[0])
         own = starts[:n]
         places = self.first[own, 0] + 1j * self.first[own, 1]
         return Found(makes[:n], joints[:n], places, self.first[own, 2], arrived.values[:n])
 
+    @property
+    def misses(self) -> float:
+        """The least sum of squares of those that miss the positions, without what nobody stated and with."""
+        return min(float(pool.costs[0]) for pool in self.pools)
 
-def _poses(task: MotionTask, target: Demanded, rng: np.random.Generator) -> tuple[Real, Real]:
+    def fitted(self) -> Found:
+        """Those that miss least, taken to the end of their least squares; what follows begins anew."""
+        found = Found.none()
+        poses = walk.Poses(self.first, self.later, self.needed, self.limits)
+        for pool in self.pools:
+            ends = Found.room(len(pool.costs))
+            n = int(fit.fitted(poses, self.held, pool, ends))
+            found = found.beside(ends.best(np.arange(n)))
+            pool.costs[:] = np.inf
+        return found
+
+
+def _poses(problem: MotionProblem, task: MotionTask, target: Demanded, rng: np.random.Generator) -> tuple[Real, Real]:
     """First and later poses as :class:`branch_walk.Poses` has them."""
     unit = np.array([target.size, target.size, 1.0])
     first = (
@@ -82,7 +102,11 @@ def _poses(task: MotionTask, target: Demanded, rng: np.random.Generator) -> tupl
     )
     first[::2] = 0.0
     places = np.stack([task.points.real, task.points.imag, np.angle(task.turns)], axis=1)
-    return first / unit, np.concatenate([places, WITHIN * target.limits / unit], axis=1)[1:]
+    off = np.where(np.isfinite(target.limits), WITHIN * target.limits / unit, 0.0)
+    weights = np.ones((len(places), 1)) * (1.0, rows.BY_ANGLE)
+    if problem.fitted:
+        weights[np.all(target.held, axis=1)] *= fit.OF_HELD
+    return first / unit, np.concatenate([places, off, weights], axis=1)[1:]
 
 
 def _aims(problem: MotionProblem, limits: Real, *, relaxed: bool) -> Real:
@@ -96,7 +120,7 @@ def _aims(problem: MotionProblem, limits: Real, *, relaxed: bool) -> Real:
     aims[rows.COSINE], aims[rows.REACH], aims[rows.RATIO] = math.cos(angle), SIZE * reach, SIZE * ratio
     aims[rows.SHORTEST] = max(SHORTEST, limits[kernels.SHORTEST_LINK] / SIZE)
     aims[rows.LONGEST] = SIZE * limits[kernels.LONGEST_LINK]
-    aims[rows.FIXED_BOX :] = limits[kernels.FIXED_BOX :]
+    aims[rows.FIXED_BOX : rows.WANTED_X] = limits[kernels.FIXED_BOX :]
     return aims
 
 

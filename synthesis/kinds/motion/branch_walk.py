@@ -34,7 +34,7 @@ from synthesis.kinds.motion.branch_rows import (
     driven,
     most_rows,
 )
-from synthesis.kinds.motion.chain_kernels import O4, POSITIONS, Q1, Q2, A, B, J, signed_sine, weighed
+from synthesis.kinds.motion.chain_kernels import O4, Q1, Q2, A, B, J, signed_sine, weighed
 from synthesis.numerics.cholesky import solve_positive
 
 Real = NDArray[np.float64]
@@ -59,7 +59,8 @@ LEAST_HOP, MOST_HOP = 0.03, 0.6
 """Spread of a hop: task sizes, and natural logarithms of turns."""
 
 STEPS, BLOCK, WORTH = 60, 10, 0.5
-"""Steps of a descent at most, and after how many of them it has to have come below this share of its cost."""
+"""Steps of a descent at most, and after how many of them it has to have come below this share of its cost: descents of
+the search."""
 
 DAMPING, LEAST_DAMPING, MOST_DAMPING = 0.03, 1e-10, 1e4
 """At first, at least, and that above which a descent has stalled."""
@@ -76,8 +77,6 @@ REFUSED = 8
 
 BETTER, BETTER_HOP, BETTER_SHARE = 14, 0.12, 0.85
 """Attempts to make a linkage better, their spread, and the share of its size and of its link ratio aimed at."""
-
-COLUMNS = JOINTS + POSITIONS - 1
 
 
 class Pool(NamedTuple):
@@ -107,8 +106,8 @@ class Poses(NamedTuple):
     ----------
     first : float, shape (n, 3)
         P and the angle of the body in the first position, one of which each linkage takes.
-    later : float, shape (k, 6)
-        x, y, angle of later positions, and how far each may be off; task coordinates, radians.
+    later : float, shape (k, 8)
+        Later positions as :data:`branch_rows.OF_POSE` has them, but with the angle from the first demanded one.
     needed : float, shape (2,)
         Way and turn that the body needs.
     limits : float, shape (19,)
@@ -178,9 +177,30 @@ def _cost(x: Real, points: Real, setting: Real, room: Room) -> float:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _step_of_many(m: int, damping: float, room: Room, step: Real) -> bool:
+    """The damped step of more rows than unknowns."""
+    n, jacobian = step.size, room.jacobian
+    matrix = room.matrix[:n, :n]
+    for i in range(n):
+        step[i] = 0.0
+        for j in range(i + 1):
+            matrix[i, j] = damping if i == j else 0.0
+    for row in range(m):
+        for i in range(n):
+            at = jacobian[row, i]
+            if at != 0.0:
+                step[i] -= at * room.residuals[row]
+                for j in range(i + 1):
+                    matrix[i, j] += at * jacobian[row, j]
+    return bool(solve_positive(matrix, step))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _step(m: int, damping: float, room: Room, step: Real) -> bool:
-    """The shortest damped step −Jᵀ(JJᵀ + μ)⁻¹ r of m rows: there are fewer of them than unknowns, as a rule."""
+    """The shortest damped step −Jᵀ(JJᵀ + μ)⁻¹ r of m rows; of more rows than unknowns as −(JᵀJ + μ)⁻¹ Jᵀr."""
     matrix, right, jacobian = room.matrix[:m, :m], room.right[:m], room.jacobian
+    if m > step.size:
+        return _step_of_many(m, damping, room, step)
     for i in range(m):
         right[i] = room.residuals[i]
         for j in range(i + 1):
@@ -199,8 +219,8 @@ def _step(m: int, damping: float, room: Room, step: Real) -> bool:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _descended(x: Real, points: Real, setting: Real, room: Room, counts: NDArray[np.int64]) -> float:
-    """Descends in place as long as it is worth it; the sum of squares at the end."""
+def descended(x: Real, points: Real, setting: Real, room: Room, counts: NDArray[np.int64], worth: float) -> float:
+    """Descends in place as long as ten steps leave less than ``worth`` of the cost; the sum of squares at the end."""
     step, trial = np.empty(x.size), np.empty(x.size)
     cost = _cost(x, points, setting, room)
     m = branch_rows(x, points, setting, room.residuals, room.jacobian)
@@ -209,7 +229,7 @@ def _descended(x: Real, points: Real, setting: Real, room: Room, counts: NDArray
         if not ARRIVED < cost < np.inf or damping > MOST_DAMPING:
             break
         if n % BLOCK == BLOCK - 1:
-            if cost > WORTH * before:
+            if cost > worth * before:
                 break
             before = cost
         counts[2] += 1
@@ -233,7 +253,7 @@ def _descended(x: Real, points: Real, setting: Real, room: Room, counts: NDArray
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _of_first(poses: Poses, start: int, setting: Real, points: Real) -> None:
+def of_first(poses: Poses, start: int, setting: Real, points: Real) -> None:
     """The later positions as a linkage sees them whose first one is given."""
     setting[FIRST_X], setting[FIRST_Y] = poses.first[start, 0], poses.first[start, 1]
     for k in range(len(poses.later)):
@@ -281,20 +301,19 @@ def _drawn(rng: np.random.Generator, x: Real, points: Real, setting: Real, room:
 def value_of(x: Real, points: Real, setting: Real, poses: Poses, joints: Complex) -> float:
     """The value of a linkage that meets the positions, and its joints in the first one."""
     at, turns = np.empty(6, np.complex128), np.ones(4, np.complex128)
-    into, out = np.ones(POSITIONS, np.complex128), np.ones(POSITIONS, np.complex128)
-    place, turn = np.empty(POSITIONS, np.complex128), np.ones(POSITIONS, np.complex128)
-    demanded = np.zeros(POSITIONS, np.bool_)
+    places = len(points) + 1
+    into, out = np.ones(places, np.complex128), np.ones(places, np.complex128)
+    place, turn = np.empty(places, np.complex128), np.ones(places, np.complex128)
+    demanded = np.ones(places, np.bool_)
     for j in range(7):
         joints[j] = complex(x[2 * j], x[2 * j + 1])
     lengths, inverses = np.empty(4), np.empty(4, np.complex128)
     dimensions(joints, lengths, inverses)
     place[0] = complex(setting[FIRST_X], setting[FIRST_Y])
-    demanded[0] = True
     angle = 0.0
-    for k in range(1, x.size - JOINTS + 1):
+    for k in range(1, places):
         angle += math.exp(x[JOINTS + k - 1])
         driven(joints, lengths, inverses, setting, setting[WAY] * angle, at, turns)
-        demanded[k] = True
         place[k], turn[k], into[k], out[k] = at[5], turns[3], turns[0], turns[2]
     make = int(setting[MAKE])
     return float(weighed(joints, make, into, out, place, turn, demanded, poses.needed, poses.limits))
@@ -326,7 +345,7 @@ def _improved(
         for k in range(x.size):
             trial[k] = x[k] + spread * rng.normal()
         _sides(trial, aims)
-        if _descended(trial, points, aims, room, counts) < ARRIVED:
+        if descended(trial, points, aims, room, counts, WORTH) < ARRIVED:
             better = value_of(trial, points, aims, poses, other)
             if better > value:
                 value = better
@@ -394,13 +413,13 @@ def walked(
             _copied(plain, setting)
             setting[MAKE] = makes[int(rng.random() * len(makes))]
             setting[WAY] = 1.0 if rng.random() < 0.5 else -1.0
-            _of_first(poses, start, setting, points)
+            of_first(poses, start, setting, points)
             cost = _drawn(rng, x, points, setting, room)
         else:
             parent = int(POOL * rng.random() ** 2)
             start = int(pool.starts[parent])
             _copied(pool.settings[parent], setting)
-            _of_first(poses, start, setting, points)
+            of_first(poses, start, setting, points)
             spread = LEAST_HOP * (MOST_HOP / LEAST_HOP) ** rng.random()
             for _hop in range(REFUSED):
                 for k in range(unknowns):
@@ -412,7 +431,7 @@ def walked(
         if not cost < np.inf:
             continue
         arrived.counts[1] += 1
-        cost = _descended(x, points, setting, room, arrived.counts)
+        cost = descended(x, points, setting, room, arrived.counts, WORTH)
         if cost < ARRIVED:
             value = value_of(x, points, setting, poses, joints)
             if value >= 0.0:

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from functools import partial
 
 from synthesis.kinds.motion.design import MotionResult
+from synthesis.kinds.motion.nearness import error_of, order_of
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sixbar_search import solve_sixbars
 from synthesis.kinds.motion.stated_mechanisms import lacking
@@ -18,13 +19,12 @@ from synthesis.kinds.motion.stated_positions import MOST_HELD
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.model.stated_types import not_looked_for
-from synthesis.outcome.ranking import ranked
-from synthesis.outcome.simplest import as_one, offered_beside, passing, simplest_first, told_of_offered, transmits
+from synthesis.outcome.simplest import HALF, as_one, offered_beside, passing, simplest_first, told_of_offered, transmits
 
 Solve = Callable[[MotionProblem, Progress], MotionResult]
 
-MANY = "Sixbars meet up to five positions; they were not looked for."
-"""What is said of more."""
+NEAR = 1e-3
+"""Error of a fit, as a share of the task's size, at which no better linkage is looked for."""
 
 
 def solve_types(problem: MotionProblem, two_dyads: Solve, progress: Progress) -> MotionResult:
@@ -43,19 +43,41 @@ def solve_types(problem: MotionProblem, two_dyads: Solve, progress: Progress) ->
     answer: MotionResult = simplest_first(
         None if part is None else partial(two_dyads, part),
         partial(solve_sixbars, problem, problem.sixbars) if problem.sixbars else None,
-        partial(transmits, problem),
-        partial(joined, problem),
+        partial(_stands_alone, problem),
+        partial(_nearer if problem.fitted else joined, problem),
         progress,
-        _unlooked(problem),
+        not_looked_for(lacking(problem)) if problem.mechanisms == "auto" else "",
     )
     return answer
 
 
-def _unlooked(problem: MotionProblem) -> str:
-    """What is said where ``auto`` has no sixbars."""
-    if problem.mechanisms != "auto":
-        return ""
-    return not_looked_for(lacking(problem)) if problem.few_enough else MANY
+def _stands_alone(problem: MotionProblem, design: LinkageDesign) -> bool:
+    """Whether a linkage that keeps all demands is sound, and near enough where positions are fitted."""
+    return transmits(problem, design) and (not problem.fitted or error_of(design) <= NEAR)
+
+
+def _nearer(problem: MotionProblem, simple: MotionResult, found: MotionResult) -> MotionResult:
+    """Both answers as one where positions are fitted: sixbars have half of the error, or are sound alone."""
+    plain, better = passing(simple.designs), passing(found.designs)
+    sound = [design for design in plain if transmits(problem, design)]
+    alone = [design for design in better if transmits(problem, design)]
+    if not plain:
+        told = (
+            f"No linkage of two dyads was found that keeps all demands; {'sixbars do' if better else 'nor a sixbar'}."
+        )
+    elif not sound and alone:
+        better, told = alone, "No linkage of two dyads that was found is sound; sixbars are"
+    else:
+        least = min(map(error_of, sound or plain))
+        better = [design for design in better if error_of(design) <= HALF * least]
+        told = f"The best linkage of two dyads has a root-mean-square residual of {100.0 * least:.3g} %"
+        told += "; sixbars have at most half of it" if better else ", and no sixbar that was found has half of it."
+    kept = (sound or plain) if better else plain
+    offered = offered_beside(problem.max_designs, kept, better, order_of(problem))
+    sixbars = [design for design in offered if any(design is one for one in better)]
+    if plain and better:
+        told += told_of_offered(problem, len(offered), len(sixbars))
+    return as_one(problem.max_designs, (simple, found), offered, len(sixbars), told, order_of(problem))
 
 
 def joined(problem: MotionProblem, simple: MotionResult, found: MotionResult) -> MotionResult:
@@ -69,9 +91,7 @@ def joined(problem: MotionProblem, simple: MotionResult, found: MotionResult) ->
     if plain:
         better = [design for design in better if design.metrics.min_transmission_angle > best]
 
-    def order(designs: list[LinkageDesign]) -> list[LinkageDesign]:
-        return ranked(designs, problem.rank_by)
-
+    order = order_of(problem)
     offered = offered_beside(problem.max_designs, plain, better, order)
     sixbars = [design for design in offered if any(design is one for one in better)]
     if not plain:

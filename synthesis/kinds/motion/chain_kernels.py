@@ -195,17 +195,17 @@ def run(input_turns: Complex, demanded: NDArray[np.bool_], inputs: Real) -> floa
     best, shorter = -1.0, 2.0 * math.pi
     for way in (1.0, -1.0):
         at, back, before = 0.0, 0.0, input_turns[0]
-        for k in range(1, POSITIONS):
+        for k in range(1, len(demanded)):
             if demanded[k]:
                 turned = _turned(before, input_turns[k]) * way
                 back += min(turned, 0.0)
                 at += turned if turned >= 0.0 else turned + 2.0 * math.pi
                 before = input_turns[k]
-        best = max(best, (back if back < 0.0 else 2.0 * math.pi - at) / (math.pi * POSITIONS))
+        best = max(best, (back if back < 0.0 else 2.0 * math.pi - at) / (math.pi * len(demanded)))
         if at >= shorter:
             continue
         shorter, at, before = at, 0.0, input_turns[0]
-        for k in range(1, POSITIONS):
+        for k in range(1, len(demanded)):
             if demanded[k]:
                 turned = _turned(before, input_turns[k]) * way
                 at += turned if turned >= 0.0 else turned + 2.0 * math.pi
@@ -294,7 +294,7 @@ def weighed(
     reach = max(reach, longest)
     if not shortest > SHORTEST:
         return -3.0
-    inputs = np.zeros(POSITIONS)
+    inputs = np.zeros(len(points))
     back: float = run(input_turns, demanded, inputs)
     if back < 0.0:
         return -2.0 + back
@@ -303,7 +303,7 @@ def weighed(
     second_sine = signed_sine(joints[Q1], joints[Q2], joints[J])
     first_side, second_side = math.copysign(1.0, first_sine), math.copysign(1.0, second_sine)
     other, last = 0.0, 0.0
-    for k in range(1, POSITIONS):
+    for k in range(1, len(points)):
         if not demanded[k]:
             continue
         last = inputs[k]
@@ -318,7 +318,7 @@ def weighed(
         other += min(first_side * signed_sine(a, joints[O4], b), 0.0)
         other += min(second_side * signed_sine(one, two, j), 0.0)
     if other < 0.0:
-        return -1.0 + other / (2.0 * POSITIONS)
+        return -1.0 + other / (2.0 * len(points))
     flattest, beyond = min(abs(first_sine), abs(second_sine)), 0.0
     travelled = turned = outside = 0.0
     place_before, turn_before = points[0], 1.0 + 0.0j

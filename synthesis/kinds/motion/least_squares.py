@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +19,7 @@ from synthesis.kinds.motion.constraint_manifold import line_of, pivots_of
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.dyads import Dyads
 from synthesis.kinds.motion.fit_starts import REACH, Start, as_slider, starts
+from synthesis.kinds.motion.nearness import error_of, order_of
 from synthesis.kinds.motion.pose_fit import PoseDemands, PoseFit, surface_fit
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.screening import SOUND, screen
@@ -34,7 +34,6 @@ from synthesis.model.linkages import (
     inverted_slider_crank_mechanism,
     slider_crank_mechanism,
 )
-from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import DEFECTS, OUTRANKED, Sifting
 
 Real = NDArray[np.float64]
@@ -312,10 +311,8 @@ class _Run(Sifting[LinkageDesign]):
 
     def result(self) -> MotionResult:
         """The answer."""
-        # A fit without limits is asked to be near; among answers that are equally near, quality decides.
-        near = {"quality": _residual} if self.problem.fitted else None
         return MotionResult(
-            designs=self.designs(partial(ranked, rank_by=self.problem.rank_by, own=near)),
+            designs=self.designs(order_of(self.problem)),
             search=self.search("least_squares"),
             summary=self._summary(),
         )
@@ -323,7 +320,7 @@ class _Run(Sifting[LinkageDesign]):
     def _summary(self) -> str:
         n = len(self.problem.positions)
         if self.passed:
-            share = 100.0 * min(map(_residual, self.passed))
+            share = 100.0 * min(map(error_of, self.passed))
             text = (
                 f"{len(self.passed)} of {self.candidates} fitted linkages meet the demands of the {n} positions; the "
                 f"best has a root-mean-square residual of {share:.3g} % of the task size (hundredths of a radian)."
@@ -332,10 +329,6 @@ class _Run(Sifting[LinkageDesign]):
             reasons = self.listed() or "none"
             text = f"None of {self.candidates} fitted linkages satisfies all demands (rejected: {reasons})."
         return text + " Least squares descends from many starts; a nearer linkage may exist that none of them leads to."
-
-
-def _residual(design: LinkageDesign) -> float:
-    return design.metrics.rms_residual
 
 
 def _better(design: LinkageDesign, other: LinkageDesign) -> bool:

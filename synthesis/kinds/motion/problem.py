@@ -12,7 +12,7 @@ from pydantic import ConfigDict, Field, PrivateAttr
 from synthesis.kinds.motion.contradictions import contradictions_of
 from synthesis.kinds.motion.stated_dyads import DriverDyad, DyadChoices, GroundLine
 from synthesis.kinds.motion.stated_mechanisms import SIXBARS, Chain, Mechanisms, Sixbar, lacking
-from synthesis.kinds.motion.stated_positions import MOST_HELD, Position, Tolerance
+from synthesis.kinds.motion.stated_positions import MOST_HELD, MOST_OF_SIXBARS, Position, Tolerance
 from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.model.manufacture import Held, Made, kept_pivots
 from synthesis.model.stated_types import looked_for
@@ -225,8 +225,8 @@ class MotionProblem(LinkageProblem):
 
     @property
     def few_enough(self) -> bool:
-        """Whether the positions are met exactly, or within tolerances, and are not too many for a sixbar."""
-        return len(self.positions) <= MOST_HELD and not self.fitted
+        """Whether the positions are not too many for a sixbar."""
+        return len(self.positions) <= MOST_OF_SIXBARS
 
     @property
     def made(self) -> Made | str:

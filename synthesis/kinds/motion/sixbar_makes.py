@@ -86,7 +86,12 @@ class Found(NamedTuple):
     @classmethod
     def none(cls) -> Found:
         """No sixbar yet."""
-        return cls(np.empty(0, np.int64), np.empty((0, 7), complex), np.empty(0, complex), np.empty(0), np.empty(0))
+        return cls.room(0)
+
+    @classmethod
+    def room(cls, n: int) -> Found:
+        """Room for so many, to be filled."""
+        return cls(np.empty(n, np.int64), np.empty((n, 7), complex), np.empty(n, complex), np.empty(n), np.empty(n))
 
     def best(self, rows: NDArray[np.int64]) -> Found:
         """Some of them."""

@@ -1,15 +1,15 @@
-"""Motion generation by sixbars: fits that hold their branch, and constrained chains where a chain is stated.
+"""Motion generation by sixbars: descents that hold their branch, and constrained chains where a chain is stated.
 
 Descents from random linkages (:mod:`branch_search`) find sixbars for nearly all positions that random chains
 (:mod:`chain_search`) do not find in hours. Chains are drawn where one is stated, and in turn with descents where a
-class or a full turn is demanded, or a region or a box: what a descent does not see, or must find its way into. What is
-offered is driven and verified like any linkage.
+class or a full turn is demanded, or a region or a box: what a descent does not see, or must find its way into. Chains
+have five positions at most. Of positions that are fitted without a limit those that miss least are taken to the end of
+their least squares (:mod:`branch_fit`). What is offered is driven and verified like any linkage.
 """
 
 from __future__ import annotations
 
 import math
-from functools import partial
 
 import numpy as np
 
@@ -17,16 +17,18 @@ from synthesis.kinds.motion.branch_search import BranchSearch
 from synthesis.kinds.motion.chain_search import ChainSearch
 from synthesis.kinds.motion.demanded import Real, demanded
 from synthesis.kinds.motion.design import MotionResult
+from synthesis.kinds.motion.nearness import error_of, order_of
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sixbar_makes import MAKES, Found
 from synthesis.kinds.motion.stated_mechanisms import Sixbar
+from synthesis.kinds.motion.stated_positions import MOST_HELD
 from synthesis.kinds.motion.task import MotionTask, motion_task
 from synthesis.kinds.motion.verification import verify
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import LinkageDesign, SixbarMechanism
 from synthesis.model.linkage_statement import Region
 from synthesis.model.sixbars import sixbar_mechanism
-from synthesis.outcome.ranking import distinct, ranked
+from synthesis.outcome.ranking import distinct
 from synthesis.outcome.sifting import DEFECTS, Sifting
 from synthesis.outcome.simplest import SOUND
 
@@ -38,6 +40,12 @@ LEAST_ROUNDS = 2
 
 ENOUGH, AND_MORE = 3.0, 0.1
 """A search with too few sound sixbars goes on for as much more as it took to find the first, times this, and this."""
+
+STALE, LOWER = 8, 0.97
+"""A fit begins anew where so many rounds leave more than this share of the least cost."""
+
+FITTED = 0.5
+"""What is spent of a search for fits, whatever it finds."""
 
 RELAXED_FROM, RELAXED_EVERY = 0.5, 3
 """What is spent, none sound yet, from which on every third round takes no limit that nobody stated."""
@@ -94,6 +102,7 @@ class SixbarSearch:
         stated = self.problem.constraints
         regions = stated.fixed_pivot_region, stated.moving_pivot_region, self.problem.space
         mixed = stated.full_rotation or stated.grashof != "any" or any(region is not None for region in regions)
+        mixed = mixed and len(self.problem.positions) <= MOST_HELD
         found = Found.none()
         spent, until, n = 0.0, 1.0, 0
         while spent < until:
@@ -112,6 +121,28 @@ class SixbarSearch:
                 break
             progress(min(spent, 1.0), f"{self.weighed} sixbars looked at")
         return found
+
+    def fitted(self, progress: Progress) -> Found:
+        """Rounds until enough sound sixbars meet all positions, or as many as a fit is given; those that miss least."""
+        rng = np.random.default_rng(self.problem.seed)
+        found = Found.none()
+        least, since, n = math.inf, 0, 0
+        while n * OF_BRANCHES < FITTED:
+            relaxed = n * OF_BRANCHES >= RELAXED_FROM * FITTED and not bool(np.any(found.values >= 1.0))
+            met = self.branches.round(rng, relaxed=relaxed)
+            # What meets all positions comes before what misses any.
+            values = np.where(met.values >= 1.0, 1.0 + met.values, met.values)
+            found = self._distinct(found.beside(met._replace(values=values)))
+            n += 1
+            if np.count_nonzero(found.values >= 2.0) >= self.problem.max_designs:
+                return found
+            since = 0 if self.branches.misses < LOWER * least else since + 1
+            least = min(least, self.branches.misses)
+            if since >= STALE:
+                found = self._distinct(found.beside(self.branches.fitted()))
+                least, since = math.inf, 0
+            progress(n * OF_BRANCHES / FITTED, f"{self.weighed} sixbars looked at")
+        return self._distinct(found.beside(self.branches.fitted()))
 
     def _distinct(self, found: Found) -> Found:
         """The best of those that differ from one another, first the sound ones."""
@@ -135,9 +166,10 @@ class SixbarSearch:
 
 
 def solve_sixbars(problem: MotionProblem, types: tuple[Sixbar, ...], progress: Progress) -> MotionResult:
-    """Sixbars of some types that carry the body through two to five positions."""
+    """Sixbars of some types that carry the body through two to twenty positions."""
     search = SixbarSearch(problem, types)
-    found = search.run(part_of(progress, 0.0, 0.9))
+    looked = part_of(progress, 0.0, 0.9)
+    found = search.fitted(looked) if problem.fitted else search.run(looked)
     sifting = Sifting[LinkageDesign](problem, DEFECTS)
     progress(0.9, f"verifying the best of {search.weighed} sixbars")
     # The sound ones come first. What the others break may be no limit of the client's: that is judged by the proof.
@@ -150,7 +182,7 @@ def solve_sixbars(problem: MotionProblem, types: tuple[Sixbar, ...], progress: P
     sifting.reject("unsound", search.weighed - tried)
     progress(1.0, "verified")
     return MotionResult(
-        designs=sifting.designs(partial(ranked, rank_by=problem.rank_by)),
+        designs=sifting.designs(order_of(problem)),
         search=sifting.search(search.method),
         summary=_summary(sifting, search),
     )
@@ -202,4 +234,8 @@ def _summary(sifting: Sifting[LinkageDesign], search: SixbarSearch) -> str:
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
     count = len(sifting.passed)
     many = f"the best {count} that differ were driven and verified" if count > 1 else "the best was driven and verified"
-    return f"{told}; {many}, with a least transmission angle of up to {best:.1f}°."
+    near = ""
+    if search.problem.fitted:
+        share = 100.0 * min(map(error_of, sifting.passed))
+        near = f"a root-mean-square residual of {share:.3g} % of the task size (hundredths of a radian) at best, and "
+    return f"{told}; {many}, with {near}a least transmission angle of up to {best:.1f}°."

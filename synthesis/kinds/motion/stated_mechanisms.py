@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import Field
 
 from synthesis.kinds.motion.stated_dyads import whole_point
+from synthesis.kinds.motion.stated_positions import MOST_HELD, MOST_OF_SIXBARS
 from synthesis.model.stated_types import Auto, beside_sixbars, refused
 from synthesis.model.statement import Contradiction, PartialPoint, PositiveLength, Statement
 
@@ -54,6 +55,11 @@ def of_sixbars(problem: Any) -> list[Contradiction]:
     if problem.chain is not None and not (isinstance(stated, list) and set(stated) <= set(SIXBARS)):
         detail = "belongs to sixbars; name types of sixbars alone in mechanisms"
         listed.append(Contradiction("/chain", detail))
+    elif problem.chain is not None and (len(problem.positions) > MOST_HELD or problem.fitted):
+        detail = (
+            f"is constrained for up to {MOST_HELD} positions that are met exactly or within tolerances; leave it out"
+        )
+        listed.append(Contradiction("/chain", detail))
     if not (isinstance(stated, list) and problem.sixbars):
         return [*listed, *_of_types(problem)]
     return [*listed, *refused(stated, SIXBARS, lacking(problem)), *_faults_of_chain(problem)]
@@ -62,7 +68,7 @@ def of_sixbars(problem: Any) -> list[Contradiction]:
 def lacking(problem: Any) -> Iterator[Contradiction]:
     """What is stated that sixbars cannot keep."""
     if not problem.few_enough:
-        detail = "sixbars meet up to five positions, exactly or within tolerances; take fourbars for more, or for a fit"
+        detail = f"sixbars are sought for up to {MOST_OF_SIXBARS} positions; take fourbars for more"
         yield Contradiction("/mechanisms", detail)
     for name, of_fourbars in (
         ("input_side", problem.input_side != type(problem.input_side)()),

@@ -12,6 +12,10 @@ from synthesis.model.statement import Coordinate, Degrees, Flag, PositiveLength,
 MOST_HELD = 5
 """Positions that a linkage of two dyads can take exactly, in general (Norton, Table 5-3)."""
 
+MOST_OF_SIXBARS = 20
+"""Positions of a sixbar at most. In general it can meet eight: its fourteen numbers, and the three of the body's place
+on it, are what these state beyond the turns of the input."""
+
 
 class Tolerance(Statement):
     """How far a position may be missed, coordinate by coordinate; what is left out is met exactly."""
