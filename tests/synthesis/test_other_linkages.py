@@ -148,6 +148,27 @@ def test_a_slider_crank_stands_on_a_given_pivot():
         assert np.allclose(design.mechanism.fixed_pivot, [1.0, 2.0], atol=1e-8)
 
 
+def test_a_fitted_slider_crank_keeps_a_given_pivot_and_an_angle():
+    """Points that none draws, around the curve of one with 70°; the least angle is looked for by brute force."""
+    rng = np.random.default_rng(2)
+    turn = np.arange(12) * np.pi / 6.0
+    pins = 10.0 + 5.0j + 20.0 * np.exp(1j * turn)
+    rods = np.sqrt(70.0**2 - (pins.imag - 2.0) ** 2) + 1j * (2.0 - pins.imag)
+    points = pins + rods / 70.0 * complex(*rng.uniform(-40.0, 60.0, 2))
+    points += 0.5 * (rng.normal(size=12) + 1j * rng.normal(size=12))
+    stated = {"fixed_pivots": {"input": [10.0, 5.0]}, "constraints": {"min_transmission_angle": 40.0}}
+    result = answer(points, "slider_crank", method="least_squares", **stated)
+    assert result.designs
+    for design in result.designs:
+        assert design.mechanism.fixed_pivot == pytest.approx((10.0, 5.0), abs=1e-9)
+        skeleton = {name: complex(*place) for name, place in design.mechanism.skeleton.joints.items()}
+        crank, rod = abs(skeleton["A"] - skeleton["O2"]), abs(skeleton["B"] - skeleton["A"])
+        across = np.exp(-1j * np.radians(design.mechanism.slide.angle))
+        heights = (across * (skeleton["O2"] - skeleton["B"])).imag + crank * np.sin(np.linspace(0.0, 2.0 * np.pi, 2000))
+        assert np.degrees(np.arccos(np.abs(heights).max() / rod)) > 40.0
+        assert design.metrics.rms_distance < 0.6
+
+
 @pytest.mark.campaign
 @pytest.mark.parametrize(
     ("ratio", "turns"),

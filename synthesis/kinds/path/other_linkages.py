@@ -30,9 +30,9 @@ from synthesis.kinds.path.curve_match import solve_curve_match
 from synthesis.kinds.path.curve_shapes import alike
 from synthesis.kinds.path.curve_target import angles_at, smooth_steps
 from synthesis.kinds.path.design import PathDesign, PathResult
-from synthesis.kinds.path.nearness import FAR, order_of, steady
+from synthesis.kinds.path.nearness import FAR, USABLE, order_of, steady
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.stance_fit import simple_in_stance, stance_spec
+from synthesis.kinds.path.stance_fit import no_stance, simple_in_stance, stance_spec
 from synthesis.kinds.path.verify_traced import verify_traced
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import (
@@ -83,8 +83,14 @@ SAME_DESIGN = 1e-4
 MAX_COGNATES = 3
 """Fourbars whose geared cognates are offered, each with up to three."""
 
+NO_CHANGE_POINT, MARGIN = 3.0, 0.01
+"""Degrees of transmission angle that every slider-crank has whose crank turns through, and beyond what is demanded."""
+
 MIN_LINK = 1e-6
 """Links shorter than this share of the task's size are no links."""
+
+_Fit = tuple[tuple[bool, float], Mechanism]
+"""Whether other demands fail and the sum of squares, by which fits are ordered, and the linkage."""
 
 
 class _Search(NamedTuple):
@@ -127,8 +133,8 @@ def solve_other(problem: PathProblem, progress: Progress) -> PathResult:
     return _answer(problem, mechanisms, progress)
 
 
-def _fits(search: _Search, drawn: int, followed: int, again: int, progress: Progress) -> list[tuple[float, Mechanism]]:
-    """Linkages brought to the points, with their sums of squares: of exact points those that meet them.
+def _fits(search: _Search, drawn: int, followed: int, again: int, progress: Progress) -> list[_Fit]:
+    """Linkages brought to the points; exact points are met by all.
 
     So many are ``drawn`` of each family, and the most alike ``followed``; ``again`` counts the draws.
     """
@@ -137,7 +143,7 @@ def _fits(search: _Search, drawn: int, followed: int, again: int, progress: Prog
     target, places = smooth_steps(points, problem.closed)
     within = pivot_limits(problem, centre, size)
     longest = problem.longest_link / size
-    fits: list[tuple[float, Mechanism]] = []
+    fits: list[_Fit] = []
     for n, (family, ratio) in enumerate(tasks):
 
         def compared(share: float, n: int = n) -> None:
@@ -172,39 +178,65 @@ def _fits(search: _Search, drawn: int, followed: int, again: int, progress: Prog
         fine = descend(
             family, begun.x[best], begun.sign[best], begun.theta[best], points, iterations=MAX_STEPS, **settings
         )
-        if problem.stance is not None:
-            fine = _in_stance(search, family, fine, begun.sign[best], points, settings)
+        # A rocker transmits as it may: where an angle is demanded, what is held to it goes first.
+        sign, arrived = begun.sign[best], np.full(len(best), problem.constraints.min_transmission_angle is None)
+        if problem.stance is not None or (problem.fitted and (family == SLIDER_CRANK or np.isfinite(within).any())):
+            fine, sign, arrived = _held(search, family, fine, sign, points, settings)
         for k in np.argsort(fine.cost, kind="stable"):
             if math.isfinite(fine.cost[k]) and (problem.fitted or fine.cost[k] <= COST_TOLERANCE):
-                mechanism = _mechanism(
-                    family, fine.x[k], float(begun.sign[best[k]]), ratio, float(fine.theta[k, 0]), centre, size
-                )
+                theta_k = float(fine.theta[k, 0])
+                mechanism = _mechanism(family, fine.x[k], float(sign[k]), ratio, theta_k, centre, size)
                 if mechanism is not None:
-                    fits.append((float(fine.cost[k]), mechanism))
+                    fits.append(((not arrived[k], float(fine.cost[k])), mechanism))
         progress((n + 1.0) / len(tasks), f"{len(fits)} linkages fitted")
     return fits
 
 
-def _in_stance(
+def _least_angles(problem: PathProblem) -> list[float]:
+    """Degrees that slider-cranks are held to: those stated; else what keeps from change points, and what is usable."""
+    stated = problem.constraints.min_transmission_angle
+    if stated is not None:
+        return [stated + MARGIN]
+    return [NO_CHANGE_POINT] if problem.rank_by == "accuracy" else [NO_CHANGE_POINT, USABLE + MARGIN]
+
+
+def _held(
     search: _Search, family: int, fits: Descent, sign: Real, points: Complex, settings: dict[str, Any]
-) -> Descent:
-    """Fits brought to the stance; those that do not come there stay as they are."""
+) -> tuple[Descent, Real, NDArray[np.bool_]]:
+    """Fits brought to the stance, to where fixed pivots must lie and to a transmission angle, which may be several.
+
+    A descent weighs how far pivots are off beside how far points are, which exact points make nothing of and fits do.
+
+    Returns
+    -------
+    tuple
+        All ends of all angles, their assembly signs, and which came there; the others are as they were.
+    """
     problem = search.problem
-    assert problem.stance is not None
-    first, last = problem.stance.points
-    cycle = settings["cycle"] or 2.0 * math.pi
-    spec = stance_spec(problem, search.size, first, last, cycle)
-    x, theta, cost = fits.x.copy(), fits.theta.copy(), fits.cost.copy()
+    if problem.stance is None:
+        spec = no_stance(len(points))
+    else:
+        first, last = problem.stance.points
+        spec = stance_spec(problem, search.size, first, last, settings["cycle"] or 2.0 * math.pi)
+    within = settings["within"]
+    given = np.flatnonzero(within[:, 0] == within[:, 1])
+    angles = _least_angles(problem) if family == SLIDER_CRANK else [0.0]
+    cosines = np.repeat(np.cos(np.radians(angles)), len(sign))
+    x, theta, cost = (np.concatenate([column] * len(angles)) for column in fits)
+    signs, arrived = np.tile(sign, len(angles)), np.zeros(len(cost), np.bool_)
 
     def work(some: slice) -> None:
         for k in range(*some.indices(len(x))):
             if math.isfinite(cost[k]):
-                end = simple_in_stance(family, x[k], float(sign[k]), theta[k], points, spec, **settings)
+                end = simple_in_stance(
+                    family, x[k], float(signs[k]), theta[k], points, spec, cosine=float(cosines[k]), **settings
+                )
                 if end is not None:
-                    x[k], theta[k], cost[k] = end.x, end.theta, 2.0 * end.cost
+                    x[k], theta[k], cost[k], arrived[k] = end.x, end.theta, 2.0 * end.cost, True
+                    x[k, given] = within[given, 0]
 
     in_portions(work, len(x), 1)
-    return Descent(x, theta, cost)
+    return Descent(x, theta, cost), signs, arrived
 
 
 class _Begun(NamedTuple):

@@ -32,6 +32,7 @@ from synthesis.kinds.path.stance_rows import (
     FLATNESS,
     JAM_CYCLE,
     LAST,
+    LEAST_COSINE,
     LENGTHS,
     LONGEST,
     MARGINS,
@@ -114,6 +115,13 @@ def stance_spec(problem: PathProblem, size: float, first: int, last: int, cycle:
     return out
 
 
+def no_stance(points: int) -> Real:
+    """The same where none is stated."""
+    out = np.full(STANCE, math.inf)
+    out[FIRST], out[LAST], out[CYCLE], out[COSINE], out[SINE] = 0, points - 1, 0.0, 1.0, 0.0
+    return out
+
+
 def stance_of_target(problem: PathProblem, target: Target, fitted: int) -> tuple[Whole, Real]:
     """Which of a target's first ``fitted`` points are fitted, and the stance of their rows, in the target's unit.
 
@@ -178,7 +186,7 @@ def _fourbar(fit: Fit, points: Complex, weights: Real, theta: Real, spec: Real, 
 
 def simple_in_stance(
     family: int, x: Real, sign: float, theta: Real, points: Complex, spec: Real, *, ratio: float, longest: float,
-    cycle: float, within: Real,
+    cycle: float, within: Real, cosine: float,
 ) -> Stanced | None:  # fmt: skip
     """A slider-crank or geared fivebar brought to the stance; None where it does not come there.
 
@@ -190,11 +198,14 @@ def simple_in_stance(
         Of :func:`stance_spec`.
     ratio, longest, cycle, within
         As there.
+    cosine : float
+        Of the least transmission angle of a slider-crank whose crank turns through.
     """
     setting = np.empty(SIMPLE)
     setting[:STANCE] = spec
     setting[SIMPLE_FAMILY], setting[SIMPLE_SIGN], setting[RATIO] = family, sign, ratio
-    setting[LONGEST], setting[JAM_CYCLE], setting[WITHIN:] = longest, cycle, within.ravel()
+    setting[LONGEST], setting[JAM_CYCLE], setting[LEAST_COSINE] = longest, cycle, cosine
+    setting[WITHIN:] = within.ravel()
     n, x, limits = len(points), np.array(x), MARGINS + LENGTHS + PIVOTS
     state = np.zeros(n + limits)
     state[:n] = theta

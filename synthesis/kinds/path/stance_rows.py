@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.compiling import njit
-from synthesis.fit.chart import GEARED_FIVEBAR, OPTIONS, natural
+from synthesis.fit.chart import GEARED_FIVEBAR, OPTIONS, SLIDER_CRANK, natural
 from synthesis.fit.coupler_curve import place_with_slopes
 from synthesis.fit.demands import FAMILY, SIGN
 from synthesis.fit.sixbar_curve import UNKNOWNS, pins_with_slopes, point_with_slopes
@@ -51,16 +51,17 @@ the share by which the speed may differ from its mean; infinite where nothing is
 STANCE = 7
 """Numbers of a stance in a setting."""
 
-SIMPLE_FAMILY, SIMPLE_SIGN, RATIO, LONGEST, JAM_CYCLE, WITHIN = range(STANCE, STANCE + 6)
+SIMPLE_FAMILY, SIMPLE_SIGN, RATIO, LONGEST, JAM_CYCLE, LEAST_COSINE, WITHIN = range(STANCE, STANCE + 7)
 """Places in the setting of a slider-crank or a geared fivebar behind those: family, assembly, gear ratio, longest link,
-the cycle in which it must not jam, and the limits of fixed pivots (4, 2)."""
+the cycle in which it must not jam, the cosine of the least transmission angle of a crank that turns through, and the
+limits of fixed pivots (4, 2)."""
 
-SIMPLE = STANCE + 13
+SIMPLE = STANCE + 14
 """Numbers of that setting."""
 
-LENGTHS, PIVOTS = 5, 4
-"""Margins of a slider-crank or a geared fivebar: lengths and P's arm below the longest, and pivots, which are
-equations."""
+LENGTHS, PIVOTS = 6, 4
+"""Margins of a slider-crank or a geared fivebar: lengths and P's arm below the longest, a slider-crank's transmission
+angle above the least, and pivots, which are equations."""
 
 SPEED_FLOOR = 1e-9
 """Speed of P, task sizes a radian, below which its path has no direction; the same of its way in a stance."""
@@ -323,6 +324,8 @@ def simple_stance_rows(
     values = state[n + MARGINS :]
     gradients, off, slopes = np.zeros((LENGTHS + PIVOTS, unknowns)), np.zeros(4), np.zeros((4, unknowns))
     _held_lengths(family, x, lengths, chart, setting[LONGEST], values, gradients)
+    if family == SLIDER_CRANK:
+        _held_angle(lengths, chart, setting[LEAST_COSINE], values, gradients)
     within = np.ascontiguousarray(setting[WITHIN:SIMPLE]).reshape(4, 2)
     pivots_off(family, x, lengths, chart, within, off, slopes)
     for k in range(PIVOTS):
@@ -341,6 +344,16 @@ def simple_stance_rows(
 
 
 @njit(**OPTIONS)
+def _held_angle(lengths: Real, chart: Real, cosine: float, values: Real, gradients: Real) -> None:
+    """How far the cosine of a slider-crank's least transmission angle, (r + |e|)/l, is below that of the least."""
+    crank, rod, offset = lengths[0], lengths[1], lengths[2]
+    least, sign = (crank + abs(offset)) / rod, (1.0 if offset >= 0.0 else -1.0)
+    values[LENGTHS - 1] = cosine - least
+    for j in range(3):
+        gradients[LENGTHS - 1, 3 + j] = -(chart[0, j] + sign * chart[2, j] - least * chart[1, j]) / rod
+
+
+@njit(**OPTIONS)
 def _held_lengths(
     family: int, x: Real, lengths: Real, chart: Real, longest: float, values: Real, gradients: Real
 ) -> None:
@@ -356,9 +369,9 @@ def _held_lengths(
         for j in range(count):
             gradients[k, logs + j] = -sign * chart[k, j] / longest
     arm = math.hypot(x[m - 2], x[m - 1])
-    values[LENGTHS - 1] = 1.0 - arm / longest
+    values[LENGTHS - 2] = 1.0 - arm / longest
     if arm > 0.0:
-        gradients[LENGTHS - 1, m - 2], gradients[LENGTHS - 1, m - 1] = (
+        gradients[LENGTHS - 2, m - 2], gradients[LENGTHS - 2, m - 1] = (
             -x[m - 2] / (arm * longest),
             -x[m - 1] / (arm * longest),
         )
