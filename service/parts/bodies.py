@@ -1,13 +1,13 @@
-"""What parts are made of: prisms, bodies of revolution, twisted prisms and meshes, each upright along its own axis.
+"""What parts are made of: prisms, bodies of revolution, twisted prisms, cones and meshes, each upright along its axis.
 
 Every body says what it encloses, from which height to which it reaches, its *shadow* (the region that it covers, seen
 along the axis), and what of the plane it takes between two heights. The last is what two parts are compared by:
 
 * of a prism its region, which is exact;
 * of a body of revolution the ring of its widest and its narrowest radius there, which is never too little;
-* of a twisted prism and of a mesh the section half-way between, which is exact at that height. The heights are taken in
-  :data:`SLICES` steps, and teeth that are twisted against each other look at one height as they do at another a little
-  later.
+* of a twisted prism, a cone and a mesh the section half-way between, which is exact at that height. The heights are
+  taken in :data:`SLICES` steps, and teeth that are twisted against each other look at one height as they do at another
+  a little later.
 """
 
 from __future__ import annotations
@@ -26,9 +26,21 @@ from numpy.typing import NDArray
 from service.parts.shapes import Disc, Loop, Outline, Region, area, hull, ring, ring_of, turned
 
 Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 SLICES = 5
 """Steps in which two bodies are compared along the height that they share, where one of them is no prism."""
+
+
+GAUSS = 12
+"""Heights between two corners of a profile at which sections are added up."""
+
+SAG = 5e-4
+"""How far polygons of sections are from arcs, millimetres."""
+
+
+SHOWN = 0.02
+"""The same where a body is shown."""
 
 
 class Prism(NamedTuple):
@@ -116,6 +128,113 @@ class Twisted(NamedTuple):
         return (Region(turned(self.section.outer, turn, self.centre), self.section.holes),)
 
 
+class Tapered(NamedTuple):
+    """What straight lines to an apex leave of a body of revolution, as bevel teeth do; holes go straight.
+
+    Attributes
+    ----------
+    section : Region
+        The cone of these lines at the height ``at``, and the holes.
+    profile : tuple of complex
+        Six corners of the half section of the body of revolution, radius + i · height: on the axis, where the teeth end
+        inwards, where they end outwards; and the same at the upper end, from there back to the axis.
+    apex, at : float
+        Heights; nothing of the body is as high as the apex.
+    centre : complex
+    """
+
+    section: Region
+    profile: tuple[complex, ...]
+    apex: float
+    at: float
+    centre: complex = 0j
+
+    @property
+    def low(self) -> float:
+        """Height of its lowest point."""
+        return min(z.imag for z in self.profile)
+
+    @property
+    def high(self) -> float:
+        """Height of its uppermost point."""
+        return max(z.imag for z in self.profile)
+
+    @property
+    def region(self) -> Region:
+        """Its shadow: a disc with its holes."""
+        return Region(Disc(self.centre, max(z.real for z in self.profile)), self.section.holes)
+
+    @property
+    def volume(self) -> float:
+        """Sections added up between the corners of the profile by Gauss's rule, cubic millimetres."""
+        places, weights = np.polynomial.legendre.leggauss(GAUSS)
+        heights = np.unique([z.imag for z in self.profile])
+        return math.fsum(
+            0.5 * (high - low) * weight * self._section(0.5 * (low + high) + 0.5 * (high - low) * place).area
+            for low, high in pairwise(heights.tolist())
+            for place, weight in zip(places.tolist(), weights.tolist(), strict=True)
+        )
+
+    def ends(self, places: Complex) -> tuple[Complex, Complex]:
+        """Where lines to the apex through places of the plane ``at`` meet lower and upper end: radius + i · height.
+
+        Parameters
+        ----------
+        places : Complex
+            Of the outline, shape (n,).
+        """
+        _, inner, outer, upper_outer, upper_inner, _ = self.profile
+        slope = np.abs(places - self.centre) / (self.at - self.apex)
+        found = []
+        for a, b in ((inner, outer), (upper_inner, upper_outer)):
+            before, after = (z.real - slope * (z.imag - self.apex) for z in (a, b))
+            share = np.clip(before / (before - after), 0.0, 1.0)
+            found.append(np.asarray(a + share * (b - a), np.complex128))
+        return found[0], found[1]
+
+    @property
+    def mesh(self) -> Mesh:
+        """Its surface in triangles, arcs as polygons within :data:`SHOWN`; it is to have one hole, around its axis."""
+        _, inner, *_, upper, _ = self.profile
+        places = ring_of(self.section.outer, beyond=False, sag=SHOWN)
+        turns = (places - self.centre) / np.abs(places - self.centre)
+        (hole,) = self.section.holes
+        bore = ring_of(hole, beyond=False, sag=SHOWN)
+        low, high = self.ends(places)
+        levels = (np.full(turns.shape, inner), low, high, np.full(turns.shape, upper))
+        around = [np.column_stack(_xyz(self.centre + z.real * turns, z.imag)) for z in levels]
+        bores = [np.column_stack(_xyz(bore, np.full(bore.shape, z.imag))) for z in (inner, upper)]
+        count, holes = len(turns), len(bore)
+        faces = [_band(k * count, (k + 1) * count, count) for k in range(3)]
+        first = 4 * count
+        faces += [_band(first, first + holes, holes)[:, ::-1]]
+        angles = np.angle(turns), np.angle(bore - self.centre)
+        faces += [
+            _annulus(angles[0], 3 * count, angles[1], first + holes),
+            _annulus(angles[0], 0, angles[1], first)[:, ::-1],
+        ]
+        return Mesh(np.concatenate([*around, *bores]), np.concatenate(faces))
+
+    def scale(self, height: Real) -> Real:
+        """How much larger the section is at heights, shape (n,)."""
+        return (height - self.apex) / (self.at - self.apex)
+
+    def within(self, low: float, high: float) -> tuple[Region, ...]:
+        """Its section half-way between two heights."""
+        faces = shapely.get_parts(self._section(0.5 * (low + high)))
+        return tuple(_region_of(face) for face in faces if isinstance(face, shapely.Polygon))
+
+    def _section(self, height: float) -> shapely.Geometry:
+        outer = _polygon_of(self.section.outer, self.centre, float(self.scale(np.array(height))))
+        half = shapely.Polygon([(z.real, z.imag) for z in self.profile])
+        cut = shapely.intersection(half, shapely.LineString([(0.0, height), (2.0 * half.bounds[2], height)]))
+        least, _, most, _ = cut.bounds if not cut.is_empty else (0.0,) * 4
+        whole = shapely.intersection(outer, _polygon_of(Disc(self.centre, most), 0j, 1.0))
+        inner = (Disc(self.centre, least),) if least > 0.0 else ()
+        holes = [_polygon_of(hole, 0j, 1.0) for hole in (*inner, *self.section.holes)]
+        return shapely.difference(whole, shapely.union_all(holes))
+
+
 @dataclass(frozen=True, eq=False)
 class Mesh:
     """A body by its surface: triangles, their corners counter-clockwise as seen from outside.
@@ -176,7 +295,7 @@ class Mesh:
         return tuple(_region_of(face) for face in faces)
 
 
-Body = Prism | Turned | Twisted | Mesh
+Body = Prism | Turned | Twisted | Tapered | Mesh
 
 
 def slices(first: Body, second: Body, rounding: float) -> list[tuple[float, float]]:
@@ -186,6 +305,45 @@ def slices(first: Body, second: Body, rounding: float) -> list[tuple[float, floa
         return []
     count = 1 if isinstance(first, Prism) and isinstance(second, Prism) else SLICES
     return list(pairwise(np.linspace(low, high, count + 1).tolist()))
+
+
+def _xyz(places: Complex, heights: Real) -> tuple[Real, Real, Real]:
+    return places.real, places.imag, heights
+
+
+def _band(lower: int, upper: int, count: int) -> NDArray[np.int64]:
+    """Triangles between two rings of so many points, outside where they go counter-clockwise."""
+    at = np.arange(count)
+    ahead = (at + 1) % count
+    return np.concatenate([
+        np.column_stack([lower + at, lower + ahead, upper + ahead]),
+        np.column_stack([lower + at, upper + ahead, upper + at]),
+    ])  # fmt: skip
+
+
+def _annulus(outer: Real, first: int, inner: Real, second: int) -> NDArray[np.int64]:
+    """Triangles between two rings about one point by the angles of their points, from above counter-clockwise."""
+    angles, numbers = [], []
+    for ring_angles, start in ((outer, first), (inner, second)):
+        least = int(np.argmin(ring_angles % (2.0 * math.pi)))
+        angles.append(np.roll(ring_angles % (2.0 * math.pi), -least))
+        numbers.append(start + np.roll(np.arange(len(ring_angles)), -least))
+    found, at = [], [0, 0]
+    while at[0] < len(angles[0]) or at[1] < len(angles[1]):
+        here = [int(numbers[k][at[k] % len(numbers[k])]) for k in (0, 1)]
+        ahead = [float(angles[k][at[k] + 1]) if at[k] + 1 < len(angles[k])
+                 else angles[k][0] + 2.0 * math.pi if at[k] < len(angles[k]) else math.inf for k in (0, 1)]  # fmt: skip
+        step = 0 if ahead[0] <= ahead[1] else 1
+        next_ = int(numbers[step][(at[step] + 1) % len(numbers[step])])
+        found.append((here[0], next_, here[1]))
+        at[step] += 1
+    return np.array(found)
+
+
+def _polygon_of(outline: Outline, about: complex, scale: float) -> shapely.Polygon:
+    """An outline made larger about a point, as a polygon within :data:`SAG` of it."""
+    places = about + scale * (ring_of(outline, beyond=False, sag=SAG) - about)
+    return shapely.Polygon(np.column_stack([places.real, places.imag]))
 
 
 def _net(region: Region) -> float:

@@ -15,13 +15,16 @@ from typing import Any
 
 import numpy as np
 
-from service.parts.bodies import Body, Mesh, Prism, Turned, Twisted
+from service.parts.bodies import Body, Mesh, Prism, Tapered, Turned, Twisted
 from service.parts.curves import Curve
 from service.parts.model import Assembly, Frame, Part
-from service.parts.shapes import Disc, Outline, Region, middle_of
+from service.parts.shapes import Disc, Outline, Region, larger, middle_of
 
 DEFLECTION, TURN = 0.02, 0.1
 """Greatest distance of a mesh from the part, millimetres, and angle between neighbouring facets, radians."""
+
+BEYOND = 0.05
+"""How far a cone to an apex goes beyond the body that it is intersected with, as a share of its height."""
 
 MADE_AT = "2000-01-01T00:00:00"
 """Stands in STEP files as the time of their making, which a design does not have."""
@@ -141,6 +144,8 @@ def _piece(body: Body) -> Any:
         axis = b3d.Axis((body.centre.real, body.centre.imag, 0.0), (0, 0, 1))
         corners = [(body.centre.real + z.real, body.centre.imag, z.imag) for z in body.profile]
         return b3d.Solid.revolve(b3d.Face(b3d.Wire.make_polygon(corners)), 360.0, axis)
+    if isinstance(body, Tapered):
+        return _tapered(body)
     if isinstance(body, Twisted):
         along = (0.0, 0.0, body.high - body.low)
         middle = (body.centre.real, body.centre.imag, 0.0)
@@ -150,6 +155,25 @@ def _piece(body: Body) -> Any:
             swept = swept.cut(b3d.extrude(_face(Region(hole)), amount=along[2], dir=(0, 0, 1)))
         return swept.moved(_up(body.low))
     return _sewn(body)
+
+
+def _tapered(body: Tapered) -> Any:
+    """The body of revolution within the cone to the apex, its holes cut."""
+    import build123d as b3d
+
+    # A little beyond both ends, so that no face of the cone lies in one of the body's.
+    beyond = BEYOND * (body.high - body.low)
+    wires = []
+    for height in (body.low - beyond, body.high + beyond):
+        scale = float(body.scale(np.array(height)))
+        wires.append(_wire(larger(body.section.outer, scale, body.centre)).moved(_up(height)))
+    cone = b3d.Solid.make_loft(wires, ruled=True)
+    (whole,) = _piece(Turned(body.profile, body.centre)).intersect(cone).solids()
+    for hole in body.section.holes:
+        whole = whole.cut(
+            b3d.extrude(_face(Region(hole)), amount=body.high - body.low, dir=(0, 0, 1)).moved(_up(body.low))
+        )
+    return whole
 
 
 def _sewn(body: Mesh) -> Any:

@@ -14,7 +14,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from service.parts.bodies import Body, Turned
+from service.parts.bodies import Body, Tapered, Turned
 from service.parts.bom import HEADER, row
 from service.parts.items import Item
 from service.parts.model import FLAT, Assembly, Frame, Part
@@ -142,7 +142,7 @@ def _shadow(body: Body, frame: Frame, view: View) -> shapely.Geometry:
     if abs(float(normal @ view.toward)) < SQUARE:
         across = np.cross(view.toward, normal)
         direction = complex(across @ frame.axes[:, 0], across @ frame.axes[:, 1])
-        if isinstance(body, Turned):
+        if isinstance(body, Turned | Tapered):
             middle = (body.centre * direction.conjugate()).real
             halves = [
                 shapely.Polygon(_placed(np.array([direction * (middle + side * z.real) for z in body.profile]),

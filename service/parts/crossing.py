@@ -16,9 +16,8 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 
-from service.parts.bodies import Body, Mesh, Prism, Turned, Twisted
+from service.parts.bodies import Body, Mesh, Prism, Tapered, Turned, Twisted
 from service.parts.model import Assembly, Carrier, Part
 from service.parts.shapes import Outline, Region, ring_of
 
@@ -36,6 +35,13 @@ DEEP = 4e-3
 
 SAG = 2e-3
 """How far polygons are from arcs, millimetres."""
+
+
+_TURNS = np.arange(90) * math.pi * (3.0 - math.sqrt(5.0))
+_HEIGHTS = 1.0 - (2.0 * np.arange(90) + 1.0) / 90.0
+_RADII = np.sqrt(1.0 - _HEIGHTS**2)
+DIRECTIONS = np.column_stack([_RADII * np.cos(_TURNS), _RADII * np.sin(_TURNS), _HEIGHTS])
+"""Spread evenly over the sphere, as the seeds of a sunflower are."""
 
 
 class Heaps(NamedTuple):
@@ -59,6 +65,8 @@ class Surface:
         body = self._body
         if isinstance(body, Turned):
             return self._turned(body)
+        if isinstance(body, Tapered):
+            return self._tapered(body)
         assert isinstance(body, Prism | Twisted)
         region = body.section if isinstance(body, Twisted) else body.region
         heights = _steps(body.low, body.high, self._step)
@@ -76,9 +84,9 @@ class Surface:
         return np.concatenate([sides, *self._faces(region, body)])
 
     @cached_property
-    def hull(self) -> Real:
-        """The points that its convex hull has as corners."""
-        return np.asarray(self.points[ConvexHull(self.points).vertices])
+    def outermost(self) -> Real:
+        """The points that lie farthest in each of many directions."""
+        return np.asarray(self.points[np.unique(np.argmax(self.points @ DIRECTIONS.T, axis=0))])
 
     @cached_property
     def bounds(self) -> tuple[Real, Real]:
@@ -91,9 +99,11 @@ class Surface:
         edge = HEAP * self._step
         _, cube = np.unique(np.floor(self.points / edge), axis=0, return_inverse=True)
         order = np.argsort(cube, kind="stable")
-        points = np.split(self.points[order], np.cumsum(np.bincount(cube))[:-1])
-        middles = np.array([0.5 * (one.min(axis=0) + one.max(axis=0)) for one in points])
-        return Heaps(points, middles, 0.5 * math.sqrt(3.0) * edge)
+        ends = np.cumsum(np.bincount(cube))[:-1]
+        ordered = self.points[order]
+        starts = np.concatenate([[0], ends])
+        middles = 0.5 * (np.minimum.reduceat(ordered, starts) + np.maximum.reduceat(ordered, starts))
+        return Heaps(np.split(ordered, ends), middles, 0.5 * math.sqrt(3.0) * edge)
 
     def within(self, points: Real) -> Truth:
         """Which of the points, shape (n, 3), lie inside."""
@@ -106,6 +116,14 @@ class Surface:
         if isinstance(body, Turned):
             radii = np.hypot(x - body.centre.real, y - body.centre.imag)
             found[deep] = shapely.contains_xy(self._section, radii, z)
+            return found
+        if isinstance(body, Tapered):
+            share = body.scale(z)
+            place = body.centre + (x + 1j * y - body.centre) / share
+            radii = np.hypot(x - body.centre.real, y - body.centre.imag)
+            inside = shapely.contains_xy(self._section, place.real, place.imag)
+            inside &= shapely.contains_xy(self._profile, radii, z)
+            found[deep] = inside & ~shapely.contains_xy(self._holes, x, y)
             return found
         if isinstance(body, Twisted):
             back = np.exp(-1j * body.twist * (z - body.low) / (body.high - body.low))
@@ -122,7 +140,7 @@ class Surface:
         if isinstance(body, Turned):
             outer = shapely.Polygon([(z.real, z.imag) for z in body.profile])
         else:
-            region = body.section if isinstance(body, Twisted) else body.region
+            region = body.section if isinstance(body, Twisted | Tapered) else body.region
             outer = _polygon(region.outer)
         inner = shapely.buffer(outer, -DEEP)
         shapely.prepare(inner)
@@ -131,10 +149,38 @@ class Surface:
     @cached_property
     def _holes(self) -> shapely.Geometry:
         body = self._body
-        region = body.section if isinstance(body, Twisted) else body.region
+        region = body.section if isinstance(body, Twisted | Tapered) else body.region
         wider = shapely.buffer(shapely.union_all([_polygon(hole) for hole in region.holes]), DEEP)
         shapely.prepare(wider)
         return wider
+
+    @cached_property
+    def _profile(self) -> shapely.Geometry:
+        assert isinstance(self._body, Tapered)
+        inner = shapely.buffer(shapely.Polygon([(z.real, z.imag) for z in self._body.profile]), -DEEP)
+        # What is on the axis is inside too.
+        inner = shapely.union(inner, shapely.box(0.0, self._body.low + DEEP, 2.0 * DEEP, self._body.high - DEEP))
+        shapely.prepare(inner)
+        return inner
+
+    def _tapered(self, body: Tapered) -> Real:
+        """Points along the lines of the flanks, and from there in to where the teeth end."""
+        around = _dense(body.section.outer, self._step / float(body.scale(np.array([body.low, body.high])).max()))
+        low, high = body.ends(around)
+        _, inner, *_, upper, _ = body.profile
+        ways = [(np.full(len(around), inner), low), (low, high), (high, np.full(len(around), upper))]
+        turns = (around - body.centre) / np.abs(around - body.centre)
+        found = []
+        for start, end in ways:
+            for share in np.linspace(0.0, 1.0, math.ceil(float(np.abs(end - start).max()) / self._step) + 1):
+                place = start + share * (end - start)
+                at = body.centre + place.real * turns
+                found.append(np.column_stack([at.real, at.imag, place.imag]))
+        heights = _steps(body.low, body.high, self._step)
+        for hole in body.section.holes:
+            edge = np.tile(_dense(hole, self._step), len(heights))
+            found.append(np.column_stack([edge.real, edge.imag, np.repeat(heights, len(edge) // len(heights))]))
+        return np.concatenate(found)
 
     def _turned(self, body: Turned) -> Real:
         corners = [*body.profile, body.profile[0]]
@@ -222,8 +268,9 @@ class Crossing:
         """Lowest and highest corner of a body in space at each input."""
         if (part.name, number) not in self._boxes:
             rotation, place = self._place(part.carrier)
-            points = np.einsum("kij,nj->kni", rotation, self._bodies(part)[number].hull) + place[:, None]
-            self._boxes[part.name, number] = points.min(axis=1), points.max(axis=1)
+            points = np.einsum("kij,nj->kni", rotation, self._bodies(part)[number].outermost) + place[:, None]
+            # Between two of the directions a body may reach a little farther.
+            self._boxes[part.name, number] = points.min(axis=1) - self._step, points.max(axis=1) + self._step
         return self._boxes[part.name, number]
 
     def _inside(self, one: Part, first: Surface, other: Part, second: Surface, k: int) -> int:

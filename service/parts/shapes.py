@@ -60,6 +60,15 @@ def turned(outline: Outline, turn: complex, about: complex) -> Outline:
     return Loop(tuple(about + turn * (z - about) for z in outline.corners), outline.bulges)
 
 
+def larger(outline: Outline, scale: float, about: complex) -> Outline:
+    """An outline made larger about a point."""
+    if isinstance(outline, Disc):
+        return Disc(about + scale * (outline.centre - about), scale * outline.radius)
+    if isinstance(outline, Curve):
+        return Curve(tuple(about + scale * (z - about) for z in outline.points))
+    return Loop(tuple(about + scale * (z - about) for z in outline.corners), outline.bulges)
+
+
 def ring(centre: complex, outer: float, inner: float = 0.0) -> Region:
     """A ring, or a disc without a hole, by its radii."""
     return Region(Disc(centre, outer), (Disc(centre, inner),) if inner > 0.0 else ())

@@ -23,7 +23,7 @@ from service.parts.answer import (
     TwistedShape,
     ViewedPart,
 )
-from service.parts.bodies import Body, Mesh, Prism, Turned, Twisted
+from service.parts.bodies import Body, Mesh, Prism, Tapered, Turned, Twisted
 from service.parts.curves import Curve
 from service.parts.exploded import lifts
 from service.parts.extra import installed
@@ -176,6 +176,8 @@ def _part(part: Part, carrier: int, item: str, lift: float) -> ViewedPart:
 def _shape(body: Body) -> Shape:
     if isinstance(body, Turned):
         return TurnedShape(centre=_pair(body.centre), profile=[_pair(corner) for corner in body.profile])
+    if isinstance(body, Tapered):
+        body = body.mesh
     if isinstance(body, Mesh):
         corners: Any = body.corners.tolist()
         return MeshShape(corners=corners, triangles=body.triangles.tolist())

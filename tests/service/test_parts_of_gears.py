@@ -346,3 +346,49 @@ def test_a_worm_crosses_under_its_gear_at_the_centre_distance(client: Any) -> No
     picture = client.get(f"{place}/assembly.svg")
     assert picture.status_code == 409
     assert "parallel" in picture.json()["detail"]
+
+
+BEVELS = {"kind": "gear_train", "ratio": "3/2", "max_designs": 1, "module": 2.0,
+          "stages": [{"type": "bevel", "driver": 20, "driven": 30, "shaft_angle": 75.0}]}  # fmt: skip
+
+
+def test_bevel_gears_meet_at_the_apex_with_true_teeth(client: Any) -> None:
+    place, design, view = assembled(client, BEVELS)
+    (one, along, first), (other, away, second) = axis(view, "shaft_1"), axis(view, "shaft_2")
+    # Both axes go through the apex; the driven gear's leads away from there.
+    assert np.allclose(one, other)
+    assert -(along @ away) == pytest.approx(math.cos(math.radians(75.0)))
+    assert (first, second) == (pytest.approx(1.0), pytest.approx(2.0 / 3.0))
+    mesh = design["metrics"]["meshes"][0]
+    for role in ("driver", "driven"):
+        gear = next(part for part in view["parts"] if part["name"] == f"gear_1_{role}")
+        teeth, *_ = gear["shapes"]
+        assert {"form": teeth["form"], "hub": gear["shapes"][1]["form"]} == {"form": "mesh", "hub": "prism"}
+        places = np.array(teeth["corners"])
+        edges = [tuple(sorted(pair)) for a, b, c in teeth["triangles"] for pair in ((a, b), (b, c), (c, a))]
+        assert all(edges.count(edge) == 2 for edge in edges[:60])
+        # No point is farther from the apex's axis than the tip cone, and the tips are as high as full depth says.
+        gamma = math.radians(mesh["cone_angle"][role])
+        cone = np.arctan2(np.hypot(places[:, 0], places[:, 1]), np.abs(places[:, 2]))
+        assert cone.max() == pytest.approx(gamma + math.atan(2.0 / mesh["cone_distance"]), abs=1e-6)
+        count = design["mechanism"]["stages"][0][role]
+        tips = places[cone > cone.max() - 1e-6]
+        turns = np.cos(count * np.angle(tips[:, 0] + 1j * tips[:, 1]))
+        # Where they mesh, the driver has the middle of a tooth and the driven gear that of a space.
+        assert (turns > 0.0).all() if role == "driver" else (turns < 0.0).all()
+    told = parts(client, place)["README.txt"].decode()
+    assert f"pitch cone {mesh['cone_angle']['driver']:.4f}°" in told
+    assert "mounting distance" in told
+
+
+def test_bevel_teeth_are_half_of_the_cone_distance_wide_at_most(client: Any) -> None:
+    job = finished(client, BEVELS)
+    (fault,) = refused(client, f"/v1/jobs/{job['id']}/designs/0", 422, face_width=40)["errors"]
+    assert fault["path"] == "/query/face_width"
+    assert "half of the cone distance" in fault["detail"]
+
+
+def test_crossing_stages_among_others_are_refused_with_the_reason(client: Any) -> None:
+    stages = [{"type": "bevel", "driver": 20, "driven": 30}, {"type": "external"}]
+    job = finished(client, {"kind": "gear_train", "ratio": 3, "stages": stages, "max_designs": 1})
+    assert "trains of one stage" in refused(client, f"/v1/jobs/{job['id']}/designs/0", 409)["detail"]

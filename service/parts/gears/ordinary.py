@@ -10,12 +10,13 @@ from typing import Any
 
 from kinematics.errors import DimensionError
 from kinematics.gear.train import OrdinaryTrain, TrainStage
-from service.parts.gears.crossing_stages import worm_parts
+from service.parts.gears.bevel_pair import bevel_parts
 from service.parts.gears.housing import Housing, Level, Shaft, stacked
 from service.parts.gears.motion import TrainMotion, Turning
 from service.parts.gears.sizing import GearSizing
 from service.parts.gears.stand import Room, Stand, Wheel, stood
 from service.parts.gears.wheels import looked_at, rim_radius, wheel_parts
+from service.parts.gears.worm_set import worm_parts
 from service.parts.model import Assembly, Carrier, Part
 from service.parts.sizes import NotMade, PartsQuery, Sizes
 from service.render.gears.train_layout import in_line
@@ -112,7 +113,8 @@ class OrdinaryParts:
                 "Bevel gears and worms are made as trains of one stage: with other stages there would be boxes of "
                 "plates that stand across one another."
             )
-        return worm_parts(train, self.backlash[0], self.face_widths[0], sizing)
+        make = worm_parts if train.stages[0].kind == "worm" else bevel_parts
+        return make(train, self.backlash[0], self.face_widths[0], sizing)
 
     def _scaled(self, factor: float) -> OrdinaryTrain:
         try:

@@ -56,15 +56,17 @@ class GearSizing:
     ----------
     factor : float
         Millimetres to a length unit of the design, as large as it is built.
+    unit, words : float, str
+        Millimetres to a length unit of the problem, and what that is called.
     path : str
         The field whose fault it is where shafts find no room.
     """
 
     def __init__(self, query: PartsQuery, length_unit: str) -> None:
         self.query = query
-        self._unit = MILLIMETRES[length_unit]
-        self._words = length_unit
-        self.factor = self._unit * query.scale
+        self.unit = MILLIMETRES[length_unit]
+        self.words = length_unit
+        self.factor = self.unit * query.scale
         self.path = "/query/scale" if query.bore is None else "/query/bore"
 
     def judge_size(self, size: float) -> None:
@@ -89,19 +91,19 @@ class GearSizing:
         stated = self.query.face_width
         if stated is None:
             return FACE * module if answered is None else answered * self.factor
-        width = stated * self._unit
+        width = stated * self.unit
         least, most = NARROWEST * module, WIDEST * module
         if not least <= width <= most:
             raise NotMade(
-                f"The face width is to be from {rounded_up(least / self._unit):g} to "
-                f"{rounded_down(most / self._unit):g} {self._words} for a module of {module / self._unit:.4g}.",
+                f"The face width is to be from {rounded_up(least / self.unit):g} to "
+                f"{rounded_down(most / self.unit):g} {self.words} for a module of {module / self.unit:.4g}.",
                 "/query/face_width",
             )
         return width
 
     def offered(self, smallest: Gear) -> Iterator[Sizes]:
         """Sizes with the bore that is stated, or with such as the smallest gear has room for, the thickest first."""
-        query, unit = self.query, self._unit
+        query, unit = self.query, self.unit
         if query.bore is not None:
             yield self._stated(query.bore * unit, smallest)
             return
@@ -116,7 +118,7 @@ class GearSizing:
                 thinnest.pin / most,
             )
             raise NotMade(
-                f"The smallest gear has a root circle of {2.0 * smallest.root_radius / unit:.4g} {self._words} and no "
+                f"The smallest gear has a root circle of {2.0 * smallest.root_radius / unit:.4g} {self.words} and no "
                 f"room for a shaft; scale {rounded_up(1.05 * query.scale * needed):g} does.", "/query/scale",
             )  # fmt: skip
         for sizes in fits[:TRIED]:
@@ -124,28 +126,28 @@ class GearSizing:
             yield sizes
 
     def _stated(self, bore: float, smallest: Gear) -> Sizes:
-        unit = self._unit
+        unit = self.unit
         if not THINNEST_PIN <= bore <= WIDEST_PIN:
             raise NotMade(
-                f"Shafts of {bore / unit:.6g} {self._words} are none that are made; from {THINNEST_PIN / unit:g} to "
-                f"{WIDEST_PIN / unit:g} {self._words} they are.", "/query/bore",
+                f"Shafts of {bore / unit:.6g} {self.words} are none that are made; from {THINNEST_PIN / unit:g} to "
+                f"{WIDEST_PIN / unit:g} {self.words} they are.", "/query/bore",
             )  # fmt: skip
         sizes = self._with(bore, smallest)
         judged(sizes, unit)
         if not self._fits(sizes, smallest):
             thinner = [one for one in PINS if one < bore and self._fits(self._with(one, smallest), smallest)]
-            works = f"; {thinner[-1] / unit:g} {self._words} do" if thinner else ""
+            works = f"; {thinner[-1] / unit:g} {self.words} do" if thinner else ""
             raise NotMade(
-                f"A bore of {bore / unit:.6g} {self._words} with its keyway leaves too little below the teeth of "
+                f"A bore of {bore / unit:.6g} {self.words} with its keyway leaves too little below the teeth of "
                 f"the smallest gear, whose root circle is {2.0 * smallest.root_radius / unit:.4g} "
-                f"{self._words}{works}.",
+                f"{self.words}{works}.",
                 "/query/bore",
             )
         return sizes
 
     def _with(self, bore: float, smallest: Gear) -> Sizes:
         """Sizes with what the request states of thickness and clearance."""
-        query, unit, module = self.query, self._unit, smallest.module
+        query, unit, module = self.query, self.unit, smallest.module
         if query.clearance is None:
             usual = min(CLEARANCES[query.process], PLAY_OF_TEETH * module)
             clearance = min(max(usual, 2.0 * TIGHTEST * bore), 0.5 * LOOSEST * bore)
@@ -154,7 +156,7 @@ class GearSizing:
             if clearance > MOST_PLAY * module:
                 raise NotMade(
                     "The clearance is also the play of the teeth, and is to be "
-                    f"{rounded_down(MOST_PLAY * module / unit):g} {self._words} at most for the module "
+                    f"{rounded_down(MOST_PLAY * module / unit):g} {self.words} at most for the module "
                     f"{module / unit:.4g}.", "/query/clearance",
                 )  # fmt: skip
         thickness = sheet_for(bore) if query.thickness is None else query.thickness * unit

@@ -9,11 +9,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinematics.gear.profile import half_space
 from kinematics.gear.teeth import Gear
 from service.parts.arcs import Chain, fitted
 from service.parts.shapes import Loop
+
+Complex = NDArray[np.complex128]
 
 NEAR_AXIS = 1e-6
 """Share of a gear's radius within which an arc's centre is the axis."""
@@ -39,25 +42,59 @@ def toothed(gear: Gear, centre: complex, tooth_at: float, helix_angle: float = 0
     DimensionError
         Where the cutter would come to a point.
     """
-    half = _half(gear, helix_angle, play)
+    half = fitted(_half(gear, helix_angle, play))
+    return _around(half, round(gear.teeth), centre, tooth_at, gear.pitch_radius)
+
+
+def bevel_toothed(virtual: Gear, teeth: int, cone: float, at: float, tooth_at: float, play: float = 0.0) -> Loop:
+    """The outline of bevel teeth in a plane at right angles to the axis, about 0.
+
+    Tredgold's approximation: the profile of the spur gear that the developed back cone shows is laid back on the cone,
+    and goes from there in straight lines to the apex (Norton, Design of Machinery, Sec. 9.5).
+
+    Parameters
+    ----------
+    virtual : Gear
+        The spur gear of the back cone at the large end, of z / cos γ teeth; millimetres.
+    teeth : int
+    cone : float
+        The pitch cone angle γ, radians.
+    at : float
+        Distance of the plane from the apex, millimetres.
+    tooth_at : float
+        Angle of a tooth's middle, radians.
+    play : float
+        By which a tooth is thinner on the pitch circle, millimetres.
+    """
+    half = _half(virtual, 0.0, play)
+    distance = virtual.pitch_radius / math.tan(cone)
+    angles = cone + np.arctan((np.abs(half) - virtual.pitch_radius) / distance)
+    # As long on the pitch circle as on the back cone's.
+    turned = np.angle(half) / math.cos(cone)
+    chain = fitted(at * np.tan(angles) * np.exp(1j * turned))
+    return _around(chain, teeth, 0j, tooth_at, at * math.tan(cone))
+
+
+def _around(half: Chain, teeth: int, centre: complex, tooth_at: float, pitch_radius: float) -> Loop:
+    """All teeth from half of a space about 0, from its middle to that of a tip."""
     # From the middle of a tooth through a space to the middle of the next.
     space = half.reversed().mirrored().then(half)
-    space = space.joined(len(half.corners) - 1, 0j, NEAR_AXIS * gear.pitch_radius)
-    pitch = 2.0 * math.pi / gear.teeth
+    space = space.joined(len(half.corners) - 1, 0j, NEAR_AXIS * pitch_radius)
+    pitch = 2.0 * math.pi / teeth
     around = Chain([space.corners[0]], [])
-    for k in range(round(gear.teeth)):
+    for k in range(teeth):
         turned = space.turned(complex(np.exp(1j * k * pitch)))
         # The corner in the middle of a tip goes.
         at = len(around.corners) - 1
         around = around.then(turned)
         if k:
-            around = around.joined(at, 0j, NEAR_AXIS * gear.pitch_radius)
+            around = around.joined(at, 0j, NEAR_AXIS * pitch_radius)
     turn = complex(np.exp(1j * (tooth_at + 0.5 * pitch)))
     return Loop(tuple(centre + turn * z for z in around.corners[:-1]), tuple(around.bulges))
 
 
-def _half(gear: Gear, helix_angle: float, play: float) -> Chain:
-    """From the middle of a space along root, fillet and flank to the middle of a tip."""
+def _half(gear: Gear, helix_angle: float, play: float) -> Complex:
+    """Points from the middle of a space along root, fillet and flank to the middle of a tip."""
     points = half_space(gear, helix_angle)
     if play > 0.0:
         moved = points * np.exp(0.5j * play / gear.pitch_radius)
@@ -69,4 +106,4 @@ def _half(gear: Gear, helix_angle: float, play: float) -> Chain:
         # Flanks that meet below the tip leave a pointed tooth.
         share = (end - angles[beyond - 1]) / (angles[beyond] - angles[beyond - 1])
         points = np.append(points[:beyond], points[beyond - 1] + share * (points[beyond] - points[beyond - 1]))
-    return fitted(points)
+    return points

@@ -1,4 +1,4 @@
-"""Parts of a worm with its gear, and of two bevel gears: trains of one stage whose shafts are not parallel.
+"""Parts of a worm with its gear: a train of one stage whose shafts cross.
 
 The worm is the involute helicoid that is a helical gear of so many threads, and its gear the helical gear of the same
 hand that meshes with it at a right angle: both have the rack of the same normal plane, so that they touch in a point

@@ -1,0 +1,243 @@
+"""Parts of two straight bevel gears: a train of one stage whose shafts meet.
+
+Each gear is overhung: from the apex outwards lie its teeth, its hub and two bearing plates. Its teeth go in straight
+lines to the apex, with the profile that the back cone shows (:func:`~service.parts.gears.teeth.bevel_toothed`), and end
+on the back cones of the large and the small end. Distances d are counted along a shaft from the apex.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from kinematics.errors import DimensionError
+from kinematics.gear.teeth import Gear
+from kinematics.gear.train import OrdinaryTrain, TrainStage
+from service.parts.bodies import Body, Prism, Tapered
+from service.parts.building import LINK_COLOURS
+from service.parts.fasteners import MATERIALS
+from service.parts.gears.housing import Level
+from service.parts.gears.keys import key_for, keyed_bore
+from service.parts.gears.motion import TrainMotion
+from service.parts.gears.sizing import FACE, GearSizing
+from service.parts.gears.teeth import bevel_toothed
+from service.parts.gears.upright import FIRST, Axle, Upright, frame_along
+from service.parts.gears.wheels import looked_at
+from service.parts.model import Assembly, Part
+from service.parts.shapes import Disc, Region
+from service.parts.sizes import NotMade, Sizes, rounded_down
+
+NARROW, WIDEST = 1.0 / 3.0, 0.5
+"""Greatest face width, as a share of the cone distance: of one that is not stated, and of any."""
+
+ADDENDUM, DEDENDUM = 1.0, 1.25
+"""Of the teeth at the large end, modules."""
+
+BELOW_LARGE, BELOW_SMALL = 0.5, 0.25
+"""How far the back cones of the large and the small end go on inwards below the roots, modules of that end."""
+
+BORED, HUB, SPAN = 1.2, 0.5, 2.5
+"""Least length of a bore, least length of a hub, and what is between two bearing plates, in diameters of the shaft."""
+
+WALL_OF_HUB = 0.4
+"""Thickness of a hub about its shaft, in diameters of the shaft."""
+
+FREE = 0.5
+"""What is left between the lowest part and the base, in diameters of the shafts."""
+
+
+def bevel_parts(train: OrdinaryTrain, backlash: float, face_width: float | None, sizing: GearSizing) -> Assembly:
+    """The parts of two bevel gears.
+
+    Parameters
+    ----------
+    train : OrdinaryTrain
+        Of one stage, in millimetres.
+    backlash : float
+        The least of the answer, in its own unit.
+    face_width : float or None
+        That of the answer, in its own unit.
+    sizing : GearSizing
+
+    Raises
+    ------
+    NotMade
+        Where there is no room.
+    """
+    (stage,) = train.stages
+    cones = stage.cones(train.pressure_angle)
+    sizing.judge_size(2.0 * cones.cone_distance)
+    wide = sizing.face_width(stage.module, face_width)
+    if sizing.query.face_width is None and face_width is None:
+        wide = min(FACE * stage.module, NARROW * cones.cone_distance)
+    if wide > WIDEST * cones.cone_distance:
+        most = rounded_down(WIDEST * cones.cone_distance / sizing.unit)
+        raise NotMade(
+            f"Bevel teeth are made up to half of the cone distance wide, {most:g} {sizing.words}.", "/query/face_width"
+        )
+    blanks = [
+        Blank(teeth, stage.module, cone, cones.cone_distance, wide)
+        for teeth, cone in zip((stage.driver, stage.driven), cones.cones, strict=True)
+    ]
+    core = min(blank.core for blank in blanks)
+    smallest = Gear(2.0 * (core / stage.module + DEDENDUM), stage.module, train.pressure_angle)
+    refused = None
+    for sizes in sizing.offered(smallest):
+        play = 0.5 * max(sizes.clearance - sizing.factor * backlash, 0.0)
+        try:
+            return _Pair(stage, train.pressure_angle, (blanks[0], blanks[1]), play, sizes, sizing).made()
+        except DimensionError as error:
+            raise NotMade(f"The gears cannot be cut: {error}.") from None
+        except NotMade as error:
+            refused = error
+    assert refused is not None
+    raise refused
+
+
+@dataclass(frozen=True)
+class Blank:
+    """A bevel gear before its teeth are cut: radii and distances d, as complex numbers, radius + i d.
+
+    Attributes
+    ----------
+    teeth : int
+    module : float
+        At the large end, millimetres.
+    cone : float
+        Pitch cone angle, radians.
+    distance, face_width : float
+        From the apex to the large end, and what of it the teeth take.
+    """
+
+    teeth: int
+    module: float
+    cone: float
+    distance: float
+    face_width: float
+
+    def on_back_cone(self, height: float) -> complex:
+        """A point of the back cone of the large end, so many modules above the pitch cone."""
+        pitch = self.distance * complex(math.sin(self.cone), math.cos(self.cone))
+        return pitch + height * self.module * complex(math.cos(self.cone), -math.sin(self.cone))
+
+    @property
+    def share(self) -> float:
+        """Size of the small end over that of the large one."""
+        return 1.0 - self.face_width / self.distance
+
+    @property
+    def corners(self) -> tuple[complex, complex, complex, complex]:
+        """Inner and outer corner of the small end, outer and inner corner of the large end."""
+        return (
+            self.share * self.on_back_cone(-DEDENDUM - BELOW_SMALL),
+            self.share * self.on_back_cone(ADDENDUM),
+            self.on_back_cone(ADDENDUM),
+            self.on_back_cone(-DEDENDUM - BELOW_LARGE),
+        )
+
+    @property
+    def core(self) -> float:
+        """The greatest radius about which nothing is cut."""
+        return self.corners[0].real
+
+    @property
+    def cones(self) -> tuple[float, float]:
+        """Angles of the cones of the tips and of the roots, radians."""
+        tip, root = (math.atan(height * self.module / self.distance) for height in (ADDENDUM, DEDENDUM))
+        return self.cone + tip, self.cone - root
+
+    def virtual(self, pressure_angle: float) -> Gear:
+        """The spur gear of the back cone."""
+        return Gear(self.teeth / math.cos(self.cone), self.module, pressure_angle, ADDENDUM, DEDENDUM)
+
+
+@dataclass(frozen=True)
+class _Pair:
+    """Two gears whose shafts meet at 0, in millimetres."""
+
+    stage: TrainStage
+    pressure_angle: float
+    blanks: tuple[Blank, Blank]
+    play: float
+    sizes: Sizes
+    sizing: GearSizing
+
+    def made(self) -> Assembly:
+        """The assembly, if no two parts of it meet."""
+        sizes = self.sizes
+        tips = [blank.corners[2] for blank in self.blanks]
+        below = max(*(tip.real for tip in tips), 0.5 * sizes.width, 0.5 * sizes.collar) + sizes.apart + FREE * sizes.pin
+        parts = [self._gear(number) for number in range(2)]
+        parts += Upright(sizes, self.axles, -below).parts()
+        size = 2.0 * max(abs(axle.levels[end].low) for axle in self.axles for end in (0, -1))
+        motion = TrainMotion(self.axles[0].bodies | self.axles[1].bodies, size, math.ceil(1.0 / self.stage.driver))
+        assembly = Assembly(
+            tuple(parts), motion, FIRST + 1, 1, self.sizing.factor, self.sizing.query.scale, self._notes()
+        )
+        return looked_at(assembly, sizes, self.sizing)
+
+    def _hub(self, number: int) -> tuple[float, float, float]:
+        """Distances at which a gear begins and its hub does, and where that ends."""
+        front, *_, back = (corner.imag for corner in self.blanks[number].corners)
+        length = max(HUB * self.sizes.pin, BORED * self.sizes.pin - (back - front))
+        return front, back, back + length
+
+    @cached_property
+    def axles(self) -> tuple[Axle, Axle]:
+        """Both shafts: the driver's along x to the apex, the driven one's away from there."""
+        sizes, angle = self.sizes, self.stage.shaft_angle
+        found = []
+        for number, name in enumerate(("input shaft", "output shaft")):
+            front, _, end = self._hub(number)
+            near = end + sizes.gap
+            far = near + sizes.thickness + max(SPAN * sizes.pin, sizes.gap)
+            outwards = [(front, end), (near, near + sizes.thickness), (far, far + sizes.thickness)]
+            along = np.array([-math.cos(angle), math.sin(angle), 0.0])
+            levels = tuple(Level(*pair) for pair in outwards)
+            if number == 0:
+                along = np.array([1.0, 0.0, 0.0])
+                levels = tuple(Level(-high, -low) for low, high in reversed(outwards))
+            speed = 1.0 if number == 0 else self.stage.driver / self.stage.driven
+            frame = frame_along(along, np.zeros(3))
+            found.append(Axle(name, number, frame, levels, 0 if number else 2, speed, stub_below=number == 0))
+        return found[0], found[1]
+
+    def _gear(self, number: int) -> Part:
+        blank, sizes, axle = self.blanks[number], self.sizes, self.axles[number]
+        _, back, end = self._hub(number)
+        # Heights are distances; those of the driver are negative.
+        way = 1.0 if number else -1.0
+        at = way * blank.corners[2].imag
+        tooth_at = math.pi / blank.teeth if number else 0.0
+        teeth = bevel_toothed(blank.virtual(self.pressure_angle), blank.teeth, blank.cone, abs(at), tooth_at, self.play)
+        bore = keyed_bore(0j, sizes.pin, key_for(sizes.pin), sizes.clearance)
+        inner, tip, large, rim = blank.corners
+        outline = [complex(0.0, inner.imag), inner, tip, large, rim, complex(0.0, rim.imag)]
+        if number == 0:
+            outline = [z.conjugate() for z in reversed(outline)]
+        hub = Region(Disc(0j, min(rim.real, (0.5 + WALL_OF_HUB) * sizes.pin + key_for(sizes.pin).in_hub)), (bore,))
+        low, high = sorted((way * back, way * end))
+        bodies: tuple[Body, ...] = (Tapered(Region(teeth, (bore,)), tuple(outline), 0.0, at), Prism(hub, low, high))
+        role = "driven" if number else "driver"
+        return Part(
+            f"gear_1_{role}", f"bevel gear, {role}, {blank.teeth} teeth", "gear", axle.carrier, bodies, 1.0 + 0.0j,
+            (axle.plane, axle.plane), MATERIALS[sizes.process][1], LINK_COLOURS[number],
+        )  # fmt: skip
+
+    def _notes(self) -> tuple[str, ...]:
+        told = [
+            f"Shaft angle {math.degrees(self.stage.shaft_angle):.6g}°; cone distance {self.blanks[0].distance:.6g} mm, "
+            f"face width {self.blanks[0].face_width:.6g} mm; module {self.stage.module:.6g} mm at the large end."
+        ]
+        for number, (role, blank) in enumerate(zip(("Driver", "Driven gear"), self.blanks, strict=True)):
+            tip, root = (math.degrees(angle) for angle in blank.cones)
+            told.append(
+                f"{role}: {blank.teeth} teeth, pitch cone {math.degrees(blank.cone):.4f}°, tip cone {tip:.4f}°, root "
+                f"cone {root:.4f}°, outside diameter {2.0 * blank.corners[2].real:.6g} mm; mounting distance from the "
+                f"apex to the end of the hub {self._hub(number)[2]:.6g} mm."
+            )
+        told.append("Bearing plates stand by their tabs in the slots of the base, and are glued or wedged there.")
+        return tuple(told)
