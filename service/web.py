@@ -10,8 +10,10 @@ from collections.abc import Sequence
 
 import uvicorn
 from starlette.middleware.cors import CORSMiddleware
+from starlette.middleware.gzip import GZipMiddleware
 from starlette.types import ASGIApp
 
+from service.api.representation import WORTH_PACKING_BYTES
 from service.app import create_app
 from service.connections import IDLE_S, ImpatientProtocol, raise_file_limit
 from service.head import HeadAsGet
@@ -26,6 +28,9 @@ GRACE_S = 2
 
 _READY_PERIOD_S = 0.02
 """Workers that get ready tell nobody; so late at most is the announcement."""
+
+_PACKING_LEVEL = 4
+"""A megabyte of JSON takes 25 ms at this level; the highest makes it a seventh smaller, in 100 ms."""
 
 _OPENTELEMETRY = {"OTEL_SERVICE_NAME": "mechsynth", "OTEL_EXPORTER_OTLP_TIMEOUT": "1"}
 """Where its exporters are asked for and nothing else is said. The last sending of each is waited for when the service
@@ -45,7 +50,7 @@ class WebServer(uvicorn.Server):
         ImpatientProtocol.metrics = metrics
         super().__init__(
             uvicorn.Config(
-                HeadAsGet(Telemetry(_with_cors(self._app, settings.cors_origins), metrics)),
+                HeadAsGet(Telemetry(_with_cors(_packed(self._app), settings.cors_origins), metrics)),
                 log_config=None,
                 access_log=False,
                 server_header=False,
@@ -79,6 +84,12 @@ class WebServer(uvicorn.Server):
         host, port = listener.getsockname()[:2]
         shown = f"[{host}]" if ":" in host else host
         print(f"mechsynth is ready on http://{shown}:{port}", flush=True)  # noqa: T201 (for whoever started it)
+
+
+def _packed(app: ASGIApp) -> ASGIApp:
+    """The application with answers in gzip for who takes them so. Streams of events are left as they are, and so is
+    what is packed already."""
+    return GZipMiddleware(app, minimum_size=WORTH_PACKING_BYTES, compresslevel=_PACKING_LEVEL)
 
 
 def _with_cors(app: ASGIApp, origins: Sequence[str]) -> ASGIApp:

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from functools import cache
 from importlib.resources import files
 from threading import Lock
 from typing import Any
 
-from fastapi import FastAPI, Request
+from fastapi import FastAPI, Request, Response
 from fastapi.openapi.docs import get_swagger_ui_html
-from fastapi.responses import HTMLResponse, JSONResponse
+from fastapi.responses import HTMLResponse
+from pydantic_core import to_json
 from starlette.concurrency import run_in_threadpool
 from starlette.staticfiles import StaticFiles
 
 from service.api import analyses, errors
 from service.api.errors import ProblemDetails
 from service.api.guard import SCHEME
+from service.api.representation import Representation
 
 _ASSETS = "/docs/assets"
 
@@ -44,11 +47,16 @@ def install(app: FastAPI) -> None:
 
     app.openapi = openapi  # type: ignore[method-assign]  # the framework's documented way to change the document
 
+    @cache
+    def document(keys: bool) -> Representation:
+        whole = app.openapi()
+        return Representation(to_json(whole if keys else _without_keys(whole)), "application/json")
+
     @app.get("/openapi.json", include_in_schema=False)
-    async def openapi_document(request: Request) -> JSONResponse:
+    async def openapi_document(request: Request) -> Response:
         # In a thread, because the first document waits for the models of the analyses.
-        document = await run_in_threadpool(app.openapi)
-        return JSONResponse(_without_keys(document) if await request.app.state.gate.is_open() else document)
+        shown = await run_in_threadpool(document, not await request.app.state.gate.is_open())
+        return shown.answer(request, {"Cache-Control": "no-cache"})
 
     @app.get("/docs", include_in_schema=False)
     async def docs() -> HTMLResponse:

@@ -8,15 +8,16 @@ from collections.abc import Iterable
 _TAG = re.compile(r'(?:W/)?("[!#-~\x80-\xff]*")')
 
 
-def tag(revision: int) -> str:
-    """The entity tag of a revision."""
-    return f'"{revision}"'
+def tag(version: int | str) -> str:
+    """The entity tag of a version: a weak one, since it says nothing of whether the answer is packed on its way."""
+    return f'W/"{version}"'
 
 
 def matches(headers: Iterable[str], current: str) -> bool:
     """Whether ``If-None-Match`` names the current tag, or any by ``*``. Weak tags compare like strong ones.
 
-    >>> matches(['"6", W/"7"'], '"7"')
-    True
+    >>> matches(['"6", W/"7"'], '"7"'), matches(['"7"'], 'W/"7"')
+    (True, True)
     """
-    return any(header.strip() == "*" or current in _TAG.findall(header) for header in headers)
+    opaque = current.removeprefix("W/")
+    return any(header.strip() == "*" or opaque in _TAG.findall(header) for header in headers)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import inspect
 from functools import cache
+from typing import Annotated
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Header, Request, Response
+from starlette.concurrency import run_in_threadpool
 
 from service.api.guard import GuardedRoute
 from service.api.measures import measures
+from service.api.representation import Representation
 from service.api.schemas import ExampleName, ProblemKind, ProblemKinds
 from service.parts.extra import installed
 from service.parts.made import LINKAGE, MAKERS
@@ -18,18 +21,34 @@ from synthesis.registry import KINDS, example
 
 TAG = {"name": "problems", "description": "What can be asked."}
 
+_ETAG = {"ETag": {"description": "Changes whenever the list does.", "schema": {"type": "string"}}}
+
 router = APIRouter(prefix="/v1/problems", tags=["problems"], route_class=GuardedRoute)
 
 
-@router.get("", operation_id="list_problems", summary="List the kinds of problems")
-async def list_problems() -> ProblemKinds:
+@router.get(
+    "",
+    operation_id="list_problems",
+    summary="List the kinds of problems",
+    response_class=Response,
+    responses={
+        200: {"model": ProblemKinds, "headers": _ETAG},
+        304: {"description": "The list is as the client knows it.", "headers": _ETAG},
+    },
+)
+async def list_problems(
+    request: Request,
+    if_none_match: Annotated[str | None, Header(description="The `ETag` of the list that the client has.")] = None,
+) -> Response:
     """Every kind of problem with its title, its JSON schema, and examples that run as they are."""
-    return _kinds()
+    # In a thread, because the schemas of all kinds take two seconds the first time.
+    kinds = await run_in_threadpool(_kinds)
+    return kinds.answer(request, {"Cache-Control": "private, no-cache"})
 
 
 @cache
-def _kinds() -> ProblemKinds:
-    return ProblemKinds(
+def _kinds() -> Representation:
+    kinds = ProblemKinds(
         solids=installed(),
         parts=sorted(MAKERS.keys() - {LINKAGE}),
         problems=[
@@ -46,6 +65,7 @@ def _kinds() -> ProblemKinds:
             for name, kind in KINDS.items()
         ],
     )
+    return Representation(kinds.model_dump_json(by_alias=True).encode(), "application/json")
 
 
 def _files(mechanism: str) -> list[str]:

@@ -1,6 +1,6 @@
 /** What moves when the page opens: an example with its answer, made of the service's own by `tools/studio`. */
 
-import { el, words } from "./dom.js";
+import { byId, el, words } from "./dom.js";
 import { checks, figures, table } from "./figures.js";
 import { Mover } from "./mover.js";
 
@@ -19,7 +19,7 @@ export class Opening {
   /** Show it, unless something else is shown by then. */
   async show() {
     const { desk, gone } = this;
-    const answer = await fetch("/studio/opening.json", { signal: gone.signal })
+    const answer = await fetch(/** @type {HTMLLinkElement} */ (byId("opening")).href, { signal: gone.signal })
       .then((one) => (one.ok ? one.json() : null), () => null);
     if (!answer || gone.signal.aborted) return;
     const { problem, design, motion, circuits, found, summary } = answer;

@@ -15,6 +15,9 @@ pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 FIRST_S = 1.5
 """Until the first machine moves, on a server that has served the page before."""
 
+REQUESTS = 10
+"""At most, for all that the page consists of when it has been opened."""
+
 BUSY = 4.0
 """So many times as long as that on a machine that does other things too."""
 
@@ -32,6 +35,8 @@ def test_a_machine_moves_when_the_page_opens(studio):
         return page.evaluate("fetch('/v1/jobs?limit=100').then(answer => answer.json())")["jobs"]
 
     before = len(jobs())
+    asked = []
+    page.on("request", lambda one: asked.append(one.url))
     page.reload()
     took = page.wait_for_function(MOVES, polling="raf").json_value()
     print(f"the first machine moves {took:.2f} s after the page was asked for")
@@ -39,6 +44,9 @@ def test_a_machine_moves_when_the_page_opens(studio):
     assert page.inner_text("#caption") == "Example: Hatch lid"
     studio.screen("opening")
     assert page.evaluate("location.hash") == "", "no job was made for it"
+    page.wait_for_selector("#jobs li", state="attached")
+    sent = [one.removeprefix(studio.url) for one in asked]
+    assert len(sent) <= REQUESTS, sent
     assert len(jobs()) == before
     # What is stated beside it is what it answers.
     kept = page.evaluate("fetch('/studio/opening.json').then(answer => answer.json())")

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 import service
-from service.api.studio import FILES, POLICY
+from service.api.bundle import BundleError, bundles, name_of
+from service.api.studio import POLICY, studio_files
 
 FOLDER = Path(service.__file__).parent / "studio"
 OWN = sorted(path.name for path in FOLDER.iterdir() if path.is_file())
@@ -23,7 +24,9 @@ def path_of(name):
 
 
 def test_every_file_of_the_folder_is_served():
-    assert sorted(FILES) == NAMES
+    made = {name for name in studio_files() if name.endswith(".bundle.js")}
+    assert sorted(set(studio_files()) - made) == NAMES
+    assert made == {"studio.bundle.js", "assembly_scene.bundle.js"}
 
 
 @pytest.mark.slow
@@ -31,7 +34,8 @@ def test_every_file_of_the_folder_is_served():
 def test_a_file_is_served_with_its_type_and_the_policy(client, name):
     answer = client.get(path_of(name))
     assert answer.status_code == 200
-    assert answer.content == (FOLDER / name).read_bytes()
+    if name != "index.html":
+        assert answer.content == (FOLDER / name).read_bytes()
     assert answer.headers["content-type"].split(";")[0] == TYPES[Path(name).suffix]
     assert answer.headers["content-security-policy"] == POLICY
     assert answer.headers["x-content-type-options"] == "nosniff"
@@ -80,11 +84,64 @@ def test_every_module_is_needed():
     assert imported(IMPORTED) == {name for name in NAMES if name.endswith(".js")}
 
 
-def test_no_module_waits_for_another_to_be_read():
-    """All are asked for at once, but for what is imported when it is needed."""
-    page = (FOLDER / "index.html").read_text()
-    asked = re.findall(r'<link rel="modulepreload" href="/studio/([^"]+)">', page)
-    assert asked == sorted(imported(re.compile(r'from "\./([^"]+)"')) - {"studio.js"})
+def test_the_page_asks_for_one_module_and_may_keep_what_it_asks_for_by_its_version(client):
+    page = client.get("/").text
+    linked = re.findall(r'(?:src|href)="(/studio/[^"]*)"', page)
+    assert [one for one in linked if ".js?" in one] == [f"/studio/studio.bundle.js?v={versions()['studio.bundle.js']}"]
+    for target in linked:
+        answer = client.get(target)
+        assert answer.headers["cache-control"] == "public, max-age=31536000, immutable"
+        assert answer.headers.get("content-encoding") == "gzip" or len(answer.content) < 2000
+        again = client.get(target, headers={"If-None-Match": answer.headers["etag"], "Accept-Encoding": "identity"})
+        assert (again.status_code, again.content) == (304, b"")
+        plain = client.get(target.split("?")[0] + "?v=0123456789abcdef", headers={"Accept-Encoding": "identity"})
+        assert plain.headers["cache-control"] == "no-cache"
+        assert "content-encoding" not in plain.headers
+        assert plain.content == answer.content
+
+
+def versions():
+    return {name: file.version for name, file in studio_files().items()}
+
+
+def test_a_bundle_has_each_module_once_after_those_that_it_imports():
+    bundle = studio_files()[name_of("studio.js")].content.decode()
+    modules = imported(re.compile(r'from "\./([^"]+)"'))
+    begun = re.findall(r"^const \$(\w+) = \(\(\) => \{$", bundle, re.MULTILINE)
+    assert sorted(begun) == sorted(name.removesuffix(".js") for name in modules)
+    for name in modules:
+        for needed in re.findall(r'^import .* from "\./(\w+)\.js"', (FOLDER / name).read_text(), re.MULTILINE):
+            assert begun.index(needed) < begun.index(name.removesuffix(".js"))
+
+
+def test_a_bundle_exports_what_its_first_module_does_and_leaves_what_is_of_others():
+    own = {
+        "a.js": 'import * as b from "./b.js";\nimport { C } from "./vendor/c.js";\nexport const a = b.b(C);\n',
+        "b.js": 'import { e as f } from "./e.js";\nexport async function b() {\n  return import("./d.js");\n}\n',
+        "d.js": "export class D {}\nexport function d() {}\n",
+        "e.js": "export const e = 1;\n",
+    }
+    made = bundles(own, "a.js")
+    assert sorted(made) == ["a.bundle.js", "d.bundle.js"]
+    assert made["a.bundle.js"].startswith('import { C } from "./vendor/c.js";\n')
+    assert made["a.bundle.js"].endswith("export const { a } = $a;\n")
+    assert "const { e: f } = $e;\nasync function b() {" in made["a.bundle.js"]
+    assert 'return import("./d.bundle.js");' in made["a.bundle.js"]
+    assert made["d.bundle.js"].endswith("export const { D, d } = $d;\n")
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ({"a.js": 'import { b } from "./b.js";\n', "b.js": 'import { a } from "./a.js";\n'}, "import each other"),
+        ({"a.js": "export let a = 1;\n"}, "a.js: bundles know no such line: export let a = 1;"),
+        ({"a.js": 'import "./b.js";\n', "b.js": ""}, "no such line"),
+        ({"a.js": "export default class A {}\n"}, "no such line"),
+    ],
+)
+def test_what_a_bundle_would_change_the_meaning_of_is_refused(wrong, told):
+    with pytest.raises(BundleError, match=told):
+        bundles(wrong, "a.js")
 
 
 def test_what_is_of_others_has_its_licence_and_only_its_names_are_ours():
