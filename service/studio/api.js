@@ -1,5 +1,7 @@
 /** The public API of the service, and nothing else: all that the studio knows comes through here. */
 
+import { ofTheTab } from "./storage.js";
+
 /** @typedef {{path: string, detail: string}} FieldError */
 /** @typedef {{fraction: number, message: string}} Progress */
 /** @typedef {{id: string, kind: string, label: string | null, status: string, created_at: string, progress: Progress}} JobItem */
@@ -33,13 +35,12 @@ export class Refused extends Error {
 
 /** The key is kept for this tab only. */
 export function key() {
-  return sessionStorage.getItem(KEY) ?? "";
+  return ofTheTab.read(KEY) ?? "";
 }
 
 /** @param {string} value */
 export function useKey(value) {
-  if (value) sessionStorage.setItem(KEY, value);
-  else sessionStorage.removeItem(KEY);
+  ofTheTab.write(KEY, value || null);
 }
 
 /**

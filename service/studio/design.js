@@ -81,6 +81,7 @@ export class Shown {
     this.drawing = el("figure", { class: "drawing" });
     const named = `${title}: ${words(this.design.mechanism.type)}`;
     this.desk.title.replaceChildren(named);
+    this.desk.shown = this.design;
     this.desk.stage.offer(true, named);
     this.desk.stage.show("watch");
     this.desk.before.replaceChildren();
@@ -180,6 +181,7 @@ export class Shown {
       this.desk.before.replaceChildren(picker(films.map((film) => film.choice), (choice) => {
         const film = films.find((one) => one.choice === choice) ?? films[0];
         show(film);
+        this.desk.shown = film.design;
         this.explored(film.design);
         this.desk.numbers.replaceChildren(...(film === films[0] ? this.tabulated() : cognateNumbers(film, this.job.problem)));
         this.desk.files.replaceChildren(...(film === films[0] ? this.taken() : [el("p", { class: "note" }, OF_THE_DESIGN)]));

@@ -6,6 +6,8 @@ import { Stage } from "./stage.js";
 
 export class Desk {
   constructor() {
+    /** The design that is shown, if one is. @type {{mechanism: any, placement?: any} | null} */
+    this.shown = null;
     this.stage = new Stage();
     this.drawer = new Drawer(byId("design"), byId("tabs"));
     this.title = byId("design-title");
@@ -34,6 +36,7 @@ export class Desk {
 
   /** Show no design any more. */
   clear() {
+    this.shown = null;
     this.title.replaceChildren();
     this.frame.say();
     this.before.replaceChildren();

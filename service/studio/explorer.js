@@ -1,10 +1,9 @@
 /** A linkage whose pins are dragged: what it does then, as the analysis core says, while it is dragged. */
 
 import * as api from "./api.js";
-import { telling } from "./circuits.js";
 import { stands } from "./cycle.js";
 import { el, shown, svg, words } from "./dom.js";
-import { degrees } from "./gauge.js";
+import { curveOf, driven } from "./driven.js";
 import { Linkage, drawn } from "./linkage.js";
 import { Player, between } from "./player.js";
 import { beginnings } from "./beginnings.js";
@@ -154,23 +153,8 @@ export class Explorer {
   /** @param {any} answer */
   tell(answer) {
     this.motion = answer;
-    const { x, y } = answer.joints[telling(this.skeleton)];
-    /** @type {Point[]} */
-    const points = x.map((/** @type {number | null} */ one, /** @type {number} */ k) => (one === null ? [NaN, NaN] : [one, y[k]]));
-    this.curve.setAttribute("d", this.view.path(points));
-    const angles = answer.transmission_angle.filter((/** @type {number | null} */ one) => one !== null);
-    const least = angles.length ? Math.min(...angles) : null;
-    const missed = "P" in this.joints ? this.targets.map((target) =>
-      points.reduce((nearest, [px, py]) => (px === px ? Math.min(nearest, Math.hypot(px - target.x, py - target.y)) : nearest), Infinity)) : [];
-    const turns = answer.valid.every(Boolean);
-    const { grashof } = answer.classification;
-    const facts = {
-      ...(grashof ? { "Grashof": words(grashof) } : {}),
-      "Input turns through": turns ? "yes" : "no",
-      "Least transmission angle": degrees(least),
-      ...(missed.length ? { "Farthest target from the curve": shown(Number(Math.max(...missed).toPrecision(3))) } : {}),
-      "Circuits": shown(answer.circuits.length),
-    };
+    this.curve.setAttribute("d", this.view.path(curveOf(answer, this.skeleton)));
+    const { facts, turns, least, grashof, missed } = driven(answer, this.skeleton, this.targets);
     renewed(this.facts, Object.entries(facts), ([name, value]) => [el("dt", {}, name), el("dd", {}, value)]);
     this.judge(turns, least, grashof, missed);
     const offered = () => beginnings(this.problem, this.skeleton, this.motion, this.targets);

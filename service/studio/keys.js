@@ -4,6 +4,7 @@
  */
 
 import { byId, el } from "./dom.js";
+import { lasting } from "./storage.js";
 
 const OFF = "mechsynth.letters-off";
 
@@ -22,11 +23,8 @@ export class Keys {
     this.bindings = bindings;
     this.sheet = byId("keys");
     const letters = byId("letters");
-    letters.checked = localStorage.getItem(OFF) === null;
-    letters.addEventListener("change", () => {
-      if (letters.checked) localStorage.removeItem(OFF);
-      else localStorage.setItem(OFF, "1");
-    });
+    letters.checked = lasting.read(OFF) === null;
+    letters.addEventListener("change", () => lasting.write(OFF, letters.checked ? null : "1"));
     this.letters = letters;
     const cap = (/** @type {string} */ one) => (one === "or" ? " or " : el("kbd", {}, one));
     const caps = (/** @type {string} */ shown) => shown.split(" ").map(cap);

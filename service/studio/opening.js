@@ -25,6 +25,7 @@ export class Opening {
     const { problem, design, motion, circuits, found, summary } = answer;
     desk.stage.offer(true, `Example: ${this.name}`);
     desk.stage.show("watch");
+    desk.shown = design;
     this.moving = new Mover(desk.frame, design, motion, problem, circuits);
     desk.title.replaceChildren(`Example: ${this.name}, ${words(design.mechanism.type).toLowerCase()}`);
     this.tabulate = () => desk.numbers.replaceChildren(el("p", { class: "note" }, `The best of ${found}. ${summary}`),

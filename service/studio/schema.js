@@ -163,3 +163,34 @@ export function beyond(option, root) {
   return Object.entries(option.properties).filter(([, schema]) =>
     ["shapes", "table", "object", "union", "map", "points", "json"].includes(kinded(schema, root).control)).map(([name]) => name);
 }
+
+/**
+ * The path of what is of another form than a schema has it; null where nothing is. Only the service judges numbers and words.
+ * @param {any} value @param {Schema} schema @param {Schema} root @param {string} [path] @returns {string | null}
+ */
+export function misfit(value, schema, root, path = "") {
+  const found = alternatives(schema, root).map((one) => misfitIn(value, one, root, path));
+  // Of what might have been meant that which goes along with it farthest.
+  return found.includes(null) ? null : found.reduce((one, other) => (Number(other?.length) > Number(one?.length) ? other : one), path);
+}
+
+/** @param {any} value @param {Schema} schema without alternatives @param {Schema} root @param {string} path @returns {string | null} */
+function misfitIn(value, schema, root, path) {
+  const form = formOf(value);
+  const wanted = schema.type ?? formOf(schema.const ?? schema.enum?.[0] ?? value);
+  if (form !== (wanted === "integer" ? "number" : wanted)) return path;
+  if (form !== "object" && form !== "array") return null;
+  for (const [name, inner] of Object.entries(value)) {
+    const at = `${path}/${name}`;
+    const of = form === "array" ? schema.prefixItems?.[Number(name)] ?? schema.items : schema.properties?.[name] ?? schema.additionalProperties;
+    // `true` takes anything.
+    const wrong = of === true ? null : of ? misfit(inner, of, root, at) : at;
+    if (wrong !== null) return wrong;
+  }
+  return null;
+}
+
+/** What JSON calls it. @param {any} value */
+function formOf(value) {
+  return value === null ? "null" : Array.isArray(value) ? "array" : typeof value;
+}

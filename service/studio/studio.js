@@ -1,18 +1,23 @@
 /** The studio: state a problem, follow its job, look at the answers. A client of the public API only. */
 
+import { Unreadable, holds, sentIn } from "./address.js";
 import * as api from "./api.js";
 import * as answers from "./answers.js";
 import { Backdrop } from "./backdrop.js";
 import { CurveImport } from "./curve_import.js";
 import { Desk } from "./desk.js";
 import { byId, el } from "./dom.js";
+import { draftOf, forgetDraft, keepDraft, lastKind, lastSteps } from "./drafts.js";
 import * as faults from "./faults.js";
 import { fill } from "./form.js";
 import { Gallery } from "./gallery.js";
 import { History } from "./history.js";
 import { Keys, scrub, scrubTo, visible } from "./keys.js";
+import { Link } from "./link.js";
 import { Opening } from "./opening.js";
 import * as running from "./run.js";
+import { misfit } from "./schema.js";
+import { SentLinkage } from "./sent.js";
 import { canvas } from "./targets.js";
 import { Undo } from "./undo.js";
 
@@ -36,15 +41,17 @@ let wanted = false;
 const fields = byId("fields");
 const text = byId("json-text");
 const desk = new Desk();
-/** What is shown until somebody states something. */
 const opening = new Opening(desk, "Hatch lid");
+/** What is shown until somebody states something. @type {{leave: () => void}} */
+let guest = opening;
 const undo = new Undo((statement) => {
-  opening.leave();
+  vacate();
   if (statement.kind === problem.kind) {
     problem = statement;
     byId("example").value = "";
     show();
   } else begun(statement);
+  drafted();
   if (answered === null) desk.stage.show("state");
 }, byId("undo"), byId("redo"));
 
@@ -107,18 +114,52 @@ function spelt(statement) {
     ? Object.fromEntries(Object.entries(value).filter(([, inner]) => !group(inner) || Object.keys(inner).length).sort()) : value);
 }
 
+/** Make room for what is stated now. What came in the address is there again when one goes back. */
+function vacate() {
+  guest.leave();
+  if (holds(location.hash)) window.history.pushState(null, "", location.pathname);
+}
+
+/** Keep the statement as it is now, unless the service has it as an example. */
+function drafted() {
+  const now = spelt(problem);
+  if (examples().some((/** @type {any} */ one) => spelt(one) === now)) forgetDraft(problem.kind);
+  else keepDraft(problem, byId("label").value, undo.steps);
+}
+
+/** Go on with the statement that was left, or begin with the example. @param {string} of */
+function resume(of) {
+  const draft = draftOf(of);
+  const chosen = kinds.find((one) => one.kind === of) ?? kinds[0];
+  // It may have been stated on another version of the service.
+  if (!draft || misfit(draft.problem, chosen.schema, chosen.schema) !== null) {
+    begun(chosen.example);
+    byId("example").value = "0";
+    return;
+  }
+  begun(draft.problem);
+  byId("label").value = draft.label;
+  byId("draft").hidden = false;
+}
+
+/** The examples of the kind. @returns {any[]} */
+function examples() {
+  return kind().schema.examples ?? [kind().example];
+}
+
 /** Show what has been edited. @param {{form?: boolean, sketch?: boolean, json?: boolean}} parts */
 function edited(parts) {
   byId("example").value = "";
   show(parts);
   undo.note(problem);
-  opening.leave();
+  drafted();
+  vacate();
   if (answered === null) desk.stage.show("state");
 }
 
 /** Begin with another statement. @param {any} statement */
 function state(statement) {
-  opening.leave();
+  vacate();
   begun(statement);
   desk.stage.show("state");
 }
@@ -127,6 +168,7 @@ function state(statement) {
 function begun(statement) {
   problem = structuredClone(statement);
   undo.note(problem, true);
+  byId("draft").hidden = true;
   introduce();
   faults.clear(fields, byId("faults"));
   fields.replaceChildren();
@@ -136,27 +178,32 @@ function begun(statement) {
 /** The kind, its examples, and what it is about. */
 function introduce() {
   byId("kind").value = problem.kind;
-  const examples = kind().schema.examples ?? [kind().example];
   byId("example").replaceChildren(el("option", { value: "" }, "as edited"),
-    ...examples.map((/** @type {any} */ _, /** @type {number} */ n) => el("option", { value: n }, kind().examples[n].name)));
+    ...examples().map((/** @type {any} */ _, /** @type {number} */ n) => el("option", { value: n }, kind().examples[n].name)));
   byId("about").textContent = kind().description.split("\n\n")[0].replaceAll("\n", " ");
 }
 
 function choices() {
   const pick = el("select", { id: "kind", onchange: () => {
-    const chosen = kinds.find((one) => one.kind === pick.value) ?? kinds[0];
-    state(chosen.example);
-    byId("example").value = "0";
+    vacate();
+    resume(pick.value);
+    desk.stage.show("state");
   } }, ...kinds.map((one) => el("option", { value: one.kind }, one.title)));
   const example = el("select", { id: "example", onchange: () => {
     if (example.value === "") return;
     const chosen = example.value;
-    state((kind().schema.examples ?? [kind().example])[Number(chosen)]);
+    state(examples()[Number(chosen)]);
     example.value = chosen;
   } });
   byId("choices").replaceChildren(
     el("div", { class: "choices" }, el("label", { for: "kind" }, "Kind"), pick,
       el("label", { for: "example" }, "Example"), example),
+    el("p", { class: "note", id: "draft", hidden: true }, "Your draft, as you left it. ",
+      el("button", { type: "button", class: "small", onclick: () => {
+        forgetDraft(problem.kind);
+        state(kind().example);
+        example.value = "0";
+      } }, "Back to the example")),
     el("p", { class: "note", id: "about" }));
 }
 
@@ -192,8 +239,38 @@ function busy(is) {
   }
 }
 
-/** Show the job that the address names: its problem, its progress, its answer. */
+/** Show what the address holds: its statement, and its linkage as this service drives it. */
+async function unpack() {
+  const fragment = location.hash;
+  try {
+    const sent = await sentIn(fragment, kinds);
+    if (location.hash !== fragment) return;
+    guest.leave();
+    running.leave(byId("progress"));
+    answers.leave(byId("result"), desk);
+    busy(false);
+    answered = null;
+    posted = { id: "", problem: null };
+    begun(sent.problem);
+    byId("label").value = sent.label;
+    byId("result").replaceChildren(el("p", { class: "note" }, "This statement came in the address. Solve finds its answers."));
+    desk.stage.show("state");
+    const linkage = new SentLinkage(desk, sent, state);
+    guest = linkage;
+    await linkage.show().catch((error) => {
+      throw new Unreadable(`The linkage in the address is not shown: ${error.errors?.[0]?.detail ?? error.message}`);
+    });
+  } catch (error) {
+    tell(error);
+  }
+}
+
+/** Show what the address names: a job with its problem, its progress and its answer, or what has been sent. */
 async function restore() {
+  if (holds(location.hash)) {
+    tell("");
+    return unpack();
+  }
   const id = /^#job=([0-9A-Z]{26})$/.exec(location.hash)?.[1];
   if (!id) return;
   tell("");
@@ -213,7 +290,7 @@ async function restore() {
       job = ended;
     }
     busy(false);
-    opening.leave();
+    guest.leave();
     answers.answer(byId("result"), desk, job, state, (statement) => {
       begun(statement);
       solve();
@@ -246,8 +323,9 @@ async function begin() {
   });
   if (wanted) gallery.open();
   opening.measured();
-  begun(kinds[0].example);
-  byId("example").value = "0";
+  const last = location.hash ? "" : lastKind();
+  resume(last || kinds[0].kind);
+  if (last) undo.resume(lastSteps());
   history.load().catch(tell);
   await restore();
 }
@@ -269,6 +347,17 @@ function choose(number, further = 0) {
   const at = cards.findIndex((one) => one.getAttribute("aria-pressed") === "true");
   /** @type {HTMLElement | undefined} */ (cards[further ? at + further : number - 1])?.click();
 }
+
+/** What a link to this page as it is now holds. @returns {import("./address.js").Sent} */
+function sending() {
+  // What answers an earlier statement is no part of this one.
+  const design = byId("stale").hidden ? desk.shown : null;
+  const { type, skeleton, driven_by } = design?.mechanism ?? {};
+  return { problem, label: byId("label").value, placed: Boolean(design?.placement),
+    mechanism: skeleton ? { type, skeleton, ...(driven_by && { driven_by }) } : null };
+}
+
+const link = new Link(byId("link"), byId("link-told"), sending);
 
 /** @param {string} name of a button on the board that is shown */
 const press = (name) => () => visible(`.board button[aria-label="${name}"]`)?.click();
@@ -297,6 +386,7 @@ const keys = new Keys([
   { keys: ["n"], shown: "N", text: "Numbers", act: () => desk.drawer.press("numbers") },
   { keys: ["p"], shown: "P", text: "Plots", act: () => desk.drawer.press("plots") },
   { keys: ["e"], shown: "E", text: "Explore", act: () => desk.drawer.press("explore") },
+  { keys: ["l"], shown: "L", text: "Copy a link to the statement, and to the linkage that is shown", act: () => link.copy() },
   { keys: ["g"], shown: "G", text: "Gallery", act: () => browse() },
   { keys: ["?"], shown: "?", text: "These keys", act: () => keys.open() },
   { keys: [], shown: "Esc", text: "Close what lies over the stage; put the pen away", act: () => {} },
@@ -328,5 +418,8 @@ byId("key").querySelector("form").addEventListener("submit", (/** @type {Event} 
   begin();
 });
 window.addEventListener("hashchange", restore);
-if (!location.hash) opening.show();
+byId("label").addEventListener("input", () => {
+  if (draftOf(problem.kind)) drafted();
+});
+if (!location.hash && !lastKind()) opening.show();
 begin();

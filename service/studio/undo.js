@@ -6,6 +6,8 @@ const BURST_MS = 700;
 /** Steps that are kept. */
 const MOST = 200;
 
+/** Statements as JSON, the oldest first in both. @typedef {{past: string[], future: string[]}} Steps */
+
 export class Undo {
   /** @param {(statement: any) => void} apply @param {HTMLButtonElement} back @param {HTMLButtonElement} forth */
   constructor(apply, back, forth) {
@@ -35,6 +37,18 @@ export class Undo {
     this.noted = apart ? -Infinity : time;
     this.now = text;
     this.future = [];
+    this.tell();
+  }
+
+  /** @returns {Steps} */
+  get steps() {
+    return { past: this.past, future: this.future };
+  }
+
+  /** Go on from where another page has ended, with the same statement. @param {Steps} steps */
+  resume({ past, future }) {
+    this.past = past;
+    this.future = future;
     this.tell();
   }
 

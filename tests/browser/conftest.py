@@ -52,15 +52,16 @@ def chromium():
 class Studio:
     """The page in a window, and whatever went wrong in it."""
 
-    def __init__(self, browser, url, ready="#fields .field", **options):
+    def __init__(self, browser, url, ready="#fields .field", opened="", before="", **options):
         self.url = url
+        self.opened = opened or f"{url}/"
         self.ready = ready
         self.viewport = options.get("viewport")
         self.wrong = []
         self.context = browser.new_context(accept_downloads=True, **options)
         self.context.set_default_timeout(60_000)
         self.page = self.context.new_page()
-        self.page.add_init_script(REPORT_VIOLATIONS)
+        self.page.add_init_script(f"{REPORT_VIOLATIONS};{before}")
         self.page.on("console", lambda said: self.wrong.append(said.text) if said.type == "error" else None)
         self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
         self.page.on("request", self._asked)
@@ -71,8 +72,8 @@ class Studio:
             self.wrong.append(f"request to another host: {request.url}")
 
     def load(self):
-        """The page as it is when it is opened: no job, no key, the first example."""
-        self.page.goto(f"{self.url}/")
+        """The page as it is when it is opened: no job, no key, the first example where no other address is given."""
+        self.page.goto(self.opened)
         self.page.wait_for_selector(self.ready)
 
     def leave(self):

@@ -1,0 +1,58 @@
+/** Statements that have been edited: the last one of each kind, and the steps that led to the last of all. The browser keeps them. */
+
+import { lasting } from "./storage.js";
+
+const NAME = "mechsynth.draft";
+
+/** How much of the steps is kept, characters: statements of the usual size by the dozen. */
+const STEPS = 60_000;
+
+/** @typedef {{problem: any, label: string}} Draft */
+/** @typedef {import("./undo.js").Steps} Steps */
+
+/** The last statement of a kind, where one was left. @param {string} kind @returns {Draft | null} */
+export function draftOf(kind) {
+  const draft = read(`${NAME}.${kind}`);
+  return draft?.problem?.kind === kind ? { problem: draft.problem, label: String(draft.label ?? "") } : null;
+}
+
+/** The kind of the statement that was edited last; empty where there is none. */
+export function lastKind() {
+  const kind = read(NAME)?.kind;
+  return typeof kind === "string" && draftOf(kind) ? kind : "";
+}
+
+/** The steps that led to it. @returns {Steps} */
+export function lastSteps() {
+  const { past, future } = read(NAME) ?? {};
+  const texts = (/** @type {any} */ listed) => (Array.isArray(listed) ? listed.filter((one) => typeof one === "string") : []);
+  return { past: texts(past), future: texts(future) };
+}
+
+/** @param {any} problem @param {string} label @param {Steps} steps */
+export function keepDraft(problem, label, { past, future }) {
+  lasting.write(`${NAME}.${problem.kind}`, JSON.stringify({ problem, label }));
+  lasting.write(NAME, JSON.stringify({ kind: problem.kind, past: newest(past), future: newest(future) }));
+}
+
+/** @param {string} kind */
+export function forgetDraft(kind) {
+  lasting.write(`${NAME}.${kind}`, null);
+  if (read(NAME)?.kind === kind) lasting.write(NAME, null);
+}
+
+/** As many of the newest as are kept. @param {string[]} texts */
+function newest(texts) {
+  let room = STEPS;
+  const from = texts.findLastIndex((text) => (room -= text.length) < 0);
+  return texts.slice(from + 1);
+}
+
+/** @param {string} name @returns {any} */
+function read(name) {
+  try {
+    return JSON.parse(lasting.read(name) ?? "null");
+  } catch {
+    return null;
+  }
+}

@@ -1,0 +1,43 @@
+/** What an analysis tells of a linkage, as facts for reading. */
+
+import { telling } from "./circuits.js";
+import { shown, words } from "./dom.js";
+import { degrees } from "./gauge.js";
+
+/** @typedef {[number, number]} Point */
+
+/** The curve of the point that tells a linkage, over a motion; NaN where it is not reached. @param {any} answer @param {any} skeleton @returns {Point[]} */
+export function curveOf(answer, skeleton) {
+  const { x, y } = answer.joints[telling(skeleton)];
+  return x.map((/** @type {number | null} */ one, /** @type {number} */ k) => (one === null ? [NaN, NaN] : [one, y[k]]));
+}
+
+/**
+ * @typedef {object} Driven
+ * @property {Record<string, string>} facts
+ * @property {boolean} turns whether the input turns through
+ * @property {number | null} least transmission angle, degrees
+ * @property {string | null} grashof
+ * @property {number[]} missed how far each target is from the curve
+ */
+
+/**
+ * @param {any} answer of the analysis over a turn of its input @param {any} skeleton @param {{x: number, y: number}[]} targets
+ * @returns {Driven}
+ */
+export function driven(answer, skeleton, targets) {
+  const curve = curveOf(answer, skeleton);
+  const angles = answer.transmission_angle.filter((/** @type {number | null} */ one) => one !== null);
+  const least = angles.length ? Math.min(...angles) : null;
+  const missed = "P" in skeleton.joints ? targets.map((target) =>
+    curve.reduce((nearest, [px, py]) => (px === px ? Math.min(nearest, Math.hypot(px - target.x, py - target.y)) : nearest), Infinity)) : [];
+  const turns = answer.valid.every(Boolean);
+  const { grashof } = answer.classification;
+  return { turns, least, grashof, missed, facts: {
+    ...(grashof ? { "Grashof": words(grashof) } : {}),
+    "Input turns through": turns ? "yes" : "no",
+    "Least transmission angle": degrees(least),
+    ...(missed.length ? { "Farthest target from the curve": shown(Number(Math.max(...missed).toPrecision(3))) } : {}),
+    "Circuits": shown(answer.circuits.length),
+  } };
+}
