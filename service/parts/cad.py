@@ -1,6 +1,7 @@
-"""The assembly as solids: STEP (AP242), STL, 3MF and glTF, by build123d on Open CASCADE.
+"""The assembly as solids: STEP (AP242), STL, 3MF and glTF, by build123d on Open CASCADE, and lib3mf.
 
-This is the only module that needs the extra ``cad``; :mod:`service.parts.extra` says whether it is there.
+This is the only module that needs the extra ``cad``; :mod:`service.parts.extra` says whether it is there. STL and 3MF
+have one triangulation, which Open CASCADE keeps with the solid.
 Arcs stay arcs, holes cylinders and curves B-splines; the mesh formats have them as polygons no farther than
 :data:`DEFLECTION` off. A twisted prism is swept along its axis, with a helix beside it; a mesh stays one of triangles.
 """
@@ -10,10 +11,16 @@ from __future__ import annotations
 import re
 import tempfile
 from collections.abc import Sequence
+from functools import cache
+from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from service.parts.bodies import Body, Mesh, Prism, Tapered, Turned, Twisted
 from service.parts.curves import Curve
@@ -25,6 +32,9 @@ DEFLECTION, TURN = 0.02, 0.1
 
 BEYOND = 0.05
 """How far a cone to an apex goes beyond the body that it is intersected with, as a share of its height."""
+
+ONE_CORNER = 1e-6
+"""Millimetres within which corners of neighbouring faces are one."""
 
 MADE_AT = "2000-01-01T00:00:00"
 """Stands in STEP files as the time of their making, which a design does not have."""
@@ -60,9 +70,7 @@ def placed(assembly: Assembly, solids: Sequence[Solid], input_: float) -> list[S
         place = b3d.Location((shift.real, shift.imag, 0.0), (0.0, 0.0, float(np.degrees(np.angle(turn)))))
         if at.frame is not None:
             place = _standing(at.frame) * place
-        one = shape.moved(place)
-        one.label, one.color = shape.label, shape.color
-        moved.append(one)
+        moved.append(_moved(shape, place))
     return moved
 
 
@@ -83,26 +91,88 @@ def step(solids: Sequence[Solid], name: str) -> bytes:
     return re.sub(rb"FILE_SCHEMA\(\(.*?\)\);", b"FILE_SCHEMA(('" + SCHEMA + b"'));", written, count=1, flags=re.DOTALL)
 
 
-def stl(shape: Solid) -> bytes:
-    """A solid as a binary STL file."""
-    import build123d as b3d
+class Surface(NamedTuple):
+    """The triangles of a solid: corners, shape (n, 3), and their numbers, shape (m, 3), counter-clockwise outside."""
 
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "part.stl"
-        b3d.export_stl(shape, path, tolerance=DEFLECTION, angular_tolerance=TURN)
-        return path.read_bytes()
+    corners: NDArray[np.float64]
+    triangles: NDArray[np.int64]
 
 
-def three_mf(shape: Solid, name: str) -> bytes:
-    """A solid as a 3MF file."""
-    import build123d as b3d
+def surface(shape: Solid) -> Surface:
+    """The closed surface of a solid; faces that meet have their corners in common."""
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepMesh import BRepMesh_IncrementalMesh
+    from OCP.TopAbs import TopAbs_Orientation
+    from OCP.TopLoc import TopLoc_Location
 
-    mesher = b3d.Mesher()
-    mesher.add_shape(shape, linear_deflection=DEFLECTION, angular_deflection=TURN, part_number=name)
+    BRepMesh_IncrementalMesh(shape.wrapped, DEFLECTION, False, TURN, False)
+    corners: list[tuple[float, float, float]] = []
+    triangles: list[tuple[int, int, int]] = []
+    for face in shape.faces():
+        place = TopLoc_Location()
+        facets = BRep_Tool.Triangulation_s(face.wrapped, place)
+        if facets is None:  # a sliver thinner than the deflection
+            continue
+        to, before = place.Transformation(), len(corners) - 1
+        for k in range(1, facets.NbNodes() + 1):
+            node = facets.Node(k).Transformed(to)
+            corners.append((node.X(), node.Y(), node.Z()))
+        turned = face.wrapped.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
+        for k in range(1, facets.NbTriangles() + 1):
+            one, two, three = facets.Triangle(k).Get()
+            triangles.append((before + one, before + three, before + two) if turned else
+                             (before + one, before + two, before + three))  # fmt: skip
+    return _welded(np.array(corners), np.array(triangles))
+
+
+def _welded(corners: NDArray[np.float64], triangles: NDArray[np.int64]) -> Surface:
+    """With corners in one place taken for one, and without triangles that are none then."""
+    near = cKDTree(corners).query_pairs(ONE_CORNER, output_type="ndarray")
+    joined = coo_array((np.ones(len(near), bool), (near[:, 0], near[:, 1])), shape=(len(corners), len(corners)))
+    _, labels = connected_components(joined, directed=False)
+    _, first = np.unique(labels, return_index=True)
+    numbered = labels[triangles]
+    real = (numbered != np.roll(numbered, 1, axis=1)).all(axis=1)
+    return Surface(corners[first], numbered[real])
+
+
+def stl(mesh: Surface) -> bytes:
+    """A surface as a binary STL file."""
+    at = mesh.corners[mesh.triangles]
+    normals = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    records = np.zeros(len(at), [("normal", "<f4", 3), ("at", "<f4", (3, 3)), ("spare", "<u2")])
+    records["normal"], records["at"] = normals / np.where(lengths > 0.0, lengths, 1.0), at
+    return b"binary STL, millimetres".ljust(80) + len(at).to_bytes(4, "little") + records.tobytes()
+
+
+def three_mf(mesh: Surface, name: str) -> bytes:
+    """A surface as a 3MF file."""
+    library, lib3mf = _lib3mf()
+    model = library.CreateModel()
+    model.SetUnit(lib3mf.ModelUnit.MilliMeter)
+    made = model.AddMeshObject()
+    made.SetName(name)
+    made.SetPartNumber(name)
+    made.SetType(lib3mf.ObjectType.Model)
+    places = np.ascontiguousarray(mesh.corners, np.float32)
+    numbers = np.ascontiguousarray(mesh.triangles, np.uint32)
+    made.SetGeometry(
+        (lib3mf.Position * len(places)).from_buffer(places), (lib3mf.Triangle * len(numbers)).from_buffer(numbers)
+    )
+    model.AddBuildItem(made, library.GetIdentityTransform())
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "part.3mf"
-        mesher.write(path)
+        model.QueryWriter("3mf").WriteToFile(str(path))
         return path.read_bytes()
+
+
+@cache
+def _lib3mf() -> tuple[Any, Any]:
+    """The library, loaded once, and its names."""
+    from lib3mf import Lib3MF
+
+    return Lib3MF.Wrapper(str(Path(Lib3MF.__file__).with_name("lib3mf"))), Lib3MF
 
 
 def glb(solids: Sequence[Solid], name: str) -> bytes:
@@ -121,9 +191,18 @@ def lying(shape: Solid, part: Part) -> Solid:
     import build123d as b3d
 
     back = float(np.degrees(np.angle(part.along.conjugate())))
-    turned = shape.moved(b3d.Location((0.0, 0.0, 0.0), (0.0, 0.0, back)))
+    turned = _moved(shape, b3d.Location((0.0, 0.0, 0.0), (0.0, 0.0, back)))
     low = turned.bounding_box().min
-    return turned.moved(b3d.Location((-low.X, -low.Y, -low.Z)))
+    return _moved(turned, b3d.Location((-low.X, -low.Y, -low.Z)))
+
+
+def _moved(shape: Solid, place: Any) -> Solid:
+    """A solid somewhere else, of the same faces; what build123d moves it first copies, with all that it stands with."""
+    import build123d as b3d
+
+    moved = b3d.Solid(shape.wrapped.Moved(place.wrapped))
+    moved.label, moved.color = shape.label, shape.color
+    return moved
 
 
 def _standing(frame: Frame) -> Any:
@@ -177,12 +256,33 @@ def _tapered(body: Tapered) -> Any:
 
 
 def _sewn(body: Mesh) -> Any:
-    """The solid that the triangles of a mesh enclose."""
+    """The solid that the triangles of a mesh enclose, which have their edges in common."""
     import build123d as b3d
+    from OCP.BRep import BRep_Builder
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeVertex
+    from OCP.gp import gp_Pnt
+    from OCP.TopoDS import TopoDS_Shell, TopoDS_Solid, TopoDS_Wire
 
-    corners = [b3d.Vector(*place) for place in body.corners.tolist()]
-    faces = [b3d.Face(b3d.Wire.make_polygon([corners[k] for k in three])) for three in body.triangles.tolist()]
-    return b3d.Solid(b3d.Shell(faces))
+    builder = BRep_Builder()
+    corners = [BRepBuilderAPI_MakeVertex(gp_Pnt(*place)).Vertex() for place in body.corners.tolist()]
+    edges: dict[tuple[int, int], Any] = {}
+    shell, whole = TopoDS_Shell(), TopoDS_Solid()
+    builder.MakeShell(shell)
+    for three in body.triangles.tolist():
+        wire = TopoDS_Wire()
+        builder.MakeWire(wire)
+        for one, other in pairwise((*three, three[0])):
+            if (other, one) in edges:
+                builder.Add(wire, edges[other, one].Reversed())
+            else:
+                edges[one, other] = BRepBuilderAPI_MakeEdge(corners[one], corners[other]).Edge()
+                builder.Add(wire, edges[one, other])
+        wire.Closed(True)
+        builder.Add(shell, BRepBuilderAPI_MakeFace(wire, True).Face())
+    shell.Closed(True)
+    builder.MakeSolid(whole)
+    builder.Add(whole, shell)
+    return b3d.Solid(whole)
 
 
 def _up(height: float) -> Any:

@@ -124,6 +124,11 @@ class Displacement:
         start = self.angle[0]
         return np.asarray(self._curve(start + np.mod(angle - start, TURN)))
 
+    def slope(self, angle: Real) -> Real:
+        """Its derivative by the cam's angle."""
+        start = self.angle[0]
+        return np.asarray(self._curve(start + np.mod(angle - start, TURN), 1))
+
     @property
     def extremes(self) -> tuple[float, float]:
         """The least and the greatest in the table."""

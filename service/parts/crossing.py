@@ -33,6 +33,9 @@ HEAP = 8.0
 DEEP = 4e-3
 """How deep a point is to lie in a body to be counted, millimetres: more than polygons are away from arcs."""
 
+LEVELS = 160
+"""Sections of a mesh, between which it is taken as both of its neighbours have it."""
+
 SAG = 2e-3
 """How far polygons are from arcs, millimetres."""
 
@@ -56,8 +59,8 @@ class Surface:
     """A body that is asked for points of its surface, and which points lie in it, in the coordinates of its plane."""
 
     def __init__(self, body: Body, step: float) -> None:
-        assert not isinstance(body, Mesh), "meshes are not compared across planes"
         self._body, self._step = body, step
+        self._sections: dict[int, shapely.Geometry] = {}
 
     @cached_property
     def points(self) -> Real:
@@ -67,6 +70,8 @@ class Surface:
             return self._turned(body)
         if isinstance(body, Tapered):
             return self._tapered(body)
+        if isinstance(body, Mesh):
+            return _spread(body.corners[body.triangles], self._step)
         assert isinstance(body, Prism | Twisted)
         region = body.section if isinstance(body, Twisted) else body.region
         heights = _steps(body.low, body.high, self._step)
@@ -113,6 +118,9 @@ class Surface:
         if not deep.any():
             return found
         x, y, z = points[deep].T
+        if isinstance(body, Mesh):
+            found[deep] = self._in_sections(body, points[deep])
+            return found
         if isinstance(body, Turned):
             radii = np.hypot(x - body.centre.real, y - body.centre.imag)
             found[deep] = shapely.contains_xy(self._section, radii, z)
@@ -133,6 +141,28 @@ class Surface:
             return found
         found[deep] = shapely.contains_xy(self._section, x, y) & ~shapely.contains_xy(self._holes, x, y)
         return found
+
+    def _in_sections(self, body: Mesh, points: Real) -> Truth:
+        """Which points lie in the section below and in the section above, of those that a mesh has at equal steps."""
+        step = (body.high - body.low) / LEVELS
+        level = np.floor((points[:, 2] - body.low) / step).astype(int)
+        inside = np.zeros(len(points), np.bool_)
+        for k in np.unique(level).tolist():
+            own = level == k
+            x, y = points[own, 0], points[own, 1]
+            inside[own] = shapely.contains_xy(self._at(body, k), x, y) & shapely.contains_xy(self._at(body, k + 1), x, y)
+        return inside
+
+    def _at(self, body: Mesh, number: int) -> shapely.Geometry:
+        if number not in self._sections:
+            height = body.low + (body.high - body.low) * min(max(number, 0.01), LEVELS - 0.01) / LEVELS
+            faces = [
+                shapely.difference(_polygon(region.outer), shapely.union_all([_polygon(hole) for hole in region.holes]))
+                for region in body.within(height, height)
+            ]
+            self._sections[number] = shapely.buffer(shapely.union_all(faces), -DEEP, join_style="mitre")
+            shapely.prepare(self._sections[number])
+        return self._sections[number]
 
     @cached_property
     def _section(self) -> shapely.Geometry:
@@ -287,6 +317,19 @@ class Crossing:
         for axis in range(3):
             points = points[(points[:, axis] > low[axis]) & (points[:, axis] < high[axis])]
         return int(np.count_nonzero(second.within(points))) if len(points) else 0
+
+
+def _spread(triangles: Real, step: float) -> Real:
+    """The corners of triangles, shape (m, 3, 3), and points over those that are larger than a step."""
+    a, b, c = (triangles[:, k] for k in range(3))
+    longest = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
+    found = [triangles.reshape(-1, 3)]
+    for k in np.flatnonzero(longest > step).tolist():
+        count = math.ceil(longest[k] / step) + 1
+        u, v = (share.ravel() for share in np.meshgrid(*2 * (np.linspace(0.0, 1.0, count),)))
+        u, v = u[u + v <= 1.0, None], v[u + v <= 1.0, None]
+        found.append(a[k] + u * (b[k] - a[k]) + v * (c[k] - a[k]))
+    return np.concatenate(found)
 
 
 def _polygon(outline: Outline) -> shapely.Polygon:

@@ -2,28 +2,49 @@
 
 Everything is on the layer CUT: outlines and slots are closed polylines whose round ends are true arcs, holes are
 circles, smooth contours splines. The part lies along x, with its lowest and leftmost points on the axes.
+
+Of what is cut into a round bar it is the development, seen from outside: the outline on CUT, and lines on layers of
+their own as splines.
 """
 
 from __future__ import annotations
 
 from ezdxf.layouts.layout import Modelspace
+from ezdxf.math import fit_points_to_cad_cv
 
 from service.parts.curves import Curve
-from service.parts.model import Part
+from service.parts.model import Development, Part
 from service.parts.shapes import Disc, Outline, extent
 from service.render.page import dxf
 
 LAYERS = {"CUT": (7, "CONTINUOUS")}
 
+COLOURS = (1, 5, 3)
+"""Of the layers of a development."""
+
 
 def cutting(part: Part, title: str) -> str:
     """The drawing of one part as a DXF document (R2010)."""
+    if part.unrolled is not None:
+        return _development(part.unrolled, title)
     document = dxf.new_drawing(title, "mm", LAYERS)
     space = document.modelspace()
     outer, along = part.region.outer, part.along
     corner = complex(extent(outer, along)[0], extent(outer, 1j * along)[0])
     for outline in (outer, *part.region.holes):
         _add(space, outline, along, corner)
+    return dxf.written(document)
+
+
+def _development(unrolled: Development, title: str) -> str:
+    layers = {name: (COLOURS[n], "CONTINUOUS") for n, (name, _) in enumerate(unrolled.lines)}
+    document = dxf.new_drawing(title, "mm", LAYERS | layers)
+    space = document.modelspace()
+    box = [(0.0, 0.0), (unrolled.width, 0.0), (unrolled.width, unrolled.height), (0.0, unrolled.height)]
+    space.add_lwpolyline(box, close=True, dxfattribs={"layer": "CUT"})
+    for name, points in unrolled.lines:
+        spline = space.add_spline(degree=3, dxfattribs={"layer": name})
+        spline.apply_construction_tool(fit_points_to_cad_cv([(z.real, z.imag) for z in points]))
     return dxf.written(document)
 
 

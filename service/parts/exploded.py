@@ -43,7 +43,7 @@ def _along_their_shafts(assembly: Assembly) -> dict[str, float]:
     """What is on a shaft goes away from its wheel, and the shaft out to the side on which it is longer."""
     found = dict.fromkeys((part.name for part in assembly.parts), 0.0)
     space = ALONG * assembly.size
-    wheels = [part for part in assembly.parts if part.sort == "gear"]
+    wheels = [part for part in assembly.parts if part.sort in ("gear", "cam") and part.name in assembly.frames]
     for wheel in wheels:
         own = assembly.frames[wheel.name]
         beside = [part for part in assembly.parts if assembly.frames.get(part.name) is own and part not in wheels]

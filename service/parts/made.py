@@ -54,6 +54,12 @@ def _cams() -> Make:
     return cam_parts
 
 
+def _barrels() -> Make:
+    from service.parts.barrel import barrel_parts
+
+    return barrel_parts
+
+
 def _genevas() -> Make:
     from service.parts.geneva import geneva_parts
 
@@ -94,6 +100,7 @@ MAKERS: dict[str, Maker] = {
     "train_series": Maker(_series, OF_GEARS),
     "layshaft_gearbox": Maker(_layshaft_gearboxes, OF_GEARS),
     "cam": Maker(_cams, ONE_CYCLE),
+    "barrel_cam": Maker(_barrels, ONE_CYCLE),
     "geneva_external": Maker(_genevas, ONE_CYCLE),
     "geneva_internal": Maker(_genevas, ONE_CYCLE),
     "ratchet": Maker(_ratchets, ONE_CYCLE),
@@ -103,8 +110,6 @@ MAKERS: dict[str, Maker] = {
 
 NOT_BUILT = {
     "gearbox": "its gears are shifted along their shafts so that one pair of a stage is in mesh at a time",
-    "barrel_cam": "the groove of a barrel is no contour of a plate, and what slides along its axis stands square: "
-    "parts are made of radial cams",
     "geneva_spherical": "a hemisphere and its cap are cut from solids along crossing axes, not from plates; parts are "
     "made of Geneva drives in the plane",
 }

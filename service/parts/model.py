@@ -27,6 +27,22 @@ InputField = Literal["input_angle", "input_place"]
 """By which field a request says where an assembly is shown."""
 
 
+class Development(NamedTuple):
+    """The surface of a round part unrolled, seen from outside: x around it, y along its axis, millimetres.
+
+    Attributes
+    ----------
+    width, height : float
+        The circumference, and the length along the axis.
+    lines : tuple of (str, tuple of complex)
+        Layer and points of each open line on it.
+    """
+
+    width: float
+    height: float
+    lines: tuple[tuple[str, tuple[complex, ...]], ...]
+
+
 class Carrier(NamedTuple):
     """What a part moves with: it turns as a link does, and goes where a joint goes; the base goes nowhere.
 
@@ -131,6 +147,8 @@ class Part:
         Whether it is a stack of rings about its joint.
     like : str
         What parts that are made alike have in common, where that is not to be seen from their bodies; or empty.
+    unrolled : Development, optional
+        What is drawn of one that is cut into a round bar.
     """
 
     name: str
@@ -145,6 +163,7 @@ class Part:
     standard: str = ""
     round: bool = False
     like: str = ""
+    unrolled: Development | None = None
 
     @property
     def low(self) -> float:

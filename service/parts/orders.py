@@ -13,6 +13,7 @@ from service.parts.items import items
 from service.parts.made import made
 from service.parts.model import Assembly, InputField
 from service.parts.package import package, part_file
+from service.parts.painted import painted_sheet
 from service.parts.sizes import AssemblyQuery, File, NotMade, PartFile, PartsQuery, Process, Refused, ViewQuery
 from service.parts.viewed import files_of, viewed
 from service.render import heading
@@ -60,9 +61,8 @@ def _file(order: Order, file: File) -> bytes:
         return viewed(assembly, query.positions).model_dump_json().encode()
     at = _input(assembly, AssemblyQuery.model_validate(order.query))
     if file == "svg":
-        if not assembly.parallel:
-            raise NotMade("Assemblies are drawn whose shafts are parallel; the axes of this one are not.")
-        return isometric_sheet(assembly, _title(order), at).encode()
+        draw = isometric_sheet if assembly.parallel else painted_sheet
+        return draw(assembly, _title(order), at).encode()
     solids = cad.placed(assembly, [cad.solid(part) for part in assembly.parts], at)
     return cad.step(solids, "assembly") if file == "step" else cad.glb(solids, "assembly")
 

@@ -7,7 +7,8 @@ README.txt        what is in it, and how it is put together                all
 bom.csv           what is made and bought                                  all
 assembly.svg      the planes as an exploded side view, to scale;           all
                   views from above and from the front where shafts cross
-isometric.svg     a picture of it, as built and with its planes apart      all whose shafts are parallel
+isometric.svg     a picture of it, as built and with its planes apart;     all
+                  from two sides where shafts cross
 dxf/NAME.dxf      outlines of plates and blocks, with their holes          all
 assembly.step     all parts at their places, with names and colours        all, where CAD is installed
 step/NAME.step    each item that is not bought                             mill
@@ -28,6 +29,7 @@ from service.parts.extra import installed
 from service.parts.isometric import isometric_sheet
 from service.parts.items import Item, items
 from service.parts.model import FLAT, Assembly
+from service.parts.painted import painted_sheet
 from service.parts.sheet import assembly_sheet
 from service.parts.sizes import PartFile, Process
 from service.parts.viewed import files_of
@@ -54,8 +56,7 @@ def package(assembly: Assembly, process: Process, title: str, at: float) -> byte
         "bom.csv": bill(listed).encode(),
         "assembly.svg": (assembly_sheet if assembly.parallel else crossed_sheet)(assembly, listed, title).encode(),
     }
-    if assembly.parallel:
-        files["isometric.svg"] = isometric_sheet(assembly, title, at).encode()
+    files["isometric.svg"] = (isometric_sheet if assembly.parallel else painted_sheet)(assembly, title, at).encode()
     for item in listed:
         if "dxf" in files_of(item.part):
             files[f"dxf/{item.name}.dxf"] = part_file(item, "dxf", title)
@@ -72,7 +73,8 @@ def part_file(item: Item, form: PartFile, title: str) -> bytes:
     lying = cad.lying(cad.solid(item.part), item.part)
     if form == "step":
         return cad.step([lying], item.name)
-    return cad.stl(lying) if form == "stl" else cad.three_mf(lying, item.name)
+    mesh = cad.surface(lying)
+    return cad.stl(mesh) if form == "stl" else cad.three_mf(mesh, item.name)
 
 
 def zipped(files: dict[str, bytes]) -> bytes:
@@ -95,8 +97,9 @@ def _solids(assembly: Assembly, listed: list[Item], process: Process) -> dict[st
             if not item.part.standard or item.part.sort == "pin"
         }
     if process == "print":
-        files |= {f"stl/{name}.stl": cad.stl(shape) for name, shape in lying.items()}
-        files |= {f"3mf/{name}.3mf": cad.three_mf(shape, name) for name, shape in lying.items()}
+        meshes = {name: cad.surface(shape) for name, shape in lying.items()}
+        files |= {f"stl/{name}.stl": cad.stl(mesh) for name, mesh in meshes.items()}
+        files |= {f"3mf/{name}.3mf": cad.three_mf(mesh, name) for name, mesh in meshes.items()}
     return files
 
 

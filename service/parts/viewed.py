@@ -69,8 +69,8 @@ def viewed(assembly: Assembly, positions: int) -> AssemblyView:
 
 
 def files_of(part: Part) -> list[PartFile]:
-    """The files that there are of a part here: outlines of what is cut from a sheet, solids where they can be made."""
-    flat = part.sort in FLAT and all(isinstance(body, Prism) for body in part.bodies)
+    """The files that there are of a part here: outlines of what is cut, solids where they can be made."""
+    flat = part.unrolled is not None or (part.sort in FLAT and all(isinstance(body, Prism) for body in part.bodies))
     cut: list[PartFile] = ["dxf"] if flat else []
     return cut + (["stl", "step", "3mf"] if installed() else [])
 

@@ -1,0 +1,280 @@
+"""Barrel cams as parts: the barrel with its true groove, the follower that slides along its axis, and the base.
+
+From below: the base, in a slot of which the follower's runner goes; the follower; its roller, which stands in the
+groove of the barrel above. The barrel turns on a shaft along x, in two uprights whose feet stand in the base. What the
+shaft carries, and the uprights, are told in the plane across it, the first direction of which leads down to the roller.
+
+What moves across another plane is kept apart by its sizes: uprights and shaft are beside the follower's way, and the
+groove is the envelope of the roller with its clearance.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from kinematics.linkage.planar.mechanism import GROUND
+from service.parts.bodies import Prism
+from service.parts.building import BASE_COLOUR, BLOCK_COLOUR, LINK_COLOURS, keyway_reach
+from service.parts.cam_motion import CAM, FOLLOWER, Displacement, Turning, still, turned
+from service.parts.cams import PIN_OF_ROLLER, ROLLER_COLOUR
+from service.parts.fasteners import FASTENER_COLOUR, MATERIALS, fillers, held_pin
+from service.parts.fitting import Fitting, Trial, fault_of
+from service.parts.gears.keys import key_for, key_section, keyed_bore, keyed_shaft
+from service.parts.groove import Groove
+from service.parts.model import Assembly, Carrier, Development, Frame, Part, Placed, Real
+from service.parts.shapes import Disc, Loop, Outline, Region, ring, ring_of, widened
+from service.parts.sizes import MILLIMETRES, WALL, NotMade, PartsQuery, Sizes
+from service.parts.stack import STUB, Stack
+
+ON_BARREL, ON_FOLLOWER = Carrier(CAM, None), Carrier(FOLLOWER, None)
+UPRIGHT = Carrier(GROUND, "upright")
+"""What carries the uprights: they stand still, in the plane across the shaft."""
+
+EDGE = 1.0
+"""What a barrel has beyond its groove at least, in diameters of the shaft."""
+
+FOOT = 2.0
+"""Width of the feet of an upright, in thicknesses of it."""
+
+SAG, SAG_OF_CLEARANCE = 0.01, 0.1
+"""How far facets may be from the groove: millimetres, and share of the clearance of the roller."""
+
+DRAWN = 720
+"""Places around the barrel at which its development has the walls."""
+
+
+@dataclass(frozen=True)
+class BarrelMotion(Turning):
+    """A barrel on its shaft and a follower that slides along x.
+
+    Attributes
+    ----------
+    displacement : Displacement
+        Millimetres.
+    sense : float
+        1 where the barrel turns counter-clockwise, seen against x.
+    frame : Frame
+        The plane across the shaft.
+    """
+
+    displacement: Displacement
+    sense: float
+    frame: Frame
+
+    def placed(self, carrier: Carrier, state: Real) -> Placed:
+        """How what a carrier carries has moved from the cam angle 0."""
+        if carrier == UPRIGHT:
+            return still(state)._replace(frame=self.frame)
+        if carrier.link == GROUND:
+            return still(state)
+        if carrier.link == CAM:
+            return turned(self.sense * state)._replace(frame=self.frame)
+        gone = self.displacement(state) - self.displacement(np.zeros(1))
+        return Placed(np.ones(state.shape, np.complex128), np.asarray(gone, np.complex128))
+
+
+def barrel_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+    """The parts of a barrel cam.
+
+    Parameters
+    ----------
+    design : BarrelCamDesign
+    problem : CamProblem
+    query : PartsQuery
+        Lengths in the unit of the problem.
+
+    Raises
+    ------
+    NotMade
+        Where the roller leaves no such groove, or there is no room for such parts.
+    """
+    return _Barrels(design.mechanism, query, MILLIMETRES[problem.length_unit]).assembly()
+
+
+class _Barrels(Fitting):
+    """One request for the parts of a barrel cam."""
+
+    def __init__(self, mechanism: Any, query: PartsQuery, unit: float) -> None:
+        self._mechanism = mechanism
+        lift = max(mechanism.program.s) - min(mechanism.program.s)
+        super().__init__(query, unit, max(2.0 * mechanism.cylinder_radius, lift) + lift)
+        if max(abs(jump) for jump in np.diff(mechanism.program.s)) > mechanism.cylinder_radius:
+            raise NotMade("The displacement jumps, and no groove has a step.")
+
+    @property
+    def most(self) -> float:
+        """A share of the roller."""
+        return PIN_OF_ROLLER * float(self._mechanism.follower.roller_radius)
+
+    def opening(self, sizes: Sizes) -> tuple[float, str]:
+        """The base has a slot for the runner."""
+        return sizes.block[1] + 2.0 * sizes.clearance, "a runner on pins"
+
+    def tried(self, sizes: Sizes, scale: float) -> Trial:
+        """The assembly in these sizes."""
+        builder = _Builder(self._mechanism, sizes, self._unit * scale)
+        if not 0.5 * sizes.collar < builder.roller:
+            return Trial(None, "the roller is no wider than what holds its pin")
+        if builder.groove.floor < keyway_reach(sizes) + WALL * sizes.pin:
+            return Trial(None, "the groove is as deep as the roller is thick, and leaves too little around the shaft")
+        if not builder.groove.sound():
+            return Trial(None, "the floor of the groove is so near to the axis that the roller cuts its own wall away")
+        assembly = builder.assembled(scale)
+        fault = fault_of(assembly, sizes)
+        return Trial(None, fault) if fault else Trial(assembly, "")
+
+
+class _Builder:
+    """Makes the parts in given sizes; lengths in millimetres."""
+
+    def __init__(self, mechanism: Any, sizes: Sizes, factor: float) -> None:
+        self._sizes, self._factor = sizes, factor
+        self._stack = Stack(sizes, ())
+        self._sense = 1.0 if mechanism.rotation == "ccw" else -1.0
+        self._displacement = Displacement.of(mechanism.program, factor)
+        self._middle = factor * mechanism.cylinder_radius
+        self.roller = factor * mechanism.follower.roller_radius
+        half = 0.5 * sizes.thickness
+        self.groove = Groove(
+            self._course,
+            self.roller + sizes.clearance,
+            self._middle - half - sizes.end - sizes.clearance,
+            self._middle + half - sizes.clearance,
+        )
+        self._first = float(self._displacement(np.zeros(1))[0])
+        self._least, self._most = self._displacement.extremes
+        # The shaft is above the roller, whose middle is that of its plane.
+        self._axis = sum(self._stack.level(2)) * 0.5 + self._middle
+        self._key = key_for(sizes.pin)
+        wide = self.groove.half + EDGE * sizes.pin
+        self._barrel = self._least - wide, self._most + wide
+        gap = self._stack.level(1)[0]
+        self._uprights = (
+            (self._barrel[0] - gap - sizes.thickness, self._barrel[0] - gap),
+            (self._barrel[1] + gap, self._barrel[1] + gap + sizes.thickness),
+        )
+
+    def _course(self, at: Real) -> tuple[Real, Real]:
+        """The groove over angles of the barrel, which comes by under the roller against the way it turns."""
+        theta = -self._sense * at
+        return self._displacement(theta), -self._sense * self._displacement.slope(theta)
+
+    def assembled(self, scale: float) -> Assembly:
+        """All parts."""
+        axes = np.column_stack([(0.0, 0.0, -1.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)])
+        frame = Frame(np.array([0.0, 0.0, self._axis]), axes)
+        motion = BarrelMotion(self._size(), self._displacement, self._sense, frame)
+        parts = (*self._follower(), *self._turning(), *self._standing())
+        notes = (
+            "The groove is milled with a cutter as wide as the roller with its clearance, or printed; the drawing of "
+            "the barrel is its development, seen from outside.",
+            "Feet of the uprights are glued or pressed into the base.",
+        )
+        return Assembly(parts, motion, 2, 1, self._factor, scale, notes)
+
+    def _size(self) -> float:
+        return max(2.0 * self.groove.surface, self._barrel[1] - self._barrel[0])
+
+    # The follower
+
+    def _follower(self) -> list[Part]:
+        sizes, stack = self._sizes, self._stack
+        place = complex(self._first)
+        away = sizes.collar + sizes.apart
+        pins = [place - away, place + away]
+        hole, wide = 0.5 * sizes.hole, 0.5 * sizes.block[1]
+        plate = Region(widened(pins, 0.5 * sizes.width), tuple(Disc(z, hole) for z in (*pins, place)))
+        runner = Region(widened(pins, wide), tuple(Disc(z, hole) for z in pins))
+        body = Prism(ring(place, self.roller, hole), *stack.level(2))
+        material = {"print": "PETG", "laser": "sheet", "mill": "steel"}[sizes.process]
+        parts = [
+            stack.plate("follower", "follower", "link", ON_FOLLOWER, plate, 1, LINK_COLOURS[1]),
+            stack.plate("runner", "runner in the guide", "block", ON_FOLLOWER, runner, 0, BLOCK_COLOUR),
+            Part("roller", "roller", "block", ON_FOLLOWER, (body,), 1.0 + 0.0j, (2, 2), material, ROLLER_COLOUR,
+                 round=True),
+            *stack.pin("roller", "pin roller", ON_FOLLOWER, place, (1, 2)),
+            *stack.between("roller", ON_FOLLOWER, place, [(1, 2)]),
+        ]  # fmt: skip
+        for n, z in enumerate(pins, 1):
+            parts += stack.pin(f"guide_{n}", f"pin guide {n}", ON_FOLLOWER, z, (0, 1))
+            parts += stack.between(f"guide_{n}", ON_FOLLOWER, z, [(0, 1)])
+        return parts
+
+    # What turns
+
+    def _turning(self) -> list[Part]:
+        sizes, pin = self._sizes, self._sizes.pin
+        low, high = self._barrel
+        bore = ring_of(keyed_bore(0j, pin, self._key, sizes.clearance), beyond=True)
+        mesh = self.groove.barrel(low, high, bore, min(SAG, SAG_OF_CLEARANCE * sizes.clearance))
+        material = MATERIALS["print" if sizes.process == "print" else "mill"][0]
+        barrel = Part("barrel", "barrel with its groove", "cam", ON_BARREL, (mesh,), 1.0 + 0.0j, (2, 2), material,
+                      LINK_COLOURS[0], unrolled=self._development())  # fmt: skip
+        seat = Prism(Region(keyed_shaft(0j, pin, self._key)), low, high)
+        ends = self._uprights[0][0], self._uprights[1][1]
+        parts = [
+            barrel,
+            *held_pin("cam", "camshaft", ON_BARREL, 0j, ends, (2, 2), sizes, seats=[seat], stub=STUB * pin),
+        ]
+        told = self._key.standard and f"{self._key.standard} x {high - low:.4g}"
+        key = (Prism(Region(key_section(0j, pin, self._key)), low, high),)
+        parts.append(Part("key_cam", "key", "key", ON_BARREL, key, 1.0 + 0.0j, (2, 2), MATERIALS[sizes.process][1],
+                          FASTENER_COLOUR, told))  # fmt: skip
+        for n, gap in enumerate(((self._uprights[0][1], low), (high, self._uprights[1][0]))):
+            parts += fillers("cam", ON_BARREL, 0j, gap, (n, n + 1), sizes)
+        return parts
+
+    def _development(self) -> Development:
+        """The barrel's surface unrolled, seen from outside: x around it, y along the axis."""
+        groove, (low, high) = self.groove, self._barrel
+        at = np.linspace(0.0, 2.0 * math.pi, DRAWN + 1)
+        lines = []
+        for name, side in (("LOWER_WALL", -1), ("UPPER_WALL", 1)):
+            wall = groove.wall(at, groove.surface, side)
+            lines.append((name, tuple((groove.surface * wall.angle + 1j * (wall.height - low)).tolist())))
+        middle = groove.surface * at + 1j * (self._course(at)[0] - low)
+        lines.append(("ROLLER", tuple(middle.tolist())))
+        return Development(2.0 * math.pi * groove.surface, high - low, tuple(lines))
+
+    # What stands
+
+    def _standing(self) -> list[Part]:
+        sizes, stack = self._sizes, self._stack
+        notch = 0.5 * max(sizes.width, sizes.collar) + sizes.apart
+        inner = notch + WALL * sizes.pin + sizes.clearance
+        outer = inner + FOOT * sizes.thickness
+        half = max(outer + 0.5 * sizes.thickness, 0.5 * sizes.width)
+        # How far below the shaft.
+        top, floor, foot = -0.5 * sizes.width, self._axis, self._axis + sizes.thickness
+        above = floor - stack.level(2)[0]
+        right = [
+            (above, notch), (floor, notch), (floor, inner), (foot, inner), (foot, outer), (floor, outer), (floor, half),
+            (top, half),
+        ]  # fmt: skip
+        corners = [complex(a, b) for a, b in right]
+        corners = [*corners, *(z.conjugate() for z in corners[::-1])]
+        outline = Loop(tuple(corners), (0.0,) * len(corners))
+        parts = []
+        for n, (low, high) in enumerate(self._uprights, 1):
+            body = Prism(Region(outline, (Disc(0j, 0.5 * sizes.hole),)), low, high)
+            parts.append(
+                Part(f"upright_{n}", f"upright {n}", "base", UPRIGHT, (body,), 1.0 + 0.0j, (0, 2),
+                     MATERIALS[sizes.process][0], BASE_COLOUR, like="upright")
+            )  # fmt: skip
+        away = sizes.collar + sizes.apart
+        way = [complex(self._least - away), complex(self._most + away)]
+        cuts: list[Outline] = [widened(way, 0.5 * sizes.block[1] + sizes.clearance)]
+        c = sizes.clearance
+        points = list(way)
+        for low, high in self._uprights:
+            for side in (-1.0, 1.0):
+                near, far = sorted((side * (inner - c), side * (outer + c)))
+                box = (complex(low - c, near), complex(high + c, near), complex(high + c, far), complex(low - c, far))
+                cuts.append(Loop(box, (0.0,) * 4))
+                points += box
+        parts.append(stack.base("base", widened(points, 0.5 * sizes.width), cuts, ()))
+        return parts

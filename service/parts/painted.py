@@ -1,0 +1,175 @@
+"""A picture of an assembly with axes in several directions: triangles with hidden surfaces removed pixel by pixel.
+
+It is drawn as the isometric one is, from above at an angle, and once more from the opposite side. Every triangle that
+faces the viewer is filled into a buffer of depths, and lines are drawn where neighbouring pixels show other parts or
+faces that are bent against each other. The picture stands in the sheet as an image.
+"""
+
+from __future__ import annotations
+
+import base64
+import struct
+import zlib
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.parts.facets import facets
+from service.parts.isometric import ALONG, COSINE, SINE, TOWARD
+from service.parts.model import Assembly, Part, Placed
+from service.render.page.sheet import EDGE, FULL, TOP, caption, framed, sheet
+from service.render.page.svg import Box, Element, Viewport, element
+from service.render.page.symbols import scale_bar
+
+Real = NDArray[np.float64]
+
+HEIGHT, MARGIN, SAG = 430.0, 24.0, 0.02
+"""Height of a panel and what is left free in it, pixels; how far facets may be from arcs, millimetres."""
+
+FINE = 3
+"""Samples of a pixel of the sheet in each direction."""
+
+LIGHT = np.array([0.35, 0.75, 0.9])
+"""Where the light comes from: to the right in the view, upwards in it, and towards the viewer."""
+
+DARKEST = 0.45
+"""Light of a face that is turned away from it."""
+
+BENT = 0.75
+"""Cosine of the angle between two faces from which on the edge between them is drawn."""
+
+INK = np.array([38.0, 44.0, 51.0])
+
+
+class Shot(NamedTuple):
+    """A picture: the bytes of a PNG, and what it shows as a map of the view to the panel."""
+
+    image: bytes
+    shown: Viewport
+
+
+def painted_sheet(assembly: Assembly, title: str, at: float) -> str:
+    """The picture as an SVG document.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    title : str
+        Without characters that XML forbids.
+    at : float
+        Input at which it is shown, radians or millimetres along the slide.
+    """
+    parts: list[Element] = []
+    half = 0.5 * (FULL - 12.0)
+    for n, words in enumerate(("From the front", "From behind")):
+        left = EDGE + n * (half + 12.0)
+        panel = Box(left, TOP, left + half, TOP + HEIGHT)
+        shot = painted(assembly, at, panel, behind=n == 1)
+        data = "data:image/png;base64," + base64.b64encode(shot.image).decode()
+        image = element("image", x=panel.left, y=panel.low, width=panel.width, height=panel.height, href=data)
+        bar, _ = scale_bar(Viewport(panel, 0j, 0j, shot.shown.scale), "mm")
+        parts += [image, framed(panel, f"seen_{n + 1}"), caption(panel, words), bar]
+    words = f"{len(assembly.parts)} parts, isometric; lengths in millimetres"
+    if assembly.scale != 1.0:
+        words += f"; {assembly.scale:g} times the design"
+    return sheet(title, words, f"An assembly of {len(assembly.parts)} parts from two sides.", parts, TOP + HEIGHT)
+
+
+def painted(assembly: Assembly, at: float, panel: Box, *, behind: bool = False) -> Shot:
+    """The assembly at an input, as large as a panel has room for."""
+    state = assembly.motion.at(np.array([at]))
+    turn = -1.0 if behind else 1.0
+    right, toward = turn * ALONG, turn * TOWARD
+    axes = np.array(
+        [
+            (right.real, right.imag, 0.0),
+            (-SINE * toward.real, -SINE * toward.imag, COSINE),
+            (COSINE * toward.real, COSINE * toward.imag, SINE),
+        ]
+    )
+    solids, numbers = [], []
+    for n, part in enumerate(assembly.parts):
+        triangles = _standing(_surface(part), assembly.motion.placed(part.carrier, state)) @ axes.T
+        solids.append(triangles)
+        numbers.append(np.full(len(triangles), n))
+    triangles, number = np.concatenate(solids), np.concatenate(numbers)
+    box = Box.around(triangles[:, :, 0].ravel() + 1j * triangles[:, :, 1].ravel())
+    shown = Viewport.fit(box, panel, MARGIN, 22.0)
+    colours = np.array([[int(part.colour[k : k + 2], 16) for k in (1, 3, 5)] for part in assembly.parts], float)
+    return Shot(_png(_filled(triangles, number, colours, shown)), shown)
+
+
+def _surface(part: Part) -> Real:
+    return np.concatenate([facets(body, SAG) for body in part.bodies])
+
+
+def _standing(triangles: Real, placed: Placed) -> Real:
+    """Triangles of a part where it is."""
+    turn, shift = (complex(np.ravel(values)[0]) for values in (placed.turn, placed.shift))
+    plane = turn * (triangles[:, :, 0] + 1j * triangles[:, :, 1]) + shift
+    moved = np.stack([plane.real, plane.imag, triangles[:, :, 2]], axis=-1)
+    if placed.frame is None:
+        return moved
+    return np.asarray(placed.frame.origin.reshape(-1, 3)[0] + moved @ placed.frame.axes.reshape(-1, 3, 3)[0].T)
+
+
+def _filled(triangles: Real, number: NDArray[np.int64], colours: Real, shown: Viewport) -> NDArray[np.uint8]:
+    """The pixels of the panel."""
+    panel = shown.panel
+    width, height = FINE * round(panel.width), FINE * round(panel.height)
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    length = np.linalg.norm(normals, axis=1)
+    seen = normals[:, 2] > 1e-9 * length
+    triangles, number, normals = triangles[seen], number[seen], normals[seen] / length[seen, None]
+    points = shown.points(triangles[:, :, 0] + 1j * triangles[:, :, 1]) - complex(panel.left, panel.low)
+    x, y, z = FINE * points.real - 0.5, FINE * points.imag - 0.5, triangles[:, :, 2]
+    depth = np.full((height, width), -np.inf)
+    owner = np.full((height, width), -1)
+    for k in range(len(triangles)):
+        left, right = max(0, int(np.ceil(x[k].min()))), min(width - 1, int(x[k].max()))
+        low, high = max(0, int(np.ceil(y[k].min()))), min(height - 1, int(y[k].max()))
+        if right < left or high < low:
+            continue
+        (ax, bx, cx), (ay, by, cy), (az, bz, cz) = x[k], y[k], z[k]
+        whole = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+        if whole == 0.0:
+            continue
+        px, py = np.arange(left, right + 1), np.arange(low, high + 1)[:, None]
+        u = ((px - ax) * (cy - ay) - (cx - ax) * (py - ay)) / whole
+        v = ((bx - ax) * (py - ay) - (px - ax) * (by - ay)) / whole
+        at = az + u * (bz - az) + v * (cz - az)
+        window = slice(low, high + 1), slice(left, right + 1)
+        nearer = (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1.0 + 1e-9) & (at > depth[window])
+        depth[window][nearer] = at[nearer]
+        owner[window][nearer] = k
+    lit = DARKEST + (1.0 - DARKEST) * np.clip(normals @ (LIGHT / np.linalg.norm(LIGHT)), 0.0, 1.0)
+    paint = np.vstack([np.minimum(255.0, lit[:, None] * (colours[number] + 0.2 * (255.0 - colours[number]))),
+                       np.full(3, 255.0)])  # fmt: skip
+    picture = paint[owner]
+    picture[_lines(owner, np.append(number, -1), np.vstack([normals, np.zeros(3)]))] = INK
+    picture = picture.reshape(height // FINE, FINE, width // FINE, FINE, 3)
+    return np.asarray(np.round(picture.mean(axis=(1, 3))), np.uint8)
+
+
+def _lines(owner: NDArray[np.int64], part: NDArray[np.int64], normals: Real) -> NDArray[np.bool_]:
+    """Where a pixel's neighbour shows another part, or a face that is bent against its own."""
+    found = np.zeros(owner.shape, bool)
+    for axis in (0, 1):
+        other = np.roll(owner, -1, axis)
+        bent = np.einsum("ijk,ijk->ij", normals[owner], normals[other]) < BENT
+        found |= (part[owner] != part[other]) | (bent & (owner >= 0) & (other >= 0))
+    return found
+
+
+def _png(pixels: NDArray[np.uint8]) -> bytes:
+    """The file of a picture of shape (rows, columns, 3)."""
+    height, width, _ = pixels.shape
+    rows = np.concatenate([np.zeros((height, 1), np.uint8), pixels.reshape(height, 3 * width)], axis=1)
+
+    def chunk(name: bytes, content: bytes) -> bytes:
+        return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
+
+    head = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    chunks = chunk(b"IHDR", head), chunk(b"IDAT", zlib.compress(rows.tobytes(), 9)), chunk(b"IEND", b"")
+    return b"\x89PNG\r\n\x1a\n" + b"".join(chunks)
