@@ -27,7 +27,7 @@ Real = NDArray[np.float64]
 HEIGHT, MARGIN, SAG = 430.0, 24.0, 0.02
 """Height of a panel and what is left free in it, pixels; how far facets may be from arcs, millimetres."""
 
-FINE = 3
+FINE = 2
 """Samples of a pixel of the sheet in each direction."""
 
 LIGHT = np.array([0.35, 0.75, 0.9])
