@@ -51,9 +51,6 @@ export class AssemblyView {
     this.beyond = el("p", { class: "note", hidden: true });
     /** By kind of part. @type {Map<string, any>} */
     this.boxes = new Map();
-    this.play = el("button");
-    this.scrub = el("input");
-    this.motionRow = el("div");
     this.words = el("p", { class: "note", role: "status" });
     this.fault = el("div", { class: "fault", role: "alert" });
     this.body = el("div", { class: "assembly", hidden: true });
@@ -193,7 +190,7 @@ export class AssemblyView {
       button("Save picture", async () => this.scene && saved(URL.createObjectURL(await this.scene.picture()), `${this.job.kind}-${this.n + 1}-assembly.png`)));
   }
 
-  /** How far its planes are apart, and the motion: that of the drawing beside it. */
+  /** How far its planes are apart; it moves with the drawing, whose clock stands beside it. */
   sliders() {
     const apart = el("input", { type: "range", id: "explode", min: 0, max: 1, step: 0.01, value: this.explosion, oninput: () => {
       this.explosion = apart.valueAsNumber;
@@ -201,21 +198,11 @@ export class AssemblyView {
       this.scene?.explode(this.explosion);
     } });
     apart.setAttribute("aria-valuetext", `${Math.round(100 * this.explosion)} %`);
-    this.play = el("button", { type: "button", class: "small", onclick: () => {
-      const player = this.led()?.player;
-      if (player?.playing) player.stop();
-      else player?.play();
-    } }, "Play");
-    this.scrub = el("input", { type: "range", id: "assembly-input", min: 0, max: 1, step: "any", oninput: () => {
-      const player = this.led()?.player;
-      if (player) player.lead(this.scrub.valueAsNumber * player.last);
-    } });
-    this.motionRow = el("div", { class: "row" }, this.play, el("label", { for: "assembly-input" }, "Input"), this.scrub);
-    return el("div", {}, el("div", { class: "row" }, el("label", { for: "explode" }, "Apart"), apart,
+    return el("div", { class: "row" }, el("label", { for: "explode" }, "Apart"), apart,
       el("button", { type: "button", class: "small", onclick: () => {
         apart.value = this.explosion > 0 ? 0 : 1;
         apart.dispatchEvent(new Event("input"));
-      } }, "Together / apart")), this.motionRow);
+      } }, "Together / apart"));
   }
 
   /** The parts by kind: shown or hidden, chosen, and their files. @param {Assembly} assembly @param {Record<string, string>} query */
@@ -302,16 +289,12 @@ export class AssemblyView {
   follow() {
     if (!this.scene || !this.assembly) return;
     const led = this.led();
-    this.motionRow.hidden = !led;
     if (!led) return;
     const { player, motion } = led;
-    this.play.textContent = player.playing ? "Pause" : "Play";
     if (player.at === this.seen) return;
     this.seen = player.at;
     const turns = Math.floor(player.at / player.last);
     const rest = player.at - turns * player.last;
-    this.scrub.value = String((turns > 0 && rest === 0 ? player.last : rest) / player.last);
-    this.scrub.setAttribute("aria-valuetext", player.moved.reading(player.at));
     const [begin, end] = [Number(motion.input_angle[0]), Number(motion.input_angle[player.last])];
     const input = Number(between(motion.input_angle, rest)) + turns * (end - begin);
     const { at, within } = this.scene.motion.place(input);

@@ -21,6 +21,9 @@ import { SentLinkage } from "./sent.js";
 import { canvas } from "./targets.js";
 import { Undo } from "./undo.js";
 
+/** So long after the last change of the window's size the canvas is drawn anew. */
+const RESIZED_MS = 150;
+
 /** @type {api.Kind[]} */
 let kinds = [];
 /** @type {any} */
@@ -55,9 +58,7 @@ const undo = new Undo((statement) => {
   if (answered === null) desk.stage.show("state");
 }, byId("undo"), byId("redo"));
 
-const backdrop = new Backdrop(() => {
-  if (kinds.length) show({ form: false, json: false });
-});
+const backdrop = new Backdrop(() => fitted());
 
 /** @param {any} error */
 function tell(error) {
@@ -224,6 +225,7 @@ async function solve() {
   } catch (error) {
     busy(false);
     desk.drawer.select("task");
+    if (folded()) unfold(true);
     if (error instanceof api.Refused) faults.tell(fields, byId("faults"), error);
     else tell(error);
   } finally {
@@ -362,6 +364,22 @@ const link = new Link(byId("link"), byId("link-told"), sending);
 /** @param {string} name of a button on the board that is shown */
 const press = (name) => () => visible(`.board button[aria-label="${name}"]`)?.click();
 
+/** Whether the task is folded away. */
+function folded() {
+  return byId("fold").getAttribute("aria-expanded") === "false";
+}
+
+/** Fold the task away, or show it: in a narrow window it takes a third of the stage's room. @param {boolean} open */
+function unfold(open) {
+  byId("fold").setAttribute("aria-expanded", String(open));
+  fitted();
+}
+
+/** Draw what is stated as large as there is room now. */
+function fitted() {
+  if (kinds.length) show({ form: false, json: false });
+}
+
 const keys = new Keys([
   { keys: ["Ctrl+Enter"], shown: "Ctrl Enter", text: "Solve", everywhere: true, act: () => {
     if (!byId("solve").disabled) solve();
@@ -383,6 +401,7 @@ const keys = new Keys([
   { keys: ["f"], shown: "F", text: "Fit everything", act: press("Fit everything") },
   { keys: ["s"], shown: "S or W", text: "The stage states, or watches", act: () => desk.stage.show("state") },
   { keys: ["w"], shown: "", text: "", act: () => desk.stage.show("watch") },
+  { keys: ["t"], shown: "T", text: "Fold the task, where there is little room", act: () => visible("#fold")?.click() },
   { keys: ["n"], shown: "N", text: "Numbers", act: () => desk.drawer.press("numbers") },
   { keys: ["p"], shown: "P", text: "Plots", act: () => desk.drawer.press("plots") },
   { keys: ["e"], shown: "E", text: "Explore", act: () => desk.drawer.press("explore") },
@@ -393,6 +412,7 @@ const keys = new Keys([
 ]);
 byId("stale-solve").addEventListener("click", () => solve());
 byId("stale-back").addEventListener("click", () => begun(answered));
+byId("fold").addEventListener("click", () => unfold(folded()));
 byId("gallery-open").addEventListener("click", () => browse());
 byId("keys-open").addEventListener("click", () => keys.open());
 text.addEventListener("input", () => {
@@ -418,6 +438,11 @@ byId("key").querySelector("form").addEventListener("submit", (/** @type {Event} 
   begin();
 });
 window.addEventListener("hashchange", restore);
+let resizing = 0;
+window.addEventListener("resize", () => {
+  clearTimeout(resizing);
+  resizing = setTimeout(fitted, RESIZED_MS);
+});
 byId("label").addEventListener("input", () => {
   if (draftOf(problem.kind)) drafted();
 });

@@ -70,7 +70,8 @@ function bare(problem) {
 function drawnPlane(place, problem, { handles, lines, word, add, offers, freehand }, roomy, memory, changed, backdrop, room) {
   const corners = roomy ? areas(problem.space).flatMap((area) => area.extent) : [];
   const points = [...handles.flatMap(({ get, name }) => (name === "ground" ? [] : [get()])), ...corners];
-  const view = roomy && memory.view && (memory.led || memory.view.suits(points)) ? memory.view : new View(points, ...room, corners.length ? 40 : 0.2 * Math.min(...room));
+  const fits = memory.view?.width === room[0] && memory.view.height === room[1] && memory.view.suits(points);
+  const view = roomy && memory.view && (memory.led || fits) ? memory.view : new View(points, ...room, corners.length ? 40 : 0.2 * Math.min(...room));
   const { width, height } = view;
   if (roomy) memory.view = view;
   const led = (/** @type {boolean} */ somewhere) => {

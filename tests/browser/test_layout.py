@@ -7,6 +7,7 @@ from tests.browser.conftest import ANSWERED
 from tests.browser.test_studio import PLAIN, state
 from tests.browser.test_taking_home import EXAMPLES
 from tests.campaign import further
+from tests.service.running import until
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 
@@ -191,3 +192,24 @@ def test_the_stage_is_brought_nearer_led_along_and_fitted(studio):
     assert pin() == pytest.approx((x, y), abs=1.5)
     links = page.locator(".moving .live .link").first
     assert links.evaluate("one => getComputedStyle(one).vectorEffect") == "non-scaling-stroke"
+
+
+def test_the_task_folds_away_where_there_is_little_room(own_studio):
+    page = own_studio.page
+    page.click("#mode-state")
+    assert not page.is_visible("#fold")
+    page.set_viewport_size({"width": 1024, "height": 768})
+    room = "document.querySelector('#boards').clientWidth"
+    before = page.evaluate(room)
+    page.click("#fold")
+    assert not page.is_visible("#statement")
+    assert page.evaluate(room) > before + 260
+    drawn = "+document.querySelector('#sketch .canvas').getAttribute('viewBox').split(' ')[2]"
+    assert page.evaluate(drawn) == page.evaluate(room), "what is stated has the room"
+    assert page.is_visible("#solve")
+    own_studio.screen("folded")
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("t")
+    assert page.is_visible("#statement")
+    page.set_viewport_size({"width": 1200, "height": 768})
+    until(lambda: page.evaluate(drawn) == page.evaluate(room) > before, 20, "the canvas has the new size")
