@@ -392,3 +392,16 @@ def test_crossing_stages_among_others_are_refused_with_the_reason(client: Any) -
     stages = [{"type": "bevel", "driver": 20, "driven": 30}, {"type": "external"}]
     job = finished(client, {"kind": "gear_train", "ratio": 3, "stages": stages, "max_designs": 1})
     assert "trains of one stage" in refused(client, f"/v1/jobs/{job['id']}/designs/0", 409)["detail"]
+
+
+def test_the_axles_of_a_ravigneaux_set_are_as_thick_as_its_sun_lets_them(client: Any) -> None:
+    problem = {"kind": "planetary_train", "ratio": -4, "arrangement": "ravigneaux", "fixed": "ring", "max_designs": 1}
+    place = f"/v1/jobs/{finished(client, problem)['id']}/designs/0"
+    (fault,) = refused(client, place, 422, bore=3)["errors"]
+    assert fault["path"] == "/query/bore"
+    assert "passes the sun large, 1.5 mm beside its axis" in fault["detail"]
+    (fault,) = refused(client, place, 422, scale=0.1)["errors"]
+    assert fault["path"] == "/query/scale"
+    words = fault["detail"].split()
+    rows = bill(parts(client, place, scale=float(words[words.index("scale") + 1])))
+    assert rows["gear_planet_short"]["quantity"] == rows["gear_planet_long"]["quantity"] == "3"

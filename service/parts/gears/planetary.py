@@ -62,15 +62,38 @@ def planetary_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     gears = placed_planetary_gears(mechanism.model_copy(update={"module": module}))
     smallest = min((one.gear for one in gears if not one.gear.internal), key=lambda gear: gear.root_radius)
     refused = None
-    for sizes in sizing.offered(smallest):
+    for sizes in sizing.offered(smallest, *_least_room(gears, arrangement, build)):
         try:
             return _Task(mechanism, arrangement, design.metrics.speeds, build, gears, sizes, sizing).made()
         except DimensionError as error:
             raise NotMade(f"The gears cannot be cut: {error}.") from None
         except NotMade as error:
+            if error.path == "/query/clearance":  # teeth meet on whatever shafts
+                raise
             refused = error
     assert refused is not None
     raise refused
+
+
+def _least_room(gears: Sequence[PlanetaryGear], arrangement: Arrangement, build: Build) -> tuple[float, str]:
+    """How near the axis of a planet comes to a gear that its axle passes, and which these are; infinite if none."""
+    near = [(math.inf, "")]
+    plate = 0 if build.carrier is None else build.carrier
+    for planet in (gear for gear in gears if gear.body in arrangement.carriers):
+        own = [build.planes[plane] for gear in arrangement.gears if gear.body == planet.body for plane in gear.planes]
+        low, high = min(plate, *own), max(plate, *own)
+        for other in gears:
+            levels = {build.planes[plane] for plane in other.planes}
+            if (
+                other.body == planet.body
+                or other.gear.internal
+                or all(not low <= level <= high or level in own for level in levels)
+            ):
+                continue
+            away = abs(planet.centre - other.centre) - other.gear.tip_radius
+            words = f"axle of the {planet.name.replace('_', ' ')} passes the {other.name.replace('_', ' ')}"
+            near.append((away, words))
+    return min(near)
 
 
 @dataclass(frozen=True)

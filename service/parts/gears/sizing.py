@@ -101,11 +101,23 @@ class GearSizing:
             )
         return width
 
-    def offered(self, smallest: Gear) -> Iterator[Sizes]:
-        """Sizes with the bore that is stated, or with such as the smallest gear has room for, the thickest first."""
+    def offered(self, smallest: Gear, room: float = math.inf, passed: str = "") -> Iterator[Sizes]:
+        """Sizes with the bore that is stated, or with such as the smallest gear has room for, the thickest first.
+
+        Parameters
+        ----------
+        smallest : Gear
+        room : float
+            From the axis of a shaft to what it passes, millimetres, with its collar or spacer on it.
+        passed : str
+            What passes what there, in words.
+        """
         query, unit = self.query, self.unit
         if query.bore is not None:
-            yield self._stated(query.bore * unit, smallest)
+            sizes = self._stated(query.bore * unit, smallest)
+            if _beside(sizes) > room:
+                raise NotMade(self._too_near(room, passed), "/query/bore")
+            yield sizes
             return
         most = 2.0 * BORE_OF_ROOT * smallest.root_radius
         thinner = [self._with(bore, smallest) for bore in reversed(PINS) if bore <= most]
@@ -121,9 +133,17 @@ class GearSizing:
                 f"The smallest gear has a root circle of {2.0 * smallest.root_radius / unit:.4g} {self.words} and no "
                 f"room for a shaft; scale {rounded_up(1.05 * query.scale * needed):g} does.", "/query/scale",
             )  # fmt: skip
+        fits = [sizes for sizes in fits if _beside(sizes) <= room]
+        if not fits:
+            needed = rounded_up(1.05 * query.scale * _beside(self._with(PINS[0], smallest)) / room)
+            raise NotMade(f"{self._too_near(room, passed)}; scale {needed:g} does.", "/query/scale")
         for sizes in fits[:TRIED]:
             judged(sizes, unit)
             yield sizes
+
+    def _too_near(self, room: float, passed: str) -> str:
+        told = f"{room / self.unit:.4g} {self.words}"
+        return f"The {passed}, {told} beside its axis: too little for a shaft with a spacer"
 
     def _stated(self, bore: float, smallest: Gear) -> Sizes:
         unit = self.unit
@@ -165,6 +185,11 @@ class GearSizing:
     def _fits(self, sizes: Sizes, smallest: Gear) -> bool:
         wall = max(WALL_OF_TEETH * smallest.module, WALL * sizes.pin)
         return _deep(sizes) + wall <= smallest.root_radius
+
+
+def _beside(sizes: Sizes) -> float:
+    """From the axis of a shaft to what may be beside its collars and spacers."""
+    return 0.5 * sizes.collar + sizes.apart
 
 
 def _deep(sizes: Sizes) -> float:

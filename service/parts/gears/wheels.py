@@ -125,6 +125,12 @@ def looked_at(assembly: Assembly, sizes: Sizes, sizing: GearSizing) -> Assembly:
     meeting = overlaps(assembly)
     if meeting:
         one, other = (name.replace("_", " ") for name in meeting[0].parts)
+        if all(part.sort == "gear" for part in assembly.parts if part.name in meeting[0].parts):
+            raise NotMade(
+                f"Teeth of the {one} and the {other} meet at an input angle of {math.degrees(meeting[0].at):.1f}° with "
+                f"this play: a greater clearance than {sizes.clearance / sizing.unit:.4g} {sizing.words} may do.",
+                "/query/clearance",
+            )
         raise NotMade(
             f"There is no room: the {one} and the {other} meet at an input angle of "
             f"{math.degrees(meeting[0].at):.1f}°.", sizing.path,
