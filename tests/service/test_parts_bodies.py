@@ -12,10 +12,12 @@ import pytest
 import shapely
 from scipy.spatial import ConvexHull
 
-from service.parts.bodies import Mesh, Prism, Turned, Twisted, slices
+from service.parts.bodies import Mesh, Prism, Tapered, Turned, Twisted, slices
 from service.parts.curves import Curve
 from service.parts.dxf import cutting
-from service.parts.model import Carrier, Part
+from service.parts.gears.motion import TrainMotion, Turning
+from service.parts.model import Assembly, Carrier, Frame, Part
+from service.parts.overlaps import overlaps
 from service.parts.shapes import Disc, Loop, Region, area, extent, ring, ring_of, turned
 
 WAVE = 60
@@ -115,3 +117,40 @@ def test_bodies_are_compared_along_the_height_that_they_share() -> None:
     cone = Turned((0j, 5.0 + 0j, 6j))
     assert slices(low, cone, 1e-9)[0][0] == 0.0
     assert slices(low, cone, 1e-9)[-1][1] == 4.0
+
+
+def test_a_cone_to_an_apex_is_as_large_as_its_frustum_and_its_surface_is_closed() -> None:
+    # A square pyramid's frustum, its sides within the body of revolution.
+    half, low, high = 4.0, 10.0, 16.0
+    square = Loop((half - 1j * half, half + 1j * half, -half + 1j * half, -half - 1j * half), (0.0,) * 4)
+    wide = 20.0
+    profile = (low * 1j, 3.0 + low * 1j, wide + low * 1j, wide + high * 1j, 3.0 + high * 1j, high * 1j)
+    body = Tapered(Region(square, (Disc(0j, 1.0),)), profile, apex=0.0, at=10.0)
+    areas = [(2.0 * half * height / 10.0) ** 2 for height in (low, high)]
+    frustum = (high - low) / 3.0 * (areas[0] + areas[1] + math.sqrt(areas[0] * areas[1]))
+    assert body.volume == pytest.approx(frustum - math.pi * (high - low), rel=1e-3)
+    mesh = body.mesh
+    assert mesh.volume == pytest.approx(body.volume, rel=5e-3)
+    edges = [(a, b) for one in mesh.triangles.tolist() for a, b in zip(one, one[1:] + one[:1], strict=True)]
+    assert len(set(edges)) == len(edges)
+    assert {(b, a) for a, b in edges} == set(edges)
+
+
+@pytest.mark.parametrize(("gap", "meets"), [(0.05, False), (-0.05, True)])
+def test_parts_of_crossing_axes_meet_where_they_do(gap: float, meets: bool) -> None:
+    """A turning bar on one axis over a shaft on another: it reaches as far down as the shaft's surface, or not."""
+    up = np.eye(3)[2]
+    frames = [
+        Frame(origin, np.column_stack([np.cross(up, along), up, along]))
+        for origin, along in ((np.zeros(3), np.eye(3)[0]), (np.array([0.0, 0.0, 13.0 + gap]), np.eye(3)[1]))
+    ]
+    bar = Loop((-10.0 - 2.0j, 10.0 - 2.0j, 10.0 + 2.0j, -10.0 + 2.0j), (0.0,) * 4)
+    bodies = (Prism(Region(Disc(0j, 3.0 - 0.2)), -20.0, 20.0), Prism(Region(bar), -3.0, 3.0))
+    parts = tuple(
+        Part(f"part_{n}", "", "gear", Carrier(f"shaft_{n}", None), (body,), 1.0 + 0j, (n, n), "", "#000000")
+        for n, body in enumerate(bodies)
+    )
+    motion = TrainMotion({f"shaft_{n}": Turning(0j, 1.0 + n, frame=frame) for n, frame in enumerate(frames)}, 40.0)
+    # The bar's corners are √104 = 10.198 from its axis, and the shaft leaves 10.2 and the gap.
+    found = overlaps(Assembly(parts, motion, 1, 1, 1.0, 1.0), 720)
+    assert [one.parts for one in found] == ([("part_0", "part_1")] if meets else [])
