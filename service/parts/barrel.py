@@ -18,9 +18,10 @@ import numpy as np
 
 from kinematics.linkage.planar.mechanism import GROUND
 from service.parts.bodies import Prism
-from service.parts.building import BASE_COLOUR, BLOCK_COLOUR, LINK_COLOURS, keyway_reach
+from service.parts.building import keyway_reach
 from service.parts.cam_motion import CAM, FOLLOWER, Displacement, Turning, still, turned
 from service.parts.cams import PIN_OF_ROLLER, ROLLER_COLOUR
+from service.parts.colours import BASE_COLOUR, BLOCK_COLOUR, LINK_COLOURS
 from service.parts.fasteners import FASTENER_COLOUR, MATERIALS, fillers, held_pin
 from service.parts.fitting import Fitting, Trial, fault_of
 from service.parts.gears.keys import key_for, key_section, keyed_bore, keyed_shaft

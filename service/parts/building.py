@@ -16,6 +16,7 @@ import numpy as np
 
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from service.parts.bodies import Prism
+from service.parts.colours import BASE_COLOUR, BLOCK_COLOUR, LINK_COLOURS
 from service.parts.fasteners import FASTENER_COLOUR, MATERIALS, fillers, held_pin
 from service.parts.geared import PairWheel
 from service.parts.gears.keys import key_for, key_section, keyed_bore, keyed_shaft
@@ -24,9 +25,6 @@ from service.parts.linkage_motion import LinkageMotion
 from service.parts.model import Assembly, Carrier, Part, plain
 from service.parts.shapes import Disc, Loop, Outline, Region, ring, widened
 from service.parts.sizes import WALL, Sizes
-
-LINK_COLOURS = ("#1f5a9e", "#b8600b", "#22734a", "#5b3a8c", "#a3195b", "#1b7f86", "#8a6d1a", "#6b4b3a")
-BASE_COLOUR, BLOCK_COLOUR = "#76818c", "#c2a14a"
 
 ONE_PLACE = 1e-9
 """Distance as a share of the mechanism's size below which joints of one link lie on each other."""

@@ -20,9 +20,9 @@ from kinematics.cam.contact import Contour
 from kinematics.cam.follower import Flat, OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
 from kinematics.cam.pieces import Motion as CamState
 from service.parts.bodies import Prism
-from service.parts.building import BLOCK_COLOUR, LINK_COLOURS
 from service.parts.cam_contours import outline
 from service.parts.cam_motion import CAM, FOLLOWER, CamMotion, Displacement
+from service.parts.colours import BLOCK_COLOUR, LINK_COLOURS
 from service.parts.curves import Curve
 from service.parts.fasteners import MATERIALS
 from service.parts.fitting import Fitting, Trial, fault_of

@@ -150,7 +150,9 @@ class Surface:
         for k in np.unique(level).tolist():
             own = level == k
             x, y = points[own, 0], points[own, 1]
-            inside[own] = shapely.contains_xy(self._at(body, k), x, y) & shapely.contains_xy(self._at(body, k + 1), x, y)
+            inside[own] = shapely.contains_xy(self._at(body, k), x, y) & shapely.contains_xy(
+                self._at(body, k + 1), x, y
+            )
         return inside
 
     def _at(self, body: Mesh, number: int) -> shapely.Geometry:

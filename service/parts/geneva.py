@@ -21,8 +21,8 @@ from kinematics.indexing.drag_link import Course
 from kinematics.indexing.locking import disc
 from kinematics.indexing.wheel import Wheel
 from kinematics.linkage.planar.mechanism import GROUND
-from service.parts.building import BLOCK_COLOUR, LINK_COLOURS
 from service.parts.cam_motion import Turning, still, turned
+from service.parts.colours import BLOCK_COLOUR, LINK_COLOURS
 from service.parts.fitting import Fitting, Trial, fault_of
 from service.parts.model import Assembly, Carrier, Part, Placed, Real
 from service.parts.shapes import Disc, Loop, Outline, Region, ring, widened

@@ -16,8 +16,8 @@ import shapely
 
 from kinematics.indexing.ratchet import Ratchet
 from kinematics.linkage.planar.mechanism import GROUND
-from service.parts.building import LINK_COLOURS
 from service.parts.cam_motion import TURN, Turning, still, turned
+from service.parts.colours import LINK_COLOURS
 from service.parts.fitting import Fitting, Trial, fault_of
 from service.parts.model import Assembly, Carrier, Part, Placed, Real
 from service.parts.shapes import Disc, Loop, Region, ring_of, widened

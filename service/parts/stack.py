@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from service.parts.bodies import Prism
-from service.parts.building import BASE_COLOUR
+from service.parts.colours import BASE_COLOUR
 from service.parts.fasteners import FASTENER_COLOUR, MATERIALS, fillers, held_pin
 from service.parts.gears.keys import key_for, key_section, keyed_bore, keyed_shaft
 from service.parts.model import Carrier, Part, Sort

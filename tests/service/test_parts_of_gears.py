@@ -344,8 +344,8 @@ def test_a_worm_crosses_under_its_gear_at_the_centre_distance(client: Any) -> No
     assert len(cut(files, "base").query("CIRCLE")) == 4
     assert "lead angle 11.31°, left-handed" in files["README.txt"].decode()
     picture = client.get(f"{place}/assembly.svg")
-    assert picture.status_code == 409
-    assert "parallel" in picture.json()["detail"]
+    assert picture.status_code == 200
+    assert picture.text.startswith("<svg")
 
 
 BEVELS = {"kind": "gear_train", "ratio": "3/2", "max_designs": 1, "module": 2.0,

@@ -17,7 +17,7 @@ from kinematics.errors import DimensionError
 from kinematics.gear.teeth import Gear
 from kinematics.gear.train import OrdinaryTrain, TrainStage
 from service.parts.bodies import Body, Prism, Tapered
-from service.parts.building import LINK_COLOURS
+from service.parts.colours import LINK_COLOURS
 from service.parts.fasteners import MATERIALS
 from service.parts.gears.housing import Level
 from service.parts.gears.keys import key_for, keyed_bore

@@ -15,7 +15,7 @@ from kinematics.errors import DimensionError
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from kinematics.linkage.planar.mechanism import GROUND
 from service.parts.bodies import Prism
-from service.parts.building import LINK_COLOURS
+from service.parts.colours import LINK_COLOURS
 from service.parts.fasteners import MATERIALS
 from service.parts.gears.housing import Housing, Level, Shaft, stacked
 from service.parts.gears.keys import key_for, keyed_bore

@@ -14,7 +14,7 @@ import numpy as np
 
 from kinematics.linkage.planar.mechanism import GROUND
 from service.parts.bodies import Prism
-from service.parts.building import BASE_COLOUR
+from service.parts.colours import BASE_COLOUR
 from service.parts.fasteners import MATERIALS, fillers, held_pin
 from service.parts.gears.housing import STUB, Level, seat
 from service.parts.gears.motion import Turning

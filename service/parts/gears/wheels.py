@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from kinematics.gear.teeth import Gear
 from service.parts.bodies import Body, Prism, Twisted
-from service.parts.building import LINK_COLOURS
+from service.parts.colours import LINK_COLOURS
 from service.parts.fasteners import MATERIALS, fillers, held_pin
 from service.parts.gears.housing import Level
 from service.parts.gears.keys import key_for, keyed_bore
