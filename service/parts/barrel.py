@@ -23,10 +23,11 @@ from service.parts.cam_motion import CAM, FOLLOWER, Displacement, Turning, still
 from service.parts.cams import PIN_OF_ROLLER, ROLLER_COLOUR
 from service.parts.colours import BASE_COLOUR, BLOCK_COLOUR, LINK_COLOURS
 from service.parts.fasteners import FASTENER_COLOUR, MATERIALS, fillers, held_pin
-from service.parts.fitting import Fitting, Trial, fault_of
+from service.parts.fitting import Fitting, Trial, fault_of, named
 from service.parts.gears.keys import key_for, key_section, keyed_bore, keyed_shaft
 from service.parts.groove import Groove
 from service.parts.model import Assembly, Carrier, Development, Frame, Part, Placed, Real
+from service.parts.overlaps import overlaps
 from service.parts.shapes import Disc, Loop, Outline, Region, ring, ring_of, widened
 from service.parts.sizes import MILLIMETRES, WALL, NotMade, PartsQuery, Sizes
 from service.parts.stack import STUB, Stack
@@ -125,8 +126,17 @@ class _Barrels(Fitting):
         if not builder.groove.sound():
             return Trial(None, "the floor of the groove is so near to the axis that the roller cuts its own wall away")
         assembly = builder.assembled(scale)
-        fault = fault_of(assembly, sizes)
+        fault = fault_of(assembly, sizes, across=False)
         return Trial(None, fault) if fault else Trial(assembly, "")
+
+    def assembly(self) -> Assembly:
+        """The assembly of the request; what lies across each other is compared once, as it takes the longest."""
+        made = super().assembly()
+        meeting = overlaps(made)
+        if meeting:
+            one, other = (named(part) for part in meeting[0].parts)
+            raise NotMade(f"There is no room: {one} and {other} meet.")
+        return made
 
 
 class _Builder:

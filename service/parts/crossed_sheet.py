@@ -123,7 +123,7 @@ def _axes(assembly: Assembly, view: View, port: Viewport) -> list[Element]:
     """Lines along the shafts, where they are not seen from their ends."""
     lines = []
     for pin in (part for part in assembly.parts if part.sort == "pin"):
-        frame = assembly.frames[pin.name]
+        frame = assembly.frames.get(pin.name, LEVEL)
         beyond = BEYOND * assembly.size
         ends = [frame.origin + height * frame.axes[:, 2] for height in (pin.low - beyond, pin.high + beyond)]
         start, end = (port.point(complex(z)) for z in view.seen(np.array(ends)))

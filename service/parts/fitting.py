@@ -236,12 +236,15 @@ class Fitting(ABC):
         return rounded if self.tried(sizes, rounded).assembly is not None else fits
 
 
-def fault_of(assembly: Assembly, sizes: Sizes) -> str:
-    """Why an assembly cannot be made: too little is left around a hole, or two parts meet; empty where it can."""
+def fault_of(assembly: Assembly, sizes: Sizes, *, across: bool = True) -> str:
+    """Why an assembly cannot be made: too little is left around a hole, or two parts meet; empty where it can.
+
+    Parts whose axes are not parallel are compared where ``across`` says so.
+    """
     thin = too_thin(assembly, 0.99 * WALL * sizes.pin)
     if thin:
         return f"{named(thin[0].part)} has too little left around its holes"
-    meeting = overlaps(assembly)
+    meeting = overlaps(assembly, across=across)
     if not meeting:
         return ""
     (one, other), at = (named(name) for name in meeting[0].parts), meeting[0].at

@@ -60,7 +60,7 @@ class Thin(NamedTuple):
     left: float
 
 
-def overlaps(assembly: Assembly, count: int = POSITIONS) -> list[Overlap]:
+def overlaps(assembly: Assembly, count: int = POSITIONS, *, across: bool = True) -> list[Overlap]:
     """The pairs of parts that overlap at some of ``count`` inputs of the motion.
 
     Parameters
@@ -68,6 +68,8 @@ def overlaps(assembly: Assembly, count: int = POSITIONS) -> list[Overlap]:
     assembly : Assembly
     count : int
         Inputs, spread over the whole motion.
+    across : bool
+        Whether parts are compared whose axes are not parallel, which takes the longest.
     """
     inputs = assembly.motion.inputs(count)
     size = assembly.size
@@ -78,6 +80,8 @@ def overlaps(assembly: Assembly, count: int = POSITIONS) -> list[Overlap]:
     for one, other in combinations(assembly.parts, 2):
         most = np.zeros(count)
         if not moved.in_one_frame(one.carrier, other.carrier):
+            if not across:
+                continue
             shared = crossing.shared(one, other)
             most[crossed] = shared
             if shared.max() > 0.0:

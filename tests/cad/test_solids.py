@@ -19,6 +19,7 @@ from service.parts.items import items
 from service.parts.made import made
 from service.parts.model import Assembly
 from service.parts.orders import filled
+from service.parts.overlaps import overlaps
 from service.parts.package import package
 from service.parts.shapes import Disc
 from service.parts.sizes import PartsQuery, Refused
@@ -29,6 +30,7 @@ from tests.cad.readers import assert_valid_3mf, assert_valid_glb
 from tests.cad.room import shared_room
 from tests.service.stated.linkages import DWELL, LINE, STEERING
 from tests.service.test_parts import MOTION, SLIDER
+from tests.service.test_parts_of_geared_linkages import planted
 
 pytestmark = [pytest.mark.cad, pytest.mark.timeout(300)]
 
@@ -46,11 +48,15 @@ PROBLEMS: dict[str, dict[str, Any]] = {
     "dwell_slot": {**DWELL, "mechanism": "straight_slot"},
     "davis": {**STEERING, "mechanism": "davis"},
 }  # fmt: skip
-TYPES = list(PROBLEMS)
+GEARED = "geared_fivebar"
+TYPES = [*PROBLEMS, GEARED]
 
 
 @cache
 def solved(kind: str) -> tuple[Any, Any, Any]:
+    if kind == GEARED:
+        problem, design = planted(-2.0)
+        return problem, None, design
     problem = parse_problem(PROBLEMS[kind])
     result = solve(problem, lambda _fraction, _message: None)
     assert result.designs[0].mechanism.type == kind
@@ -112,7 +118,7 @@ def nearest(places: set[complex], joint: complex) -> complex:
     return min(places, key=lambda place: abs(place - joint))
 
 
-@pytest.mark.parametrize(("kind", "process"), [(kind, "laser") for kind in TYPES] + [("fourbar", "print")])
+@pytest.mark.parametrize(("kind", "process"), [(kind, "laser") for kind in PROBLEMS] + [("fourbar", "print")])
 def test_no_two_solids_share_room_at_72_inputs(kind: str, process: str) -> None:
     """Boxes first, then the kernel's own intersections."""
     whole = assembly(kind, process)
@@ -121,6 +127,15 @@ def test_no_two_solids_share_room_at_72_inputs(kind: str, process: str) -> None:
     tried, found = shared_room(whole, made_, inputs)
     assert tried > 0
     assert len(inputs) * sum(found.values()) < 1e-6 * min(solid.volume for solid in made_)
+
+
+def test_geared_links_have_room_at_72_inputs() -> None:
+    """By the model at all of them, and by the kernel, which takes seconds for two gears, at two."""
+    whole = assembly(GEARED)
+    assert overlaps(whole, 72) == []
+    tried, found = shared_room(whole, solids(GEARED), whole.motion.inputs(72)[[0, 37]])
+    assert tried > 0
+    assert sum(found.values()) < 1e-6
 
 
 def test_two_solids_in_one_place_are_seen_to_share_room() -> None:
@@ -132,7 +147,7 @@ def test_two_solids_in_one_place_are_seen_to_share_room() -> None:
     assert sum(body.volume for body in common) > 0.5 * first.volume
 
 
-@pytest.mark.parametrize("kind", ["fourbar", "slider_crank", "drag_link_slider"])
+@pytest.mark.parametrize("kind", ["fourbar", "slider_crank", "drag_link_slider", GEARED])
 def test_printed_parts_are_watertight_meshes_that_lie_on_the_plate(kind: str) -> None:
     import trimesh
 

@@ -97,7 +97,7 @@ def test_a_barrel_cam_is_had_as_parts(server: Any) -> None:
     job = finished(client, BARREL)
     place = f"/v1/jobs/{job['id']}/designs/0"
     files = parts(client, place, **SIZES)
-    assert {"barrel", "upright", "follower", "runner", "roller", "base", "key_cam"} <= set(bill(files))
+    assert {"barrel", "base_upright", "follower", "runner", "roller", "base", "key_cam"} <= set(bill(files))
     document = ezdxf.read(io.StringIO(files["dxf/barrel.dxf"].decode()))
     assert not document.audit().has_errors
     space = document.modelspace()
