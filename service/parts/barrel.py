@@ -203,7 +203,7 @@ class _Builder:
         body = Prism(ring(place, self.roller, hole), *stack.level(2))
         material = {"print": "PETG", "laser": "sheet", "mill": "steel"}[sizes.process]
         parts = [
-            stack.plate("follower", "follower", "link", ON_FOLLOWER, plate, 1, LINK_COLOURS[1]),
+            stack.plate("follower", "follower", "link", ON_FOLLOWER, plate, 1, LINK_COLOURS[0]),
             stack.plate("runner", "runner in the guide", "block", ON_FOLLOWER, runner, 0, BLOCK_COLOUR),
             Part("roller", "roller", "block", ON_FOLLOWER, (body,), 1.0 + 0.0j, (2, 2), material, ROLLER_COLOUR,
                  round=True),
@@ -224,7 +224,7 @@ class _Builder:
         mesh = self.groove.barrel(low, high, bore, min(SAG, SAG_OF_CLEARANCE * sizes.clearance))
         material = MATERIALS["print" if sizes.process == "print" else "mill"][0]
         barrel = Part("barrel", "barrel with its groove", "cam", ON_BARREL, (mesh,), 1.0 + 0.0j, (2, 2), material,
-                      LINK_COLOURS[0], unrolled=self._development())  # fmt: skip
+                      LINK_COLOURS[1], unrolled=self._development())  # fmt: skip
         seat = Prism(Region(keyed_shaft(0j, pin, self._key)), low, high)
         ends = self._uprights[0][0], self._uprights[1][1]
         parts = [

@@ -142,8 +142,9 @@ class _Builder:
     # Plates
 
     def plates(self) -> list[Part]:
-        """The moving links."""
+        """The moving links, the input first."""
         moving = [link for link in self._mechanism.links if link != GROUND]
+        moving.sort(key=lambda link: link != self._mechanism.input)
         return [self._link(link, LINK_COLOURS[n % len(LINK_COLOURS)]) for n, link in enumerate(moving)]
 
     def _link(self, link: str, colour: str) -> Part:

@@ -35,8 +35,8 @@ from synthesis.kinds.cam.design import CamMechanism
 from synthesis.kinds.cam.mechanism import core_follower, points_of, stretches_of, table_angles
 from synthesis.mechanisms.cam import follower_by_dimensions
 
-CAM_COLOURS = LINK_COLOURS[0], LINK_COLOURS[5]
-FOLLOWER_COLOUR, ROLLER_COLOUR = LINK_COLOURS[1], LINK_COLOURS[2]
+CAM_COLOURS = LINK_COLOURS[1], LINK_COLOURS[5]
+FOLLOWER_COLOUR, ROLLER_COLOUR = LINK_COLOURS[0], LINK_COLOURS[2]
 
 ON_CAM, ON_FOLLOWER = Carrier(CAM, None), Carrier(FOLLOWER, None)
 

@@ -239,3 +239,12 @@ def test_what_was_made_is_kept_until_there_is_too_much(bench: Workshop, monkeypa
 
     asyncio.run(all_of_it())
     assert calls == ["a", "b", "c", "b"]
+
+
+def test_the_input_has_the_colour_that_it_has_on_the_stage() -> None:
+    """Warm for the input and cool for the coupler, as the page's own colours are."""
+    colours = {part.name: part.colour for part in assembly("fourbar").parts}
+    red, blue = (int(colours["link_input"][k : k + 2], 16) for k in (1, 5))
+    assert red > 2 * blue
+    red, blue = (int(colours["link_coupler"][k : k + 2], 16) for k in (1, 5))
+    assert blue > 2 * red
