@@ -1,24 +1,25 @@
 /** The answer of a job: what is known, the designs as cards, and the selected design in full. */
 
 import * as api from "./api.js";
-import { el, shown, words } from "./dom.js";
+import { Choosing } from "./choosing.js";
+import { el, words } from "./dom.js";
 import { Shown } from "./design.js";
-import { amount, figure, figures } from "./figures.js";
-import { thumbnail } from "./thumbnail.js";
-
-/** How long keys must rest on a card before it is shown. */
-const PASSING_MS = 150;
+import { missed } from "./misses.js";
+import { Strip } from "./strip.js";
 
 /** @type {Shown | null} */
 let chosen = null;
-let passing = 0;
+/** @type {Strip | null} */
+let strip = null;
 
 /** Show nothing of the job before. @param {HTMLElement} place @param {import("./desk.js").Desk} desk */
 export function leave(place, desk) {
   chosen?.stop();
   chosen = null;
+  strip = null;
   place.replaceChildren();
-  desk.drawer.offer("assembly", false);
+  desk.drawer.on("compare", null);
+  for (const name of ["assembly", "compare"]) desk.drawer.offer(name, false);
   desk.clear();
 }
 
@@ -35,39 +36,47 @@ export function answer(place, desk, job, state, solve) {
     return;
   }
   const { designs, search, summary, nearest_miss } = job.result;
-  const cards = designs.map((/** @type {any} */ design, /** @type {number} */ n) => card(design, n, job.problem, () => {
-    cards.forEach((/** @type {HTMLElement} */ one, /** @type {number} */ k) => one.setAttribute("aria-pressed", String(k === n)));
+  /** @type {Choosing | null} */
+  let choosing = null;
+  const row = (strip = new Strip(job, (n) => {
     chosen?.stop();
     chosen = new Shown(desk, job, n, state, chosen?.before);
+    choosing?.chosen(chosen);
   }));
+  const count = el("p", { class: "warn", role: "status" });
+  const choice = designs.length > 1 ? new Choosing(desk.choosing, desk, job, row, () => {
+    const kept = row.kept.filter(Boolean).length;
+    count.textContent = kept < designs.length ? `${kept} of ${designs.length} designs meet the bounds and are shown.` : "";
+  }) : null;
+  choosing = choice;
   place.append(
     el("div", { class: "known", tabindex: 0, role: "group", "aria-label": "What is known" },
-      el("p", { class: "summary" }, summary), el("p", { class: "note" }, known(search, designs.length))),
-    el("div", { class: "cards", role: "group", "aria-label": "Designs, best first; arrow keys choose", onkeydown: (/** @type {KeyboardEvent} */ event) => choose(cards, event) }, ...cards));
-  cards[0]?.click();
+      el("p", { class: "warn outdated" }, "Answers to an earlier statement."), count,
+      el("p", { class: "summary" }, summary), el("p", { class: "note" }, known(search, designs.length))), row.node);
+  if (designs.length) row.select(0);
+  desk.drawer.on("compare", choice && { opened: () => choice.opened(), closed: () => choice.closed() });
+  desk.drawer.offer("compare", choice !== null);
   if (designs.length) return;
   desk.stage.offer(true, nearest_miss ? "None found; this comes nearest" : "None found");
   desk.frame.say(...(nearest_miss ? [missed(nearest_miss, job.problem, solve)] : [el("p", { class: "note" }, summary)]));
   desk.stage.show("watch");
 }
 
-/**
- * Arrow keys, Home and End go from card to card and choose.
- * @param {HTMLElement[]} cards
- * @param {KeyboardEvent} event
- */
-function choose(cards, event) {
-  const at = cards.indexOf(/** @type {HTMLElement} */ (document.activeElement));
-  const to = { ArrowRight: at + 1, ArrowDown: at + 1, ArrowLeft: at - 1, ArrowUp: at - 1, Home: 0, End: cards.length - 1 }[event.key];
-  if (at < 0 || to === undefined) return;
-  event.preventDefault();
-  const next = cards[Math.min(cards.length - 1, Math.max(0, to))];
-  next.focus();
-  // A card that is only passed by is not shown.
-  clearTimeout(passing);
-  passing = setTimeout(() => {
-    if (next === document.activeElement && next.getAttribute("aria-pressed") !== "true") next.click();
-  }, PASSING_MS);
+/** Choose a design by its number. @param {number} number */
+export function select(number) {
+  if (strip?.kept[number - 1]) strip.select(number - 1);
+}
+
+/** Choose the design that stands so many further in the row. @param {number} by */
+export function further(by) {
+  const shown = strip?.row.filter((n) => strip?.kept[n]) ?? [];
+  const next = shown[shown.indexOf(strip?.chosen ?? -1) + by];
+  if (next !== undefined) strip?.select(next);
+}
+
+/** Pin the chosen design, or take its pin away. */
+export function pin() {
+  if (strip && strip.chosen >= 0) strip.pin(strip.chosen);
 }
 
 /** What the search has shown, in a sentence. @param {any} search @param {number} found */
@@ -78,52 +87,4 @@ function known(search, found) {
     ? found ? "Complete: the search has left out nothing that the problem allows; the best are shown." : "Complete: no design exists."
     : found ? "Not complete: there may be others." : "None found; that is no proof that none exists.";
   return `${sure} ${counted.length ? `Left out: ${counted.join(", ")}.` : ""}`;
-}
-
-/**
- * What comes nearest where no design satisfies all demands, and the same problem with what is within reach.
- * @param {any} miss @param {any} problem @param {(problem: any) => void} solve
- */
-function missed({ design, gaps, reachable }, problem, solve) {
-  const short = (/** @type {any} */ value) => [value].flat().map((one) => shown(Number(one.toPrecision(4)))).join(" and ");
-  const within = Object.entries(reachable).map(([name, value]) => `${words(name).toLowerCase()} ${short(value)}`);
-  return el("section", { id: "miss" }, thumbnail(design),
-    el("strong", {}, `Nearest miss: ${words(design.mechanism.type)}`),
-    ...gaps.map((/** @type {any} */ gap) => el("span", { class: "bad" }, `✗ ${words(gap.check)}`,
-      typeof gap.value === "number" && ` ${amount(gap.value, gap, problem)}`,
-      typeof gap.limit === "number" && `, demanded ${amount(gap.limit, gap, problem)}`)),
-    within.length > 0 && el("span", { class: "note" }, `Within reach beside all other demands: ${within.join("; ")}.`),
-    ...Object.entries(reachable).flatMap(([name, value]) => eased(problem, name, value)).map(({ text: said, statement }) =>
-      el("button", { type: "button", class: "main", onclick: () => solve(statement) }, said)));
-}
-
-/** Digits of a limit that is eased. */
-const DIGITS = 4;
-
-/**
- * The problem with a limit that is within reach; nothing where the limit is no single number.
- * @param {any} problem @param {string} name @param {any} value that is reached @returns {{text: string, statement: any}[]}
- */
-function eased(problem, name, value) {
-  if (typeof value !== "number" || typeof problem.constraints?.[name] !== "number") return [];
-  // Rounded to the side on which it is reached.
-  const step = 10 ** (Math.floor(Math.log10(Math.abs(value) || 1)) + 1 - DIGITS);
-  const least = problem.constraints[name] > value;
-  const limit = Number(((least ? Math.floor : Math.ceil)(value / step) * step).toPrecision(DIGITS));
-  const unit = name.endsWith("angle") ? "°" : "";
-  return [{ text: `Solve with ${shown(limit)}${unit}`, statement: { ...problem, constraints: { ...problem.constraints, [name]: limit } } }];
-}
-
-/** @param {any} design @param {number} n @param {any} problem @param {() => void} choose */
-function card(design, n, problem, choose) {
-  const passed = design.verification?.passed;
-  return el("button", { type: "button", class: "card", "aria-pressed": "false", onclick: choose },
-    thumbnail(design),
-    el("span", { class: "told" },
-      el("strong", { title: words(design.mechanism.type) }, `${n + 1}. ${words(design.mechanism.type)}`),
-      el("span", { class: passed ? "good" : "bad" }, passed ? "✓ verified" : "✗ fails a check"),
-      ...figures(design).slice(0, 1).map(([name, value]) => {
-        const told = figure(name, value, problem, design.metrics?.size);
-        return el("span", { class: "figure", title: told.title }, el("span", {}, words(name)), el("span", {}, told.text));
-      })));
 }

@@ -2,41 +2,21 @@
 
 import * as api from "./api.js";
 import { AssemblyView } from "./assembly_view.js";
-import { Barrel } from "./barrel.js";
-import { Disc } from "./cam.js";
 import { Burmester } from "./burmester.js";
 import { cognates, picker } from "./cognates.js";
 import { overTheCycle, withSkeleton } from "./cycle.js";
 import { el, words } from "./dom.js";
 import { downloads } from "./downloads.js";
-import { Engine } from "./engine.js";
 import { Explorer } from "./explorer.js";
-import { Flywheel } from "./flywheel.js";
 import { Forces } from "./forces.js";
-import { Gears } from "./gears.js";
-import { Geneva } from "./geneva.js";
 import { checks, dimensions, figures, made, table } from "./figures.js";
 import { Mover, demanded } from "./mover.js";
-import { Ratchet } from "./ratchet.js";
-import { Rotor } from "./rotor.js";
 import { thumbnail } from "./thumbnail.js";
-
-/** Samples of a cycle. */
-const STEPS = 240;
-
-/** Of a turn of what has no toggles: a sample a degree. */
-const TURN_STEPS = 360;
-
-/** What shows a mechanism that is no linkage. @type {Record<string, new (frame: import("./stage.js").Frame, design: any, motion: any, problem: any) => Moving>} */
-const VIEWS = {
-  cam: Disc, barrel_cam: Barrel, gear_train: Gears, planetary_train: Gears, train_series: Gears, gearbox: Gears, layshaft_gearbox: Gears, rotor: Rotor,
-  flywheel: Flywheel, engine: Engine, geneva_external: Geneva, geneva_internal: Geneva, geneva_spherical: Geneva,
-  ratchet: Ratchet,
-};
+import { STEPS, TURN_STEPS, VIEWS } from "./views.js";
 
 const OF_THE_DESIGN = "Checks, drawing and files are those of the design: choose it above the numbers to see them.";
 
-/** @typedef {{stop: () => void, pause?: () => void}} Moving */
+/** @typedef {import("./views.js").Moving} Moving */
 /** @typedef {{choice: import("./cognates.js").Choice, design: any, motion: any, circuits: any}} Film */
 
 export class Shown {
@@ -47,14 +27,20 @@ export class Shown {
   constructor(desk, job, n, state, before = null) {
     this.desk = desk;
     this.state = state;
-    /** @type {Moving | null} */
+    /** @type {Burmester | null} */
     this.curves = null;
     this.gone = new AbortController();
     this.url = "";
     /** @type {Moving | null} */
     this.moving = null;
     this.before = before;
-    /** @type {Moving | null} */
+    /** What else is to lie in the picture of a linkage. @type {[number, number][]} */
+    this.around = [];
+    /** Told whenever something else moves. */
+    this.told = () => {};
+    /** Shows what moves once more. */
+    this.again = () => {};
+    /** @type {Explorer | null} */
     this.explorer = null;
     /** @type {Forces | null} */
     this.forces = null;
@@ -126,8 +112,9 @@ export class Shown {
       const View = VIEWS[mechanism.type];
       if (View) {
         const turning = await api.motion(this.job.id, this.n, TURN_STEPS, gone);
-        if (!gone.aborted) this.show(() => new View(frame, this.design, turning, this.job.problem));
-        return;
+        if (gone.aborted) return;
+        this.again = () => this.show(() => new View(frame, this.design, turning, this.job.problem));
+        return this.again();
       }
       const at = mechanism.reference_input_angle;
       const question = { mechanism, ...(Number.isFinite(at) ? { motion: { at } } : {}), include: ["branches"] };
@@ -154,6 +141,7 @@ export class Shown {
     this.forced.toggleAttribute("hidden", !own);
     this.forces?.attach(this.mover);
     if (this.desk.stage.mode !== "watch") this.moving.pause?.();
+    this.told();
   }
 
   /** The design in motion, where it is a linkage whose motion is shown. */
@@ -175,7 +163,10 @@ export class Shown {
   offer(films) {
     const around = films.length < 2 ? [] : films.flatMap(({ motion }) => Object.values(motion.joints).flatMap((/** @type {any} */ track) =>
       track.x.map((/** @type {number | null} */ x, /** @type {number} */ k) => (x === null ? [NaN, NaN] : [x, track.y[k]]))));
-    const show = (/** @type {Film} */ film) => this.show(() => new Mover(this.desk.frame, film.design, film.motion, this.job.problem, film.circuits, around), film === films[0]);
+    const show = (/** @type {Film} */ film) => {
+      this.again = () => this.show(() => new Mover(this.desk.frame, film.design, film.motion, this.job.problem, film.circuits, [...around, ...this.around]), film === films[0]);
+      this.again();
+    };
     show(films[0]);
     if (films.length > 1) {
       this.desk.before.replaceChildren(picker(films.map((film) => film.choice), (choice) => {
@@ -297,6 +288,7 @@ export class Shown {
     this.desk.drawer.on("explore", null);
     this.desk.drawer.on("curves", null);
     this.desk.drawer.on("assembly", null);
+    this.told = () => {};
     this.leave();
   }
 }

@@ -19,15 +19,16 @@ export class Desk {
     this.exploring = byId("exploring");
     this.curves = byId("burmester");
     this.built = byId("built");
+    this.other = byId("other");
+    this.choosing = byId("choosing");
     this.assembly = byId("assembly");
     for (const [name, text] of [["task", "Task"], ["answers", "Answers"]]) {
       this.drawer.add(name, text, byId(name === "task" ? "statement" : "answers"), true);
     }
-    for (const text of ["Numbers", "Plots", "Explore", "Curves", "Assembly", "Files", "Jobs"]) {
+    for (const text of ["Numbers", "Plots", "Explore", "Compare", "Curves", "Assembly", "Files", "Jobs"]) {
       this.drawer.add(text.toLowerCase(), text, byId(`pane-${text.toLowerCase()}`));
     }
-    this.drawer.offer("curves", false);
-    this.drawer.offer("assembly", false);
+    for (const name of ["compare", "curves", "assembly"]) this.drawer.offer(name, false);
   }
 
   get frame() {

@@ -22,7 +22,10 @@ export function downloads(job, n, drawing) {
       fault.replaceChildren();
       try {
         const done = await make();
-        if (done) saved(done, name);
+        if (done) {
+          saved(done, name);
+          place.dataset.taken = title;
+        }
       } catch (error) {
         const reasons = error instanceof api.Refused ? error.errors.map((one) => one.detail) : [];
         fault.replaceChildren(reasons.join(" ") || /** @type {Error} */ (error).message);

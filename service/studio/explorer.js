@@ -62,8 +62,9 @@ export class Explorer {
   /** @param {string} name */
   handle(name) {
     const dot = svg("circle", { class: name === "P" ? "dot point" : "dot", r: 7 });
+    const hit = svg("circle", { class: "hit", r: 12 });
     const text = svg("text", { dx: 10, dy: -9 }, name);
-    const group = svg("g", { class: "target", tabindex: 0, role: "button" }, text, dot);
+    const group = svg("g", { class: "target", tabindex: 0, role: "button" }, text, hit, dot);
     const put = (/** @type {Point} */ at) => {
       this.joints[name] = at;
       const doubled = "P" in this.joints && !drawn(this.skeleton).includes("P") ? "P" : null;
@@ -72,15 +73,15 @@ export class Explorer {
       this.draw();
       this.ask();
     };
-    dot.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
-      dot.setPointerCapture(event.pointerId);
+    group.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
+      group.setPointerCapture(event.pointerId);
       // While a pin is led the picture has that to follow; the motion goes on when it is let go.
       const { playing } = this.player;
       this.player.stop();
       const move = (/** @type {PointerEvent} */ now) => put(this.view.under(this.picture, now));
-      dot.addEventListener("pointermove", move);
-      dot.addEventListener("lostpointercapture", () => {
-        dot.removeEventListener("pointermove", move);
+      group.addEventListener("pointermove", move);
+      group.addEventListener("lostpointercapture", () => {
+        group.removeEventListener("pointermove", move);
         if (playing && !this.gone.signal.aborted) this.player.play();
       }, { once: true });
     });
@@ -91,7 +92,7 @@ export class Explorer {
       event.preventDefault();
       put([this.joints[name][0] + by[0], this.joints[name][1] + by[1]]);
     });
-    return { name, dot, text, group };
+    return { name, dot, hit, text, group };
   }
 
   /** Lines of slides go with the joints that they pass: turned about the pivot that they pass too, or shifted. */
@@ -108,11 +109,13 @@ export class Explorer {
 
   draw() {
     this.linkage.show(this.joints);
-    for (const { name, dot, text, group } of this.handles) {
+    for (const { name, dot, hit, text, group } of this.handles) {
       const [x, y] = this.joints[name];
       const [u, v] = this.view.at(x, y);
-      dot.setAttribute("cx", u);
-      dot.setAttribute("cy", v);
+      for (const one of [dot, hit]) {
+        one.setAttribute("cx", u);
+        one.setAttribute("cy", v);
+      }
       text.setAttribute("x", u);
       text.setAttribute("y", v);
       group.setAttribute("aria-label", `${name}: x ${shown(x)}, y ${shown(y)}. Arrow keys move it.`);

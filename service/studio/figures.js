@@ -124,6 +124,11 @@ export function made(design) {
 
 /** The dimensions of a mechanism, as they are made, as deep as they go; curves and skeletons are in the JSON. @param {any} design @param {any} problem */
 export function dimensions(design, problem) {
+  return rowed("Dimensions", dimensionRows(design, problem));
+}
+
+/** Names and values of the dimensions. @param {any} design @param {any} problem @returns {[string, {text: string, title: string | null}][]} */
+export function dimensionRows(design, problem) {
   /** @type {[string, {text: string, title: string | null}][]} */
   const rows = [];
   const row = (/** @type {string} */ name, /** @type {number[]} */ all, /** @type {string} */ unit) =>
@@ -139,5 +144,5 @@ export function dimensions(design, problem) {
     else if (value !== null) rows.push([name, { text: text(value), title: null }]);
   };
   for (const [name, value] of Object.entries(design.mechanism)) if (!["type", "skeleton", "profile", "pitch_curve", "program", "outer_wall"].includes(name)) walk(name, value, unitFor(name, problem));
-  return rowed("Dimensions", rows);
+  return rows;
 }

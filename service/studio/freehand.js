@@ -28,7 +28,7 @@ export function stroke(event, view, picture, pen, drawn) {
     const closed = meets(way);
     // Round and back to the first point, which is stated once.
     const points = closed ? evenly([...way, way[0]], POINTS + 1).slice(0, POINTS) : evenly(way, POINTS);
-    if (points.length >= 3) drawn(points.map(([x, y]) => [view.rounded(x), view.rounded(y)]), closed);
+    if (points.length >= 3) drawn(points.map(([x, y]) => [view.fine(x), view.fine(y)]), closed);
   }, { once: true });
 }
 

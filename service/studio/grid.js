@@ -6,9 +6,17 @@ import { shown, svg } from "./dom.js";
 const APART = 76;
 
 /** 1, 2 or 5 of a power of ten, not less than a length. @param {number} least */
-function spacing(least) {
+export function spacing(least) {
   const power = 10 ** Math.floor(Math.log10(least));
   return ([1, 2, 5].find((digit) => digit * power >= least) ?? 10) * power;
+}
+
+/** Between two places that coordinates snap to, pixels. */
+const SNAP = 12;
+
+/** What coordinates of a picture snap to: a part of its grid. @param {import("./view.js").View} view */
+export function snapping(view) {
+  return spacing(SNAP / view.scale);
 }
 
 /** @param {import("./view.js").View} view */

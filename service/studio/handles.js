@@ -1,5 +1,7 @@
 /** What of a statement can be taken hold of on the canvas, kind by kind: positions, points, pivots, lines and regions. */
 
+import { smoothed, symmetric } from "./shaping.js";
+
 /** @typedef {[number, number]} Point */
 
 /**
@@ -22,6 +24,7 @@
  * @property {(x: number, y: number) => void} [add]
  * @property {boolean} [freehand] a curve may be drawn
  * @property {{text: string, make: (at: Point, size: number) => void}[]} offers what may be stated on the canvas too
+ * @property {{text: string, title: string, make: (fine: (value: number) => number) => void}[]} [shapes] what is done to a curve as a whole
  */
 
 /** @param {any} problem changed in place @returns {Stated | null} null for a kind that has no place in the plane */
@@ -76,10 +79,24 @@ function motion(problem) {
 function path(problem) {
   const pivots = problem.fixed_pivots;
   return { handles: [...listed(problem.points, "points", "Point", false), ...chosenPivots(problem)],
-    lines: () => [problem.points.map((/** @type {any} */ one) => [one.x, one.y])], word: "point", freehand: true,
+    lines: () => [problem.points.map((/** @type {any} */ one) => [one.x, one.y])], word: "point", freehand: true, shapes: shaped(problem),
     add: (x, y) => problem.points.push({ x, y }),
     offers: [...(problem.closed && problem.method === "curve_match" ? [{ text: "Keep it open", make: () => opened(problem) }] : []), pivots ? { text: "Leave the pivots open", make: () => (problem.fixed_pivots = null) }
       : { text: "Choose the fixed pivots", make: (/** @type {Point} */ [x, y], /** @type {number} */ size) => (problem.fixed_pivots = { input: [x - 0.5 * size, y - 0.7 * size], output: [x + 0.5 * size, y - 0.7 * size] }) }] };
+}
+
+/** Fewer points than these are no curve. */
+const CURVE = 5;
+
+/** What is done to the points of a path as a whole. @param {any} problem */
+function shaped(problem) {
+  if (problem.points.length < CURVE) return [];
+  const by = (/** @type {(points: Point[], closed: boolean) => Point[]} */ shape) => (/** @type {(value: number) => number} */ fine) => {
+    const shapes = shape(problem.points.map((/** @type {any} */ one) => [one.x, one.y]), Boolean(problem.closed));
+    problem.points.forEach((/** @type {any} */ one, /** @type {number} */ k) => Object.assign(one, { x: fine(shapes[k][0]), y: fine(shapes[k][1]) }));
+  };
+  return [{ text: "Smooth", title: "Make the curve smoother; once more, smoother still", make: by(smoothed) },
+    { text: "Symmetric", title: "Make the curve symmetric about the line that mirrors it best", make: by(symmetric) }];
 }
 
 /** A curve that is closed is matched as a whole; a curve has no timing. @param {any} problem */

@@ -9,6 +9,7 @@ import { Player, between, within } from "./player.js";
 import { plots } from "./plots.js";
 import { judged, moved, parts } from "./quantities.js";
 import { RoomView } from "./room_view.js";
+import { Ruler } from "./ruler.js";
 import { Sweep, jointsAt, placeOf, rangeOf } from "./sweep.js";
 import { View } from "./view.js";
 
@@ -63,6 +64,8 @@ export class Mover {
     this.marks = [];
     /** @type {Companion | null} */
     this.companion = null;
+    /** What is taken hold of around the pin of the input. @type {{name: string, hit: SVGElement} | null} */
+    this.hold = null;
     this.build(design, problem);
     this.player.begin();
   }
@@ -84,6 +87,7 @@ export class Mover {
       ...moving.map((name) => svg("path", { class: name === "P" ? "curve" : "trail", d: view.path(this.track(name)) })),
       ...this.toggles(), ...this.targets.map((one, k) => this.target(one, k)), this.linkage.node);
     this.drags(still);
+    const ruler = new Ruler(this.picture, view, problem.length_unit ?? "mm", () => this.places());
     const force = plots(judged(this.motion, design, problem), this.motion.input_angle, (at) => this.player.lead(at));
     const box = el("div", { class: "plots" });
     const choices = parts(this.motion, skeleton);
@@ -94,7 +98,7 @@ export class Mover {
     };
     const pick = el("select", { id: "part", onchange: () => choose(pick.value) },
       ...choices.map((part) => el("option", { value: part }, words(part))));
-    this.frame.fill({ picture: this.picture, clock: this.player.row, below: [this.planes?.node],
+    this.frame.fill({ picture: this.picture, tools: [ruler.button], clock: this.player.row, below: [this.planes?.node],
       beside: [this.gauge?.node, this.sweep.control, this.circuits.control, ...this.room.legend],
       plots: [el("div", { class: "row" }, el("label", { for: "part" }, "Plots of"), pick,
         el("span", { class: "note" }, "Rates are by the radian of the input; click in a plot to go there.")), box] });
@@ -108,14 +112,19 @@ export class Mover {
     if (!pin) return;
     pin.dot.classList.add("led");
     pin.dot.setAttribute("r", "7");
+    // A finger is less exact than what is drawn.
+    this.hold = { name: pin.name, hit: svg("circle", { class: "hit", r: 12 }) };
+    pin.dot.before(this.hold.hit);
     const { x, y } = this.motion.joints[pin.name];
-    pin.dot.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
-      this.player.stop();
-      pin.dot.setPointerCapture(event.pointerId);
-      const move = (/** @type {PointerEvent} */ now) => this.player.lead(nearest(x, y, this.view.under(this.picture, now), this.player.at));
-      pin.dot.addEventListener("pointermove", move);
-      pin.dot.addEventListener("lostpointercapture", () => pin.dot.removeEventListener("pointermove", move), { once: true });
-    });
+    for (const grip of [pin.dot, this.hold.hit]) {
+      grip.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
+        this.player.stop();
+        grip.setPointerCapture(event.pointerId);
+        const move = (/** @type {PointerEvent} */ now) => this.player.lead(nearest(x, y, this.view.under(this.picture, now), this.player.at));
+        grip.addEventListener("pointermove", move);
+        grip.addEventListener("lostpointercapture", () => grip.removeEventListener("pointermove", move), { once: true });
+      });
+    }
   }
 
   /** The linkage at the toggles that end its branch, and the crank's pin at those of every circuit. */
@@ -156,10 +165,21 @@ export class Mover {
       this.targets.length <= 12 && svg("text", { x: u, y: v, dx: 8, dy: 15 }, k + 1));
   }
 
+  /** Where all joints are now. @returns {Point[]} */
+  places() {
+    return Object.values(jointsAt(this.motion, this.player.at)).filter((one) => one !== null);
+  }
+
   /** Show the motion at a place of its arrays, between samples on a straight line. @param {number} at */
   show(at) {
     const now = jointsAt(this.motion, at);
     this.linkage.show(now);
+    const held = this.hold && now[this.hold.name];
+    if (this.hold && held) {
+      const [u, v] = this.view.at(...held);
+      this.hold.hit.setAttribute("cx", String(u));
+      this.hold.hit.setAttribute("cy", String(v));
+    }
     this.room.show(now);
     this.planes?.show(now);
     this.circuits.show(between(this.motion.input_angle, at));

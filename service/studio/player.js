@@ -29,14 +29,18 @@ export class Player {
     /** Where it goes back and forth, instead of over all of it. @type {[number, number] | null} */
     this.range = null;
     this.last = moved.count - 1;
+    /** Told the share of the way whenever it changes. @type {Set<(share: number) => void>} */
+    this.followers = new Set();
     this.button = el("button", { type: "button", id: `${moved.name ?? ""}play`, class: "small", onclick: () => (this.playing ? this.stop() : this.play()) }, "Play");
     this.slider = el("input", { type: "range", id: scrub, min: 0, max: this.last, step: "any", value: 0,
       oninput: () => this.lead(this.slider.valueAsNumber),
       onkeydown: (/** @type {KeyboardEvent} */ event) => {
         const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageUp: 10, PageDown: -10 }[event.key];
-        if (by === undefined) return;
+        // It stands still there, also where it is there already.
+        const to = by === undefined ? { Home: 0, End: this.last }[event.key] : Math.round(this.at) + by;
+        if (to === undefined) return;
         event.preventDefault();
-        this.lead(Math.round(this.at) + by);
+        this.lead(to);
       } });
     const speed = el("select", { id: speeds, onchange: () => (this.rate = Number(speed.value)) },
       ...[0.25, 0.5, 1, 2, 4].map((rate) => el("option", { value: rate }, `${rate} ×`)));
@@ -75,6 +79,7 @@ export class Player {
     this.reading.value = reading;
     this.slider.setAttribute("aria-valuetext", reading);
     this.moved.show(at);
+    for (const follow of this.followers) follow(at / this.last);
   }
 
   play() {

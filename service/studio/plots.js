@@ -1,6 +1,8 @@
 /** Small plots over a motion, each with a mark where the motion stands; a click leads the motion there. */
 
-import { el, shown, svg } from "./dom.js";
+import { saved } from "./downloads.js";
+import { el, remade, shown, svg } from "./dom.js";
+import { comma, pictured } from "./plot_files.js";
 
 const WIDTH = 300;
 const HEIGHT = 120;
@@ -15,7 +17,18 @@ const NOISE = 1e-9;
 /** A line whose range is so many times that of its middle four fifths is shown without its peaks. */
 const STEEP = 8;
 
+/** How much of a plot a nearer look has of the one before, and the fewest samples of one. */
+const NEARER = 0.5;
+const FEWEST = 8;
+
 /** @typedef {(number | null)[]} Series */
+
+/**
+ * What of a plot is seen.
+ * @typedef {object} Seen
+ * @property {boolean} whole whether peaks are shown whatever becomes of the rest
+ * @property {[number, number]} range first and last sample
+ */
 
 /**
  * @typedef {object} Plotted
@@ -40,12 +53,15 @@ export function plots(wanted, input, lead, unit = "°") {
 
 /**
  * @param {Plotted} plotted @param {number[] | undefined} input @param {(at: number) => void} lead @param {string} unit
- * @param {boolean} [whole] whether peaks are shown whatever becomes of the rest
+ * @param {Partial<Seen>} [seen]
  * @returns {{figure: HTMLElement, show: (at: number) => void}}
  */
-function plot(plotted, input, lead, unit, whole = false) {
+function plot(plotted, input, lead, unit, { whole = false, range: looked } = {}) {
   const { title, lines, limit, used, gaps, least = 0 } = plotted;
-  const all = Object.values(lines);
+  const samples = Object.values(lines)[0].length - 1;
+  const [start, end] = looked ?? [0, samples];
+  const part = (/** @type {Series} */ series) => series.map((one, k) => (k < start || k > end ? null : one));
+  const all = Object.values(lines).map(part);
   const known = /** @type {number[]} */ (all.flat().filter(Number.isFinite));
   const extremes = [known.reduce((a, b) => Math.min(a, b)), known.reduce((a, b) => Math.max(a, b))];
   const telling = whole ? extremes : middle(known, extremes);
@@ -55,13 +71,12 @@ function plot(plotted, input, lead, unit, whole = false) {
   const range = steady ? Math.max(1, Math.abs(high)) : high - low;
   const ticks = steady ? [low] : [low, high];
   [low, high] = [low - 0.05 * range, high + 0.05 * range];
-  const last = all[0].length - 1;
-  const x = (/** @type {number} */ k) => EDGE.left + ((WIDTH - EDGE.left - EDGE.right) * k) / last;
+  const x = (/** @type {number} */ k) => EDGE.left + ((WIDTH - EDGE.left - EDGE.right) * (Math.min(end, Math.max(start, k)) - start)) / (end - start);
   const y = (/** @type {number} */ value) => EDGE.top + ((HEIGHT - EDGE.top - EDGE.bottom) * (high - Math.min(high, Math.max(low, value)))) / (high - low);
   const data = (/** @type {Series} */ series) => {
     let path = "";
     let pen = "M";
-    for (let k = 0; k <= last; k += Math.max(1, Math.floor(last / POINTS))) {
+    for (let k = start; k <= end; k += Math.max(1, Math.floor((end - start) / POINTS))) {
       const value = series[k];
       if (value === null || !Number.isFinite(value)) pen = "M";
       else {
@@ -72,6 +87,9 @@ function plot(plotted, input, lead, unit, whole = false) {
     return path;
   };
   const mark = svg("line", { class: "mark", y1: EDGE.top, y2: HEIGHT - EDGE.bottom });
+  const cursor = svg("line", { class: "cursor", y1: EDGE.top, y2: HEIGHT - EDGE.bottom, hidden: true });
+  /** Where the pointer is. @type {number | null} */
+  let pointed = null;
   const reading = el("span", { class: "reading" });
   const names = Object.keys(lines);
   const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": `${title}: from ${shown(extremes[0])} to ${shown(extremes[1])}` },
@@ -83,15 +101,29 @@ function plot(plotted, input, lead, unit, whole = false) {
       svg("line", { class: "grid", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(value), y2: y(value) }),
       svg("text", { class: "tick", x: EDGE.left - 5, y: y(value) + 4, "text-anchor": "end" }, brief(value, 1e-6 * range)))),
     typeof limit === "number" && svg("line", { class: "limit", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(limit), y2: y(limit) }),
-    input && svg("text", { class: "tick", x: EDGE.left, y: HEIGHT - 5 }, `${Math.round(input[0])}${unit}`),
-    input && svg("text", { class: "tick", x: WIDTH - EDGE.right, y: HEIGHT - 5, "text-anchor": "end" }, `${Math.round(input[last])}${unit}`),
+    input && svg("text", { class: "tick", x: EDGE.left, y: HEIGHT - 5 }, `${Math.round(input[start])}${unit}`),
+    input && svg("text", { class: "tick", x: WIDTH - EDGE.right, y: HEIGHT - 5, "text-anchor": "end" }, `${Math.round(input[end])}${unit}`),
     ...all.map((series, k) => svg("path", { class: `series s${k}`, d: data(series) })),
-    ...all.flatMap((series) => peaks(series, telling).map(([k, value]) => beyond(x(k), y(value), value > telling[1]))), mark);
-  const follow = (/** @type {PointerEvent} */ event) => {
+    ...all.flatMap((series) => peaks(series, telling).map(([k, value]) => beyond(x(k), y(value), value > telling[1]))), mark, cursor);
+  const under = (/** @type {PointerEvent} */ event) => {
     const box = picture.getBoundingClientRect();
     const u = ((event.clientX - box.left) / box.width) * WIDTH;
-    lead(Math.min(last, Math.max(0, ((u - EDGE.left) / (WIDTH - EDGE.left - EDGE.right)) * last)));
+    return Math.min(end, Math.max(start, start + ((u - EDGE.left) / (WIDTH - EDGE.left - EDGE.right)) * (end - start)));
   };
+  const follow = (/** @type {PointerEvent} */ event) => lead(under(event));
+  // What stands at the pointer is told as long as it rests on the plot.
+  picture.addEventListener("pointermove", (/** @type {PointerEvent} */ event) => {
+    const k = under(event);
+    pointed = k;
+    for (const [name, value] of Object.entries({ x1: x(k), x2: x(k) })) cursor.setAttribute(name, String(value));
+    cursor.removeAttribute("hidden");
+    read(k);
+  });
+  picture.addEventListener("pointerleave", () => {
+    pointed = null;
+    cursor.setAttribute("hidden", "");
+    read(at);
+  });
   picture.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
     picture.setPointerCapture(event.pointerId);
     follow(event);
@@ -103,21 +135,43 @@ function plot(plotted, input, lead, unit, whole = false) {
   let at = 0;
   /** @type {((at: number) => void) | null} the plot in its other range, which has taken the place of this one */
   let other = null;
-  const turn = () => {
-    const next = plot(plotted, input, lead, unit, !whole);
+  const look = (/** @type {Partial<Seen>} */ seen) => {
+    const open = more.open;
+    const next = plot(plotted, input, lead, unit, { whole, range: looked, ...seen });
     other = next.show;
-    figure.replaceChildren(...next.figure.childNodes);
+    remade([figure], () => {
+      figure.replaceChildren(...next.figure.childNodes);
+      /** @type {HTMLDetailsElement} */ (figure.querySelector(".plot-more")).open = open;
+    });
     other(at);
   };
-  const button = (cut.length > 0 || whole) && el("button", { type: "button", class: "small cut", onclick: turn },
+  const nearer = (/** @type {number} */ share) => {
+    const wide = Math.min(samples, Math.max(FEWEST, Math.round((end - start) * share)));
+    const from = Math.min(samples - wide, Math.max(0, Math.round(at - wide / 2)));
+    look({ range: [from, from + wide] });
+  };
+  const small = (/** @type {string} */ text, /** @type {string} */ label, /** @type {() => void} */ act, disabled = false) =>
+    el("button", { type: "button", class: "small", "aria-label": `${label}: ${title}`, title: label, disabled, onclick: act }, text);
+  const name = title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "");
+  const more = el("details", { class: "plot-more" }, el("summary", { "aria-label": `More of: ${title}`, title: "Look nearer, take it home" }, "⋯"),
+    el("div", { class: "row" }, small("−", "Farther", () => nearer(1 / NEARER), end - start >= samples),
+      small("+", "Nearer to where the motion stands", () => nearer(NEARER), end - start <= FEWEST),
+      small("CSV", "Take the numbers home as CSV", () => saved(comma(title, lines, input, unit), `${name}.csv`)),
+      small("Picture", "Take the picture home", async () => saved(await pictured(picture, title), `${name}.png`))));
+  const button = (cut.length > 0 || whole) && el("button", { type: "button", class: "small cut", onclick: () => look({ whole: !whole }) },
     whole ? "Cut the peaks" : `${cut.length > 1 ? "Peaks" : "Peak"} ${cut.map((one) => brief(one)).join(" and ")} cut; show all`);
-  const figure = el("figure", { class: "plot" }, caption, picture, button);
+  const figure = el("figure", { class: "plot" }, caption, picture, button, more);
+  const read = (/** @type {number} */ k) => {
+    const place = input && pointed !== null ? `${shown(Math.round(10 * input[Math.round(k)]) / 10)}${unit}: ` : "";
+    reading.textContent = place + Object.values(lines).map((series) => brief(series[Math.round(k)], NOISE * range)).join(", ");
+  };
   const show = (/** @type {number} */ now) => {
     at = now;
     if (other) return other(now);
+    mark.toggleAttribute("hidden", at < start || at > end);
     mark.setAttribute("x1", String(x(at)));
     mark.setAttribute("x2", String(x(at)));
-    reading.textContent = all.map((series) => brief(series[Math.round(at)], NOISE * range)).join(", ");
+    if (pointed === null) read(at);
   };
   return { figure, show };
 }

@@ -152,14 +152,14 @@ export class RoomEditor {
       body.setAttribute("aria-label", `${area.label}, ${what}. Arrow keys move it, Delete removes it.`);
       for (const grip of grips) grip.show();
     };
-    this.dragged(body, () => this.choose(area), (by) => area.shift(by, (value) => this.view.rounded(value)), altered, area.path);
+    this.dragged(body, () => this.choose(area), (by) => area.shift(by, (value) => this.view.fine(value)), altered, area.path);
     body.addEventListener("focus", () => {
       if (!body.matches(":focus-visible") || this.memory.chosen === area.path) return;
       this.choose(area);
       this.focus(area.path);
     });
     if (area.free) body.addEventListener("dblclick", (/** @type {MouseEvent} */ event) => this.split(area, event));
-    this.keyed(body, (by) => area.shift(by, (value) => this.view.rounded(value)), () => this.remove(area), altered);
+    this.keyed(body, (by) => area.shift(by, (value) => this.view.fine(value)), () => this.remove(area), altered);
     show();
     return svg("g", {}, body, ...grips.map((one) => one.node));
   }
@@ -242,7 +242,7 @@ export class RoomEditor {
         if (!moved && view.scale * Math.hypot(...by) < CLICK) return;
         moved = true;
         before = [before[0] + by[0], before[1] + by[1]];
-        move(by);
+        view.freely(() => move(by), now.altKey);
         show();
       }, { signal });
       const end = () => {
@@ -262,7 +262,7 @@ export class RoomEditor {
       const step = this.view.step(event.shiftKey ? 1 : 10);
       const by = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] }[event.key];
       if (by) {
-        move(/** @type {Point} */ (by));
+        this.view.freely(() => move(/** @type {Point} */ (by)));
         show();
       } else if (event.key === "Delete" || event.key === "Backspace") remove();
       else return;

@@ -17,6 +17,7 @@ export const CLOCK = 48;
  * What a view of a mechanism consists of.
  * @typedef {object} View
  * @property {SVGSVGElement | HTMLElement} picture takes the stage
+ * @property {HTMLElement[]} [tools] over the picture, before those that bring it nearer
  * @property {HTMLElement} [clock] the row of its player, below the picture
  * @property {(Node | string | null | undefined | false)[]} [below] on the stage, beneath the picture
  * @property {(Node | string | null | undefined | false)[]} [beside] in the drawer, with the numbers
@@ -44,8 +45,9 @@ export class Frame {
   }
 
   /** @param {View} view */
-  fill({ picture, clock, below = [], beside = [], plots = [] }) {
+  fill({ picture, tools = [], clock, below = [], beside = [], plots = [] }) {
     this.zoom = picture instanceof SVGSVGElement ? new Zoom(picture) : null;
+    this.zoom?.buttons.prepend(...tools);
     const stage = el("div", { class: "stage" }, picture, this.zoom?.buttons, ...below);
     this.wait(false);
     remade([this.board, this.beside, this.plots], () => {

@@ -10,7 +10,8 @@ import { byId, el } from "./dom.js";
 import { draftOf, forgetDraft, keepDraft, lastKind, lastSteps } from "./drafts.js";
 import * as faults from "./faults.js";
 import { fill } from "./form.js";
-import { Gallery } from "./gallery.js";
+import { Gallery, listed } from "./gallery.js";
+import { Leader } from "./guide.js";
 import { History } from "./history.js";
 import { Keys, scrub, scrubTo, visible } from "./keys.js";
 import { Link } from "./link.js";
@@ -105,7 +106,9 @@ async function outlined() {
 
 /** Say so where the answers that are shown are not those to the statement as it is now. */
 function compare() {
-  byId("stale").hidden = answered === null || spelt(answered) === spelt(problem);
+  const stale = answered !== null && spelt(answered) !== spelt(problem);
+  byId("stale").hidden = !stale;
+  byId("answers").classList.toggle("stale", stale);
 }
 
 /** A statement in one spelling: fields in order, without the empty groups in which the form has room for fields. @param {any} statement */
@@ -306,6 +309,17 @@ async function restore() {
   }
 }
 
+/** Leave the job that is shown: what is stated next has no answers yet. */
+function left() {
+  running.leave(byId("progress"));
+  busy(false);
+  answered = null;
+  answers.leave(byId("result"), desk);
+  desk.stage.offer(false);
+  byId("result").replaceChildren(el("p", { class: "note" }, "State a problem, or take an example, and solve it."));
+  window.history.replaceState(null, "", location.pathname);
+}
+
 async function begin() {
   try {
     kinds = await api.kinds();
@@ -323,6 +337,16 @@ async function begin() {
     byId("label").value = example.name;
     solve();
   });
+  const leader = new Leader({ desk, problem: () => problem, answered: () => answered !== null && byId("stale").hidden && !byId("answers").hasAttribute("aria-busy"),
+    state: (of, name) => {
+      const example = listed(kinds).find((one) => one.kind === of && one.name === name);
+      if (!example) return;
+      left();
+      state(example.problem);
+      byId("example").value = String(example.n);
+      byId("label").value = name;
+    } });
+  byId("guides").replaceChildren(el("p", { class: "note" }, "Guided, a minute each"), ...leader.list(() => gallery?.dialog.close()));
   if (wanted) gallery.open();
   opening.measured();
   const last = location.hash ? "" : lastKind();
@@ -341,13 +365,6 @@ fields.addEventListener("submit", (/** @type {Event} */ event) => {
 function browse() {
   wanted = !gallery;
   gallery?.open();
-}
-
-/** Choose a design by its number, or one that many further. @param {number} number @param {number} [further] */
-function choose(number, further = 0) {
-  const cards = [...document.querySelectorAll(".card")];
-  const at = cards.findIndex((one) => one.getAttribute("aria-pressed") === "true");
-  /** @type {HTMLElement | undefined} */ (cards[further ? at + further : number - 1])?.click();
 }
 
 /** What a link to this page as it is now holds. @returns {import("./address.js").Sent} */
@@ -393,12 +410,15 @@ const keys = new Keys([
   { keys: ["Shift+ArrowRight"], shown: "", text: "", act: () => scrub(10) },
   { keys: ["Home"], shown: "Home or End", text: "Beginning and end of the motion", act: () => scrubTo(0) },
   { keys: ["End"], shown: "", text: "", act: () => scrubTo(1) },
-  { keys: [..."123456789"], shown: "1 … 9", text: "Choose a design", act: (event) => choose(Number(event.key)) },
-  { keys: ["["], shown: "[ or ]", text: "The design before, the next one", act: () => choose(0, -1) },
-  { keys: ["]"], shown: "", text: "", act: () => choose(0, 1) },
+  { keys: [..."123456789"], shown: "1 … 9", text: "Choose a design", act: (event) => answers.select(Number(event.key)) },
+  { keys: ["["], shown: "[ or ]", text: "The design before, the next one", act: () => answers.further(-1) },
+  { keys: ["]"], shown: "", text: "", act: () => answers.further(1) },
+  { keys: ["c"], shown: "C", text: "Compare designs", act: () => desk.drawer.press("compare") },
+  { keys: ["k"], shown: "K", text: "Pin the chosen design, or unpin it", act: () => answers.pin() },
   { keys: ["+", "="], shown: "+ or −", text: "Nearer, farther", act: press("Nearer") },
   { keys: ["-"], shown: "", text: "", act: press("Farther") },
   { keys: ["f"], shown: "F", text: "Fit everything", act: press("Fit everything") },
+  { keys: ["r"], shown: "R", text: "Ruler", act: () => visible('[data-tool="ruler"]')?.click() },
   { keys: ["s"], shown: "S or W", text: "The stage states, or watches", act: () => desk.stage.show("state") },
   { keys: ["w"], shown: "", text: "", act: () => desk.stage.show("watch") },
   { keys: ["t"], shown: "T", text: "Fold the task, where there is little room", act: () => visible("#fold")?.click() },

@@ -2,10 +2,11 @@
 
 import { el, shown, svg } from "./dom.js";
 import { stroke } from "./freehand.js";
-import { grid } from "./grid.js";
+import { grid, snapping } from "./grid.js";
 import { chosenPivots, matched, opened, stated } from "./handles.js";
 import { areas } from "./room.js";
 import { RoomEditor } from "./room_editor.js";
+import { Ruler } from "./ruler.js";
 import { roomOf } from "./stage.js";
 import { View } from "./view.js";
 
@@ -22,6 +23,12 @@ const ZOOM = 1.5;
 /** What is drawn along by less, pixels of the picture, was a click. */
 const CLICK = 4;
 
+/** What angles snap to, degrees. */
+const TURN = 15;
+
+/** What somebody has chosen of the tools; it outlives every canvas. */
+const tools = { grid: true, snap: false };
+
 /**
  * What of a canvas outlives its being made anew.
  * @typedef {object} Kept
@@ -29,6 +36,7 @@ const CLICK = 4;
  * @property {View | null} view
  * @property {boolean} led whether somebody has led the view somewhere; otherwise all is to be seen
  * @property {import("./room_editor.js").Memory} room
+ * @property {{ends: [[number, number], [number, number]] | null}} ruler
  */
 
 /** @type {WeakMap<HTMLElement, Kept>} */
@@ -41,7 +49,7 @@ const kept = new WeakMap();
 export function canvas(place, problem, roomy, changed, backdrop) {
   const found = readable(problem);
   const before = kept.get(place);
-  const memory = before && before.problem === problem ? before : { problem, view: null, led: false, room: { role: before?.room.role } };
+  const memory = before && before.problem === problem ? before : { problem, view: null, led: false, room: { role: before?.room.role }, ruler: { ends: null } };
   before?.room.pen?.leave();
   kept.set(place, memory);
   const graph = problem.kind === "function";
@@ -67,13 +75,14 @@ function bare(problem) {
  * @param {(rebuilt: boolean) => void} changed @param {import("./backdrop.js").Backdrop | null} backdrop @param {[number, number]} room pixels
  * @returns {HTMLElement}
  */
-function drawnPlane(place, problem, { handles, lines, word, add, offers, freehand }, roomy, memory, changed, backdrop, room) {
+function drawnPlane(place, problem, { handles, lines, word, add, offers, freehand, shapes = [] }, roomy, memory, changed, backdrop, room) {
   const corners = roomy ? areas(problem.space).flatMap((area) => area.extent) : [];
   const points = [...handles.flatMap(({ get, name }) => (name === "ground" ? [] : [get()])), ...corners];
   const fits = memory.view?.width === room[0] && memory.view.height === room[1] && memory.view.suits(points);
   const view = roomy && memory.view && (memory.led || fits) ? memory.view : new View(points, ...room, corners.length ? 40 : 0.2 * Math.min(...room));
   const { width, height } = view;
   if (roomy) memory.view = view;
+  view.snap = tools.snap ? snapping(view) : 0;
   const led = (/** @type {boolean} */ somewhere) => {
     Object.assign(memory, { view: somewhere ? view : null, led: somewhere });
     if (backdrop) canvas(place, problem, roomy, changed, backdrop);
@@ -82,12 +91,26 @@ function drawnPlane(place, problem, { handles, lines, word, add, offers, freehan
   const trail = svg("path", { class: "trail" });
   const pen = svg("path", { class: "pen" });
   const areasOf = roomy ? new RoomEditor(picture, view, problem, memory.room, changed) : null;
-  picture.append(svg("rect", { class: "paper", width, height }), ...(backdrop?.drawn(view, picture) ?? []), ...grid(view), ...(areasOf ? [areasOf.node] : []), trail, pen);
+  picture.append(svg("rect", { class: "paper", width, height }), ...(backdrop?.drawn(view, picture) ?? []), ...(tools.grid ? grid(view) : []), ...(areasOf ? [areasOf.node] : []), trail, pen);
   const redraw = () => trail.setAttribute("d", lines().map((/** @type {any} */ line) => view.path(line)).join(""));
   const drawn = handles.map((handle, k) => held(handle, `${word ?? "handle"}${k}`, view, picture, () => drawn.forEach((one) => one.show()), redraw, changed));
   picture.append(...drawn.map((one) => one.group));
   for (const one of drawn) one.show();
   redraw();
+  // Coordinates of a graph are no lengths.
+  const ruler = word === "pair" ? null : new Ruler(picture, view, problem.length_unit ?? "mm", () => handles.map((one) => one.get()), memory.ruler);
+  const toggle = (/** @type {"grid" | "snap"} */ name, /** @type {string} */ text, /** @type {string} */ title) =>
+    el("button", { type: "button", class: "small", title, "aria-pressed": String(tools[name]), "data-tool": name, onclick: () => {
+      tools[name] = !tools[name];
+      changed(true);
+    } }, text);
+  const chosen = el("div", { class: "canvas-tools", role: "group", "aria-label": "Tools of the canvas" },
+    ...shapes.map(({ text, title, make }) => el("button", { type: "button", class: "small", title, onclick: () => {
+      make((value) => view.fine(value));
+      changed(true);
+    } }, text)),
+    toggle("grid", "Grid", "Lines at round coordinates"),
+    toggle("snap", "Snap", `Places snap to ${shown(snapping(view))}, angles to ${TURN}°; Alt lets them be`), ruler?.button);
 
   const mode = el("input", { type: "checkbox", id: "freehand" });
   const put = (/** @type {[number, number]} */ [x, y]) => {
@@ -114,7 +137,8 @@ function drawnPlane(place, problem, { handles, lines, word, add, offers, freehan
   const how = `${freehand && problem.closed ? "Closed: the whole curve is matched. " : ""}Drag to move${handles.some((one) => one.turn) ? ", drag the end to turn" : ""}${add ? "; double-click adds one" : ""}.`;
   // An empty plane says nothing: what may be placed in it stands below.
   picture.toggleAttribute("hidden", !handles.length && !add && !roomy);
-  return el("div", { class: "plane" }, el("div", { class: "stage" }, picture), el("div", { class: "bar" }, el("div", { class: "row" },
+  if (picture.hasAttribute("hidden")) chosen.hidden = true;
+  return el("div", { class: "plane" }, el("div", { class: "stage" }, picture, chosen), el("div", { class: "bar" }, el("div", { class: "row" },
     add && el("button", { type: "button", class: "small", onclick: () => put([last[0] + 40 / view.scale, last[1]]) }, `Add a ${word}`),
     ...offers.map(({ text, make }) => el("button", { type: "button", class: "small", onclick: () => {
       make([view.rounded(view.middle[0]), view.rounded(view.middle[1])], view.rounded(size));
@@ -177,21 +201,27 @@ function held(handle, key, view, picture, all, redraw, changed) {
   const line = svg("line", { class: "arm" });
   const knob = turn && svg("circle", { class: "knob", r: 7 });
   const dot = svg("circle", { class: "dot", r: 8 });
+  // A finger is less exact than what is drawn.
+  const [around, end] = [dot, knob].map((one) => one && svg("circle", { class: "hit", r: 12 }));
   const text = svg("text", { dx: 12, dy: 20 }, name);
-  const group = svg("g", { class: "target", tabindex: 0, role: "button", "data-grip": key }, line, text, dot, knob);
+  const group = svg("g", { class: "target", tabindex: 0, role: "button", "data-grip": key }, line, text, around, dot, end, knob);
   const show = () => {
     const [x, y] = handle.get();
     const [u, v] = view.at(x, y);
-    dot.setAttribute("cx", u);
-    dot.setAttribute("cy", v);
+    for (const one of [dot, around]) {
+      one.setAttribute("cx", u);
+      one.setAttribute("cy", v);
+    }
     text.setAttribute("x", u);
     text.setAttribute("y", v);
     group.setAttribute("aria-label", `${label}: x ${shown(x)}, y ${shown(y)}${turn ? `, angle ${shown(turn.get())}°` : ""}. Arrow keys move it${turn ? ", page keys turn it" : ""}${handle.remove ? ", Delete removes it" : ""}.`);
     if (!knob || !turn) return;
     const angle = (turn.get() * Math.PI) / 180;
     const [ku, kv] = [u + ARM * Math.cos(angle), v - ARM * Math.sin(angle)];
-    knob.setAttribute("cx", ku);
-    knob.setAttribute("cy", kv);
+    for (const one of [knob, end]) {
+      one.setAttribute("cx", ku);
+      one.setAttribute("cy", kv);
+    }
     for (const [attribute, value] of Object.entries({ x1: u, y1: v, x2: ku, y2: kv })) line.setAttribute(attribute, String(value));
   };
   const altered = () => {
@@ -208,7 +238,7 @@ function held(handle, key, view, picture, all, redraw, changed) {
       event.stopPropagation();
       grip.setPointerCapture(event.pointerId);
       const move = (/** @type {PointerEvent} */ now) => {
-        moved(view.under(picture, now));
+        view.freely(() => moved(view.under(picture, now)), now.altKey);
         altered();
       };
       grip.addEventListener("pointermove", move);
@@ -218,19 +248,22 @@ function held(handle, key, view, picture, all, redraw, changed) {
       }, { once: true });
     });
   };
-  drag(dot, ([x, y]) => handle.put(view.rounded(x), view.rounded(y)));
+  for (const one of [dot, around]) drag(one, ([x, y]) => handle.put(view.rounded(x), view.rounded(y)));
   if (knob && turn) {
-    drag(knob, ([x, y]) => {
-      const [px, py] = handle.get();
-      turn.set(Math.round((Math.atan2(y - py, x - px) * 180) / Math.PI));
-    });
+    for (const one of [knob, end]) {
+      drag(one, ([x, y]) => {
+        const [px, py] = handle.get();
+        const step = view.snap ? TURN : 1;
+        turn.set(step * Math.round((Math.atan2(y - py, x - px) * 180) / Math.PI / step));
+      });
+    }
   }
   group.addEventListener("keydown", (/** @type {KeyboardEvent} */ event) => {
     const step = view.step(event.shiftKey ? 1 : 10);
     const by = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] }[event.key];
     const way = { PageUp: 1, PageDown: -1 }[event.key];
     const [x, y] = handle.get();
-    if (by) handle.put(view.rounded(x + by[0]), view.rounded(y + by[1]));
+    if (by) handle.put(view.fine(x + by[0]), view.fine(y + by[1]));
     else if (way && turn) turn.set(turn.get() + way * (event.shiftKey ? 1 : 5));
     else if (event.key === "Delete" && handle.remove) {
       handle.remove();

@@ -21,6 +21,8 @@ export class View {
     this.middle = /** @type {Point} */ ([(west + east) / 2, (south + north) / 2]);
     this.width = width;
     this.height = height;
+    /** What coordinates snap to, length units; 0 where they do not. */
+    this.snap = 0;
   }
 
   /** Whether points lie in the picture, and fill a fair part of it. @param {Point[]} points */
@@ -51,10 +53,22 @@ export class View {
     return 10 ** Math.round(Math.log10(pixels / this.scale));
   }
 
-  /** A value rounded to what can be told apart on the screen. @param {number} value */
+  /** A value rounded to what can be told apart on the screen, or to what it snaps to. @param {number} value */
   rounded(value) {
-    const step = this.step(0.5);
-    return Number((Math.round(value / step) * step).toPrecision(12));
+    return this.snap ? nearest(value, this.snap) : this.fine(value);
+  }
+
+  /** A value rounded to what can be told apart on the screen. @param {number} value */
+  fine(value) {
+    return nearest(value, this.step(0.5));
+  }
+
+  /** Do something that snaps to nothing. @param {() => void} act @param {boolean} [really] */
+  freely(act, really = true) {
+    const { snap } = this;
+    if (really) this.snap = 0;
+    act();
+    this.snap = snap;
   }
 
   /** Points as the data of a path; where one is unknown the line is broken. @param {Point[]} points */
@@ -72,4 +86,9 @@ export class View {
     }
     return data;
   }
+}
+
+/** The multiple of a step that is nearest. @param {number} value @param {number} step */
+function nearest(value, step) {
+  return Number((Math.round(value / step) * step).toPrecision(12));
 }

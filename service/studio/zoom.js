@@ -16,7 +16,7 @@ const FARTHEST = 0.25;
 /** @typedef {{x: number, y: number, width: number, height: number}} Box */
 
 /** What takes the pointer itself. */
-const HELD = ".led, .target, .grip, .held, .placing, a, button";
+const HELD = ".led, .hit, .target, .grip, .held, .placing, a, button";
 
 export class Zoom {
   /** @param {SVGSVGElement} picture */

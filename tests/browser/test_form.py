@@ -179,8 +179,8 @@ def test_the_page_is_worked_by_keys_alone(studio):
     page.keyboard.press("ArrowRight")
     assert page.input_value("#scrub") != before
     tab_to("one.matches('[role=tab]')")
-    # Plots, Explore, Assembly, Files.
-    for _ in range(4):
+    # Plots, Explore, Compare, Assembly, Files.
+    for _ in range(5):
         page.keyboard.press("ArrowRight")
     assert page.evaluate("document.activeElement.id") == "tab-files"
     tab_to("one.matches('#downloads button') && one.textContent === 'SVG'")

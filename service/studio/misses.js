@@ -1,0 +1,147 @@
+/** What comes nearest where no design satisfies all demands, and the same problem with what is within reach. */
+
+import { el, shown, words } from "./dom.js";
+import { amount, unitFor } from "./figures.js";
+import { thumbnail } from "./thumbnail.js";
+
+/** @typedef {{check: string, value?: number, limit?: number, dimension?: string}} Gap */
+/**
+ * How a demand is eased.
+ * @typedef {object} Easing
+ * @property {string} text after "Solve "
+ * @property {(problem: any) => void} apply changes a statement
+ */
+/** @typedef {{text: string, statement: any}} Offer */
+
+/** Digits of a limit that is eased. */
+const DIGITS = 4;
+
+/** Where the limit of a check is stated, if it has not the name of the check. @type {Record<string, string[]>} */
+const STATED = {
+  transmission_angle: ["constraints", "min_transmission_angle"], link_ratio: ["constraints", "max_link_ratio"],
+  shortest_link: ["constraints", "link_length", "min"], longest_link: ["constraints", "link_length", "max"],
+  planes: ["layout", "max_planes"], ratio_error: ["tolerance"], ratio: ["tolerance"], speeds: ["tolerance"], ratios: ["tolerance"],
+  obstacles: ["space", "clearance"], contact_force: ["dynamics", "least_force"], min_dwell_share: ["limits", "dwell_share", "min"],
+  max_dwell_share: ["limits", "dwell_share", "max"],
+};
+
+/** What has no measure, or no number that could be eased: it is left out. @type {Record<string, {text: string, path: string[], value: any}>} */
+const LEFT_OUT = {
+  grashof: { text: "with any class of linkage", path: ["constraints", "grashof"], value: "any" },
+  full_rotation: { text: "without a full turn of the input", path: ["constraints", "full_rotation"], value: false },
+  box: { text: "without the box", path: ["space", "box"], value: null },
+  obstacles: { text: "without the obstacles", path: ["space", "obstacles"], value: [] },
+  fixed_pivot_zones: { text: "without the zones of fixed pivots", path: ["space", "fixed_pivots"], value: null },
+  moving_pivot_zones: { text: "without the zones of moving pivots", path: ["space", "moving_pivots"], value: null },
+};
+
+/** Rectangles that are widened by as much as pivots lie outside of them. @type {Record<string, string[]>} */
+const WIDENED = {
+  fixed_pivot_region: ["constraints", "fixed_pivot_region"], moving_pivot_region: ["constraints", "moving_pivot_region"],
+  driver_pivot_region: ["driver_dyad", "pivot_region"],
+};
+
+/** What is reached beside all other demands, by its name in the answer: the check that it is of. @type {Record<string, string>} */
+const REACHED = { min_transmission_angle: "transmission_angle", max_link_ratio: "link_ratio", tolerance: "ratio_error" };
+
+/** @param {any} miss @param {any} problem @param {(problem: any) => void} solve */
+export function missed(miss, problem, solve) {
+  const { design, gaps, reachable } = miss;
+  const short = (/** @type {any} */ value) => [value].flat().map((one) => shown(Number(one.toPrecision(4)))).join(" and ");
+  const unit = (/** @type {string} */ name) => (name.includes("angle") ? "°" : "");
+  const within = Object.entries(reachable).map(([name, value]) => `${words(name).toLowerCase()} ${short(value)}${unit(name)}`);
+  return el("section", { id: "miss" }, thumbnail(design),
+    el("strong", {}, `Nearest miss: ${words(design.mechanism.type)}`),
+    ...gaps.map((/** @type {Gap} */ gap) => el("span", { class: "bad" }, `✗ ${words(gap.check)}`,
+      typeof gap.value === "number" && ` ${amount(gap.value, gap, problem)}`,
+      typeof gap.limit === "number" && `, demanded ${amount(gap.limit, gap, problem)}`)),
+    within.length > 0 && el("span", { class: "note" }, `Within reach beside all other demands: ${within.join("; ")}.`),
+    ...offers(problem, miss).map(({ text, statement }, k) =>
+      el("button", { type: "button", class: k ? "small" : "main", onclick: () => solve(statement) }, text)));
+}
+
+/**
+ * The problem with what the nearest miss has, and with what can be reached of one demand beside all others; of two that
+ * are the same the first.
+ * @param {any} problem @param {any} miss @returns {Offer[]}
+ */
+export function offers(problem, { gaps, reachable }) {
+  const whole = gaps.map((/** @type {Gap} */ gap) => eased(problem, gap));
+  const single = Object.entries(reachable).map(([name, value]) => reached(problem, name, value));
+  const sets = [...(single.length && gaps.length < 2 ? [] : [whole]), ...single.map((one) => [one]), whole];
+  const found = sets.filter((/** @type {(Easing | null)[]} */ set) => set.length && set.every((one) => one)).map((/** @type {Easing[]} */ set) => {
+    const statement = structuredClone(problem);
+    for (const { apply } of set) apply(statement);
+    return { text: `Solve ${set.map((one) => one.text).join(" and ")}`, statement };
+  });
+  return found.filter((one, k) => found.findIndex((other) => JSON.stringify(other.statement) === JSON.stringify(one.statement)) === k);
+}
+
+/** Ease a demand by as much as the nearest miss breaks it. @param {any} problem @param {Gap} gap @returns {Easing | null} null where nothing of the statement says it */
+function eased(problem, gap) {
+  const { check, value, limit } = gap;
+  const region = WIDENED[check];
+  if (region && typeof value === "number" && at(problem, region)) {
+    const by = rounded(value, true);
+    return { text: `with ${words(check).toLowerCase()} wider by ${amount(by, gap, problem)}`, apply: (statement) => {
+      const zone = at(statement, region);
+      for (const way of ["x", "y"]) zone[way] = [zone[way][0] - by, zone[way][1] + by];
+    } };
+  }
+  // What lies in an obstacle has no clearance that could be demanded of it.
+  if (typeof value === "number" && typeof limit === "number" && !(check === "obstacles" && value <= 0)) {
+    const path = STATED[check] ?? named(problem, check, limit);
+    if (path && at(problem, path) === limit) return limited(path, check, value, value > limit, amount(rounded(value, value > limit), gap, problem));
+  }
+  const out = LEFT_OUT[check];
+  return out && at(problem, out.path.slice(0, -1)) ? { text: out.text, apply: (statement) => put(statement, out.path, out.value) } : null;
+}
+
+/** Demand what is reached where all else holds. @param {any} problem @param {string} name @param {any} value @returns {Easing | null} */
+function reached(problem, name, value) {
+  const check = REACHED[name];
+  const path = check ? STATED[check] : [name];
+  if (name === "dwell_angles" && Array.isArray(problem.dwells)) {
+    const angles = value.map((/** @type {number} */ one) => rounded(one, false));
+    return { text: `with dwells of ${angles.map((/** @type {number} */ one) => `${shown(one)}°`).join(" and ")}`,
+      apply: (statement) => statement.dwells.forEach((/** @type {any} */ dwell, /** @type {number} */ k) => (dwell.angle = angles[k])) };
+  }
+  const limit = at(problem, path);
+  if (typeof limit !== "number" || typeof value !== "number") return null;
+  const unit = unitFor(name, problem) || (name.includes("angle") ? "°" : "");
+  return limited(path, check ?? name, value, value > limit, `${shown(rounded(value, value > limit))}${unit}`);
+}
+
+/** Another limit. @param {string[]} path @param {string} check @param {number} value @param {boolean} up @param {string} told @returns {Easing} */
+function limited(path, check, value, up, told) {
+  const name = path.at(-1) === "tolerance" ? "tolerance" : path.at(-1) === "clearance" ? "clearance" : words(check).toLowerCase();
+  return { text: `with ${name} ${told}`, apply: (statement) => put(statement, path, rounded(value, up)) };
+}
+
+/** Rounded to the side on which it is reached. @param {number} value @param {boolean} up */
+function rounded(value, up) {
+  if (Number.isInteger(value)) return value;
+  const step = 10 ** (Math.floor(Math.log10(Math.abs(value) || 1)) + 1 - DIGITS);
+  return Number(((up ? Math.ceil : Math.floor)(value / step) * step).toPrecision(DIGITS));
+}
+
+/** Where a statement has a limit under the name of its check. @param {any} owner @param {string} check @param {number} limit @param {string[]} [above] @returns {string[] | null} */
+function named(owner, check, limit, above = []) {
+  if (typeof owner !== "object" || owner === null || Array.isArray(owner)) return null;
+  for (const [name, value] of Object.entries(owner)) {
+    if ([check, `min_${check}`, `max_${check}`].includes(name) && value === limit) return [...above, name];
+    const found = named(value, check, limit, [...above, name]);
+    if (found) return found;
+  }
+  return null;
+}
+
+/** @param {any} owner @param {string[]} path @returns {any} */
+function at(owner, path) {
+  return path.reduce((inner, name) => inner?.[name], owner);
+}
+
+/** @param {any} owner @param {string[]} path @param {any} value */
+function put(owner, path, value) {
+  at(owner, path.slice(0, -1))[path[path.length - 1]] = value;
+}

@@ -1,0 +1,104 @@
+/** A ruler on a picture of the plane: two ends that are dragged, and how far apart they are, and in which direction. */
+
+import { el, shown, svg } from "./dom.js";
+import { brief } from "./figures.js";
+
+/** @typedef {[number, number]} Point */
+
+/** How near to something an end is caught by it, pixels. */
+const CATCH = 10;
+
+export class Ruler {
+  /**
+   * @param {SVGSVGElement} picture @param {import("./view.js").View} view @param {string} unit of lengths
+   * @param {() => Point[]} points what the ends are caught by
+   * @param {{ends: [Point, Point] | null}} memory outlives a picture that is made anew
+   */
+  constructor(picture, view, unit, points, memory = { ends: null }) {
+    this.picture = picture;
+    this.view = view;
+    this.unit = unit;
+    this.points = points;
+    this.memory = memory;
+    this.line = svg("line", { class: "ruler-line" });
+    this.text = svg("text", { class: "ruler-text", "text-anchor": "middle" });
+    this.title = svg("title");
+    this.grips = [0, 1].map((k) => this.grip(k));
+    this.node = svg("g", { class: "ruler" }, this.line, svg("g", {}, this.title, this.text), ...this.grips.map((one) => one.node));
+    this.button = el("button", { type: "button", class: "small", "aria-pressed": "false", title: "Ruler: drag its ends (R)", "data-tool": "ruler",
+      onclick: () => this.turn() }, "Ruler");
+    picture.append(this.node);
+    this.show();
+  }
+
+  /** Lay it on the picture, or take it away. */
+  turn() {
+    const [width, height] = [this.view.width / this.view.scale, this.view.height / this.view.scale];
+    const [x, y] = this.view.middle;
+    this.memory.ends = this.memory.ends ? null
+      : [this.caught([x - 0.2 * width, y - 0.2 * height]), this.caught([x + 0.2 * width, y - 0.2 * height])];
+    this.show();
+    if (this.memory.ends) this.grips[1].node.focus({ preventScroll: true });
+  }
+
+  /** @param {number} k */
+  grip(k) {
+    const hit = svg("circle", { class: "hit", r: 12 });
+    const dot = svg("circle", { class: "ruler-end", r: 5 });
+    const node = svg("g", { class: "grip", tabindex: 0, role: "button", "data-grip": `ruler${k}`, "aria-label": `End ${k + 1} of the ruler` }, hit, dot);
+    const put = (/** @type {Point} */ at) => {
+      if (this.memory.ends) this.memory.ends[k] = at;
+      this.show();
+    };
+    node.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
+      event.stopPropagation();
+      node.setPointerCapture(event.pointerId);
+      const move = (/** @type {PointerEvent} */ now) => put(this.caught(this.view.under(this.picture, now)));
+      node.addEventListener("pointermove", move);
+      node.addEventListener("lostpointercapture", () => node.removeEventListener("pointermove", move), { once: true });
+    });
+    node.addEventListener("keydown", (/** @type {KeyboardEvent} */ event) => {
+      const step = this.view.step(event.shiftKey ? 1 : 10);
+      const by = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] }[event.key];
+      const end = this.memory.ends?.[k];
+      if (!end || (!by && event.key !== "Delete")) return;
+      event.preventDefault();
+      event.stopPropagation();
+      if (by) return put([this.view.fine(end[0] + by[0]), this.view.fine(end[1] + by[1])]);
+      this.turn();
+      this.button.focus();
+    });
+    return { node, hit, dot };
+  }
+
+  /** A place, or what is so near to it that it is meant. @param {Point} place @returns {Point} */
+  caught(place) {
+    const far = (/** @type {Point} */ [x, y]) => this.view.scale * Math.hypot(x - place[0], y - place[1]);
+    const near = this.points().filter((one) => far(one) < CATCH).sort((one, other) => far(one) - far(other))[0];
+    return near ? [...near] : [this.view.fine(place[0]), this.view.fine(place[1])];
+  }
+
+  show() {
+    const { ends } = this.memory;
+    this.node.toggleAttribute("hidden", !ends);
+    this.button.setAttribute("aria-pressed", String(Boolean(ends)));
+    if (!ends) return;
+    const [[x, y], [u, v]] = ends.map((end) => this.view.at(...end));
+    for (const [name, value] of Object.entries({ x1: x, y1: y, x2: u, y2: v })) this.line.setAttribute(name, String(value));
+    const [dx, dy] = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]];
+    const [length, angle] = [Math.hypot(dx, dy), (Math.atan2(dy, dx) * 180) / Math.PI];
+    const unit = this.unit && ` ${this.unit}`;
+    this.text.textContent = `${brief(length)}${unit}, ${brief(Number(angle.toFixed(1)))}°`;
+    this.title.textContent = `${length}${unit}, ${angle}°; across ${dx}${unit}, up ${dy}${unit}`;
+    this.text.setAttribute("x", (x + u) / 2);
+    this.text.setAttribute("y", (y + v) / 2 - 9);
+    this.grips.forEach(({ node, hit, dot }, k) => {
+      const [cu, cv] = this.view.at(...ends[k]);
+      for (const one of [hit, dot]) {
+        one.setAttribute("cx", cu);
+        one.setAttribute("cy", cv);
+      }
+      node.setAttribute("aria-label", `End ${k + 1} of the ruler: x ${shown(ends[k][0])}, y ${shown(ends[k][1])}; it measures ${this.text.textContent}. Arrow keys move it, Delete takes the ruler away.`);
+    });
+  }
+}

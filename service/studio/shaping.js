@@ -1,0 +1,61 @@
+/** A curve of points made smoother, or symmetric. */
+
+/** @typedef {[number, number]} Point */
+
+/** Steps inwards and outwards of Taubin's filter: a curve becomes smoother and does not shrink (SIGGRAPH 1995). */
+const INWARDS = 0.5;
+const OUTWARDS = -0.53;
+
+/** So many times for one press. */
+const ROUNDS = 3;
+
+/** Points made smoother; the ends of an open curve stay. @param {Point[]} points @param {boolean} closed @returns {Point[]} */
+export function smoothed(points, closed) {
+  const count = points.length;
+  let now = points;
+  for (let k = 0; k < 2 * ROUNDS; k++) {
+    const share = k % 2 ? OUTWARDS : INWARDS;
+    const before = now;
+    now = before.map((point, n) => {
+      if (!closed && (n === 0 || n === count - 1)) return point;
+      const [one, other] = [before[(n + count - 1) % count], before[(n + 1) % count]];
+      return /** @type {Point} */ (point.map((value, c) => value + share * ((one[c] + other[c]) / 2 - value)));
+    });
+  }
+  return now;
+}
+
+/**
+ * Points made symmetric: each becomes the mean of itself and the mirror of its partner. An open curve is mirrored in the
+ * perpendicular bisector of its ends. Of a closed one, with points z about their mean and partners z[j - k], the line through the
+ * mean at half the argument of sum(z[k] z[j - k]) mirrors it best, and the j whose sum is greatest is taken.
+ * @param {Point[]} points @param {boolean} closed @returns {Point[]}
+ */
+export function symmetric(points, closed) {
+  const count = points.length;
+  const middle = closed ? points.reduce(([a, b], [x, y]) => /** @type {Point} */ ([a + x / count, b + y / count]), /** @type {Point} */ ([0, 0]))
+    : /** @type {Point} */ ([(points[0][0] + points[count - 1][0]) / 2, (points[0][1] + points[count - 1][1]) / 2]);
+  const about = points.map(([x, y]) => /** @type {Point} */ ([x - middle[0], y - middle[1]]));
+  const partner = (/** @type {number} */ j, /** @type {number} */ k) => (j - k + 2 * count) % count;
+  let best = { j: count - 1, size: -1, turn: /** @type {Point} */ ([-1, 0]) };
+  for (let j = closed ? 0 : count - 1; j < count; j++) {
+    const [re, im] = closed ? about.reduce(([a, b], [x, y], k) => {
+      const [u, v] = about[partner(j, k)];
+      return /** @type {Point} */ ([a + x * u - y * v, b + x * v + y * u]);
+    }, /** @type {Point} */ ([0, 0])) : [0, 0];
+    const size = Math.hypot(re, im);
+    if (size > best.size) best = { j, size, turn: size ? [re / size, im / size] : [1, 0] };
+  }
+  if (!closed) {
+    // Across the line between the ends.
+    const [x, y] = about[count - 1];
+    const far = x * x + y * y || 1;
+    best.turn = [(y * y - x * x) / far, (-2 * x * y) / far];
+  }
+  const [c, s] = best.turn;
+  return about.map(([x, y], k) => {
+    const [u, v] = about[partner(best.j, k)];
+    const mirrored = [c * u + s * v, s * u - c * v];
+    return /** @type {Point} */ ([middle[0] + (x + mirrored[0]) / 2, middle[1] + (y + mirrored[1]) / 2]);
+  });
+}

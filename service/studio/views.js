@@ -1,0 +1,25 @@
+/** What shows a mechanism in motion, by its type. */
+
+import { Barrel } from "./barrel.js";
+import { Disc } from "./cam.js";
+import { Engine } from "./engine.js";
+import { Flywheel } from "./flywheel.js";
+import { Gears } from "./gears.js";
+import { Geneva } from "./geneva.js";
+import { Ratchet } from "./ratchet.js";
+import { Rotor } from "./rotor.js";
+
+/** @typedef {{stop: () => void, pause?: () => void, player: import("./player.js").Player}} Moving */
+
+/** Samples of a cycle of a linkage. */
+export const STEPS = 240;
+
+/** Of a turn of what has no toggles: a sample a degree. */
+export const TURN_STEPS = 360;
+
+/** What shows a mechanism that is no linkage. @type {Record<string, new (frame: import("./stage.js").Frame, design: any, motion: any, problem: any) => Moving>} */
+export const VIEWS = {
+  cam: Disc, barrel_cam: Barrel, gear_train: Gears, planetary_train: Gears, train_series: Gears, gearbox: Gears, layshaft_gearbox: Gears, rotor: Rotor,
+  flywheel: Flywheel, engine: Engine, geneva_external: Geneva, geneva_internal: Geneva, geneva_spherical: Geneva,
+  ratchet: Ratchet,
+};

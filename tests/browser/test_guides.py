@@ -1,0 +1,80 @@
+"""A guided task is done by keys alone, step by step, and can be left at any time."""
+
+import pytest
+
+from tests.browser.conftest import ANSWERED
+from tests.browser.test_accessibility import serious
+from tests.browser.test_studio import stated
+from tests.service.running import until
+
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
+
+
+def told(page):
+    return page.inner_text("#guide .note")
+
+
+def begun(page, name):
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("g")
+    page.wait_for_selector("#gallery[open]")
+    while not page.evaluate("document.activeElement.textContent").startswith(name):
+        page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    page.wait_for_selector("#guide:visible")
+
+
+def test_a_lid_is_led_through_by_keys(studio):
+    page = studio.page
+    begun(page, "A lid on a cabinet")
+    assert told(page) == "A lid on a cabinet, 1 of 4"
+    assert page.evaluate("document.activeElement.textContent") == "Go there"
+    assert serious(page) == []
+    studio.screen("guide")
+    before = stated(page)["positions"][2]
+    page.keyboard.press("Enter")
+    page.keyboard.press("ArrowRight")
+    assert stated(page)["positions"][2]["x"] > before["x"]
+    until(lambda: told(page).endswith("2 of 4"), 10, "the step is seen to be done")
+    page.get_by_role("button", name="Rectangle", exact=True).focus()
+    page.keyboard.press("Enter")
+    page.keyboard.press("Enter")
+    assert stated(page)["space"]["fixed_pivots"]["input"]["polygon"]
+    until(lambda: told(page).endswith("3 of 4"), 10, "the zone is seen")
+    # What was done is undone as everything is, and a step can be left out.
+    page.click("#undo")
+    assert "input" not in (stated(page).get("space") or {}).get("fixed_pivots", {})
+    page.keyboard.press("Control+Enter")
+    page.wait_for_selector(ANSWERED)
+    until(lambda: told(page).endswith("4 of 4"), 10, "the answers are seen")
+    page.locator("#guide").get_by_role("button", name="Go there").press("Enter")
+    page.wait_for_selector("#choosing .spot")
+    assert page.evaluate("document.activeElement.closest('#choosing') !== null")
+    page.locator(".spot[tabindex='0']").focus()
+    for key in ("ArrowRight", "ArrowLeft", "ArrowUp"):
+        page.keyboard.press(key)
+    until(lambda: told(page) == "A lid on a cabinet", 10, "the end")
+    page.locator("#guide").get_by_role("button", name="Done").press("Enter")
+    assert not page.is_visible("#guide")
+
+
+def test_a_guided_task_is_left_at_any_time_and_stands_beside_its_thing(open_studio):
+    for options in ({}, {"viewport": {"width": 390, "height": 844}, "has_touch": True}):
+        page = open_studio(**options).page
+        for name in ("A valve cam", "A foot that walks"):
+            begun(page, name)
+            count = int(told(page)[-1])
+            for _ in range(count):
+                note = page.locator("#guide").bounding_box()
+                size = page.viewport_size
+                assert note["x"] >= 0
+                assert note["y"] >= 0
+                assert note["x"] + note["width"] <= size["width"]
+                assert note["y"] + note["height"] <= size["height"]
+                page.locator("#guide").get_by_role("button", name="Skip").click()
+            begun(page, name)
+            page.wait_for_selector(".guided")
+            page.keyboard.press("Escape")
+            assert not page.is_visible("#guide")
+            assert page.locator(".guided").count() == 0
+            assert page.evaluate("document.activeElement.id") == "gallery-open"
