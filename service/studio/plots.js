@@ -64,7 +64,10 @@ function plot(plotted, input, lead, unit, { whole = false, range: looked } = {})
   const all = Object.values(lines).map(part);
   const known = /** @type {number[]} */ (all.flat().filter(Number.isFinite));
   const extremes = [known.reduce((a, b) => Math.min(a, b)), known.reduce((a, b) => Math.max(a, b))];
-  const telling = whole ? extremes : middle(known, extremes);
+  const calm = middle(known, extremes);
+  const telling = whole ? extremes : calm;
+  // A peak beyond all bounds makes nothing of the rest.
+  const noise = NOISE * (calm[1] - calm[0]);
   const cut = extremes.filter((one, k) => one !== telling[k]);
   let [low, high] = typeof limit === "number" ? [Math.min(telling[0], limit), Math.max(telling[1], limit)] : telling;
   const steady = high - low <= NOISE * Math.max(Math.abs(low), Math.abs(high), least);
@@ -163,7 +166,7 @@ function plot(plotted, input, lead, unit, { whole = false, range: looked } = {})
   const figure = el("figure", { class: "plot" }, caption, picture, button, more);
   const read = (/** @type {number} */ k) => {
     const place = input && pointed !== null ? `${shown(Math.round(10 * input[Math.round(k)]) / 10)}${unit}: ` : "";
-    reading.textContent = place + Object.values(lines).map((series) => brief(series[Math.round(k)], NOISE * range)).join(", ");
+    reading.textContent = place + Object.values(lines).map((series) => brief(series[Math.round(k)], noise)).join(", ");
   };
   const show = (/** @type {number} */ now) => {
     at = now;
