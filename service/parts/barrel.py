@@ -45,6 +45,9 @@ FOOT = 2.0
 SAG, SAG_OF_CLEARANCE = 0.01, 0.1
 """How far facets may be from the groove: millimetres, and share of the clearance of the roller."""
 
+LOOKS = 72
+"""Inputs at which the finished assembly is looked at once more, with what lies across each other at every third."""
+
 DRAWN = 720
 """Places around the barrel at which its development has the walls."""
 
@@ -132,7 +135,7 @@ class _Barrels(Fitting):
     def assembly(self) -> Assembly:
         """The assembly of the request; what lies across each other is compared once, as it takes the longest."""
         made = super().assembly()
-        meeting = overlaps(made)
+        meeting = overlaps(made, LOOKS)
         if meeting:
             one, other = (named(part) for part in meeting[0].parts)
             raise NotMade(f"There is no room: {one} and {other} meet.")
