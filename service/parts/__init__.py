@@ -11,8 +11,9 @@ collar    the widest that stands on a pin beside a plate: washers, spacers, ring
 
 :mod:`shapes`, :mod:`bodies` and :mod:`model` say what a part is, :mod:`sizes` what a request states. :mod:`made` is the
 door: from a design to an assembly that has been checked. It knows the makers: :mod:`linkages` finds sizes and planes of
-a planar linkage, of which :mod:`building` makes the assembly; :mod:`cams`, :mod:`barrel`, :mod:`geneva` and :mod:`ratchets` make those
-of drives on shafts, from plates that :mod:`stack` puts on pins and keyed shafts, in sizes that :mod:`fitting` finds.
+a planar linkage, of which :mod:`building` makes the assembly; :mod:`cams`, :mod:`barrel`, :mod:`geneva` and
+:mod:`ratchets` make those of drives on shafts, from plates that :mod:`stack` puts on pins and keyed shafts, in sizes
+that :mod:`fitting` finds.
 :mod:`overlaps` sees whether two parts want one place. The writers (:mod:`dxf`, :mod:`sheet`, :mod:`bom`, :mod:`cad`)
 know the assembly alone; only :mod:`cad` needs the libraries of the extra ``cad``.
 """

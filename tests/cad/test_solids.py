@@ -16,6 +16,7 @@ import pytest
 
 from service.parts import cad
 from service.parts.items import items
+from service.parts.linkage_motion import LinkageMotion
 from service.parts.made import made
 from service.parts.model import Assembly
 from service.parts.orders import filled
@@ -98,6 +99,7 @@ def test_a_step_file_has_all_parts_by_name_with_holes_at_the_joints(kind: str) -
         read = import_step(path)
     found = {child.label: child for child in read.children}
     assert found.keys() == {part.name for part in whole.parts}
+    assert isinstance(whole.motion, LinkageMotion)
     mechanism = whole.motion.mechanism
     for part in whole.parts:
         one = found[part.name]
