@@ -1,4 +1,4 @@
-"""How much of a campaign is run: a share of its random cases, the first by seed, and every sixth of its listed ones.
+"""How much of a campaign is run: a share of its random cases, the first by seed, and every twelfth of its listed ones.
 
 With ``--campaign-share 1`` it is all of them.
 """
@@ -12,10 +12,10 @@ from typing import Any
 
 import pytest
 
-DEFAULT_SHARE = 0.1
+DEFAULT_SHARE = 0.05
 """Of random cases. Those left out are of the same sorts."""
 
-LISTED = 6
+LISTED = 12
 """One of so many listed cases of a test is run; the others, too, are of the same sorts."""
 
 _share = DEFAULT_SHARE
@@ -48,7 +48,7 @@ def sampled(cases: int) -> int:
 
 
 def thinned(items: Iterable[pytest.Item]) -> tuple[list[pytest.Item], list[pytest.Item]]:
-    """Tests to be run, and those left out: every sixth case that a test has in the campaign, unless all are run."""
+    """Tests to be run, and those left out: every twelfth case that a test has in the campaign, unless all are run."""
     kept: list[pytest.Item] = []
     left_out: list[pytest.Item] = []
     seen: Counter[str] = Counter()

@@ -43,6 +43,7 @@ def assembly() -> Assembly:
     return made(design, problem, PartsQuery(pin=6.0, thickness=4.0, clearance=0.1))
 
 
+@pytest.mark.campaign
 def test_walls_on_the_cylinder_of_the_rollers_middle_are_those_of_the_answer() -> None:
     """The answer has parallels of the unrolled pitch curve; the roller touches at the same heights there."""
     mechanism = solved()[1].mechanism
@@ -77,7 +78,7 @@ def test_the_barrel_is_a_closed_surface_and_moves_across_the_follower() -> None:
     assert placed["follower"].shift.imag == pytest.approx(0.0)
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize(("grown", "meets"), [(0.07, False), (0.13, True)])
 def test_the_roller_has_its_clearance_in_the_groove_and_no_more(grown: float, meets: bool) -> None:
     whole = assembly()
@@ -92,6 +93,7 @@ def test_the_roller_has_its_clearance_in_the_groove_and_no_more(grown: float, me
     assert bool(overlaps(pair)) == meets
 
 
+@pytest.mark.campaign
 def test_a_barrel_cam_is_had_as_parts(server: Any) -> None:
     client = server.client
     job = finished(client, BARREL)

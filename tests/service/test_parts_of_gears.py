@@ -325,6 +325,7 @@ def axis(view: dict[str, Any], link: str) -> tuple[np.ndarray, np.ndarray, float
     return np.array(origin), np.array(normal), float(turned[0])
 
 
+@pytest.mark.campaign
 def test_a_worm_crosses_under_its_gear_at_the_centre_distance(client: Any) -> None:
     place, design, view = assembled(client, WORM)
     (one, along, first), (other, across, second) = axis(view, "shaft_1"), axis(view, "shaft_2")

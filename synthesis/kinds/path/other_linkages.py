@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from synthesis.fit.chart import GEARED_FIVEBAR, SLIDER_CRANK, SLIDER_ROCKER, natural
 from synthesis.fit.coupler_curve import place
 from synthesis.kinds.path.curve_candidates import cycle_of
-from synthesis.kinds.path.curve_descent import Descent, descend
+from synthesis.kinds.path.curve_descent import Descent, descend, pivots_off
 from synthesis.kinds.path.curve_fits import with_cognates
 from synthesis.kinds.path.curve_limits import pivot_limits
 from synthesis.kinds.path.curve_match import solve_curve_match
@@ -227,7 +227,9 @@ def _held(
 
     def work(some: slice) -> None:
         for k in range(*some.indices(len(x))):
-            if math.isfinite(cost[k]):
+            if problem.stance is None and _keeps(family, x[k], within, float(cosines[k])):
+                arrived[k] = True
+            elif math.isfinite(cost[k]):
                 end = simple_in_stance(
                     family, x[k], float(signs[k]), theta[k], points, spec, cosine=float(cosines[k]), **settings
                 )
@@ -237,6 +239,15 @@ def _held(
 
     in_portions(work, len(x), 1)
     return Descent(x, theta, cost), signs, arrived
+
+
+def _keeps(family: int, x: Real, within: Real, cosine: float) -> bool:
+    """Whether fixed pivots of a fit lie where they must, and a slider-crank has the least transmission angle."""
+    lengths, chart = np.zeros(4), np.zeros((4, 4))
+    natural(family, x, lengths, chart)
+    off, slopes = np.zeros(4), np.zeros((4, len(x)))
+    placed = pivots_off(family, x, lengths, chart, within, off, slopes) == 0.0
+    return placed and (family != SLIDER_CRANK or lengths[0] + abs(lengths[2]) <= cosine * lengths[1])
 
 
 class _Begun(NamedTuple):
