@@ -27,7 +27,6 @@ export class Ruler {
     this.node = svg("g", { class: "ruler" }, this.line, svg("g", {}, this.title, this.text), ...this.grips.map((one) => one.node));
     this.button = el("button", { type: "button", class: "small", "aria-pressed": "false", title: "Ruler: drag its ends (R)", "data-tool": "ruler",
       onclick: () => this.turn() }, "Ruler");
-    picture.append(this.node);
     this.show();
   }
 
@@ -80,9 +79,10 @@ export class Ruler {
 
   show() {
     const { ends } = this.memory;
-    this.node.toggleAttribute("hidden", !ends);
     this.button.setAttribute("aria-pressed", String(Boolean(ends)));
-    if (!ends) return;
+    if (!ends) return this.node.remove();
+    // Laid on once: what is put anew while it is dragged lets the pointer go.
+    if (!this.node.parentNode) this.picture.append(this.node);
     const [[x, y], [u, v]] = ends.map((end) => this.view.at(...end));
     for (const [name, value] of Object.entries({ x1: x, y1: y, x2: u, y2: v })) this.line.setAttribute(name, String(value));
     const [dx, dy] = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]];

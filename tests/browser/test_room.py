@@ -193,7 +193,7 @@ def test_a_pen_is_left_and_corners_are_taken_back(studio):
     take(page, "obstacle", "Polygon")
     pointer.click(-300, 0)
     page.keyboard.press("Escape")
-    assert page.locator("[aria-pressed=true][data-tool]").count() == 0
+    assert page.locator("#room-tools [aria-pressed=true][data-tool]").count() == 0
     take(page, "obstacle", "Polygon")
     for corner in ((-300, 0), (-200, 0), (-200, 300), (-200, 100)):
         pointer.click(*corner)

@@ -45,7 +45,8 @@ def test_places_snap_and_a_ruler_measures(studio):
     assert page.text_content("#sketch .ruler title").startswith(f"{math.hypot(10, 5):.10f}"[:10])
     page.locator('#sketch [data-grip="ruler1"]').focus()
     page.keyboard.press("Delete")
-    assert not page.is_visible("#sketch .ruler-line")
+    assert page.locator("#sketch .ruler, #sketch .grip").count() == 0, "nothing of it is left for the keys to reach"
+    assert page.evaluate("document.activeElement.dataset.tool") == "ruler"
 
     step = float(re.search(r"snap to ([\d.]+)", page.get_attribute("[data-tool=snap]", "title")).group(1))
     page.click("[data-tool=snap]")
