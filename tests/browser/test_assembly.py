@@ -19,6 +19,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.timeout(400)]
 
 CANVAS = "#built canvas"
 PLACES = "#built, #assembly"
+ORANGE, BLUE = (0, 1, 2), (2, 1, 0)
 NO_WEBGL = """
 const had = HTMLCanvasElement.prototype.getContext;
 HTMLCanvasElement.prototype.getContext = function (form, ...more) {
@@ -122,13 +123,14 @@ def test_parts_are_hidden_chosen_and_led_by_keys(open_studio):
     assert not differs(picture(page), whole)
     assert page.locator("#assembly .parts input:checked").count() == kinds
 
-    # A click on the orange coupler chooses it in the list, and a click in the list shows it in the picture.
+    # Links have their colours of the stage: a click on one chooses it in the list, and the picture shows the choice.
     box = page.locator(CANVAS).bounding_box()
-    places = ((x, y) for y in range(9, whole.height - 9, 3) for x in range(9, whole.width - 9, 3))
-    place = next(one for one in places if orange(whole, *one))
-    page.mouse.click(box["x"] + place[0], box["y"] + place[1])
     chosen = page.locator('#assembly .called[aria-pressed="true"]')
-    assert chosen.inner_text() == "coupler"
+    for name, tone in (("input", ORANGE), ("coupler", BLUE)):
+        places = ((x, y) for y in range(9, whole.height - 9, 3) for x in range(9, whole.width - 9, 3))
+        place = next(one for one in places if within(whole, tone, *one))
+        page.mouse.click(box["x"] + place[0], box["y"] + place[1])
+        assert chosen.inner_text() == name
     assert differs(picture(page), whole)
     chosen.press("Enter")
     assert chosen.count() == 0
@@ -164,10 +166,10 @@ def test_parts_are_hidden_chosen_and_led_by_keys(open_studio):
         page.screenshot(path=SCREENS / f"assembly-{scheme}-{width}.png")
 
 
-def orange(image, x, y):
-    """Whether a place lies well within what is orange."""
+def within(image, tone, x, y):
+    """Whether a place lies well within what has a tone: its channels from the strongest to the weakest."""
     around = [image.getpixel((x + u, y + v)) for u in (-6, 0, 6) for v in (-6, 0, 6)]
-    return all(r > g + 50 > b + 60 for r, g, b in around)
+    return all(one[tone[0]] > one[tone[1]] + 40 > one[tone[2]] + 50 for one in around)
 
 
 def test_what_leaves_no_room_is_said_with_a_button_for_the_scale_that_works(open_studio):
