@@ -38,7 +38,7 @@ MISSED = {
         ("layout", "max_planes"),
     ),
     "dwell": (
-        {**examples("dwell")[1], "dwell_angle": 300.0},
+        {**examples("dwell")[1], "count": 1, "dwell_angle": 300.0, "max_designs": 1},
         "Solve with dwell angle",
         ("dwell_angle",),
     ),
