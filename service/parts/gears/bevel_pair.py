@@ -24,7 +24,7 @@ from service.parts.gears.keys import key_for, keyed_bore
 from service.parts.gears.motion import TrainMotion
 from service.parts.gears.sizing import FACE, GearSizing
 from service.parts.gears.teeth import bevel_toothed
-from service.parts.gears.upright import FIRST, Axle, Upright, frame_along
+from service.parts.gears.upright import FIRST, FREE, Axle, Upright, frame_along
 from service.parts.gears.wheels import looked_at
 from service.parts.model import Assembly, Part
 from service.parts.shapes import Disc, Region
@@ -44,9 +44,6 @@ BORED, HUB, SPAN = 1.2, 0.5, 2.5
 
 WALL_OF_HUB = 0.4
 """Thickness of a hub about its shaft, in diameters of the shaft."""
-
-FREE = 0.5
-"""What is left between the lowest part and the base, in diameters of the shafts."""
 
 
 def bevel_parts(train: OrdinaryTrain, backlash: float, face_width: float | None, sizing: GearSizing) -> Assembly:

@@ -22,6 +22,9 @@ from service.parts.model import Carrier, Frame, Part, Real, plain
 from service.parts.shapes import Disc, Loop, Outline, Region
 from service.parts.sizes import Sizes
 
+FREE = 0.5
+"""What is left between the lowest part and the base, in diameters of the shafts."""
+
 TAB = 0.5
 """Width of the tab of a bearing plate, as a share of the plate's."""
 

@@ -22,16 +22,13 @@ from service.parts.gears.housing import Level
 from service.parts.gears.motion import TrainMotion
 from service.parts.gears.sizing import FACE, GearSizing
 from service.parts.gears.stand import Wheel
-from service.parts.gears.upright import FIRST, Axle, Upright, frame_along
+from service.parts.gears.upright import FIRST, FREE, Axle, Upright, frame_along
 from service.parts.gears.wheels import looked_at, wheel_parts
 from service.parts.model import Assembly, Part
 from service.parts.sizes import NotMade, Sizes
 
 NARROW = 0.67
 """Greatest face width of a worm gear that is not stated, in pitch diameters of the worm."""
-
-FREE = 0.5
-"""What is left between the lowest part and the base, in diameters of the shafts."""
 
 
 def worm_parts(train: OrdinaryTrain, backlash: float, face_width: float | None, sizing: GearSizing) -> Assembly:
