@@ -2,8 +2,10 @@
 
 import * as api from "./api.js";
 import { el, shown, svg } from "./dom.js";
+import { Grip, led } from "./grip.js";
 import { roomOf } from "./stage.js";
 import { View } from "./view.js";
+import { Zoom } from "./zoom.js";
 
 /** Height of what stands above and below the curves, pixels. */
 const WORDS = 84;
@@ -40,7 +42,6 @@ export class Burmester {
     const around = Object.values(joints).concat(job.problem.positions.map((/** @type {any} */ one) => [one.x, one.y]));
     this.view = new View(/** @type {Point[]} */ (around), width, height, Math.min(90, 0.2 * Math.min(width, height)));
     this.dyads = SIDES.map(({ moving }) => this.nearest("circle_points", joints[moving]));
-    this.handles = SIDES.flatMap((names, k) => [this.handle(k, "circle_points", names.moving), this.handle(k, "centre_points", names.fixed)]);
     this.lines = SIDES.map((_, k) => svg("line", { class: k ? "arm" : "arm input" }));
     this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas drag", role: "group", "aria-label": "Burmester's curves, pivots to be drawn along them" },
       svg("rect", { class: "paper", width, height }),
@@ -48,7 +49,9 @@ export class Burmester {
         svg("path", { class: "centre-points", d: this.view.path(branch.centre_points) + (branch.closed ? "Z" : "") }),
         svg("path", { class: "circle-points", d: this.view.path(branch.circle_points) + (branch.closed ? "Z" : "") })]),
       ...job.problem.positions.map((/** @type {any} */ one, /** @type {number} */ k) => this.position(one, k)),
-      ...this.lines, ...this.handles.map((handle) => handle.group));
+      ...this.lines);
+    this.handles = SIDES.flatMap((names, k) => [this.handle(k, "circle_points", names.moving), this.handle(k, "centre_points", names.fixed)]);
+    this.picture.append(...this.handles.map(({ grip }) => grip.node));
     this.told = el("p", { class: "note", role: "status" }, "Draw a pivot along its curve, or move it with the arrow keys: the linkage on these pivots is solved.");
     this.keep = el("button", { type: "button", class: "small", hidden: true, onclick: () => {
       const kept = this.trial;
@@ -57,7 +60,7 @@ export class Burmester {
     } }, "Keep this linkage as a job");
     place.replaceChildren(el("p", { class: "note" },
       el("span", { class: "key circle-key" }, "Circle points"), ": where the moving pivots may be in the first position; ",
-      el("span", { class: "key centre-key" }, "centre points"), ": their fixed pivots."), el("div", { class: "stage" }, this.picture), el("div", { class: "row" }, this.told, this.keep));
+      el("span", { class: "key centre-key" }, "centre points"), ": their fixed pivots."), el("div", { class: "stage" }, this.picture, new Zoom(this.picture).buttons), el("div", { class: "row" }, this.told, this.keep));
     this.draw();
   }
 
@@ -82,16 +85,10 @@ export class Burmester {
 
   /** @param {number} k side @param {"circle_points" | "centre_points"} which @param {string} name */
   handle(k, which, name) {
-    const dot = svg("circle", { class: which === "circle_points" ? "dot circle" : "dot centre", r: 7 });
-    const text = svg("text", { dx: 10, dy: -9 }, name);
-    const group = svg("g", { class: "target", tabindex: 0, role: "slider", "aria-valuemin": 0 }, text, dot);
-    dot.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
-      dot.setPointerCapture(event.pointerId);
-      const move = (/** @type {PointerEvent} */ now) => this.put(k, this.nearest(which, this.view.under(this.picture, now)));
-      dot.addEventListener("pointermove", move);
-      dot.addEventListener("lostpointercapture", () => dot.removeEventListener("pointermove", move), { once: true });
-    });
-    group.addEventListener("keydown", (/** @type {KeyboardEvent} */ event) => {
+    const grip = new Grip({ name, dot: which === "circle_points" ? "dot circle" : "dot centre", role: "slider" });
+    grip.node.setAttribute("aria-valuemin", "0");
+    led(grip.node, this.picture, this.view, { led: (at) => this.put(k, this.nearest(which, at)) });
+    grip.node.addEventListener("keydown", (/** @type {KeyboardEvent} */ event) => {
       const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageUp: 10, PageDown: -10 }[event.key];
       if (!by) return;
       event.preventDefault();
@@ -100,7 +97,7 @@ export class Burmester {
       const next = closed ? (at + by + points.length) % points.length : Math.min(points.length - 1, Math.max(0, at + by));
       this.put(k, { branch, at: next });
     });
-    return { k, which, name, dot, text, group };
+    return { k, which, name, grip };
   }
 
   /** @param {number} k @param {Dyad} dyad */
@@ -114,17 +111,14 @@ export class Burmester {
   }
 
   draw() {
-    for (const { k, which, name, dot, text, group } of this.handles) {
+    for (const { k, which, name, grip } of this.handles) {
       const { branch, at } = this.dyads[k];
       const [x, y] = this.branches[branch][which][at];
-      const [u, v] = this.view.at(x, y);
-      for (const [part, values] of /** @type {[Element, Record<string, number>][]} */ ([[dot, { cx: u, cy: v }], [text, { x: u, y: v }]])) {
-        for (const [attribute, value] of Object.entries(values)) part.setAttribute(attribute, String(value));
-      }
-      group.setAttribute("aria-label", `${name} on ${which === "circle_points" ? "the circle points" : "the centre points"}, branch ${branch + 1}`);
-      group.setAttribute("aria-valuemax", String(this.branches[branch][which].length - 1));
-      group.setAttribute("aria-valuenow", String(at));
-      group.setAttribute("aria-valuetext", `x ${shown(x)}, y ${shown(y)}`);
+      grip.put(this.view.at(x, y));
+      grip.call(`${name} on ${which === "circle_points" ? "the circle points" : "the centre points"}, branch ${branch + 1}`);
+      grip.node.setAttribute("aria-valuemax", String(this.branches[branch][which].length - 1));
+      grip.node.setAttribute("aria-valuenow", String(at));
+      grip.node.setAttribute("aria-valuetext", `x ${shown(x)}, y ${shown(y)}`);
     }
     this.lines.forEach((line, k) => {
       const { branch, at } = this.dyads[k];

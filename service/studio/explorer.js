@@ -4,6 +4,7 @@ import * as api from "./api.js";
 import { stands } from "./cycle.js";
 import { el, shown, svg, words } from "./dom.js";
 import { curveOf, driven } from "./driven.js";
+import { Grip, keyed, led } from "./grip.js";
 import { Linkage, drawn } from "./linkage.js";
 import { Player, between } from "./player.js";
 import { beginnings } from "./beginnings.js";
@@ -39,14 +40,15 @@ export class Explorer {
     this.curve = svg("path", { class: "curve" });
     this.linkage = new Linkage(this.view, this.skeleton, { names: false });
     this.ghost = new Linkage(this.view, this.skeleton, { names: false, faint: true });
-    this.handles = drawn(this.skeleton).map((name) => this.handle(name));
     this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas drag", role: "group", "aria-label": "The linkage, its pins to be dragged" },
       svg("rect", { class: "paper", width, height }), this.curve,
       ...targets.map((one) => {
         const [u, v] = this.view.at(one.x, one.y);
         return svg("g", { class: "goal" }, svg("circle", { cx: u, cy: v, r: 5 }));
       }),
-      this.ghost.node, this.linkage.node, ...this.handles.map((handle) => handle.group));
+      this.ghost.node, this.linkage.node);
+    this.handles = drawn(this.skeleton).map((name) => this.handle(name));
+    this.picture.append(...this.handles.map(({ grip }) => grip.node));
     this.player = new Player({ count: STEPS + 1, closed: true, name: "explore-", label: "Input", reading: (at) => this.reading(at), show: (at) => this.move(at) });
     this.facts = el("dl", { class: "facts", "aria-live": "polite" });
     this.checks = el("ul", { class: "checks" });
@@ -61,10 +63,7 @@ export class Explorer {
 
   /** @param {string} name */
   handle(name) {
-    const dot = svg("circle", { class: name === "P" ? "dot point" : "dot", r: 7 });
-    const hit = svg("circle", { class: "hit", r: 12 });
-    const text = svg("text", { dx: 10, dy: -9 }, name);
-    const group = svg("g", { class: "target", tabindex: 0, role: "button" }, text, hit, dot);
+    const grip = new Grip({ name, dot: name === "P" ? "dot point" : "dot" });
     const put = (/** @type {Point} */ at) => {
       this.joints[name] = at;
       const doubled = "P" in this.joints && !drawn(this.skeleton).includes("P") ? "P" : null;
@@ -73,26 +72,20 @@ export class Explorer {
       this.draw();
       this.ask();
     };
-    group.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
-      group.setPointerCapture(event.pointerId);
+    let goesOn = false;
+    led(grip.node, this.picture, this.view, {
       // While a pin is led the picture has that to follow; the motion goes on when it is let go.
-      const { playing } = this.player;
-      this.player.stop();
-      const move = (/** @type {PointerEvent} */ now) => put(this.view.under(this.picture, now));
-      group.addEventListener("pointermove", move);
-      group.addEventListener("lostpointercapture", () => {
-        group.removeEventListener("pointermove", move);
-        if (playing && !this.gone.signal.aborted) this.player.play();
-      }, { once: true });
+      taken: () => {
+        goesOn = this.player.playing;
+        this.player.stop();
+      },
+      led: put,
+      left: () => {
+        if (goesOn && !this.gone.signal.aborted) this.player.play();
+      },
     });
-    group.addEventListener("keydown", (/** @type {KeyboardEvent} */ event) => {
-      const step = this.view.step(event.shiftKey ? 1 : 10);
-      const by = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] }[event.key];
-      if (!by) return;
-      event.preventDefault();
-      put([this.joints[name][0] + by[0], this.joints[name][1] + by[1]]);
-    });
-    return { name, dot, hit, text, group };
+    keyed(grip.node, this.view, { moved: ([dx, dy]) => put([this.joints[name][0] + dx, this.joints[name][1] + dy]) });
+    return { name, grip };
   }
 
   /** Lines of slides go with the joints that they pass: turned about the pivot that they pass too, or shifted. */
@@ -109,16 +102,10 @@ export class Explorer {
 
   draw() {
     this.linkage.show(this.joints);
-    for (const { name, dot, hit, text, group } of this.handles) {
+    for (const { name, grip } of this.handles) {
       const [x, y] = this.joints[name];
-      const [u, v] = this.view.at(x, y);
-      for (const one of [dot, hit]) {
-        one.setAttribute("cx", u);
-        one.setAttribute("cy", v);
-      }
-      text.setAttribute("x", u);
-      text.setAttribute("y", v);
-      group.setAttribute("aria-label", `${name}: x ${shown(x)}, y ${shown(y)}. Arrow keys move it.`);
+      grip.put(this.view.at(x, y));
+      grip.call(`${name}: x ${shown(x)}, y ${shown(y)}. Arrow keys move it.`);
     }
   }
 

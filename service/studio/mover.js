@@ -3,6 +3,7 @@
 import { Circuits, others, telling, track } from "./circuits.js";
 import { el, shown, svg, words } from "./dom.js";
 import { Gauge } from "./gauge.js";
+import { led } from "./grip.js";
 import { Linkage, drawn, grounded } from "./linkage.js";
 import { Planes, planeClass } from "./planes.js";
 import { Player, between, within } from "./player.js";
@@ -117,13 +118,7 @@ export class Mover {
     pin.dot.before(this.hold.hit);
     const { x, y } = this.motion.joints[pin.name];
     for (const grip of [pin.dot, this.hold.hit]) {
-      grip.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
-        this.player.stop();
-        grip.setPointerCapture(event.pointerId);
-        const move = (/** @type {PointerEvent} */ now) => this.player.lead(nearest(x, y, this.view.under(this.picture, now), this.player.at));
-        grip.addEventListener("pointermove", move);
-        grip.addEventListener("lostpointercapture", () => grip.removeEventListener("pointermove", move), { once: true });
-      });
+      led(grip, this.picture, this.view, { taken: () => this.player.stop(), led: (at) => this.player.lead(nearest(x, y, at, this.player.at)) });
     }
   }
 

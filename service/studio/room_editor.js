@@ -3,6 +3,7 @@
 import { lines } from "./controls.js";
 import { el, shown, svg } from "./dom.js";
 import { DrawingImport } from "./drawing_import.js";
+import { Grip, keyed, led } from "./grip.js";
 import { hatched, legend, outline } from "./hatch.js";
 import { Pen } from "./pen.js";
 import { areas, rolesOf, stateArea } from "./room.js";
@@ -197,29 +198,23 @@ export class RoomEditor {
     } }] : area.corners.map((_, k) => ({ name: `Corner ${k + 1} of ${area.label}`, get: () => area.corners[k], put: (/** @type {Point} */ point) => area.put(k, point) }));
     return places.map(({ name, get, put }, k) => {
       const key = `${area.path}#${k}`;
-      const dot = svg("circle", { class: "corner", r: 5 });
-      const hit = svg("circle", { class: "hit" });
-      const node = svg("g", { class: "grip", tabindex: 0, role: "button", "data-grip": key }, hit, dot);
+      const grip = new Grip({ kind: "grip", dot: "corner", radius: 5, key });
       const show = () => {
         const [x, y] = get();
-        const [u, v] = view.at(x, y);
-        for (const one of [dot, hit]) {
-          one.setAttribute("cx", u);
-          one.setAttribute("cy", v);
-        }
+        grip.put(view.at(x, y));
         const more = area.free && area.corners.length > 3 ? ", Delete removes it" : "";
-        node.setAttribute("aria-label", `${name}: x ${shown(x)}, y ${shown(y)}. Arrow keys move it${more}.`);
+        grip.call(`${name}: x ${shown(x)}, y ${shown(y)}. Arrow keys move it${more}.`);
       };
       const by = (/** @type {Point} */ [dx, dy]) => {
         const [x, y] = get();
         put([view.rounded(x + dx), view.rounded(y + dy)]);
       };
-      this.dragged(node, () => {}, by, all, key);
-      this.keyed(node, by, () => {
+      this.dragged(grip.node, () => {}, by, all, key);
+      this.keyed(grip.node, by, () => {
         area.drop(k);
         this.changed(true);
       }, all);
-      return { node, show };
+      return { node: grip.node, show };
     });
   }
 
@@ -228,46 +223,39 @@ export class RoomEditor {
    * @param {SVGElement} grip @param {() => void} taken @param {(by: Point) => void} move @param {() => void} show @param {string} key
    */
   dragged(grip, taken, move, show, key) {
-    grip.addEventListener("pointerdown", (event) => {
-      event.stopPropagation();
-      const { picture, view } = this;
-      let before = view.under(picture, event);
-      let moved = false;
-      const gone = new AbortController();
-      const { signal } = gone;
-      // Wherever the pointer goes: the grip itself may be drawn anew when it is chosen.
-      document.addEventListener("pointermove", (now) => {
-        const at = view.under(picture, now);
+    const { picture, view } = this;
+    /** @type {Point} */
+    let before = [0, 0];
+    let moved = false;
+    led(grip, picture, view, {
+      taken: (at) => {
+        before = at;
+        moved = false;
+      },
+      led: (at, now) => {
         const by = /** @type {Point} */ ([at[0] - before[0], at[1] - before[1]].map((one) => view.rounded(one)));
         if (!moved && view.scale * Math.hypot(...by) < CLICK) return;
         moved = true;
         before = [before[0] + by[0], before[1] + by[1]];
         view.freely(() => move(by), now.altKey);
         show();
-      }, { signal });
-      const end = () => {
-        gone.abort();
+      },
+      left: () => {
         taken();
         if (moved) this.changed(true);
         else this.focus(key);
-      };
-      document.addEventListener("pointerup", end, { signal });
-      document.addEventListener("pointercancel", end, { signal });
+      },
     });
   }
 
   /** @param {SVGElement} grip @param {(by: Point) => void} move @param {() => void} remove @param {() => void} show */
   keyed(grip, move, remove, show) {
-    grip.addEventListener("keydown", (event) => {
-      const step = this.view.step(event.shiftKey ? 1 : 10);
-      const by = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] }[event.key];
-      if (by) {
-        this.view.freely(() => move(/** @type {Point} */ (by)));
+    keyed(grip, this.view, {
+      moved: (by) => {
+        this.view.freely(() => move(by));
         show();
-      } else if (event.key === "Delete" || event.key === "Backspace") remove();
-      else return;
-      event.preventDefault();
-      event.stopPropagation();
+      },
+      removed: remove,
     });
   }
 

@@ -2,6 +2,7 @@
 
 import { el, shown, svg } from "./dom.js";
 import { brief } from "./figures.js";
+import { Grip, keyed, led } from "./grip.js";
 
 /** @typedef {[number, number]} Point */
 
@@ -42,32 +43,24 @@ export class Ruler {
 
   /** @param {number} k */
   grip(k) {
-    const hit = svg("circle", { class: "hit", r: 12 });
-    const dot = svg("circle", { class: "ruler-end", r: 5 });
-    const node = svg("g", { class: "grip", tabindex: 0, role: "button", "data-grip": `ruler${k}`, "aria-label": `End ${k + 1} of the ruler` }, hit, dot);
+    const grip = new Grip({ kind: "grip", dot: "ruler-end", radius: 5, key: `ruler${k}` });
+    grip.call(`End ${k + 1} of the ruler`);
     const put = (/** @type {Point} */ at) => {
       if (this.memory.ends) this.memory.ends[k] = at;
       this.show();
     };
-    node.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
-      event.stopPropagation();
-      node.setPointerCapture(event.pointerId);
-      const move = (/** @type {PointerEvent} */ now) => put(this.caught(this.view.under(this.picture, now)));
-      node.addEventListener("pointermove", move);
-      node.addEventListener("lostpointercapture", () => node.removeEventListener("pointermove", move), { once: true });
+    led(grip.node, this.picture, this.view, { led: (at) => put(this.caught(at)) });
+    keyed(grip.node, this.view, {
+      moved: ([dx, dy]) => {
+        const end = this.memory.ends?.[k];
+        if (end) put([this.view.fine(end[0] + dx), this.view.fine(end[1] + dy)]);
+      },
+      removed: () => {
+        this.turn();
+        this.button.focus();
+      },
     });
-    node.addEventListener("keydown", (/** @type {KeyboardEvent} */ event) => {
-      const step = this.view.step(event.shiftKey ? 1 : 10);
-      const by = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] }[event.key];
-      const end = this.memory.ends?.[k];
-      if (!end || (!by && event.key !== "Delete")) return;
-      event.preventDefault();
-      event.stopPropagation();
-      if (by) return put([this.view.fine(end[0] + by[0]), this.view.fine(end[1] + by[1])]);
-      this.turn();
-      this.button.focus();
-    });
-    return { node, hit, dot };
+    return grip;
   }
 
   /** A place, or what is so near to it that it is meant. @param {Point} place @returns {Point} */

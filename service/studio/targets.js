@@ -3,12 +3,14 @@
 import { el, shown, svg } from "./dom.js";
 import { stroke } from "./freehand.js";
 import { grid, snapping } from "./grid.js";
+import { Grip, keyed, led } from "./grip.js";
 import { chosenPivots, matched, opened, stated } from "./handles.js";
 import { areas } from "./room.js";
 import { RoomEditor } from "./room_editor.js";
 import { Ruler } from "./ruler.js";
 import { roomOf } from "./stage.js";
 import { View } from "./view.js";
+import { Zoom } from "./zoom.js";
 
 /** @typedef {import("./handles.js").Handle} Handle */
 
@@ -17,14 +19,8 @@ const TOOLS = 117;
 
 const ARM = 44;
 
-/** How much nearer or farther a press of a button takes the view. */
-const ZOOM = 1.5;
-
-/** What is drawn along by less, pixels of the picture, was a click. */
-const CLICK = 4;
-
 /** What angles snap to, degrees. */
-const TURN = 15;
+const SNAP_TURN = 15;
 
 /** What somebody has chosen of the tools; it outlives every canvas. */
 const tools = { grid: true, snap: false };
@@ -83,10 +79,6 @@ function drawnPlane(place, problem, { handles, lines, word, add, offers, freehan
   const { width, height } = view;
   if (roomy) memory.view = view;
   view.snap = tools.snap ? snapping(view) : 0;
-  const led = (/** @type {boolean} */ somewhere) => {
-    Object.assign(memory, { view: somewhere ? view : null, led: somewhere });
-    if (backdrop) canvas(place, problem, roomy, changed, backdrop);
-  };
   const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "group", "aria-label": "The problem in the plane" });
   const trail = svg("path", { class: "trail" });
   const pen = svg("path", { class: "pen" });
@@ -110,9 +102,19 @@ function drawnPlane(place, problem, { handles, lines, word, add, offers, freehan
       changed(true);
     } }, text)),
     toggle("grid", "Grid", "Lines at round coordinates"),
-    toggle("snap", "Snap", `Places snap to ${shown(snapping(view))}, angles to ${TURN}°; Alt lets them be`), ruler?.button);
+    toggle("snap", "Snap", `Places snap to ${shown(snapping(view))}, angles to ${SNAP_TURN}°; Alt lets them be`), ruler?.button);
 
   const mode = el("input", { type: "checkbox", id: "freehand" });
+  // Somewhere else the plane is drawn anew: its lines, and what coordinates are rounded to, are those of the new scale.
+  const zoom = roomy && backdrop ? new Zoom(picture, { busy: () => mode.checked, settled: (seen) => {
+    if (seen) {
+      const { middle: [x, y], nearness } = seen;
+      view.middle = [view.middle[0] + (x - width / 2) / view.scale, view.middle[1] - (y - height / 2) / view.scale];
+      view.scale *= nearness;
+    }
+    Object.assign(memory, { view: seen && view, led: seen !== null });
+    canvas(place, problem, roomy, changed, backdrop);
+  } }) : null;
   const put = (/** @type {[number, number]} */ [x, y]) => {
     add?.(view.rounded(x), view.rounded(y));
     changed(true);
@@ -123,14 +125,13 @@ function drawnPlane(place, problem, { handles, lines, word, add, offers, freehan
     });
   }
   picture.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
-    if (mode.checked) {
-      stroke(event, view, picture, pen, (way, closed) => {
-        problem.points = way.map(([x, y]) => ({ x, y }));
-        if (closed) matched(problem);
-        else opened(problem);
-        changed(true);
-      });
-    } else if (roomy) pan(event, view, picture, () => led(true));
+    if (!mode.checked) return;
+    stroke(event, view, picture, pen, (way, closed) => {
+      problem.points = way.map(([x, y]) => ({ x, y }));
+      if (closed) matched(problem);
+      else opened(problem);
+      changed(true);
+    });
   });
   const last = handles.at(-1)?.get() ?? [0, 0];
   const size = (0.4 * Math.min(width, 640)) / view.scale;
@@ -145,37 +146,7 @@ function drawnPlane(place, problem, { handles, lines, word, add, offers, freehan
       changed(true);
     } }, text)),
     freehand && el("label", { class: "flag", for: "freehand" }, mode, "Draw freehand"),
-    roomy && zooming(view, led), handles.length > 0 && el("span", { class: "note", title: how }, how)), areasOf?.tools));
-}
-
-/** Buttons that take the view nearer or farther, and back to all there is. @param {View} view @param {(somewhere: boolean) => void} led */
-function zooming(view, led) {
-  const button = (/** @type {string} */ text, /** @type {string} */ label, /** @type {() => void} */ act) =>
-    el("button", { type: "button", class: "small", "aria-label": label, title: label, onclick: act }, text);
-  const by = (/** @type {number} */ factor) => () => {
-    view.scale *= factor;
-    led(true);
-  };
-  return el("div", { class: "zoom" }, button("−", "Farther", by(1 / ZOOM)), button("+", "Nearer", by(ZOOM)), button("Fit", "Fit everything", () => led(false)));
-}
-
-/** The plane is taken along where nothing lies. @param {PointerEvent} event @param {View} view @param {SVGSVGElement} picture @param {() => void} seen */
-function pan(event, view, picture, seen) {
-  const { clientX, clientY } = event;
-  const size = picture.getScreenCTM()?.a ?? 1;
-  const gone = new AbortController();
-  let by = [0, 0];
-  picture.setPointerCapture(event.pointerId);
-  picture.addEventListener("pointermove", (now) => {
-    by = [(now.clientX - clientX) / size, (now.clientY - clientY) / size];
-    if (Math.hypot(...by) >= CLICK) picture.setAttribute("viewBox", `${-by[0]} ${-by[1]} ${view.width} ${view.height}`);
-  }, { signal: gone.signal });
-  picture.addEventListener("lostpointercapture", () => {
-    gone.abort();
-    if (Math.hypot(...by) < CLICK) return;
-    view.middle = [view.middle[0] - by[0] / view.scale, view.middle[1] + by[1] / view.scale];
-    seen();
-  }, { once: true });
+    zoom?.buttons, handles.length > 0 && el("span", { class: "note", title: how }, how)), areasOf?.tools));
 }
 
 /** What can be held; nothing while the JSON is not what its kind has. @param {any} problem */
@@ -198,29 +169,23 @@ function readable(problem) {
  */
 function held(handle, key, view, picture, all, redraw, changed) {
   const { name, label, turn } = handle;
+  const grip = new Grip({ name, beside: [12, 20], radius: 8, key });
+  const group = grip.node;
   const line = svg("line", { class: "arm" });
-  const knob = turn && svg("circle", { class: "knob", r: 7 });
-  const dot = svg("circle", { class: "dot", r: 8 });
-  // A finger is less exact than what is drawn.
-  const [around, end] = [dot, knob].map((one) => one && svg("circle", { class: "hit", r: 12 }));
-  const text = svg("text", { dx: 12, dy: 20 }, name);
-  const group = svg("g", { class: "target", tabindex: 0, role: "button", "data-grip": key }, line, text, around, dot, end, knob);
+  const [end, knob] = turn ? [svg("circle", { class: "hit", r: 12 }), svg("circle", { class: "knob", r: 7 })] : [null, null];
+  group.prepend(line);
+  if (end && knob) group.append(end, knob);
   const show = () => {
     const [x, y] = handle.get();
     const [u, v] = view.at(x, y);
-    for (const one of [dot, around]) {
-      one.setAttribute("cx", u);
-      one.setAttribute("cy", v);
-    }
-    text.setAttribute("x", u);
-    text.setAttribute("y", v);
-    group.setAttribute("aria-label", `${label}: x ${shown(x)}, y ${shown(y)}${turn ? `, angle ${shown(turn.get())}°` : ""}. Arrow keys move it${turn ? ", page keys turn it" : ""}${handle.remove ? ", Delete removes it" : ""}.`);
-    if (!knob || !turn) return;
+    grip.put([u, v]);
+    grip.call(`${label}: x ${shown(x)}, y ${shown(y)}${turn ? `, angle ${shown(turn.get())}°` : ""}. Arrow keys move it${turn ? ", page keys turn it" : ""}${handle.remove ? ", Delete removes it" : ""}.`);
+    if (!knob || !end || !turn) return;
     const angle = (turn.get() * Math.PI) / 180;
     const [ku, kv] = [u + ARM * Math.cos(angle), v - ARM * Math.sin(angle)];
     for (const one of [knob, end]) {
-      one.setAttribute("cx", ku);
-      one.setAttribute("cy", kv);
+      one.setAttribute("cx", String(ku));
+      one.setAttribute("cy", String(kv));
     }
     for (const [attribute, value] of Object.entries({ x1: u, y1: v, x2: ku, y2: kv })) line.setAttribute(attribute, String(value));
   };
@@ -233,45 +198,38 @@ function held(handle, key, view, picture, all, redraw, changed) {
     redraw();
     changed(false);
   };
-  const drag = (/** @type {SVGElement} */ grip, /** @type {(at: [number, number]) => void} */ moved) => {
-    grip.addEventListener("pointerdown", (event) => {
-      event.stopPropagation();
-      grip.setPointerCapture(event.pointerId);
-      const move = (/** @type {PointerEvent} */ now) => {
-        view.freely(() => moved(view.under(picture, now)), now.altKey);
-        altered();
-      };
-      grip.addEventListener("pointermove", move);
-      grip.addEventListener("lostpointercapture", () => {
-        grip.removeEventListener("pointermove", move);
-        changed(true);
-      }, { once: true });
-    });
-  };
-  for (const one of [dot, around]) drag(one, ([x, y]) => handle.put(view.rounded(x), view.rounded(y)));
-  if (knob && turn) {
+  const put = (/** @type {SVGElement} */ part, /** @type {(at: [number, number]) => void} */ moved) => led(part, picture, view, {
+    led: (at, now) => {
+      view.freely(() => moved(at), now.altKey);
+      altered();
+    },
+    left: () => changed(true),
+  });
+  for (const one of [grip.dot, grip.hit]) put(one, ([x, y]) => handle.put(view.rounded(x), view.rounded(y)));
+  if (knob && end && turn) {
     for (const one of [knob, end]) {
-      drag(one, ([x, y]) => {
+      put(one, ([x, y]) => {
         const [px, py] = handle.get();
-        const step = view.snap ? TURN : 1;
+        const step = view.snap ? SNAP_TURN : 1;
         turn.set(step * Math.round((Math.atan2(y - py, x - px) * 180) / Math.PI / step));
       });
     }
   }
-  group.addEventListener("keydown", (/** @type {KeyboardEvent} */ event) => {
-    const step = view.step(event.shiftKey ? 1 : 10);
-    const by = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] }[event.key];
-    const way = { PageUp: 1, PageDown: -1 }[event.key];
-    const [x, y] = handle.get();
-    if (by) handle.put(view.fine(x + by[0]), view.fine(y + by[1]));
-    else if (way && turn) turn.set(turn.get() + way * (event.shiftKey ? 1 : 5));
-    else if (event.key === "Delete" && handle.remove) {
-      handle.remove();
-      event.preventDefault();
-      return changed(true);
-    } else return;
-    event.preventDefault();
-    altered();
+  const { remove } = handle;
+  keyed(group, view, {
+    moved: ([dx, dy]) => {
+      const [x, y] = handle.get();
+      handle.put(view.fine(x + dx), view.fine(y + dy));
+      altered();
+    },
+    turned: turn && ((by) => {
+      turn.set(turn.get() + by);
+      altered();
+    }),
+    removed: remove && (() => {
+      remove();
+      changed(true);
+    }),
   });
   return { group, show };
 }

@@ -9,6 +9,12 @@ import { el } from "./dom.js";
 const PRESS = 1.5;
 const WHEEL = 1.0015;
 
+/** When the wheel has stood still so long it has been turned. */
+const REST_MS = 200;
+
+/** What is led along by less, pixels, was a click. */
+const CLICK = 4;
+
 /** How far it can be brought nearer, and farther. */
 const NEAREST = 40;
 const FARTHEST = 0.25;
@@ -18,12 +24,24 @@ const FARTHEST = 0.25;
 /** What takes the pointer itself. */
 const HELD = ".led, .hit, .target, .grip, .held, .placing, a, button";
 
+/** What of a picture is seen, in its own pixels; null where all is to be seen. @typedef {{middle: number[], nearness: number} | null} Seen */
+
 export class Zoom {
-  /** @param {SVGSVGElement} picture */
-  constructor(picture) {
+  /**
+   * @param {SVGSVGElement} picture
+   * @param {object} [on]
+   * @param {() => boolean} [on.busy] whether the pointer draws just now
+   * @param {(seen: Seen) => void} [on.settled] told what is seen when it has been chosen
+   */
+  constructor(picture, { busy, settled } = {}) {
     this.picture = picture;
+    this.busy = busy ?? (() => false);
+    this.settled = settled ?? (() => {});
+    this.turning = 0;
     /** @type {Map<number, PointerEvent>} */
     this.fingers = new Map();
+    /** Whether they have led the picture somewhere. */
+    this.led = false;
     this.nearness = 1;
     /** What the picture has of the window, pixels: nothing while it is hidden. */
     this.room = [0, 0];
@@ -33,8 +51,11 @@ export class Zoom {
     this.middle = [x + width / 2, y + height / 2];
     const button = (/** @type {string} */ text, /** @type {string} */ label, /** @type {() => void} */ act) =>
       el("button", { type: "button", class: "small", "aria-label": label, title: label, onclick: act }, text);
-    this.buttons = el("div", { class: "zoom" }, button("−", "Farther", () => this.by(1 / PRESS)),
-      button("+", "Nearer", () => this.by(PRESS)), button("Fit", "Fit everything", () => this.fit()));
+    this.buttons = el("div", { class: "zoom" }, button("−", "Farther", () => this.press(1 / PRESS)),
+      button("+", "Nearer", () => this.press(PRESS)), button("Fit", "Fit everything", () => {
+        this.fit();
+        this.settled(null);
+      }));
     // The window, or what else stands on the stage, gives it another size: words and lines keep theirs.
     new ResizeObserver(([{ contentRect }]) => {
       this.room = [contentRect.width, contentRect.height];
@@ -43,12 +64,27 @@ export class Zoom {
     picture.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.by(WHEEL ** -event.deltaY, this.under(event));
+      clearTimeout(this.turning);
+      this.turning = window.setTimeout(() => this.settle(), REST_MS);
     }, { passive: false });
     picture.addEventListener("pointerdown", (event) => this.take(event));
     picture.addEventListener("pointermove", (event) => this.lead(event));
     for (const end of /** @type {const} */ (["pointerup", "pointercancel", "lostpointercapture"])) {
-      picture.addEventListener(end, (event) => this.fingers.delete(event.pointerId));
+      picture.addEventListener(end, (event) => {
+        if (this.fingers.delete(event.pointerId) && !this.fingers.size && this.led) this.settle();
+      });
     }
+  }
+
+  /** A button is pressed. @param {number} factor */
+  press(factor) {
+    this.by(factor);
+    this.settle();
+  }
+
+  settle() {
+    this.led = false;
+    this.settled({ middle: this.middle, nearness: this.nearness });
   }
 
   /** All is to be seen, or something else is all. @param {Box} [whole] */
@@ -91,7 +127,7 @@ export class Zoom {
 
   /** @param {PointerEvent} event */
   take(event) {
-    if (event.button !== 0 || (event.target instanceof Element && event.target.closest(HELD))) return;
+    if (event.button !== 0 || this.busy() || (event.target instanceof Element && event.target.closest(HELD))) return;
     this.fingers.set(event.pointerId, event);
     this.picture.setPointerCapture(event.pointerId);
   }
@@ -101,6 +137,8 @@ export class Zoom {
     const before = this.fingers.get(event.pointerId);
     if (!before) return;
     const [was, is] = [this.under(before), this.under(event)];
+    if (Math.hypot(event.clientX - before.clientX, event.clientY - before.clientY) < CLICK && !this.led) return;
+    this.led = true;
     this.fingers.set(event.pointerId, event);
     const other = [...this.fingers].find(([id]) => id !== event.pointerId)?.[1];
     if (other) {

@@ -9,6 +9,7 @@ import shapely
 from ezdxf import recover
 
 from service.parts.extra import installed
+from tests.browser.conftest import DESKTOP, Studio
 from tests.browser.test_studio import stated
 from tests.browser.test_taking_home import taken
 from tests.service.running import until
@@ -56,7 +57,7 @@ def answer(page):
     return job, page.evaluate("id => fetch(`/v1/jobs/${id}`).then(answer => answer.json())", job)
 
 
-def test_a_lid_is_drawn_solved_compared_changed_and_taken_home(studio):
+def test_a_lid_is_drawn_solved_compared_changed_taken_home_and_sent(studio, chromium):
     page = studio.page
     # The lid: shut, half open, open. The first two rows stand there; all are put where the hand puts them.
     page.select_option("#kind", "motion")
@@ -187,6 +188,20 @@ def test_a_lid_is_drawn_solved_compared_changed_and_taken_home(studio):
         assert min(abs(wanted - far) for far in apart) < 1e-3 * wanted
     assert page.locator("#downloads").get_by_role("button", name="Printed parts").is_enabled() == installed()
     studio.screen("way-home")
+
+    # Its address, opened by somebody else who has nothing but that, shows the same.
+    studio.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.click("#link")
+    page.wait_for_selector("#link-told:has-text('the statement and the linkage')")
+    link = page.evaluate("navigator.clipboard.readText()")
+    other = Studio(chromium, studio.url, viewport=dict(DESKTOP), opened=link)
+    try:
+        other.page.wait_for_selector(".moving .live .link")
+        assert stated(other.page) == stated(page)
+        curves = [one.locator(".moving .curve").first.get_attribute("d") for one in (page, other.page)]
+        assert curves[0] == curves[1]
+    finally:
+        other.close()
 
 
 def known(motion, *names):

@@ -10,6 +10,7 @@ import pytest
 from PIL import Image
 
 from tests.browser.test_studio import PLAIN, drag, solved, state, stated
+from tests.service.running import until
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 
@@ -161,3 +162,30 @@ def test_a_plot_is_looked_at_nearer_and_taken_home(studio):
     assert "°: " in plot.locator(".reading").inner_text()
     page.mouse.move(0, 0)
     assert "°: " not in plot.locator(".reading").inner_text()
+
+
+def test_the_wheel_brings_the_plane_nearer_and_places_are_then_finer(studio):
+    page = studio.page
+    state(page, PLAIN)
+    picture = page.locator("#sketch .canvas")
+    picture.scroll_into_view_if_needed()
+    grip = page.locator("#sketch .target >> nth=1 >> .dot")
+    box = grip.bounding_box()
+    still = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    other = page.locator("#sketch .target >> nth=0 >> .dot").bounding_box()
+    page.mouse.move(*still)
+    page.mouse.wheel(0, -600)
+    # What lies under the pointer stays there; all else goes away from it by 1.0015 a step.
+    until(lambda: page.locator("#sketch .canvas").get_attribute("viewBox").startswith("0 0 "), 10, "the plane anew")
+    assert middle(page, "#sketch .target >> nth=1 >> .dot") == pytest.approx(still, abs=1.5)
+    before = math.hypot(other["x"] + other["width"] / 2 - still[0], other["y"] + other["height"] / 2 - still[1])
+    away = math.dist(middle(page, "#sketch .target >> nth=0 >> .dot"), still)
+    assert away / before == pytest.approx(1.0015**600, rel=0.02)
+    lead(page, "#sketch .target >> nth=1 >> .dot", (still[0] + 20, still[1]))
+    moved = stated(page)["positions"][1]
+    assert moved["x"] > 10.0
+    assert moved["y"] == pytest.approx(5.0, abs=0.5)
+    page.locator("#sketch").get_by_role("button", name="Fit everything").click()
+    assert math.dist(
+        middle(page, "#sketch .target >> nth=0 >> .dot"), middle(page, "#sketch .target >> nth=1 >> .dot")
+    ) == pytest.approx(before, rel=0.5)
