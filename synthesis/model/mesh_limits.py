@@ -78,23 +78,35 @@ def _rack_form(teeth: Real, angle: float) -> Real:
 
 def ring_addendum(planet: Real, ring: Real, angle: float, fillets: bool = False) -> Real:
     """Addendum of a ring, in modules, that just does not dig into its planet, or its fillet, at most 1."""
-    form = _rack_form(planet, angle) if fillets else 0.0
-    limit = np.sqrt((ring * np.cos(angle)) ** 2 + ((ring - planet) * np.sin(angle) + form) ** 2)
+    return _reaching(ring, (ring - planet) * np.sin(angle) + (_rack_form(planet, angle) if fillets else 0.0), angle)
+
+
+def untrimmed_addendum(ring: Real, angle: float) -> Real:
+    """Addendum of a ring, in modules, that just ends where the involute of the usual cutter begins, at most 1."""
+    return _reaching(ring, (ring - usual_cutter(ring)) * np.sin(angle), angle)
+
+
+def _reaching(ring: Real, reached: Real, angle: float) -> Real:
+    """Addendum of a ring whose tips reach so far on the line of action, from the base circle's tangent point on."""
+    limit = np.sqrt((ring * np.cos(angle)) ** 2 + reached**2)
     return np.asarray(np.minimum(1.0, np.floor(0.5 * (ring - limit) / ADDENDUM_STEP) * ADDENDUM_STEP))
 
 
-def internal_contact(planet: Real, ring: Real, angle: float, fillets: bool = False) -> Real:
-    """Contact ratio of a planet and its ring, the ring's teeth shortened where they must be."""
+def internal_contact(planet: Real, ring: Real, addendum: Real, angle: float) -> Real:
+    """Contact ratio of a planet and a ring of this addendum, modules."""
     cosine, sine = np.cos(angle), np.sin(angle)
-    tip = ring - 2.0 * ring_addendum(planet, ring, angle, fillets)
+    tip = ring - 2.0 * addendum
     own = np.sqrt((planet + 2.0) ** 2 - (planet * cosine) ** 2)
     far = np.sqrt(np.maximum(tip**2 - (ring * cosine) ** 2, 0.0))
     return np.asarray((own - far + (ring - planet) * sine) / (2.0 * np.pi * cosine))
 
 
-def tips_clear(planet: Real, ring: Real, angle: float, fillets: bool = False) -> Mask:
-    """Whether the tips of a planet and its ring pass each other; a matter of rings hardly larger than their planets."""
-    return _tips_pass(planet, ring, planet + 2.0, ring - 2.0 * ring_addendum(planet, ring, angle, fillets), angle)
+def tips_clear(planet: Real, ring: Real, addendum: Real, angle: float) -> Mask:
+    """Whether the tips of a planet and a ring of this addendum, modules, pass each other.
+
+    It is a matter of rings hardly larger than their planets.
+    """
+    return _tips_pass(planet, ring, planet + 2.0, ring - 2.0 * addendum, angle)
 
 
 def ring_untrimmed(ring: Real, addendum: Real, angle: float) -> Mask:

@@ -1,4 +1,4 @@
-"""Contact in the fillets of planetary trains, through HTTP: told, refused, and as the analysis of each pair has it."""
+"""Contact in the fillets of planetary trains, through HTTP: refused, told, and as the analysis of each pair has it."""
 
 from __future__ import annotations
 
@@ -55,13 +55,15 @@ def test_every_mesh_is_told_as_the_analysis_of_its_pair_has_it(
                 pair = {"mechanism": pair_of(design["mechanism"], mesh["gears"])}
                 told = client.post("/v1/analyses", json=pair).raise_for_status().json()
                 assert mesh["fillet_interference"] == any(gear["fillet_interference"] for gear in told["gears"])
+                assert mesh["tip_depth"] <= 1e-6 or mesh["fillet_interference"]
     assert any(found["report"]), "full-depth rings reach into the fillets of their planets, undercut ones too"
     assert not any(found["refuse"])
 
 
 def test_teeth_of_rings_are_shortened_where_fillets_are_refused(client: httpx.Client) -> None:
-    plain, refused = solved(client), solved(client, fillets="refuse")
-    assert "fillet_interference" not in plain["designs"][0]["metrics"]["meshes"][0]
+    plain, refused = solved(client, fillets="report"), solved(client)
+    assert plain["designs"][0]["metrics"]["meshes"][1]["tip_depth"] == pytest.approx(0.003, abs=1e-4)
+    assert [mesh["tip_depth"] for mesh in refused["designs"][0]["metrics"]["meshes"]] == [0.0, 0.0]
     assert plain["designs"][0]["mechanism"]["teeth"] == refused["designs"][0]["mechanism"]["teeth"]
     assert refused["designs"][0]["mechanism"]["addendum"]["ring"] < plain["designs"][0]["mechanism"]["addendum"]["ring"]
     assert "fillet_interference" in [check["name"] for check in refused["designs"][0]["verification"]["checks"]]
@@ -74,8 +76,8 @@ def test_teeth_of_rings_are_shortened_where_fillets_are_refused(client: httpx.Cl
 def test_planets_of_many_teeth_reach_the_fillets_of_a_ring(client: httpx.Client) -> None:
     """The usual cutter of 20 teeth leaves too little involute for planets of 130 and more."""
     teeth = {"min": 40, "max": 160, "ring_max": 380, "gears": {"planet": {"min": 150, "max": 160}}}
-    assert solved(client, ratio=9.0, teeth=teeth)["designs"]
-    refused = solved(client, ratio=9.0, teeth=teeth, fillets="refuse")
+    assert solved(client, ratio=9.0, teeth=teeth, fillets="report")["designs"]
+    refused = solved(client, ratio=9.0, teeth=teeth)
     assert refused["designs"] == []
     assert refused["search"]["complete"]
     assert refused["search"]["rejected"]["fillet_interference"] > 0
@@ -85,7 +87,7 @@ def test_undercut_planets_are_met_above_their_fillets(client: httpx.Client) -> N
     """Their involutes begin where the fillet crosses the flank, above the base circle."""
     teeth = {"min": 9, "max": 60, "ring_max": 120, "gears": {"planet": {"min": 10, "max": 15}}}
     members = {"input": "sun", "output": "carrier", "fixed": "ring"}
-    stated = {"ratio": 3.0, "teeth": teeth, "max_designs": 100, "fillets": "refuse", **members}
+    stated = {"ratio": 3.0, "teeth": teeth, "max_designs": 100, **members}
     designs = solved(client, **stated, min_contact_ratio=1.0)["designs"]
     undercut = [design for design in designs if design["metrics"]["undercut"]]
     assert undercut
@@ -97,6 +99,6 @@ def test_undercut_planets_are_met_above_their_fillets(client: httpx.Client) -> N
 
 
 def test_an_unknown_word_is_refused(client: httpx.Client) -> None:
-    answer = client.post("/v1/jobs", json={"problem": STATED | {"fillets": "avoid"}})
+    answer = client.post("/v1/jobs", json={"problem": STATED | {"fillets": "ignore"}})
     assert answer.status_code == 422
     assert [fault["path"] for fault in answer.json()["errors"]] == ["/problem/fillets"]

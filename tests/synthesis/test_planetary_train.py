@@ -4,24 +4,29 @@ from __future__ import annotations
 
 import itertools
 import math
+import random
 from fractions import Fraction
 from functools import cache
 from typing import Any, get_args
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from kinematics.gear.assembly import fits_at, gaps, is_coaxial
+from kinematics.gear.cut_space import tip_depth
 from kinematics.gear.planetary import speed_ratio
 from kinematics.gear.teeth import Gear, Mesh
 from synthesis.dispatch import solve
 from synthesis.kinds.planetary_train.design import PlanetaryMechanism, PlanetaryResult, PlanetPlaces
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.kinds.planetary_train.ratio_form import arrangement_form, exact
+from synthesis.kinds.planetary_train.tooth_numbers import addendum_of_ring
 from synthesis.kinds.planetary_train.verification import exact_ratio_of, size_of, verify
-from synthesis.model.gear_answer import Ratio
+from synthesis.model import mesh_limits
+from synthesis.model.gear_answer import Ratio, reaches_fillet, shaped_ring
 from synthesis.registry import parse_problem
 from tests.cases import Case, cases
 
@@ -55,6 +60,7 @@ def test_best_simple_sets(case: Case) -> None:
         input=stated["inp"],
         output=stated["out"],
         teeth={"min": 17, "max": 300, "ring_max": 300, "gears": {"sun": {"min": 17, "max": 120}}},
+        fillets="report",
     )
     best = result.designs[0]
     case.check(rel_error=abs(best.metrics.error), feasible=sound_count(result), **best.mechanism.teeth)
@@ -203,6 +209,7 @@ def test_against_plain_loops_over_all_teeth(
         output=roles[1],
         fixed=roles[2],
         teeth={"gears": limits},
+        fillets="report",
         max_designs=20,
     )
     target = problem_of(ratio=ratio).target
@@ -436,7 +443,31 @@ def test_broken_trains_do_not_pass() -> None:
     thin = {"sun": 17, "planet": 17, "ring": 51}
     assert {"interference", "ratio"} <= failing(teeth=thin, addendum=dict.fromkeys(thin, 1.0))
     assert "interference" in failing(teeth={"sun": 8, "planet": 40, "ring": 88}, addendum=dict.fromkeys(thin, 1.0))
+    assert failing(addendum={"sun": 1.0, "planet": 1.0, "ring": 1.0}) == {"fillet_interference"}
     assert exact_ratio_of(good) == Fraction(good.ratio.numerator, good.ratio.denominator)
+
+
+def test_pairs_that_the_search_takes_are_those_whose_tips_run_free() -> None:
+    """The masks of the search against the geometry of each mesh and against its tools."""
+    drawn = random.Random(62)
+    taken = 0
+    for _ in range(120):
+        angle = math.radians(drawn.choice([14.0, 17.5, 20.0, 25.0, 30.0]))
+        planet = drawn.randint(8, 90)
+        ring = planet + drawn.randint(5, 90)
+        one, two = np.array([float(planet)]), np.array([float(ring)])
+        addendum = addendum_of_ring(one, two, angle, True)
+        free = mesh_limits.tips_clear(one, two, addendum, angle) & mesh_limits.ring_fillet_clear(one, two, angle)
+        free &= mesh_limits.ring_untrimmed(two, addendum, angle)
+        rim = Gear(ring, 1.0, angle, round(float(addendum[0]), 6), internal=True)
+        mesh = Mesh(Gear(planet, 1.0, angle), rim)
+        shaped = shaped_ring(mesh)
+        sound = not (mesh.interferes or reaches_fillet(mesh) or shaped.is_trimmed)
+        assert sound == bool(free[0])
+        if sound:
+            assert tip_depth(mesh, shaped.cutter_teeth) < 1e-6
+        taken += sound
+    assert 20 < taken < 110
 
 
 def test_self_locking_and_wasteful_trains_are_told() -> None:

@@ -30,8 +30,8 @@ def run_in_rings(pinion: Real, ring: Real, angle: float) -> Pairs:
     one, two = pinion[inside], ring[inside]
     with np.errstate(invalid="ignore", divide="ignore"):
         short = mesh_limits.ring_addendum(one, two, angle, fillets=True)
-        sound = (short >= SHORTEST) & mesh_limits.tips_clear(one, two, angle, fillets=True)
-        sound &= mesh_limits.internal_contact(one, two, angle, fillets=True) >= LEAST_CONTACT
+        sound = (short >= SHORTEST) & mesh_limits.tips_clear(one, two, short, angle)
+        sound &= mesh_limits.internal_contact(one, two, short, angle) >= LEAST_CONTACT
         sound &= mesh_limits.ring_fillet_clear(one, two, angle)
         sound &= mesh_limits.ring_untrimmed(two, short, angle)
     found[inside] = sound

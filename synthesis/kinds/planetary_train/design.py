@@ -47,7 +47,14 @@ class MeshContact(Answer):
     gears: tuple[str, str]
     contact_ratio: float
     centre_distance: Length
-    fillet_interference: bool | None = optional("Whether a tip reaches below the mate's involute, where that is asked.")
+    fillet_interference: bool = Field(
+        description="Whether contact goes below an involute as rack and cutter leave it: into a fillet, or, of an "
+        "undercut gear, to where nothing is left of it."
+    )
+    tip_depth: Length = Field(
+        description="How deep a tip digs into its mate, found by putting it where it comes to and trying all positions "
+        "of the tools that cut the mate; 0 of tips that run free."
+    )
     strength: PairStrength | None = optional(
         "Stresses of one copy under a stated power; left out of a mesh that carries nothing."
     )

@@ -10,9 +10,8 @@ from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from synthesis.kinds.planetary_train.design import PlanetaryMechanism, PlanetPlaces
 from synthesis.kinds.planetary_train.nearest import Candidate
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
-from synthesis.kinds.planetary_train.tooth_numbers import Demands, divisions
+from synthesis.kinds.planetary_train.tooth_numbers import Demands, addendum_of_ring, divisions
 from synthesis.kinds.planetary_train.verification import SIZE_SLACK
-from synthesis.model import mesh_limits
 from synthesis.model.gear_answer import Ratio
 
 
@@ -73,4 +72,4 @@ def _addendum(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[s
     ring = np.array([float(teeth[gear])])
     angle = math.radians(problem.pressure_angle)
     fillets = problem.fillets == "refuse"
-    return min(round(float(mesh_limits.ring_addendum(mate, ring, angle, fillets)[0]), 6) for mate in mates)
+    return min(round(float(addendum_of_ring(mate, ring, angle, fillets)[0]), 6) for mate in mates)

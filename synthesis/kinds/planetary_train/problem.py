@@ -139,11 +139,12 @@ class PlanetaryProblem(StatedProblem):
     min_contact_ratio: Annotated[float, Field(strict=True, ge=1.0, lt=2.0)] = Field(
         default=1.2, description="Least contact ratio of a mesh."
     )
-    fillets: Literal["ignore", "report", "refuse"] = Field(
-        default="ignore",
+    fillets: Literal["refuse", "report"] = Field(
+        default="refuse",
         description="Contact in the fillets that a rack (ISO 53, profile A) leaves on external gears, and the usual "
-        "cutter of 20 teeth on rings. report: told of every mesh. refuse: the teeth of rings are shortened until they "
-        "do not reach into the fillets of their planets, and trains with contact in another fillet are no answer.",
+        "cutter of 20 teeth on rings. refuse: the teeth of rings are shortened until they do not reach into the "
+        "fillets of their planets, and trains with contact in another fillet, or rings that the cutter trims, are no "
+        "answer. report: it is told of every mesh, and teeth are as long as flanks without fillets let them be.",
     )
     strength: PlanetPower | None = Field(
         default=None,

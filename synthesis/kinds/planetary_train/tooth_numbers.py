@@ -41,7 +41,7 @@ class Demands(NamedTuple):
     """What sound tooth numbers must satisfy.
 
     ``limits`` are the fewest and most teeth by gear, ``least_room`` is in modules, ``largest`` a pitch diameter in
-    modules. ``clear_fillets``: contact in fillets is refused.
+    modules. ``clear_fillets``: contact in fillets is refused, and so are rings that their cutter trims.
     """
 
     limits: dict[str, tuple[int, int]]
@@ -300,6 +300,15 @@ def _phases(arrangement: Arrangement, planets: tuple[str, ...]) -> dict[str, lis
     return meshing
 
 
+def addendum_of_ring(planet: Real, ring: Real, angle: float, fillets: bool) -> Real:
+    """Addendum of a ring for a planet, modules: its full teeth, or shortened ones that do not dig into the planet.
+
+    ``fillets``: nor into the planet's fillet, and so that the usual cutter takes nothing off their flanks.
+    """
+    addendum = mesh_limits.ring_addendum(planet, ring, angle, fillets)
+    return np.minimum(addendum, mesh_limits.untrimmed_addendum(ring, angle)) if fillets else addendum
+
+
 def _mesh_rules(numbers: ToothNumbers) -> list[_Rule]:
     arrangement, angle, least = (
         numbers._arrangement,
@@ -328,14 +337,19 @@ def _mesh_rules(numbers: ToothNumbers) -> list[_Rule]:
         def sound(block: Block, pair: Callable[[Block], tuple[bool, Real, Real]] = pair) -> Mask:
             internal, first, second = pair(block)
             if internal:
-                return mesh_limits.tips_clear(first, second, angle, fillets)
+                return mesh_limits.tips_clear(first, second, addendum_of_ring(first, second, angle, fillets), angle)
             return mesh_limits.external_sound(first, second, angle)
 
         def lasting(block: Block, pair: Callable[[Block], tuple[bool, Real, Real]] = pair) -> Mask:
             internal, first, second = pair(block)
             if internal:
-                return np.asarray(mesh_limits.internal_contact(first, second, angle, fillets) >= least, np.bool_)
+                short = addendum_of_ring(first, second, angle, fillets)
+                return np.asarray(mesh_limits.internal_contact(first, second, short, angle) >= least, np.bool_)
             return np.asarray(mesh_limits.external_contact(first, second, angle) >= least, np.bool_)
+
+        def untrimmed(block: Block, pair: Callable[[Block], tuple[bool, Real, Real]] = pair) -> Mask:
+            _, planet, rim = pair(block)
+            return mesh_limits.ring_untrimmed(rim, addendum_of_ring(planet, rim, angle, fillets), angle)
 
         def clear(block: Block, pair: Callable[[Block], tuple[bool, Real, Real]] = pair) -> Mask:
             internal, first, second = pair(block)
@@ -346,6 +360,8 @@ def _mesh_rules(numbers: ToothNumbers) -> list[_Rule]:
         rules += [_Rule("interference", gears, sound), _Rule("contact_ratio", gears, lasting)]
         if fillets:
             rules.append(_Rule("fillet_interference", gears, clear))
+            if ring is not None:
+                rules.append(_Rule("ring_trimmed", gears, untrimmed))
     return rules
 
 

@@ -2,7 +2,8 @@
 
 The ratio comes from the speed equations in exact fractions, coaxiality from exact centre distances, assembly from
 trying every tooth of every planet at its place, room from the coordinates of the pins, and the meshes from the geometry
-of their teeth. Nothing that the solver computed is read.
+of their teeth. Whether tips run free of the teeth as rack and cutter leave them is found by trying all positions of
+these tools. Nothing that the solver computed is read.
 """
 
 from __future__ import annotations
@@ -10,10 +11,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from fractions import Fraction
+from functools import lru_cache
 
 from kinematics.errors import DimensionError
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from kinematics.gear.assembly import Gap, fits_at, gaps, is_coaxial, pin_distances
+from kinematics.gear.cut_space import tip_depth
 from kinematics.gear.planetary import speed_ratio, speeds
 from kinematics.gear.power import power_flow
 from kinematics.gear.teeth import Gear, Mesh
@@ -22,7 +25,7 @@ from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
 from synthesis.model.dynamics import METRES
-from synthesis.model.gear_answer import reaches_fillet
+from synthesis.model.gear_answer import reaches_fillet, shaped_ring
 from synthesis.model.gear_strength import PairStrength
 from synthesis.model.planet_strength import MeshLoad, strengths
 from synthesis.model.ratio_target import decimal
@@ -32,6 +35,9 @@ from synthesis.proof.checks import at_least, at_most, tolerated
 SIZE_SLACK = 1e-12
 """Relative slack of the size, which is a whole number of half modules but for the rounding of one product."""
 
+
+TOUCHED = 1e-6
+"""Modules by which tips may seem to dig into flanks that touch, as the positions of the tools are tried in steps."""
 
 ROUNDED = 1e-9
 """Share by which a safety or a face may miss its limit in rounding."""
@@ -149,7 +155,8 @@ def measure(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Planeta
                 gears=pair,
                 contact_ratio=mesh.contact_ratio,
                 centre_distance=_apart(arrangement, pair, mesh),
-                fillet_interference=None if problem.fillets == "ignore" else reaches_fillet(mesh),
+                fillet_interference=reaches_fillet(mesh),
+                tip_depth=_tip_depth(mesh),
                 strength=strength,
             )
             for (pair, mesh), strength in zip(toothed.items(), _strengths(problem, mechanism), strict=True)
@@ -265,6 +272,25 @@ def _meshes(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangemen
         at_least("contact_ratio", least, problem.min_contact_ratio),
     ]
     if problem.fillets == "refuse":
-        reached = any(reaches_fillet(mesh) for mesh in meshes.values())
-        checks.append(Check(name="fillet_interference", passed=not reached))
+        depth, reached = 0.0, False
+        for mesh in meshes.values():
+            depth, reached = max(depth, _tip_depth(mesh)), reached or reaches_fillet(mesh)
+        limit = TOUCHED * mechanism.module
+        rings = [shaped_ring(mesh) for mesh in meshes.values() if mesh.gear.internal]
+        checks += [
+            Check(
+                name="fillet_interference",
+                passed=not reached and depth <= limit,
+                value=depth,
+                limit=limit,
+                dimension=LENGTH,
+            ),
+            Check(name="ring_trimmed", passed=not any(ring.is_trimmed for ring in rings)),
+        ]
     return checks
+
+
+@lru_cache(maxsize=1024)
+def _tip_depth(mesh: Mesh) -> float:
+    """How deep tips dig into the teeth that the rack and the usual cutter leave; 0 where they run free."""
+    return max(0.0, tip_depth(mesh, shaped_ring(mesh).cutter_teeth if mesh.gear.internal else 0))
