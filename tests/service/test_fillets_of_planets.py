@@ -61,7 +61,8 @@ def test_every_mesh_is_told_as_the_analysis_of_its_pair_has_it(
 
 
 def test_teeth_of_rings_are_shortened_where_fillets_are_refused(client: httpx.Client) -> None:
-    plain, refused = solved(client, fillets="report"), solved(client)
+    plain, refused = solved(client, fillets="report"), solved(client, fillets="refuse")
+    assert [one["mechanism"] for one in solved(client)["designs"]] == [one["mechanism"] for one in refused["designs"]]
     assert plain["designs"][0]["metrics"]["meshes"][1]["tip_depth"] == pytest.approx(0.003, abs=1e-4)
     assert [mesh["tip_depth"] for mesh in refused["designs"][0]["metrics"]["meshes"]] == [0.0, 0.0]
     assert plain["designs"][0]["mechanism"]["teeth"] == refused["designs"][0]["mechanism"]["teeth"]
@@ -77,7 +78,10 @@ def test_planets_of_many_teeth_reach_the_fillets_of_a_ring(client: httpx.Client)
     """The usual cutter of 20 teeth leaves too little involute for planets of 130 and more."""
     teeth = {"min": 40, "max": 160, "ring_max": 380, "gears": {"planet": {"min": 150, "max": 160}}}
     assert solved(client, ratio=9.0, teeth=teeth, fillets="report")["designs"]
-    refused = solved(client, ratio=9.0, teeth=teeth)
+    refused = solved(client, ratio=9.0, teeth=teeth, fillets="refuse")
+    told = solved(client, ratio=9.0, teeth=teeth)["designs"]
+    assert told
+    assert all(any(mesh["fillet_interference"] for mesh in one["metrics"]["meshes"]) for one in told)
     assert refused["designs"] == []
     assert refused["search"]["complete"]
     assert refused["search"]["rejected"]["fillet_interference"] > 0
@@ -87,7 +91,7 @@ def test_undercut_planets_are_met_above_their_fillets(client: httpx.Client) -> N
     """Their involutes begin where the fillet crosses the flank, above the base circle."""
     teeth = {"min": 9, "max": 60, "ring_max": 120, "gears": {"planet": {"min": 10, "max": 15}}}
     members = {"input": "sun", "output": "carrier", "fixed": "ring"}
-    stated = {"ratio": 3.0, "teeth": teeth, "max_designs": 100, **members}
+    stated = {"ratio": 3.0, "teeth": teeth, "max_designs": 100, "fillets": "refuse", **members}
     designs = solved(client, **stated, min_contact_ratio=1.0)["designs"]
     undercut = [design for design in designs if design["metrics"]["undercut"]]
     assert undercut

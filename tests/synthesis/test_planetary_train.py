@@ -60,7 +60,6 @@ def test_best_simple_sets(case: Case) -> None:
         input=stated["inp"],
         output=stated["out"],
         teeth={"min": 17, "max": 300, "ring_max": 300, "gears": {"sun": {"min": 17, "max": 120}}},
-        fillets="report",
     )
     best = result.designs[0]
     case.check(rel_error=abs(best.metrics.error), feasible=sound_count(result), **best.mechanism.teeth)
@@ -209,7 +208,6 @@ def test_against_plain_loops_over_all_teeth(
         output=roles[1],
         fixed=roles[2],
         teeth={"gears": limits},
-        fillets="report",
         max_designs=20,
     )
     target = problem_of(ratio=ratio).target
@@ -443,7 +441,8 @@ def test_broken_trains_do_not_pass() -> None:
     thin = {"sun": 17, "planet": 17, "ring": 51}
     assert {"interference", "ratio"} <= failing(teeth=thin, addendum=dict.fromkeys(thin, 1.0))
     assert "interference" in failing(teeth={"sun": 8, "planet": 40, "ring": 88}, addendum=dict.fromkeys(thin, 1.0))
-    assert failing(addendum={"sun": 1.0, "planet": 1.0, "ring": 1.0}) == {"fillet_interference"}
+    full = {"sun": 1.0, "planet": 1.0, "ring": 1.0}
+    assert failing(problem_of(**stated, fillets="refuse"), addendum=full) == {"fillet_interference"}
     assert exact_ratio_of(good) == Fraction(good.ratio.numerator, good.ratio.denominator)
 
 

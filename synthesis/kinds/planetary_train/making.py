@@ -12,7 +12,11 @@ from synthesis.kinds.planetary_train.nearest import Candidate
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.kinds.planetary_train.tooth_numbers import Demands, addendum_of_ring, divisions
 from synthesis.kinds.planetary_train.verification import SIZE_SLACK
+from synthesis.model import mesh_limits
 from synthesis.model.gear_answer import Ratio
+
+SHORTEST = 0.5
+"""Modules that are left of a ring's addendum at least where it is shortened without being demanded."""
 
 
 def demands_of(problem: PlanetaryProblem, arrangement: Arrangement, module: float | None = None) -> Demands:
@@ -65,11 +69,19 @@ def _places(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[str
 
 
 def _addendum(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[str, int], gear: str) -> float:
-    """A module, or what is left of it where a ring's teeth are shortened for the smallest of its planets."""
+    """A module, or what is left of it where a ring's teeth are shortened: for its planets, and if they can for fillets."""
     if not arrangement.places[gear].internal:
         return 1.0
     mates = [np.array([float(teeth[mate])]) for mate in arrangement.meshing(gear)]
     ring = np.array([float(teeth[gear])])
     angle = math.radians(problem.pressure_angle)
-    fillets = problem.fillets == "refuse"
-    return min(round(float(addendum_of_ring(mate, ring, angle, fillets)[0]), 6) for mate in mates)
+
+    def shortened(fillets: bool) -> float:
+        return min(round(float(addendum_of_ring(mate, ring, angle, fillets)[0]), 6) for mate in mates)
+
+    if problem.fillets == "report":
+        return shortened(fillets=False)
+    short = shortened(fillets=True)
+    contact = min(float(mesh_limits.internal_contact(mate, ring, np.array([short]), angle)[0]) for mate in mates)
+    keeps = problem.fillets == "refuse" or (short >= SHORTEST and contact >= problem.min_contact_ratio)
+    return short if keeps else shortened(fillets=False)

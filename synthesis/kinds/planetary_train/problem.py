@@ -139,12 +139,13 @@ class PlanetaryProblem(StatedProblem):
     min_contact_ratio: Annotated[float, Field(strict=True, ge=1.0, lt=2.0)] = Field(
         default=1.2, description="Least contact ratio of a mesh."
     )
-    fillets: Literal["refuse", "report"] = Field(
-        default="refuse",
+    fillets: Literal["shorten", "report", "refuse"] = Field(
+        default="shorten",
         description="Contact in the fillets that a rack (ISO 53, profile A) leaves on external gears, and the usual "
-        "cutter of 20 teeth on rings. refuse: the teeth of rings are shortened until they do not reach into the "
-        "fillets of their planets, and trains with contact in another fillet, or rings that the cutter trims, are no "
-        "answer. report: it is told of every mesh, and teeth are as long as flanks without fillets let them be.",
+        "cutter of 20 teeth on rings; every mesh tells what there is of it. shorten: the teeth of rings are shortened "
+        "until they do not reach into the fillets of their planets, where the contact ratio allows it. report: teeth "
+        "are as long as flanks without fillets let them be. refuse: as shorten, and trains in which any such contact "
+        "is left, or rings that the cutter trims, are no answer.",
     )
     strength: PlanetPower | None = Field(
         default=None,
