@@ -197,7 +197,9 @@ def test_a_lid_is_drawn_solved_compared_changed_taken_home_and_sent(studio, chro
     other = Studio(chromium, studio.url, viewport=dict(DESKTOP), opened=link)
     try:
         other.page.wait_for_selector(".moving .live .link")
-        assert stated(other.page) == stated(page)
+        # What is stated with nothing in it states nothing.
+        both = [{field: value for field, value in stated(one).items() if value != {}} for one in (page, other.page)]
+        assert both[0] == both[1]
         curves = [one.locator(".moving .curve").first.get_attribute("d") for one in (page, other.page)]
         assert curves[0] == curves[1]
     finally:
