@@ -69,7 +69,7 @@ def _places(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[str
 
 
 def _addendum(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[str, int], gear: str) -> float:
-    """A module, or what is left of it where a ring's teeth are shortened: for its planets, and if they can for fillets."""
+    """A module, or what is left of a ring that is shortened: for its planets, and where it can for their fillets."""
     if not arrangement.places[gear].internal:
         return 1.0
     mates = [np.array([float(teeth[mate])]) for mate in arrangement.meshing(gear)]
