@@ -41,9 +41,10 @@ ON_TOGGLE = 16 * float(np.finfo(np.float64).eps)
 which lengthens no link by more than that share: a toggle or change point is a configuration, and rounding must not
 take it away."""
 
-TOGGLE_SINE = 1e-7
+TOGGLE_SINE = 1e-6
 """Derivatives count as undefined where the sine of the transmission angle is below this: near a toggle it goes with
-the root of the input angle's distance from it, so that rounding of that angle alone makes a sine of some 1e-8."""
+the root of the input angle's distance from it, so that rounding of a toggle's own angle alone makes a sine of up to
+2e-7, and an acceleration of 1e20 of which no digit is known. Here a hundredth of it is rounding."""
 
 TILE = 128
 """Input angles that are worked on together: their intermediate rows stay in the first-level cache."""

@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from kinematics.linkage.kernels import TOGGLE_SINE
 from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.drive import MechanismMotion
-from kinematics.linkage.planar.drive_kernels import AT_LIMIT, COINCIDENT, SINGULAR
+from kinematics.linkage.planar.drive_kernels import AT_LIMIT, COINCIDENT
 from kinematics.linkage.planar.mechanism import GROUND
 from kinematics.linkage.planar.program import assembly_signs, unit_frame
 
@@ -72,7 +73,7 @@ def solve_angle(k, r, sign, reach, slack=0.0):
         determinant = sign * root
         if len(k) > 1:
             e = np.exp(-1j * rows[0])
-            sound = (root > SINGULAR * length) & (length > SINGULAR * reach)
+            sound = (root > TOGGLE_SINE * length) & (length > TOGGLE_SINE * reach)
             scale = np.where(sound, 1.0 / determinant, np.nan)
             w = (r[1] - (e * k[1]).real) * scale
             rows.append(w)

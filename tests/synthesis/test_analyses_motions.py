@@ -1,9 +1,16 @@
-"""What every family of analyses refuses of a motion."""
+"""What every family of analyses refuses of a motion, and where rates end."""
 
+import math
+
+import numpy as np
 import pytest
 from pydantic_core import to_json
 
+from kinematics.errors import MechanismError
+from kinematics.linkage import Fourbar, catalogue
+from kinematics.linkage.planar.drive import drive
 from synthesis.analyses import families, parse_request
+from synthesis.analyses.cycle import cycle_of
 
 DRIVEN = [family.request for family in families() if "motion" in family.request.model_fields]
 LONG = {"time": {"end": 1e9, "step": 1e-25}}
@@ -56,3 +63,21 @@ def test_an_end_that_is_left_out_is_a_toggle_of_a_slider(motion, ends):
     stated = {"mechanism": slider_crank, "motion": motion}
     places = parse_request(stated).answer()["input_angle"]
     assert (places[0], places[-1]) == pytest.approx(ends)
+
+
+def test_rates_end_where_a_cycle_ends_at_toggles():
+    """The angle of a toggle is rounded: what a rate would be there is made of rounding, and there is none."""
+    drawn, ended = np.random.default_rng(3), 0
+    while ended < 40:
+        lengths, at = 10.0 ** drawn.uniform(-1.0, 1.0, 4), drawn.uniform(0.0, 2.0 * math.pi)
+        try:
+            fourbar = catalogue.fourbar(Fourbar.from_lengths(*lengths), input_angle=at)
+        except MechanismError:
+            continue
+        low, high = cycle_of(fourbar)
+        if math.isclose(high - low, 2.0 * math.pi):
+            continue
+        motion = drive(fourbar, np.radians(np.degrees([low, 0.5 * (low + high), high])))
+        assert motion.valid.all()
+        assert motion.smooth.tolist() == [False, True, False]
+        ended += 1

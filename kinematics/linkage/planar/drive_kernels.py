@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.compiling import njit
-from kinematics.linkage.kernels import ON_TOGGLE
+from kinematics.linkage.kernels import ON_TOGGLE, TOGGLE_SINE
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -37,9 +37,6 @@ GEAR, CARRIED, RRP, RPR, RRR, GIVEN = range(6)
 
 KIND, LINK, PIN, JOINT, OTHER, OTHER_PIN, SLIDE, CLOSING = range(8)
 """Columns of a program. CLOSING counts the closures that have two solutions; −1 elsewhere."""
-
-SINGULAR = 1e-7
-"""Sine below which derivatives are undefined: a limit itself is known to the square root of rounding only."""
 
 COINCIDENT = 1e-13
 """A share of its reach below which the vector that gives a link its direction has none: only rounding is left."""
@@ -516,7 +513,7 @@ def _close(
     unit[link, 0] = u
     if length > 1:
         e = u.conjugate()
-        scale = 1.0 / (sign * root) if root > SINGULAR * size and size > SINGULAR * reach else np.nan
+        scale = 1.0 / (sign * root) if root > TOGGLE_SINE * size and size > TOGGLE_SINE * reach else np.nan
         w = (r[1] - (e * k[1]).real) * scale
         rotation[link, 1] = w
         if length > 2:
