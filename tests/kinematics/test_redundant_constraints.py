@@ -164,3 +164,22 @@ def test_dimensions_that_do_not_agree_are_no_mechanism(make: Callable[[], Mechan
 def test_circuits_are_not_listed() -> None:
     with pytest.raises(TopologyError, match="redundant"):
         branches(parallelogram(5.0 + 1.3j))
+
+
+@pytest.mark.campaign
+def test_a_link_beside_its_like_leaves_a_long_chain_its_motion() -> None:
+    """Of twenty dyads in a row the second of five is nearly singular all the way, and has its limits near by."""
+    drawn = np.random.default_rng(20)
+    for _ in range(5):
+        joints: dict[str, complex] = {"O": 0j, "A": 1.0 + 0j}
+        links = {"ground": ["O"], "crank": ["O", "A"]}
+        last = "A"
+        for k in range(20):
+            drawn.integers(len(joints) - 1)
+            joints[f"G{k}"], joints[f"P{k}"] = (complex(*drawn.uniform(-3.0, 3.0, 2)) for _ in range(2))
+            links["ground"].append(f"G{k}")
+            links |= {f"coupler_{k}": [last, f"P{k}"], f"rocker_{k}": [f"G{k}", f"P{k}"]}
+            last = f"P{k}"
+        links["twin"] = links[f"coupler_{drawn.integers(20)}"]
+        named = {name: tuple(listed) for name, listed in links.items()}
+        assert Mechanism({name: np.asarray(at) for name, at in joints.items()}, named, "crank").redundant == 1

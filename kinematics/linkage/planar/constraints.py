@@ -217,12 +217,13 @@ class Constraints:
         most, done = least.copy(), np.zeros(count)
         step = np.full(count, 0.25 * FAR_ENOUGH)
         for _ in range(TRIALS):
-            if not ((done < FAR_ENOUGH) & (step > LEAST_STEP)).any():
+            shown = (done >= FAR_ENOUGH) | ((done > 0.0) & (least < AT_A_LIMIT * most))
+            if not (~shown & (step > LEAST_STEP)).any():
                 break
             guess = Poses(poses.places[:1] + step * poses.places[1:], poses.rotations[:1] + step * poses.rotations[1:])
             tried, misfit, smallest = self.settled(guess, rates + np.array([[way], [0.0]]) * (done + step))
             turned = np.abs(tried.rotations[0] - poses.rotations[0]).max(axis=0)
-            met = (misfit <= CONSISTENT) & (turned <= MOST_TURN) & (smallest > SINGULAR) & (done < FAR_ENOUGH)
+            met = (misfit <= CONSISTENT) & (turned <= MOST_TURN) & (smallest > SINGULAR * most) & (done < FAR_ENOUGH)
             poses.put(met, tried.take(met))
             least = np.where(met, smallest, least)
             most = np.maximum(most, least)
