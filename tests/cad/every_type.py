@@ -1,0 +1,146 @@
+"""A statement for every kind of problem and every type of mechanism that it answers with, and why some have no parts."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from tests.service.stated.linkages import DWELL, LINE, STEERING
+from tests.service.stated.linkages import MOTION as THREE
+from tests.service.stated.sixbars import DWELL as PLACED_DWELL
+from tests.service.stated.sixbars import FUNCTION
+from tests.service.stated.sixbars import PATH as OPEN_PATH
+from tests.service.test_parts import MOTION, SLIDER
+from tests.service.test_parts_of_barrels import BARREL
+from tests.service.test_parts_of_cams import PROBLEMS as DRIVES
+from tests.service.test_parts_of_gears import BEVELS, PAIR, SET, WORM
+from tests.service.test_sixbar_jobs import TASK as SIXBAR_MOTION
+from tests.service.test_sixbar_paths import TASK as SIXBAR_PATH
+
+Key = tuple[str, str]
+"""A kind of problem and a type of mechanism."""
+
+QUICK = {"kind": "quick_return", "time_ratio": 1.4, "max_designs": 1}
+TURNS = {"output": {"type": "rocker", "swing": 40.0}}
+SLIDES = {"output": {"type": "slider", "stroke": 40.0}}
+
+
+class Row(NamedTuple):
+    """A statement, which of its designs is made, and what is asked of its parts."""
+
+    statement: dict[str, Any]
+    number: int = 0
+    query: dict[str, Any] = {}
+
+
+def _sixbar(statement: dict[str, Any], mechanism: str, number: int = 0) -> Row:
+    return Row({**statement, "mechanisms": [mechanism], "max_designs": number + 1}, number)
+
+
+def _quick(mechanism: str, scale: float = 1.0, **more: float) -> Row:
+    return Row({**QUICK, "mechanism": mechanism, **more}, 0, {"scale": scale})
+
+
+def _example(kind: str, mechanism: str) -> Row:
+    """The first example of a kind whose answer begins with the type of mechanism."""
+    from synthesis.registry import examples
+
+    found = {"rotor": "rotor", "skeleton": "linkage"}
+    return Row(next(one for one in examples(kind) if one.get("object", "linkage") == found.get(mechanism, "linkage")))
+
+
+MADE: dict[Key, Row] = {
+    ("motion", "fourbar"): Row(MOTION),
+    ("motion", "slider_crank"): Row(SLIDER),
+    ("motion", "inverted_slider_crank"): Row({**THREE, "output_side": {"dyad": "RP"}, "max_designs": 1}),
+    ("motion", "watt_1"): _sixbar(SIXBAR_MOTION, "watt_1"),
+    ("motion", "watt_2"): Row({**MOTION, "driver_dyad": True}),
+    ("motion", "stephenson_1"): _sixbar(SIXBAR_MOTION, "stephenson_1"),
+    ("motion", "stephenson_3"): Row({**MOTION, "driver_dyad": {"link": "coupler"}}),
+    ("path", "fourbar"): Row({"kind": "path", "points": SIXBAR_PATH["points"][:5], "max_designs": 1}),
+    ("path", "slider_crank"): Row(
+        {"kind": "path", "points": SIXBAR_PATH["points"], "mechanism": "slider_crank", "max_designs": 1}
+    ),
+    ("path", "geared_fivebar"): Row(
+        {
+            "kind": "path", "mechanism": "geared_fivebar", "gear_ratio": -1.0, "method": "least_squares",
+            "closed": True, "max_designs": 1,
+            "points": [{"x": x, "y": y} for x, y in (
+                (32.0, 6.0), (29.0, 13.0), (22.0, 19.0), (13.0, 22.0), (5.0, 21.0), (1.0, 16.0), (3.0, 10.0),
+                (10.0, 5.0), (20.0, 3.0), (27.0, 3.0),
+            )],
+        }
+    ),
+    ("path", "watt_1"): _sixbar(SIXBAR_PATH, "watt_1"),
+    ("path", "stephenson_1"): _sixbar(OPEN_PATH, "stephenson_1"),
+    ("path", "stephenson_3"): _sixbar(SIXBAR_PATH, "stephenson_3"),
+    ("quick_return", "fourbar"): _quick("fourbar", swing=60.0, scale=2.5),
+    ("quick_return", "slider_crank"): _quick("offset_slider_crank", stroke=100.0),
+    ("quick_return", "crank_shaper"): _quick("crank_shaper", stroke=100.0),
+    ("quick_return", "drag_link_rocker"): _quick("drag_link_rocker", swing=60.0, scale=7.0),
+    ("quick_return", "drag_link_slider"): _quick("drag_link_slider", stroke=100.0),
+    ("straight_line", "fourbar"): Row({**LINE, "max_designs": 1}),
+    ("straight_line", "peaucellier"): Row({**LINE, "mechanism": "peaucellier"}),
+    ("straight_line", "hart"): Row({**LINE, "mechanism": "hart", "crank_range": 60.0}),
+    ("straight_line", "scott_russell"): Row({**LINE, "mechanism": "scott_russell", "crank_range": 60.0}),
+    ("steering", "fourbar"): Row({**STEERING, "mechanism": "ackermann", "max_designs": 1}),
+    ("steering", "davis"): Row({**STEERING, "mechanism": "davis"}),
+    ("dwell", "dwell_rocker"): Row({**DWELL, "max_designs": 1}),
+    ("dwell", "dwell_slider"): Row({**DWELL, **SLIDES, "max_designs": 1}),
+    ("dwell", "dwell_slot"): Row({**DWELL, "mechanism": "straight_slot"}),
+    ("dwell", "dwell_watt_rocker"): Row({**PLACED_DWELL, **TURNS}),
+    ("dwell", "dwell_watt_slider"): Row({**PLACED_DWELL, **SLIDES, "max_designs": 6}, 5),
+    ("parallel_motion", "watt_1"): _example("parallel_motion", "watt_1")._replace(number=2),
+    ("gear_train", "gear_train"): Row(PAIR),
+    ("planetary_train", "planetary_train"): Row({**SET, "fixed": "ring"}),
+    ("train_series", "train_series"): Row(
+        {"kind": "train_series", "ratio": "6", "units": [{"type": "gear_train", "max_stages": 1}] * 2, "max_designs": 1}
+    ),
+    ("layshaft_gearbox", "layshaft_gearbox"): _example("layshaft_gearbox", "layshaft_gearbox"),
+    ("function", "fourbar"): _example("function", "fourbar"),
+    ("function", "slider_crank"): Row(
+        {
+            "kind": "function", "mechanism": "slider_crank", "function": {"name": "logarithm", "x": [1.0, 10.0]},
+            "input_range": 80.0, "output_range": 50.0, "precision_points": 4, "max_designs": 1,
+        }
+    ),
+    ("function", "watt_2"): _sixbar(FUNCTION, "watt_2"),
+    ("function", "stephenson_2"): _sixbar(FUNCTION, "stephenson_2"),
+    ("function", "stephenson_3"): _sixbar(FUNCTION, "stephenson_3"),
+    ("cam", "cam"): Row(DRIVES["roller"]),
+    ("cam", "barrel_cam"): Row(BARREL),
+    ("balancing", "skeleton"): _example("balancing", "skeleton"),
+    ("spring_balancing", "skeleton"): _example("spring_balancing", "skeleton"),
+    ("indexing", "geneva_external"): Row(DRIVES["external"]),
+    ("indexing", "geneva_internal"): Row(DRIVES["internal"]),
+    ("indexing", "ratchet"): Row(DRIVES["ratchet"]),
+}  # fmt: skip
+"""One design of each."""
+
+STAGES: dict[str, Row] = {"bevel": Row(BEVELS), "worm": Row(WORM)}
+"""Trains whose shafts are not parallel, which have the type of all trains."""
+
+REFUSED: dict[Key, tuple[Row, str]] = {
+    # Its crank goes round the pivot of the lever, whose coupler passes over both shafts.
+    ("quick_return", "whitworth"): (_quick("whitworth", stroke=100.0), "the mechanism cannot be built in planes"),
+    ("gearbox", "gearbox"): (_example("gearbox", "gearbox"), "its gears are shifted along their shafts"),
+    ("indexing", "geneva_spherical"): (
+        Row({"kind": "indexing", "drive": "geneva_spherical", "stations": 4, "roller_diameter": 10.0,
+             "sphere_radius": 50.0, "speed_rpm": 100.0, "load_inertia": 0.01}),
+        "a hemisphere and its cap are cut from solids",
+    ),
+    ("balancing", "rotor"): (_example("balancing", "rotor"), "no parts of this type of mechanism"),
+    ("flywheel", "flywheel"): (_example("flywheel", "flywheel"), "no parts of this type of mechanism"),
+    ("engine", "engine"): (_example("engine", "engine"), "no parts of this type of mechanism"),
+}  # fmt: skip
+"""Why there are none of the others, in words of the answer."""
+
+NEVER: tuple[Key, ...] = (
+    ("motion", "geared_fivebar"),
+    ("motion", "stephenson_2"),
+    ("path", "inverted_slider_crank"),
+    ("path", "watt_2"),
+    ("path", "stephenson_2"),
+    ("function", "watt_1"),
+    ("function", "stephenson_1"),
+)
+"""What the schema of an answer has, whose model several kinds share, and what the kind takes no statement for."""

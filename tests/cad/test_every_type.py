@@ -1,0 +1,166 @@
+"""One design of every kind of problem and type of mechanism: its files as others read them, and its parts in motion.
+
+The list is held against the registry, so that a type that comes to be has its row, or a reason why it has no parts.
+"""
+
+from __future__ import annotations
+
+import io
+import tempfile
+import zipfile
+from functools import cache
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import ezdxf
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from service.parts import cad
+from service.parts.linkage_motion import LinkageMotion
+from service.parts.made import NotMade, has_parts, made
+from service.parts.model import Assembly
+from service.parts.overlaps import overlaps
+from service.parts.package import package
+from service.parts.shapes import Disc
+from service.parts.sizes import PartsQuery
+from synthesis.dispatch import solve
+from synthesis.registry import KINDS, parse_problem
+from tests.cad.every_type import MADE, NEVER, REFUSED, Row
+from tests.cad.readers import assert_valid_3mf, assert_valid_glb
+from tests.cad.room import shared_room
+
+pytestmark = [pytest.mark.cad, pytest.mark.timeout(300)]
+
+ROWS = [pytest.param(key, id="-".join(key)) for key in MADE]
+ONE_OF_EACH_TYPE = {kind: key for key in reversed(MADE) for kind in (key[1],)}
+"""Of a type that several kinds answer with, the first: its solids are those of the others in other sizes."""
+
+SLOW = ("gear", "cam")
+"""Sorts of parts whose surfaces the kernel takes seconds to intersect: they are tried at one input, others at three."""
+
+
+def solved(row: Row) -> tuple[Any, Any]:
+    problem = parse_problem(row.statement)
+    return problem, solve(problem, lambda _fraction, _message: None).designs[row.number]
+
+
+@cache
+def designed(key: tuple[str, str]) -> tuple[Any, Any]:
+    problem, design = solved(MADE[key])
+    assert (problem.kind, design.mechanism.type) == key
+    return problem, design
+
+
+@cache
+def assembly(key: tuple[str, str]) -> Assembly:
+    """As it is printed: every part is then written as STL and 3MF, beside STEP and DXF."""
+    problem, design = designed(key)
+    return made(design, problem, PartsQuery(process="print", **MADE[key].query))
+
+
+@cache
+def solids(key: tuple[str, str]) -> list[Any]:
+    return [cad.solid(part) for part in assembly(key).parts]
+
+
+def test_every_type_of_the_registry_has_its_row() -> None:
+    known = {(name, mechanism) for name, kind in KINDS.items() for mechanism in kind.mechanisms}
+    listed = [*MADE, *REFUSED, *NEVER]
+    assert len(listed) == len(set(listed))
+    assert set(listed) == known
+
+
+@pytest.mark.parametrize(("kind", "mechanism"), NEVER)
+def test_what_a_kind_never_answers_with_cannot_be_asked_of_it(kind: str, mechanism: str) -> None:
+    row = next(row for (name, _), row in MADE.items() if name == kind and "mechanisms" in row.statement)
+    with pytest.raises(ValidationError, match="mechanisms"):
+        parse_problem({**row.statement, "mechanisms": [mechanism]})
+
+
+@pytest.mark.parametrize("key", [pytest.param(key, id="-".join(key)) for key in REFUSED])
+def test_what_has_no_parts_says_why(key: tuple[str, str]) -> None:
+    row, reason = REFUSED[key]
+    problem, design = solved(row)
+    assert design.mechanism.type == key[1]
+    with pytest.raises(NotMade, match=reason):
+        made(design, problem, PartsQuery())
+    # A type without a maker is none that the service has parts of; one with a reason is, and says it.
+    assert has_parts(design.mechanism.model_dump()) == (not reason.startswith("no parts"))
+
+
+@pytest.mark.parametrize("key", ROWS)
+def test_no_two_parts_meet_at_72_inputs(key: tuple[str, str]) -> None:
+    assert overlaps(assembly(key), 72) == []
+
+
+@pytest.mark.parametrize("key", ROWS)
+def test_solids_are_valid_and_every_file_is_read_by_another_library(key: tuple[str, str]) -> None:
+    import trimesh
+    from build123d import import_step
+
+    whole = assembly(key)
+    for part, solid in zip(whole.parts, solids(key), strict=True):
+        assert solid.is_valid
+        assert solid.volume > 0.0
+        assert solid.volume == pytest.approx(part.volume, rel=1e-3)
+    with zipfile.ZipFile(io.BytesIO(package(whole, "print", "A", whole.motion.reference))) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    by_folder = {name.partition("/")[0] for name in files}
+    assert by_folder >= {"dxf", "stl", "3mf", "assembly.step", "assembly.svg", "isometric.svg", "bom.csv"}
+    for name, content in files.items():
+        if name.startswith("stl/"):
+            mesh = trimesh.load_mesh(io.BytesIO(content), file_type="stl")
+            assert mesh.is_watertight, name
+            assert mesh.volume > 0.0, name
+        elif name.startswith("3mf/"):
+            assert_valid_3mf(content)
+        elif name.startswith("dxf/"):
+            document = ezdxf.read(io.StringIO(content.decode()))
+            assert not document.audit().has_errors, name
+            assert len(document.modelspace()) > 0, name
+    assert_valid_glb(cad.glb(cad.placed(whole, solids(key), whole.motion.reference), "assembly"))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "assembly.step"
+        path.write_bytes(files["assembly.step"])
+        read = {child.label: child for child in import_step(path).children}
+    assert read.keys() == {part.name for part in whole.parts}
+    placed = cad.placed(whole, solids(key), whole.motion.reference)
+    for part, solid in zip(whole.parts, placed, strict=True):
+        assert read[part.name].is_valid
+        (a, b), (c, d) = ((box.min, box.max) for box in (one.bounding_box() for one in (solid, read[part.name])))
+        assert max(abs(p - q) for p, q in zip((*a, *b), (*c, *d), strict=True)) < 1e-4, part.name
+    if isinstance(whole.motion, LinkageMotion):
+        assert holes_are_as_far_apart_as_the_joints(whole, read) > 0
+
+
+def holes_are_as_far_apart_as_the_joints(whole: Assembly, read: dict[str, Any]) -> int:
+    """In every link of the file; says how many distances there were."""
+    from build123d import GeomType
+
+    assert isinstance(whole.motion, LinkageMotion)
+    mechanism, found = whole.motion.mechanism, 0
+    for part in whole.parts:
+        if part.sort not in ("link", "base"):
+            continue
+        bores = [face for face in read[part.name].faces() if face.geom_type == GeomType.CYLINDER]
+        axes = [complex(at.X, at.Y) for at in (face.axis_of_rotation.position for face in bores)]
+        held = [hole.centre for hole in part.region.holes if isinstance(hole, Disc)]
+        joints = [complex(mechanism.joints[name]) for name in mechanism.links.get(part.carrier.link, ())]
+        for a, b in combinations([z for z in joints if any(abs(z - w) < 1e-9 * whole.size for w in held)], 2):
+            one, other = (min(axes, key=lambda axis, z=z: abs(axis - z)) for z in (a, b))  # type: ignore[misc]
+            assert abs(one - other) == pytest.approx(abs(a - b), rel=1e-6)
+            found += 1
+    return found
+
+
+@pytest.mark.parametrize("key", [pytest.param(key, id=key[1]) for key in ONE_OF_EACH_TYPE.values()])
+def test_the_kernel_sees_no_solid_in_another(key: tuple[str, str]) -> None:
+    whole = assembly(key)
+    count = 1 if any(part.sort in SLOW for part in whole.parts) else 3
+    inputs = whole.motion.inputs(72)[[5, 29, 53][:count]]
+    tried, found = shared_room(whole, solids(key), np.asarray(inputs))
+    assert tried > 0
+    assert sum(found.values()) < 1e-6 * min(solid.volume for solid in solids(key)), found
