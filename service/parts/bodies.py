@@ -1,13 +1,14 @@
-"""What parts are made of: prisms, bodies of revolution, twisted prisms, cones and meshes, each upright along its axis.
+"""What parts are made of, each upright along its axis: prisms, bodies of revolution, twisted prisms, cones and meshes.
+
+Bodies of revolution from which something is cut are :mod:`service.parts.carved`.
 
 Every body says what it encloses, from which height to which it reaches, its *shadow* (the region that it covers, seen
 along the axis), and what of the plane it takes between two heights. The last is what two parts are compared by:
 
 * of a prism its region, which is exact;
 * of a body of revolution the ring of its widest and its narrowest radius there, which is never too little;
-* of a twisted prism, a cone and a mesh the section half-way between, which is exact at that height. The heights are
-  taken in :data:`SLICES` steps, and teeth that are twisted against each other look at one height as they do at another
-  a little later.
+* of all others the section half-way between, which is exact at that height. The heights are taken in :data:`SLICES`
+  steps, and teeth that are twisted against each other look at one height as they do at another a little later.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from service.parts.carved import Carved
 from service.parts.shapes import Disc, Loop, Outline, Region, area, hull, ring, ring_of, turned
 
 Real = NDArray[np.float64]
@@ -295,7 +297,7 @@ class Mesh:
         return tuple(_region_of(face) for face in faces)
 
 
-Body = Prism | Turned | Twisted | Tapered | Mesh
+Body = Prism | Turned | Twisted | Tapered | Carved | Mesh
 
 
 def slices(first: Body, second: Body, rounding: float) -> list[tuple[float, float]]:

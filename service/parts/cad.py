@@ -3,7 +3,8 @@
 This is the only module that needs the extra ``cad``; :mod:`service.parts.extra` says whether it is there. STL and 3MF
 have one triangulation, which Open CASCADE keeps with the solid.
 Arcs stay arcs, holes cylinders and curves B-splines; the mesh formats have them as polygons no farther than
-:data:`DEFLECTION` off. A twisted prism is swept along its axis, with a helix beside it; a mesh stays one of triangles.
+:data:`DEFLECTION` off. A twisted prism is swept along its axis, with a helix beside it; a carved body is cut by
+the kernel; a mesh stays one of triangles.
 """
 
 from __future__ import annotations
@@ -23,9 +24,10 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from service.parts.bodies import Body, Mesh, Prism, Tapered, Turned, Twisted
+from service.parts.carved import Beside, Bored, Carved, Cut, Slotted
 from service.parts.curves import Curve
 from service.parts.model import Assembly, Frame, Part
-from service.parts.shapes import Disc, Outline, Region, larger, middle_of
+from service.parts.shapes import Disc, Loop, Outline, Region, larger, middle_of
 
 DEFLECTION, TURN = 0.02, 0.1
 """Greatest distance of a mesh from the part, millimetres, and angle between neighbouring facets, radians."""
@@ -225,6 +227,8 @@ def _piece(body: Body) -> Any:
         return b3d.Solid.revolve(b3d.Face(b3d.Wire.make_polygon(corners)), 360.0, axis)
     if isinstance(body, Tapered):
         return _tapered(body)
+    if isinstance(body, Carved):
+        return _carved(body)
     if isinstance(body, Twisted):
         along = (0.0, 0.0, body.high - body.low)
         middle = (body.centre.real, body.centre.imag, 0.0)
@@ -253,6 +257,39 @@ def _tapered(body: Tapered) -> Any:
             b3d.extrude(_face(Region(hole)), amount=body.high - body.low, dir=(0, 0, 1)).moved(_up(body.low))
         )
     return whole
+
+
+def _carved(body: Carved) -> Any:
+    """The half section, turned about its axis, and all tools of the cuts taken from it at once."""
+    import build123d as b3d
+
+    upright = b3d.Location(b3d.Plane((0.0, 0.0, 0.0), x_dir=(1.0, 0.0, 0.0), z_dir=(0.0, -1.0, 0.0)))
+    whole = b3d.Solid.revolve(_face(Region(body.profile)).moved(upright), 360.0, b3d.Axis.Z)
+    (made,) = whole.cut(*(_tool(cut, body.far) for cut in body.cuts)).solids()
+    return made
+
+
+def _tool(cut: Cut, far: float) -> Any:
+    """What a cut takes away, up to a distance from the origin."""
+    import build123d as b3d
+
+    if isinstance(cut, Bored):
+        return b3d.extrude(_face(Region(cut.outline)), amount=far, dir=(0, 0, 1))
+    if isinstance(cut, Slotted):
+        across, _, along = cut.axes.tolist()
+        section: Outline = Disc(0j, cut.half)
+        if cut.open:
+            corners = complex(cut.half, -far), complex(cut.half), complex(-cut.half), complex(-cut.half, -far)
+            section = Loop(corners, (0.0, 1.0, 0.0, 0.0))
+        place = b3d.Location(b3d.Plane((0.0, 0.0, 0.0), x_dir=tuple(across), z_dir=tuple(along)))
+        return b3d.extrude(_face(Region(section)), amount=far, dir=(0, 0, 1)).moved(place)
+    c, s = float(np.cos(cut.azimuth)), float(np.sin(cut.azimuth))
+    if isinstance(cut, Beside):
+        box = (-far + 1j * far, -far - 1j * far, cut.distance - 1j * far, cut.distance + 1j * far)
+        outline = Loop(tuple(z * complex(c, s) for z in box), (0.0,) * 4)
+        return b3d.extrude(_face(Region(outline)), amount=far, dir=(0, 0, 1))
+    plane = b3d.Plane((0.0, 0.0, 0.0), x_dir=(0.0, 0.0, 1.0), z_dir=(c, s, 0.0))
+    return b3d.Solid.make_cone(0.0, far * float(np.tan(cut.angle)), far, plane)
 
 
 def _sewn(body: Mesh) -> Any:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from service.parts.bodies import Body, Tapered, Turned
 from service.parts.bom import HEADER, row
+from service.parts.carved import Carved
 from service.parts.items import Item
 from service.parts.model import FLAT, Assembly, Frame, Part
 from service.parts.shapes import extent, ring_of
@@ -142,13 +143,19 @@ def _shadow(body: Body, frame: Frame, view: View) -> shapely.Geometry:
     if abs(float(normal @ view.toward)) < SQUARE:
         across = np.cross(view.toward, normal)
         direction = complex(across @ frame.axes[:, 0], across @ frame.axes[:, 1])
-        if isinstance(body, Turned | Tapered):
-            middle = (body.centre * direction.conjugate()).real
+        if isinstance(body, Turned | Tapered | Carved):
+            around = (
+                ring_of(body.profile, beyond=True)
+                if isinstance(body, Carved)
+                else np.array(body.profile, np.complex128)
+            )
+            middle = 0.0 if isinstance(body, Carved) else (body.centre * direction.conjugate()).real
             halves = [
-                shapely.Polygon(_placed(np.array([direction * (middle + side * z.real) for z in body.profile]),
-                                        np.array([z.imag for z in body.profile]), frame, view))
+                shapely.Polygon(
+                    _placed(np.asarray(direction * (middle + side * around.real)), around.imag, frame, view)
+                )
                 for side in (1.0, -1.0)
-            ]  # fmt: skip
+            ]
             return shapely.union_all(halves)
         low, high = extent(region.outer, direction)
         ends = np.array([low, high, high, low]) * direction

@@ -18,6 +18,7 @@ import shapely
 from numpy.typing import NDArray
 
 from service.parts.bodies import Body, Mesh, Prism, Tapered, Turned, Twisted
+from service.parts.carved import Carved
 from service.parts.model import Assembly, Carrier, Part
 from service.parts.shapes import Outline, Region, ring_of
 
@@ -35,6 +36,9 @@ DEEP = 4e-3
 
 LEVELS = 160
 """Sections of a mesh, between which it is taken as both of its neighbours have it."""
+
+PLACES = 6
+"""Decimal places within which points are one, millimetres."""
 
 SAG = 2e-3
 """How far polygons are from arcs, millimetres."""
@@ -70,6 +74,9 @@ class Surface:
             return self._turned(body)
         if isinstance(body, Tapered):
             return self._tapered(body)
+        if isinstance(body, Carved):
+            # Its triangles are about a step wide, and have most corners in common.
+            return np.unique(np.round(body.facets.reshape(-1, 3), PLACES), axis=0)
         if isinstance(body, Mesh):
             return _spread(body.corners[body.triangles], self._step)
         assert isinstance(body, Prism | Twisted)
@@ -115,6 +122,8 @@ class Surface:
     def within(self, points: Real) -> Truth:
         """Which of the points, shape (n, 3), lie inside."""
         body = self._body
+        if isinstance(body, Carved):
+            return body.holds(points, DEEP)
         deep = (points[:, 2] > body.low + DEEP) & (points[:, 2] < body.high - DEEP)
         found = np.zeros(len(points), np.bool_)
         if not deep.any():

@@ -37,7 +37,7 @@ def cutting(part: Part, title: str) -> str:
 
 
 def _development(unrolled: Development, title: str) -> str:
-    layers = {name: (COLOURS[n], "CONTINUOUS") for n, (name, _) in enumerate(unrolled.lines)}
+    layers = {name: (COLOURS[n], "CONTINUOUS") for n, name in enumerate(dict(unrolled.lines))}
     document = dxf.new_drawing(title, "mm", LAYERS | layers)
     space = document.modelspace()
     box = [(0.0, 0.0), (unrolled.width, 0.0), (unrolled.width, unrolled.height), (0.0, unrolled.height)]

@@ -12,6 +12,7 @@ import shapely
 from numpy.typing import NDArray
 
 from service.parts.bodies import Body, Mesh, Prism, Tapered, Turned, Twisted
+from service.parts.carved import Carved
 from service.parts.shapes import Outline, Region, ring_of
 
 Real = NDArray[np.float64]
@@ -28,6 +29,8 @@ def facets(body: Body, sag: float) -> Real:
     """Triangles of a body's surface, counter-clockwise as seen from outside, shape (m, 3, 3)."""
     if isinstance(body, Tapered):
         body = body.mesh
+    if isinstance(body, Carved):
+        return body.facets
     if isinstance(body, Mesh):
         return body.corners[body.triangles]
     if isinstance(body, Turned):

@@ -66,6 +66,12 @@ def _genevas() -> Make:
     return geneva_parts
 
 
+def _sphericals() -> Make:
+    from service.parts.spherical import spherical_parts
+
+    return spherical_parts
+
+
 def _ratchets() -> Make:
     from service.parts.ratchets import ratchet_parts
 
@@ -103,6 +109,7 @@ MAKERS: dict[str, Maker] = {
     "barrel_cam": Maker(_barrels, ONE_CYCLE),
     "geneva_external": Maker(_genevas, ONE_CYCLE),
     "geneva_internal": Maker(_genevas, ONE_CYCLE),
+    "geneva_spherical": Maker(_sphericals, ONE_CYCLE),
     "ratchet": Maker(_ratchets, ONE_CYCLE),
 }
 """By type of mechanism."""
@@ -110,8 +117,6 @@ MAKERS: dict[str, Maker] = {
 
 NOT_BUILT = {
     "gearbox": "its gears are shifted along their shafts so that one pair of a stage is in mesh at a time",
-    "geneva_spherical": "a hemisphere and its cap are cut from solids along crossing axes, not from plates; parts are "
-    "made of Geneva drives in the plane",
 }
 """Types of mechanism of kinds that have parts otherwise, and why these have none."""
 

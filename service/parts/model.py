@@ -238,7 +238,11 @@ class Assembly:
         """The planes of parts by their names, of those that do not lie in that of the assembly."""
         state = self.motion.at(np.array([self.motion.reference]))
         placed = {part.name: self.motion.placed(part.carrier, state).frame for part in self.parts}
-        return {name: frame for name, frame in placed.items() if frame is not None}
+        return {
+            name: Frame(frame.origin.reshape(-1, 3)[0], frame.axes.reshape(-1, 3, 3)[0])
+            for name, frame in placed.items()
+            if frame is not None
+        }
 
     @property
     def parallel(self) -> bool:

@@ -88,7 +88,8 @@ def zipped(files: dict[str, bytes]) -> bytes:
 
 def _solids(assembly: Assembly, listed: list[Item], process: Process) -> dict[str, bytes]:
     solids = {part.name: cad.solid(part) for part in assembly.parts}
-    files = {"assembly.step": cad.step([*solids.values()], "assembly")}
+    standing = cad.placed(assembly, [*solids.values()], assembly.motion.reference)
+    files = {"assembly.step": cad.step(standing, "assembly")}
     lying = {item.name: cad.lying(solids[item.part.name], item.part) for item in listed}
     if process == "mill":
         files |= {

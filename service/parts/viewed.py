@@ -24,6 +24,7 @@ from service.parts.answer import (
     ViewedPart,
 )
 from service.parts.bodies import Body, Mesh, Prism, Tapered, Turned, Twisted
+from service.parts.carved import Carved
 from service.parts.curves import Curve
 from service.parts.exploded import lifts
 from service.parts.extra import installed
@@ -31,6 +32,9 @@ from service.parts.items import items
 from service.parts.model import FLAT, Assembly, Carrier, Frame, Motion, Part
 from service.parts.shapes import Disc, Outline
 from service.parts.sizes import NotMade, PartFile
+
+ROUNDED = 6
+"""Decimal places within which corners of triangles that are shown are one, millimetres."""
 
 FINE = 2880
 """Inputs at least between which an angle is followed, so that it is known how often something has turned."""
@@ -176,6 +180,9 @@ def _part(part: Part, carrier: int, item: str, lift: float) -> ViewedPart:
 def _shape(body: Body) -> Shape:
     if isinstance(body, Turned):
         return TurnedShape(centre=_pair(body.centre), profile=[_pair(corner) for corner in body.profile])
+    if isinstance(body, Carved):
+        found, numbers = np.unique(np.round(body.facets.reshape(-1, 3), ROUNDED), axis=0, return_inverse=True)
+        return MeshShape(corners=found.tolist(), triangles=numbers.reshape(-1, 3).tolist())
     if isinstance(body, Tapered):
         body = body.mesh
     if isinstance(body, Mesh):

@@ -1,7 +1,9 @@
-"""A statement for every kind of problem and every type of mechanism that it answers with, and why some have no parts."""
+"""A statement for every kind of problem and every type of mechanism of its answers, and why some have no parts."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from tests.service.stated.linkages import DWELL, LINE, STEERING
@@ -13,6 +15,7 @@ from tests.service.test_parts import MOTION, SLIDER
 from tests.service.test_parts_of_barrels import BARREL
 from tests.service.test_parts_of_cams import PROBLEMS as DRIVES
 from tests.service.test_parts_of_gears import BEVELS, PAIR, SET, WORM
+from tests.service.test_parts_of_sphericals import SPHERICAL
 from tests.service.test_sixbar_jobs import TASK as SIXBAR_MOTION
 from tests.service.test_sixbar_paths import TASK as SIXBAR_PATH
 
@@ -29,7 +32,7 @@ class Row(NamedTuple):
 
     statement: dict[str, Any]
     number: int = 0
-    query: dict[str, Any] = {}
+    query: Mapping[str, Any] = MappingProxyType({})
 
 
 def _sixbar(statement: dict[str, Any], mechanism: str, number: int = 0) -> Row:
@@ -71,7 +74,7 @@ MADE: dict[Key, Row] = {
         }
     ),
     ("path", "watt_1"): _sixbar(SIXBAR_PATH, "watt_1"),
-    ("path", "stephenson_1"): _sixbar(OPEN_PATH, "stephenson_1"),
+    ("path", "stephenson_1"): _sixbar(OPEN_PATH, "stephenson_1")._replace(query={"scale": 2.0}),
     ("path", "stephenson_3"): _sixbar(SIXBAR_PATH, "stephenson_3"),
     ("quick_return", "fourbar"): _quick("fourbar", swing=60.0, scale=2.5),
     ("quick_return", "slider_crank"): _quick("offset_slider_crank", stroke=100.0),
@@ -112,6 +115,7 @@ MADE: dict[Key, Row] = {
     ("spring_balancing", "skeleton"): _example("spring_balancing", "skeleton"),
     ("indexing", "geneva_external"): Row(DRIVES["external"]),
     ("indexing", "geneva_internal"): Row(DRIVES["internal"]),
+    ("indexing", "geneva_spherical"): Row(SPHERICAL),
     ("indexing", "ratchet"): Row(DRIVES["ratchet"]),
 }  # fmt: skip
 """One design of each."""
@@ -123,11 +127,6 @@ REFUSED: dict[Key, tuple[Row, str]] = {
     # Its crank goes round the pivot of the lever, whose coupler passes over both shafts.
     ("quick_return", "whitworth"): (_quick("whitworth", stroke=100.0), "the mechanism cannot be built in planes"),
     ("gearbox", "gearbox"): (_example("gearbox", "gearbox"), "its gears are shifted along their shafts"),
-    ("indexing", "geneva_spherical"): (
-        Row({"kind": "indexing", "drive": "geneva_spherical", "stations": 4, "roller_diameter": 10.0,
-             "sphere_radius": 50.0, "speed_rpm": 100.0, "load_inertia": 0.01}),
-        "a hemisphere and its cap are cut from solids",
-    ),
     ("balancing", "rotor"): (_example("balancing", "rotor"), "no parts of this type of mechanism"),
     ("flywheel", "flywheel"): (_example("flywheel", "flywheel"), "no parts of this type of mechanism"),
     ("engine", "engine"): (_example("engine", "engine"), "no parts of this type of mechanism"),

@@ -150,7 +150,7 @@ def holes_are_as_far_apart_as_the_joints(whole: Assembly, read: dict[str, Any]) 
         held = [hole.centre for hole in part.region.holes if isinstance(hole, Disc)]
         joints = [complex(mechanism.joints[name]) for name in mechanism.links.get(part.carrier.link, ())]
         for a, b in combinations([z for z in joints if any(abs(z - w) < 1e-9 * whole.size for w in held)], 2):
-            one, other = (min(axes, key=lambda axis, z=z: abs(axis - z)) for z in (a, b))  # type: ignore[misc]
+            one, other = (min(axes, key=lambda axis, z=z: abs(axis - z)) for z in (a, b))
             assert abs(one - other) == pytest.approx(abs(a - b), rel=1e-6)
             found += 1
     return found

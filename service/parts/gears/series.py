@@ -29,9 +29,15 @@ def series_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     """
     units = design.mechanism.units
     if not all(isinstance(unit, GearTrainMechanism) for unit in units):
-        raise NotMade("Parts are made of series of ordinary trains; this one has a planetary train.")
+        raise NotMade(
+            "Parts are made of series of ordinary trains; this one has a planetary train, whose shafts end where its "
+            "carrier and its ring stand. Each of its trains has parts where it is asked for by itself."
+        )
     if any(unit.reverted for unit in problem.units):
-        raise NotMade("Parts are made of series of trains that are not reverted; a reverted train is made by itself.")
+        raise NotMade(
+            "Parts are made of series of trains that are not reverted: stages in a row leave no two shafts in line. A "
+            "reverted train has parts where it is asked for by itself."
+        )
     if len({unit.pressure_angle for unit in units}) > 1:
         raise NotMade("Parts are made of trains of one pressure angle.")
     stages = [stage for unit in units for stage in driven_train(unit).stages]

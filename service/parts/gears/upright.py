@@ -60,6 +60,8 @@ class Axle:
         Over the input's.
     stub_below : bool
         Whether its lower end is that which stands out.
+    sizes : Sizes, optional
+        Of the shaft and what stands on it, where it is not as thick as all others.
     """
 
     name: str
@@ -69,6 +71,7 @@ class Axle:
     wheel: int
     speed: float
     stub_below: bool
+    sizes: Sizes | None = None
 
     @property
     def carrier(self) -> Carrier:
@@ -129,8 +132,11 @@ class Upright:
             found += self._on(axle)
         return found
 
+    def _of(self, axle: Axle) -> Sizes:
+        return axle.sizes or self.sizes
+
     def _bearing(self, axle: Axle, number: int, level: Level) -> Part:
-        sizes = self.sizes
+        sizes = self._of(axle)
         half, wide = 0.5 * sizes.width, self._foot(axle)
         tab = TAB * wide
         foot = 1j * (self.below - axle.frame.origin[2])
@@ -162,7 +168,7 @@ class Upright:
 
     def _foot(self, axle: Axle) -> float:
         """Half the width of a bearing plate where it stands: more than at its shaft, where that is high above."""
-        return max(0.5 * self.sizes.width, SPREAD * (float(axle.frame.origin[2]) - self.below))
+        return max(0.5 * self._of(axle).width, SPREAD * (float(axle.frame.origin[2]) - self.below))
 
     def _base(self) -> Part:
         sizes = self.sizes
@@ -206,7 +212,7 @@ class Upright:
         return Loop(around if turns > 0.0 else around[::-1], (0.0,) * 4)
 
     def _on(self, axle: Axle) -> list[Part]:
-        name, sizes, planes = plain(axle.name), self.sizes, (axle.plane, axle.plane)
+        name, sizes, planes = plain(axle.name), self._of(axle), (axle.plane, axle.plane)
         keyed, key = seat(axle.name, "1", axle.carrier, 0j, axle.levels[axle.wheel], axle.plane, sizes)
         parts = held_pin(
             name, axle.name, axle.carrier, 0j, (axle.levels[0].low, axle.levels[-1].high), planes, sizes,

@@ -1,0 +1,397 @@
+"""Bodies of revolution from which cylinders, slots, cones and half-spaces are cut, as a lathe and a mill leave them.
+
+A cut says how deep points lie in it, what of the plane it takes at a height, and of what surface its walls are. The
+body is then what lies deep in its half section and in no cut. Its sections are exact at their heights but for the
+polygons that stand for arcs; its surface is cut out of the surfaces of revolution and the walls, triangle by triangle.
+
+Directions are told by azimuth and elevation: the angle about the axis, and that above the plane at right angles to it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely import affinity
+
+from service.parts.shapes import Disc, Loop, Outline, Region, ring_of
+
+Real = NDArray[np.float64]
+Truth = NDArray[np.bool_]
+
+Depth = Callable[[Real], Real]
+"""How deep points, shape (..., 3), lie in something."""
+
+SAG = 5e-4
+"""How far polygons are from arcs, millimetres."""
+
+AROUND, ALONG = 144, 48
+"""Steps of triangles about the axis and along it, over the size of the body."""
+
+FINE, FINE_IN_HOLE = 60.0, 4.0
+"""Edges of triangles where a cut passes, as shares of the body's size and of the radius of a cut cylinder: one over."""
+
+FAR_SHARE = 0.1
+"""How far from a polygon's box, as a share of its size, the box stands for it."""
+
+HEIGHTS, GAUSS = 48, 6
+"""Parts in which sections are added up, and heights of each."""
+
+CURVE = 241
+"""Points of a section of a cone."""
+
+
+class Slotted(NamedTuple):
+    """A cylinder about a direction from the origin; where it is ``open``, all that is as wide below it too.
+
+    It is the way of a round cutter, whose axis points to the origin, from below up to the direction.
+    """
+
+    azimuth: float
+    elevation: float
+    half: float
+    open: bool
+
+    @property
+    def axes(self) -> Real:
+        """Across, upwards in the plane of the axis, and along, as rows."""
+        (c, s), (a, b) = _unit(self.azimuth), _unit(self.elevation)
+        return np.array([(-s, c, 0.0), (-b * c, -b * s, a), (a * c, a * s, b)])
+
+    def depth(self, points: Real) -> Real:
+        """How deep points, shape (..., 3), lie in it; negative outside."""
+        across, up, along = np.moveaxis(points @ self.axes.T, -1, 0)
+        away = np.hypot(across, np.maximum(up, 0.0) if self.open else up)
+        return np.asarray(np.minimum(self.half - away, along))
+
+    def section(self, height: float, far: float) -> shapely.Geometry:
+        """What it takes at a height above 0, up to a distance."""
+        slope = math.tan(self.elevation)
+        ellipse = shapely.Polygon(_pairs(ring_of(Disc(0j, self.half), beyond=False, sag=SAG)))
+        ellipse = affinity.scale(ellipse, 1.0 / math.sin(self.elevation), 1.0, origin=(0.0, 0.0))
+        found = affinity.translate(ellipse, height / slope)
+        if self.open:
+            found = shapely.union(found, shapely.box(height / slope, -self.half, far, self.half))
+        # Nothing lies behind the origin.
+        found = shapely.intersection(found, shapely.box(-height * slope, -far, 3.0 * far, far))
+        return affinity.rotate(found, self.azimuth, origin=(0.0, 0.0), use_radians=True)
+
+    def walls(self, far: float) -> list[Real]:
+        """Grids of its walls, shapes (n, m, 3)."""
+        turn = np.linspace(0.0, math.pi if self.open else 2.0 * math.pi, ALONG + 1)
+        lines = [np.column_stack([self.half * np.cos(turn), self.half * np.sin(turn)])]
+        if self.open:
+            down = -np.linspace(0.0, far, ALONG + 1)
+            lines += [np.column_stack([np.full_like(down, side * self.half), down]) for side in (-1.0, 1.0)]
+        out = np.linspace(0.0, far, ALONG + 1)
+        across, up, along = self.axes
+        return [line[:, None, :1] * across + line[:, None, 1:] * up + out[None, :, None] * along for line in lines]
+
+
+class Hollow(NamedTuple):
+    """A cone about a level direction, its apex at the origin."""
+
+    azimuth: float
+    angle: float
+
+    def depth(self, points: Real) -> Real:
+        """How deep points lie in it."""
+        c, s = _unit(self.azimuth)
+        along = points[..., 0] * c + points[..., 1] * s
+        across = np.hypot(points[..., 1] * c - points[..., 0] * s, points[..., 2])
+        return np.asarray(along * math.sin(self.angle) - across * math.cos(self.angle))
+
+    def section(self, height: float, far: float) -> shapely.Geometry:
+        """Beyond a hyperbola."""
+        y = np.linspace(-far, far, CURVE)
+        x = np.hypot(y, height) / math.tan(self.angle)
+        curve = np.column_stack([np.minimum(x, 2.0 * far), y])
+        found = shapely.Polygon([*curve, (3.0 * far, far), (3.0 * far, -far)])
+        return affinity.rotate(found, self.azimuth, origin=(0.0, 0.0), use_radians=True)
+
+    def walls(self, far: float) -> list[Real]:
+        """The cone."""
+        turn, out = np.linspace(0.0, 2.0 * math.pi, 2 * ALONG + 1)[:, None], np.linspace(0.0, far, ALONG + 1)
+        c, s = _unit(self.azimuth)
+        x, y = math.cos(self.angle) * out, math.sin(self.angle) * np.cos(turn) * out
+        z = math.sin(self.angle) * np.sin(turn) * out
+        return [np.stack([x * c - y * s, x * s + y * c, z], axis=-1)]
+
+
+class Beside(NamedTuple):
+    """All that does not lie so far from the axis in a direction."""
+
+    azimuth: float
+    distance: float
+
+    def depth(self, points: Real) -> Real:
+        """How deep points lie in it."""
+        c, s = _unit(self.azimuth)
+        return np.asarray(self.distance - points[..., 0] * c - points[..., 1] * s)
+
+    def section(self, height: float, far: float) -> shapely.Geometry:
+        """A half-plane."""
+        found = shapely.box(-2.0 * far, -2.0 * far, self.distance, 2.0 * far)
+        return affinity.rotate(found, self.azimuth, origin=(0.0, 0.0), use_radians=True)
+
+    def walls(self, far: float) -> list[Real]:
+        """The plane."""
+        c, s = _unit(self.azimuth)
+        y, z = np.linspace(-far, far, 2 * ALONG + 1)[:, None], np.linspace(0.0, far, ALONG + 1)
+        x, y, z = np.broadcast_arrays(self.distance, y, z)
+        return [np.stack([x * c - y * s, x * s + y * c, z], axis=-1)]
+
+
+class Bored(NamedTuple):
+    """A hole along the axis."""
+
+    outline: Outline
+
+    def depth(self, points: Real) -> Real:
+        """How deep points lie in it."""
+        return _inside(_polygon(self.outline), points[..., 0], points[..., 1])
+
+    def section(self, height: float, far: float) -> shapely.Geometry:
+        """Its outline."""
+        return _polygon(self.outline)
+
+    def walls(self, far: float) -> list[Real]:
+        """Its walls."""
+        line = ring_of(self.outline, beyond=False)
+        line = np.append(line, line[:1])[:, None]
+        x, y, z = np.broadcast_arrays(line.real, line.imag, np.linspace(0.0, far, ALONG + 1))
+        return [np.stack([x, y, z], axis=-1)]
+
+
+Cut = Slotted | Hollow | Beside | Bored
+
+
+@dataclass(frozen=True, eq=False)
+class Carved:
+    """A body of revolution about the axis of heights through the origin, above height 0, and what is cut from it.
+
+    Attributes
+    ----------
+    profile : Loop
+        Its half section, counter-clockwise, with arcs: radius + i · height.
+    cuts : tuple of Cut
+    """
+
+    profile: Loop
+    cuts: tuple[Cut, ...]
+
+    @cached_property
+    def half(self) -> shapely.Polygon:
+        """Its half section as a polygon."""
+        found = _polygon(self.profile)
+        shapely.prepare(found)
+        return found
+
+    @property
+    def low(self) -> float:
+        """Height of its lowest point."""
+        return float(self.half.bounds[1])
+
+    @property
+    def high(self) -> float:
+        """Height of its uppermost point."""
+        return float(self.half.bounds[3])
+
+    @property
+    def far(self) -> float:
+        """Farther than which nothing of it is from the origin, with some room."""
+        return 1.2 * math.hypot(self.half.bounds[2], self.half.bounds[3])
+
+    @cached_property
+    def region(self) -> Region:
+        """The shadow of its sections."""
+        heights = np.linspace(self.low, self.high, HEIGHTS + 2)[1:-1]
+        whole = shapely.union_all([self._section(height) for height in heights.tolist()])
+        faces = [face for face in shapely.get_parts(whole) if isinstance(face, shapely.Polygon)]
+        return _region(max(faces, key=lambda face: face.area))
+
+    @property
+    def volume(self) -> float:
+        """Sections added up between the corners of the half section by Gauss's rule, cubic millimetres."""
+        places, weights = np.polynomial.legendre.leggauss(GAUSS)
+        corners = [z.imag for z in self.profile.corners]
+        heights = np.unique(np.round([*corners, *np.linspace(self.low, self.high, HEIGHTS + 1)], 9)).tolist()
+        return math.fsum(
+            0.5 * (high - low) * weight * self._section(0.5 * (low + high) + 0.5 * (high - low) * place).area
+            for low, high in pairwise(heights)
+            for place, weight in zip(places.tolist(), weights.tolist(), strict=True)
+        )
+
+    def within(self, low: float, high: float) -> tuple[Region, ...]:
+        """Its section half-way between two heights."""
+        faces = shapely.get_parts(self._section(0.5 * (low + high)))
+        return tuple(_region(face) for face in faces if isinstance(face, shapely.Polygon))
+
+    def holds(self, points: Real, deep: float) -> Truth:
+        """Which of the points, shape (n, 3), lie in it deeper than rounding."""
+        radii = np.hypot(points[:, 0], points[:, 1])
+        found = np.asarray(shapely.contains_xy(self.half, radii, points[:, 2]))
+        for cut in self.cuts:
+            found[found] = cut.depth(points[found]) < -deep
+        # What is on the axis is inside too.
+        beside = np.flatnonzero(found & (radii > 2.0 * deep))
+        found[beside] = _inside(self.half, radii[beside], points[beside, 2]) > deep
+        return found
+
+    @cached_property
+    def facets(self) -> Real:
+        """Triangles of its surface, counter-clockwise as seen from outside, shape (m, 3, 3); some edges do not meet."""
+        found = []
+        for grid in self._turned():
+            triangles = self._facing(_triangles(grid), self._depth)
+            for cut in self.cuts:
+                triangles = _kept(triangles, _outside(cut), self._fine)
+            found.append(triangles)
+        for cut in self.cuts:
+            for grid in cut.walls(self.far):
+                triangles = self._facing(self._about(_triangles(grid)), _outside(cut))
+                for depth in (self._depth, *(_outside(other) for other in self.cuts if other is not cut)):
+                    triangles = _kept(triangles, depth, self._fine)
+                found.append(triangles)
+        return np.concatenate(found)
+
+    def _depth(self, points: Real) -> Real:
+        return _inside(self.half, np.hypot(points[..., 0], points[..., 1]), points[..., 2])
+
+    @property
+    def _fine(self) -> float:
+        """How long edges of triangles are at most where a cut passes: a share of body and of narrowest hole."""
+        return min([self.far / FINE, *(cut.half / FINE_IN_HOLE for cut in self.cuts if isinstance(cut, Slotted))])
+
+    def _about(self, triangles: Real) -> Real:
+        """Those that are as far from the origin as the body is."""
+        away = np.linalg.norm(triangles, axis=2)
+        least = shapely.distance(self.half, shapely.Point(0.0, 0.0))
+        return np.asarray(triangles[away.max(axis=1) > least])
+
+    def _facing(self, triangles: Real, depth: Depth) -> Real:
+        """Triangles turned so that they face where the depth falls."""
+        normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+        length = np.linalg.norm(normals, axis=1)
+        triangles, normals = triangles[length > 0.0], normals[length > 0.0] / length[length > 0.0, None]
+        middle, step = triangles.mean(axis=1), 1e-3 * self.far
+        rising = depth(middle + step * normals) > depth(middle - step * normals)
+        triangles[rising] = triangles[rising, ::-1]
+        return triangles
+
+    def _turned(self) -> list[Real]:
+        """Grids of the surfaces of revolution, one of each edge of the half section."""
+        turns = np.linspace(0.0, 2.0 * math.pi, AROUND + 1)
+        line = ring_of(self.profile, beyond=False)
+        step = self.far / ALONG
+        found = []
+        for start, end in zip(line, np.roll(line, -1), strict=True):
+            if max(start.real, end.real) <= 0.0:
+                continue
+            edge = start + (end - start) * np.linspace(0.0, 1.0, math.ceil(abs(end - start) / step) + 1)
+            x, y = edge.real[:, None] * np.cos(turns), edge.real[:, None] * np.sin(turns)
+            found.append(np.stack([x, y, np.broadcast_to(edge.imag[:, None], x.shape)], axis=-1))
+        return found
+
+    def _section(self, height: float) -> shapely.Geometry:
+        _, _, most, _ = self.half.bounds
+        crossed = shapely.intersection(self.half, shapely.LineString([(-1.0, height), (most + 1.0, height)]))
+        rings = []
+        for piece in shapely.get_parts(crossed):
+            least, _, outer, _ = piece.bounds
+            disc = _polygon(Disc(0j, outer)) if outer > 0.0 else shapely.Polygon()
+            rings.append(shapely.difference(disc, _polygon(Disc(0j, least))) if least > 0.0 else disc)
+        taken = [cut.section(height, self.far) for cut in self.cuts]
+        return shapely.difference(shapely.union_all(rings), shapely.union_all(taken))
+
+
+def _outside(cut: Cut) -> Depth:
+    return lambda points: -cut.depth(points)
+
+
+def _kept(triangles: Real, depth: Depth, fine: float) -> Real:
+    """What of triangles, shape (m, 3, 3), lies where a depth is positive; they are divided where it is near 0."""
+    done = []
+    while len(triangles):
+        longest = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
+        coarse = (longest > fine) & (np.abs(depth(triangles.mean(axis=1))) < longest)
+        done.append(triangles[~coarse])
+        triangles = _quartered(triangles[coarse])
+    triangles = np.concatenate([*done, np.zeros((0, 3, 3))])
+    value = depth(triangles)
+    positive = value > 0.0
+    count = positive.sum(axis=1)
+    found = [triangles[count == 3]]
+    for number, one_alone in ((1, True), (2, False)):
+        some = np.flatnonzero(count == number)
+        if not some.size:
+            continue
+        # The corner that differs from both others first.
+        first = np.argmax(positive[some] == one_alone, axis=1)
+        order = (first[:, None] + np.arange(3)) % 3
+        corners = np.take_along_axis(triangles[some], order[:, :, None], axis=1)
+        at = np.take_along_axis(value[some], order, axis=1)
+        a, b, c = (corners[:, k] for k in range(3))
+        ab, ac = (a + (at[:, 0] / (at[:, 0] - at[:, k]))[:, None] * (other - a) for k, other in ((1, b), (2, c)))
+        if one_alone:
+            found.append(np.stack([a, ab, ac], axis=1))
+        else:
+            found += [np.stack([ab, b, c], axis=1), np.stack([ab, c, ac], axis=1)]
+    return np.concatenate(found)
+
+
+def _quartered(triangles: Real) -> Real:
+    a, b, c = (triangles[:, k] for k in range(3))
+    ab, bc, ca = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
+    four = (a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)
+    return np.concatenate([np.stack(corners, axis=1) for corners in four])
+
+
+def _triangles(grid: Real) -> Real:
+    a, b, c, d = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
+    halves = np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)
+    return np.concatenate([half.reshape(-1, 3, 3) for half in halves])
+
+
+def _inside(polygon: shapely.Polygon, x: Real, y: Real) -> Real:
+    """How deep places lie in a polygon; negative outside, and far from it no less than they are away from its box."""
+    left, low, right, high = polygon.bounds
+    away = -np.hypot(np.maximum(0.0, np.maximum(left - x, x - right)), np.maximum(0.0, np.maximum(low - y, y - high)))
+    near = away > -FAR_SHARE * max(right - left, high - low)
+    u, v = x[near], y[near]
+    edge = polygon.exterior
+    shapely.prepare([polygon, edge])
+    distance = shapely.distance(edge, shapely.points(u, v))
+    away[near] = np.where(shapely.contains_xy(polygon, u, v), distance, -distance)
+    return np.asarray(away)
+
+
+def _unit(angle: float) -> tuple[float, float]:
+    return math.cos(angle), math.sin(angle)
+
+
+def _pairs(places: NDArray[np.complex128]) -> Real:
+    return np.column_stack([places.real, places.imag])
+
+
+def _polygon(outline: Outline) -> shapely.Polygon:
+    return shapely.Polygon(_pairs(ring_of(outline, beyond=False, sag=SAG)))
+
+
+def _region(face: shapely.Polygon) -> Region:
+    outer, *holes = (_loop(line) for line in (face.exterior, *face.interiors))
+    return Region(outer, tuple(holes))
+
+
+def _loop(line: shapely.LinearRing) -> Loop:
+    places = shapely.get_coordinates(line)[:-1] @ (1.0, 1j)
+    if not shapely.is_ccw(line):
+        places = places[::-1]
+    return Loop(tuple(places.tolist()), (0.0,) * len(places))

@@ -1,0 +1,384 @@
+"""Spherical Geneva drives as parts: a wheel that is half a spherical shell, and a crank with a roller to its centre.
+
+The sphere's centre is the origin. The crankshaft lies along x and the wheel's shaft along y, each in two bearing plates
+over one base (:mod:`service.parts.gears.upright`); distances along a shaft are counted from the centre. The wheel is
+turned, its slots and hollows are milled with tools whose axes point to the centre, so that both are as true at the
+inside of the shell as at the sphere of the answer, which is its outside. The crank is a disc beyond the sphere, in one
+piece with its locking cap; the roller's pin is set into an inclined hole of it, and reaches through the shell.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from kinematics.indexing.drag_link import Course
+from kinematics.linkage.planar.mechanism import GROUND
+from service.parts.bodies import Body, Prism
+from service.parts.cam_motion import Turning, still, turned
+from service.parts.carved import Beside, Bored, Carved, Cut, Hollow, Slotted
+from service.parts.colours import BLOCK_COLOUR, LINK_COLOURS
+from service.parts.fasteners import FASTENER_COLOUR, MATERIALS, PIN_COLOUR
+from service.parts.fitting import Fitting, Trial, fault_of, named
+from service.parts.gears.housing import Level
+from service.parts.gears.keys import key_for, keyed_bore
+from service.parts.gears.upright import FIRST, FREE, Axle, Upright, frame_along
+from service.parts.model import Assembly, Carrier, Development, Frame, Part, Placed, Real, Sort
+from service.parts.overlaps import overlaps
+from service.parts.shapes import Loop, ring
+from service.parts.sizes import MILLIMETRES, WALL, WIDTH, NotMade, PartsQuery, Sizes
+from service.parts.standards import bar
+from synthesis.kinds.indexing.design import SphericalGenevaMechanism
+from synthesis.mechanisms.geneva import course_of
+
+CRANK, WHEEL = "shaft_1", "shaft_2"
+"""What turns with either shaft, by the names that axles have."""
+
+ON_ROLLER = Carrier(CRANK, "roller")
+"""What is about the roller's axis, which goes round with the crank."""
+
+PIN_OF_ROLLER = 0.4
+"""The thickest pin that is tried where none is stated, in diameters of the roller."""
+
+BORED, SPAN, WALL_OF_HUB = 1.2, 2.5, 0.4
+"""Least length of a bore, what is between two bearing plates, and thickness of a hub, in diameters of the shaft."""
+
+HELD, BESIDE = 1.5, 0.2
+"""Thickness of the crank's disc, and least length of the spacer between it and the roller, in diameters of the pin."""
+
+LOOKS = 216
+"""Inputs at which the finished assembly is looked at once more, what lies across each other at every third."""
+
+DRAWN = 33
+"""Points of half an edge in the development of the wheel."""
+
+
+@dataclass(frozen=True)
+class SphericalMotion(Turning):
+    """Wheel and crank over a turn of the crank since the roller entered.
+
+    Attributes
+    ----------
+    course : Course
+    cone : float
+        Of the roller's axis from the crank's, radians.
+    frames : pair of Frame
+        The planes across crankshaft and wheel shaft.
+    """
+
+    course: Course
+    cone: float
+    frames: tuple[Frame, Frame]
+
+    def placed(self, carrier: Carrier, state: Real) -> Placed:
+        """How what a carrier carries has moved since the roller entered."""
+        if carrier.link == GROUND:
+            return still(state)
+        if carrier == ON_ROLLER:
+            return still(state)._replace(frame=self._roller(state))
+        frame = self.frames[carrier.link.endswith("2")]
+        if carrier.link == CRANK:
+            return turned(state)._replace(frame=frame)
+        if carrier.link == WHEEL:
+            return turned(-self.course.turned(state, 1).s)._replace(frame=frame)
+        return still(state)._replace(frame=frame)
+
+    def _roller(self, state: Real) -> Frame:
+        """The plane across the roller's axis, which begins straight below the crank's."""
+        theta, zero = state - 0.5 * math.pi, np.zeros(state.shape)
+        sine, cosine = math.sin(self.cone), np.full(state.shape, math.cos(self.cone))
+        along = np.stack([sine * np.cos(theta), sine * np.sin(theta), cosine], axis=-1)
+        across = np.stack([-np.sin(theta), np.cos(theta), zero], axis=-1)
+        axes = np.stack([across, np.cross(along, across), along], axis=-1)
+        return Frame(np.zeros((len(state), 3)), self.frames[0].axes @ axes)
+
+
+def spherical_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+    """The parts of a spherical Geneva drive.
+
+    Parameters
+    ----------
+    design : IndexingDesign
+    problem : IndexingProblem
+    query : PartsQuery
+        Lengths in the unit of the problem.
+
+    Raises
+    ------
+    NotMade
+        Where there is no room for such parts.
+    """
+    return _Sphericals(design.mechanism, problem, query).assembly()
+
+
+class _Sphericals(Fitting):
+    """One request for the parts of a spherical drive."""
+
+    def __init__(self, mechanism: SphericalGenevaMechanism, problem: Any, query: PartsQuery) -> None:
+        self._mechanism, self._problem = mechanism, problem
+        size = 4.0 * mechanism.sphere_radius / math.cos(math.radians(mechanism.cone_angle))
+        super().__init__(query, MILLIMETRES[problem.length_unit], size)
+
+    @property
+    def most(self) -> float:
+        """A share of the roller."""
+        return PIN_OF_ROLLER * self._mechanism.roller_diameter
+
+    def tried(self, sizes: Sizes, scale: float) -> Trial:
+        """The assembly in these sizes."""
+        builder = _Builder(self._mechanism, self._problem, sizes, self._unit * scale)
+        fault = builder.fault()
+        if fault:
+            return Trial(None, fault)
+        assembly = builder.assembled(scale)
+        fault = fault_of(assembly, sizes, across=False)
+        return Trial(None, fault) if fault else Trial(assembly, "")
+
+    def assembly(self) -> Assembly:
+        """The assembly of the request; what lies across each other is compared once, as it takes the longest."""
+        made = super().assembly()
+        meeting = overlaps(made, LOOKS)
+        if meeting:
+            one, other = (named(part) for part in meeting[0].parts)
+            raise NotMade(
+                f"There is no room: {one} and {other} meet at an input angle of {math.degrees(meeting[0].at):.1f}°."
+            )
+        return made
+
+
+class _Builder:
+    """Makes the parts in given sizes; lengths in millimetres, angles in radians."""
+
+    def __init__(self, mechanism: SphericalGenevaMechanism, problem: Any, sizes: Sizes, factor: float) -> None:
+        self._sizes, self._factor, self._stations = sizes, factor, mechanism.stations
+        self._course, clearance = course_of(mechanism), sizes.clearance
+        self._step, self._cone = math.pi / mechanism.stations, math.radians(mechanism.cone_angle)
+        self._outside = factor * mechanism.sphere_radius
+        self._inside = self._outside - sizes.thickness
+        self._roller = 0.5 * factor * mechanism.roller_diameter
+        self._half_slot = max(0.5 * factor * mechanism.slot_width, self._roller + clearance)
+        self._lock = math.radians(mechanism.locking_arc_angle)
+        # Angles are clearances that are least at the inside of the shell.
+        apart = clearance / max(self._inside, clearance)
+        self._slot_end = max(math.radians(mechanism.slot_end_angle), self._cone + apart)
+        self._cap = min(math.radians(mechanism.cap_angle), self._lock - apart)
+        relief = factor * problem.relief
+        self._cap_offset = factor * mechanism.cap_offset - relief + max(relief, clearance)
+        self._shafts = (
+            self._of(factor * problem.crank_shaft_diameter or sizes.pin),
+            self._of(factor * mechanism.bore or sizes.pin),
+        )
+        crank, wheel = self._shafts
+        self._hub = (0.5 + WALL_OF_HUB) * wheel.pin + key_for(wheel.pin).in_hub
+        self._flat = 0.5 * wheel.collar + wheel.apart
+        self._pocket = 0.5 * crank.collar + crank.apart
+        self._cap_begins = self._inside * math.cos(self._lock) - sizes.apart
+        # Along the roller's axis: where it begins and ends. The end of the crankshaft stays outside of the sphere.
+        self._reach = (math.sqrt(max(self._inside**2 - self._half_slot**2, 0.0)) - clearance, self._outside + clearance)
+        slope = 0.5 * sizes.collar * math.sin(self._cone)
+        past = self._reach[1] + sizes.play + BESIDE * sizes.pin
+        low = max(self._outside + sizes.apart + crank.end, past * math.cos(self._cone) + slope)
+        self._disc = low, low + max(sizes.thickness, HELD * sizes.pin, BORED * crank.pin)
+
+    def _of(self, diameter: float) -> Sizes:
+        """The sizes of what stands on a shaft of a diameter."""
+        sizes = self._sizes
+        if diameter == sizes.pin:
+            return sizes
+        return Sizes(sizes.process, WIDTH * diameter, diameter, sizes.thickness, sizes.clearance)
+
+    def fault(self) -> str:
+        """What has no room in the wheel or on the crank; empty where all has."""
+        wall, inside, end = WALL * self._sizes.pin, self._inside, self._slot_end
+        if not 0.5 * self._sizes.collar < self._roller:
+            return "the roller is no wider than what holds its pin"
+        if inside * math.sin(self._step - self._lock) - self._half_slot < wall:
+            return "the shell is so thick that too little is left between slot and locking hollow at its inside"
+        if 2.0 * (inside * math.cos(end) * math.sin(self._step) - self._half_slot) < wall:
+            return "the shell is so thick that too little is left between its slots at its inside"
+        if not self._flat < inside or not self._hub < self._outside:
+            return "the wheel's shaft is thicker than the wheel"
+        places = (self._hub, math.sqrt(self._outside**2 - self._hub**2)), (self._flat, self._floor)
+        if min(height * math.cos(end) - radius * math.sin(end) for radius, height in places) < self._half_slot + wall:
+            return "the wheel has no room for its hub and shaft between the ends of the slots"
+        cap = self._cap_begins * math.tan(max(self._cap, 0.0))
+        if cap < max(self._pocket + wall, self._cap_offset):
+            return "the locking cap has no room around the end of the crankshaft"
+        if self._disc[0] * math.tan(self._cone) - 0.5 * self._sizes.hole / math.cos(self._cone) < self._pocket + wall:
+            return "the roller's pin has no room in the crank beside the crankshaft"
+        return ""
+
+    @property
+    def _floor(self) -> float:
+        """Height of the flat inside of the hub."""
+        return math.sqrt(self._inside**2 - self._flat**2)
+
+    @property
+    def _rim(self) -> float:
+        """Radius of the crank's disc."""
+        hole = self._disc[1] * math.tan(self._cone) + 0.5 * self._sizes.hole / math.cos(self._cone)
+        return hole + 2.0 * WALL * self._sizes.pin
+
+    def assembled(self, scale: float) -> Assembly:
+        """All parts."""
+        axles = self._axles()
+        sizes = self._sizes
+        lowest = max(self._rim, self._outside, *(0.5 * max(each.width, each.collar) for each in self._shafts))
+        below = lowest + sizes.apart + FREE * sizes.pin
+        parts = (self._wheel(), self._crank(), *self._about_roller(), *Upright(sizes, axles, -below).parts())
+        motion = SphericalMotion(
+            2.0 * max(axle.levels[-1].high for axle in axles),
+            self._course,
+            self._cone,
+            (axles[0].frame, axles[1].frame),
+        )
+        return Assembly(parts, motion, FIRST + 1, 1, self._factor, scale, self._notes())
+
+    def _axles(self) -> tuple[Axle, Axle]:
+        """Crankshaft and wheel shaft, each with its wheel next to the centre."""
+        top = max(self._floor + BORED * self._shafts[1].pin, self._outside + self._sizes.apart)
+        levels, found = (self._disc, (self._floor, top)), []
+        for number, (name, sizes) in enumerate(zip(("crankshaft", "wheel shaft"), self._shafts, strict=True)):
+            near = levels[number][1] + sizes.gap
+            far = near + sizes.thickness + max(SPAN * sizes.pin, sizes.gap)
+            ends = levels[number], (near, near + sizes.thickness), (far, far + sizes.thickness)
+            frame = frame_along(np.eye(3)[number], np.zeros(3))
+            heights = tuple(Level(*pair) for pair in ends)
+            speed = 1.0 / self._stations if number else 1.0
+            found.append(Axle(name, number, frame, heights, 0, speed, stub_below=False, sizes=sizes))
+        return found[0], found[1]
+
+    def _wheel(self) -> Part:
+        """The shell with its hub, slots and hollows; a slot is where the roller enters."""
+        outside, inside, hub, flat = self._outside, self._inside, self._hub, self._flat
+        shoulder, floor = math.sqrt(outside**2 - hub**2), self._floor
+        top = max(floor + BORED * self._shafts[1].pin, outside + self._sizes.apart)
+        corners = (
+            complex(inside), complex(outside), complex(hub, shoulder), complex(hub, top), complex(0.0, top),
+            complex(0.0, floor), complex(flat, floor),
+        )  # fmt: skip
+        turns = math.atan2(shoulder, hub), math.atan2(floor, flat)
+        profile = Loop(corners, (0.0, math.tan(0.25 * turns[0]), 0.0, 0.0, 0.0, 0.0, -math.tan(0.25 * turns[1])))
+        pin = self._shafts[1].pin
+        cuts: list[Cut] = [Bored(keyed_bore(0j, pin, key_for(pin), self._sizes.clearance))]
+        for k in range(self._stations):
+            at = math.pi + (2 * k + 1) * self._step
+            cuts.append(Slotted(at, self._slot_end, self._half_slot, open=True))
+            cuts.append(Hollow(at + self._step, self._lock))
+        body = Carved(profile, tuple(cuts))
+        return self._made("wheel", "wheel, half a sphere", Carrier(WHEEL, None), (body,), LINK_COLOURS[1], 1,
+                          self._development())  # fmt: skip
+
+    def _crank(self) -> Part:
+        """The disc with its inclined hole, and the cap opposite the roller."""
+        low, high = self._disc
+        pin, hole = self._shafts[0].pin, 0.5 * self._sizes.hole
+        disc = (complex(0.0, low), complex(self._rim, low), complex(self._rim, high), complex(0.0, high))
+        bores: tuple[Cut, ...] = (
+            Bored(keyed_bore(0j, pin, key_for(pin), self._sizes.clearance)),
+            Slotted(-0.5 * math.pi, 0.5 * math.pi - self._cone, hole, open=False),
+        )
+        begins, beyond = self._cap_begins, (self._outside + self._sizes.apart) * math.cos(self._cap)
+        wide = math.tan(self._cap)
+        cap = (
+            complex(self._pocket, begins), complex(begins * wide, begins), complex(beyond * wide, beyond),
+            complex(beyond * wide, low), complex(self._pocket, low),
+        )  # fmt: skip
+        bodies = (
+            Carved(Loop(disc, (0.0,) * 4), bores),
+            Carved(Loop(cap, (0.0,) * 5), (Beside(0.5 * math.pi, self._cap_offset),)),
+        )
+        return self._made("crank", "crank with its locking cap", Carrier(CRANK, None), bodies, LINK_COLOURS[0], 0)
+
+    def _made(
+        self, name: str, described: str, carrier: Carrier, bodies: tuple[Body, ...], colour: str, number: int,
+        unrolled: Development | None = None,
+    ) -> Part:  # fmt: skip
+        material = MATERIALS["print" if self._sizes.process == "print" else "mill"][0]
+        plane = FIRST + number
+        return Part(name, described, "cam", carrier, bodies, 1.0 + 0.0j, (plane, plane), material, colour,
+                    unrolled=unrolled)  # fmt: skip
+
+    def _about_roller(self) -> list[Part]:
+        """Roller, its pin, what holds it within the shell, and the spacer before the crank's disc."""
+        sizes, (low, high), plane = self._sizes, self._reach, (FIRST, FIRST)
+        shank, collar, hole = 0.5 * sizes.pin, 0.5 * sizes.collar, 0.5 * sizes.hole
+        sine, cosine = math.sin(self._cone), math.cos(self._cone)
+        # Neither the spacer nor the end of the pin reaches through a face of the disc.
+        spacer = high + sizes.play, (self._disc[0] - collar * sine) / cosine
+        end = (self._disc[1] - shank * sine) / cosine
+        steel = MATERIALS[sizes.process][1]
+        bottom = low - sizes.play
+
+        def part(name: str, what: str, sort: Sort, bodies: Sequence[Prism], colour: str, standard: str = "") -> Part:
+            return Part(
+                name, what, sort, ON_ROLLER, tuple(bodies), 1.0 + 0.0j, plane, steel, colour, standard, round=True
+            )  # fmt: skip
+
+        found = [
+            part("roller", "roller", "block", [Prism(ring(0j, self._roller, hole), low, high)], BLOCK_COLOUR),
+            part("spacer_roller", "spacer", "spacer", [Prism(ring(0j, collar, hole), *spacer)], FASTENER_COLOUR),
+        ]
+        if sizes.process == "print":
+            stack = [(collar, bottom - sizes.cap, bottom), (shank, bottom, end)]
+        else:
+            held = sizes.ring
+            groove, foot = 0.5 * held.groove, bottom - held.width
+            stack = [(shank, foot - held.beyond, foot), (groove, foot, bottom), (shank, bottom, end)]
+            around = Prism(ring(0j, 0.5 * held.diameter, groove), bottom - held.thickness, bottom)
+            found.append(
+                part("ring_roller", "retaining ring of pin roller", "ring", [around], FASTENER_COLOUR, held.standard)
+            )
+        bodies = [Prism(ring(0j, radius), a, b) for radius, a, b in stack]
+        sold = "" if sizes.process == "print" else bar(sizes.pin)
+        return [*found, part("pin_roller", "pin roller", "pin", bodies, PIN_COLOUR, sold)]
+
+    def _development(self) -> Development:
+        """The outside of the wheel: azimuth and latitude, both times the radius."""
+        radius, half, end = self._outside, self._half_slot, self._slot_end
+        up = np.linspace(0.0, end, DRAWN)
+        side = np.column_stack([np.sqrt(np.maximum((radius * np.cos(up)) ** 2 - half**2, 0.0)),
+                                np.full(DRAWN, half), radius * np.sin(up)])  # fmt: skip
+        turn = np.linspace(0.0, math.pi, DRAWN)[1:-1]
+        out = math.sqrt(radius**2 - half**2)
+        tip = np.column_stack([
+            out * math.cos(end) - half * np.sin(turn) * math.sin(end),
+            half * np.cos(turn),
+            out * math.sin(end) + half * np.sin(turn) * math.cos(end),
+        ])  # fmt: skip
+        # The sides end where the round end begins.
+        side = side[side[:, 2] < out * math.sin(end)]
+        slot = np.concatenate([side, tip, side[::-1] * (1.0, -1.0, 1.0)])
+        around = np.linspace(0.0, math.pi, DRAWN)
+        hollow = radius * np.column_stack([
+            np.full(DRAWN, math.cos(self._lock)),
+            math.sin(self._lock) * np.cos(around),
+            math.sin(self._lock) * np.sin(around),
+        ])  # fmt: skip
+        # It begins in the middle of a land.
+        first = 0.5 * (math.asin(half / radius) + self._step - self._lock)
+        lines = []
+        for k in range(self._stations):
+            for name, points, at in (("SLOTS", slot, 0.0), ("HOLLOWS", hollow, self._step)):
+                azimuth = np.arctan2(points[:, 1], points[:, 0]) + at + first + 2 * k * self._step
+                places = radius * (azimuth + 1j * np.arcsin(points[:, 2] / radius))
+                lines.append((name, tuple(places.tolist())))
+        return Development(2.0 * math.pi * radius, radius * math.acos(self._hub / radius), tuple(lines))
+
+    def _notes(self) -> tuple[str, ...]:
+        return (
+            f"The wheel is a shell from {2.0 * self._inside:.6g} to {2.0 * self._outside:.6g} mm in diameter; slots "
+            f"{2.0 * self._half_slot:.6g} mm wide, up to {math.degrees(self._slot_end):.5g}° above the rim, and "
+            f"hollows of {math.degrees(self._lock):.5g}° are milled with tools that point to its centre.",
+            f"The roller's pin is pressed or glued into the hole of the crank, {math.degrees(self._cone):.6g}° from "
+            f"its axis; it points to the centre. The locking cap has {math.degrees(self._cap):.5g}°, and ends "
+            f"{self._cap_offset:.5g} mm from the axis.",
+            "The drawing of the wheel has its outside by azimuth and latitude, both times the radius: true along "
+            "meridians and at the rim.",
+            "The input is the crank; an input angle of 0 is where the roller enters a slot.",
+            "Bearing plates stand by their tabs in the slots of the base, and are glued or wedged there.",
+        )
