@@ -27,7 +27,8 @@ NEEDS_CAD: tuple[Process, ...] = ("print", "mill")
 LARGEST = 1e6
 """The greatest length that a request may state, in the unit of the problem."""
 
-LARGEST_SCALE = 1e6
+SMALLEST_SCALE, LARGEST_SCALE = 1e-6, 1e6
+"""Between which a design is built: squares of smaller lengths are nothing, and of larger ones infinite."""
 
 LARGEST_ASSEMBLY = 20_000.0
 """What is made at most, millimetres."""
@@ -96,7 +97,7 @@ class PartsQuery(BaseModel):
     face_width: Annotated[float, Field(gt=0.0, le=LARGEST)] | None = Field(
         default=None, description="Of gears; if left out as the answer has it, or six modules."
     )
-    scale: Annotated[float, Field(gt=0.0, le=LARGEST_SCALE)] = Field(
+    scale: Annotated[float, Field(ge=SMALLEST_SCALE, le=LARGEST_SCALE)] = Field(
         default=1.0, description="How much larger than the design it is built, as for a mechanism of unit size."
     )
 

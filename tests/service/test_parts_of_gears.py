@@ -136,7 +136,8 @@ def test_every_field_counts_for_gears(client: Any, pair: str, field: str, value:
     [
         ("bore", 0), ("bore", 1000), ("bore", 40), ("bore", "nan"), ("face_width", 0), ("face_width", 0.1),
         ("face_width", 1e5), ("thickness", 0.01), ("thickness", 1e5), ("clearance", 0.9), ("clearance", 1e-9),
-        ("scale", 0), ("scale", 1e5), ("scale", 1e-3), ("process", "cast"), ("width", 10), ("pin", 5), ("over", "used"),
+        ("scale", 0), ("scale", 1e-308), ("scale", 1e5), ("scale", 1e-3), ("process", "cast"),
+        ("width", 10), ("pin", 5), ("over", "used"),
         ("shafts", "one_side"),
     ],
 )  # fmt: skip
