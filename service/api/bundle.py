@@ -11,7 +11,8 @@ what the modules before it have returned::
 
 This is right for modules as the page has them, and anything else is refused: imports and exports stand at the beginning
 of a line and name what they take and give, what is exported is never assigned anew, and no two modules import each
-other. Nothing is made shorter: what a browser says of the bundle can be found in the sources.
+other. A module that waits for something before it has what it exports becomes a function that is waited for.
+Nothing is made shorter: what a browser says of the bundle can be found in the sources.
 """
 
 from __future__ import annotations
@@ -28,6 +29,8 @@ _IMPORT = re.compile(
 )
 _EXPORT = re.compile(r"^export (?=(?:async )?(?:function|class|const) (\w+))", re.MULTILINE)
 _OTHER = re.compile(r"^(?:import|export)\b.*$", re.MULTILINE)
+_WAITS = re.compile(r"^(?:export )?const \w+ = (?:.* )?await ", re.MULTILINE)
+"""A module that waits at its outermost level."""
 _LATER = re.compile(r'import\("\./(\w+)\.js"\)(?=[,;)\]])')
 """A module that is asked for when it is needed; it begins a bundle of its own. Types in comments look otherwise."""
 
@@ -103,7 +106,8 @@ def _joined(modules: Mapping[str, str], order: list[str]) -> str:
         if other := _OTHER.search(text):
             raise BundleError(f"{name}: bundles know no such line: {other.group()}")
         text = _LATER.sub(lambda found: f'import("./{found[1]}{SUFFIX}")', text)
-        parts.append(f"const {_variable(name)} = (() => {{\n{text}return {{ {', '.join(exported)} }};\n}})();\n")
+        made = "await (async () =>" if _WAITS.search(text) else "(() =>"
+        parts.append(f"const {_variable(name)} = {made} {{\n{text}return {{ {', '.join(exported)} }};\n}})();\n")
     # The last one is what the bundle begins with, and the bundle exports what that does.
     parts.append(f"export const {{ {', '.join(exported)} }} = {_variable(order[-1])};\n")
     return "\n".join([*outside, *parts])

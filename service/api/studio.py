@@ -26,6 +26,9 @@ POLICY = (
 )
 """Nothing from elsewhere and nothing inline; ``blob:`` are drawings that the page has fetched with its key."""
 
+MESSAGES = "messages/"
+"""Where the texts of the page are in other languages, a file for each."""
+
 _HEADERS = {
     "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",
@@ -55,7 +58,7 @@ def studio_files() -> dict[str, Representation]:
     """
     texts = {}
     studio = files("service").joinpath("studio")
-    for folder, prefix in ((studio, ""), (studio.joinpath("vendor"), VENDOR)):
+    for folder, prefix in ((studio, ""), (studio.joinpath("vendor"), VENDOR), (studio.joinpath("messages"), MESSAGES)):
         for entry in folder.iterdir():
             if _media_type(entry.name) is not None:
                 texts[prefix + entry.name] = entry.read_text("utf-8")

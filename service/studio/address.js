@@ -1,5 +1,6 @@
 /** A statement, and a linkage that answers it, within the fragment of an address: deflated JSON in base64url (RFC 4648, 5). */
 
+import { t } from "./messages.js";
 import { misfit } from "./schema.js";
 
 const MARK = "#statement=";
@@ -42,22 +43,22 @@ export function holds(fragment) {
  * @param {string} fragment @param {import("./api.js").Kind[]} kinds @returns {Promise<Sent>}
  */
 export async function sentIn(fragment, kinds) {
-  if (fragment.length > MOST) throw new Unreadable(`The address is longer than ${MOST} characters, which no statement needs.`);
+  if (fragment.length > MOST) throw new Unreadable(t`The address is longer than ${MOST} characters, which no statement needs.`);
   const text = await unpacked(fragment.slice(MARK.length));
   /** @type {any} */
   let told;
   try {
     told = JSON.parse(text);
   } catch {
-    throw new Unreadable("The address holds no statement: what comes out of it is no JSON.");
+    throw new Unreadable(t`The address holds no statement: what comes out of it is no JSON.`);
   }
   const { problem, label = "", mechanism = null, placed = false } = told ?? {};
   const kind = kinds.find((one) => one.kind === problem?.kind);
-  if (!kind) throw new Unreadable("The address states a kind of problem that this service does not know.");
+  if (!kind) throw new Unreadable(t`The address states a kind of problem that this service does not know.`);
   const wrong = misfit(problem, kind.schema, kind.schema);
-  if (wrong !== null) throw new Unreadable(`The address states ${wrong.slice(1, 100) || "something"} in a way that this service does not know.`);
-  if (typeof label !== "string" || typeof placed !== "boolean") throw new Unreadable("The address holds more than a statement and a linkage.");
-  if (mechanism !== null && typeof mechanism?.skeleton !== "object") throw new Unreadable("The design in the address is no linkage.");
+  if (wrong !== null) throw new Unreadable(t`The address states ${wrong.slice(1, 100) || t`something`} in a way that this service does not know.`);
+  if (typeof label !== "string" || typeof placed !== "boolean") throw new Unreadable(t`The address holds more than a statement and a linkage.`);
+  if (mechanism !== null && typeof mechanism?.skeleton !== "object") throw new Unreadable(t`The design in the address is no linkage.`);
   return { problem, label: label.slice(0, 200), mechanism, placed };
 }
 
@@ -72,11 +73,11 @@ async function unpacked(coded) {
       text += part.value;
       if (text.length <= MOST_UNPACKED) continue;
       await reader.cancel();
-      throw new Unreadable(`The statement in the address is longer than ${MOST_UNPACKED} characters, which no problem needs.`);
+      throw new Unreadable(t`The statement in the address is longer than ${MOST_UNPACKED} characters, which no problem needs.`);
     }
     return text;
   } catch (error) {
     if (error instanceof Unreadable) throw error;
-    throw new Unreadable("The address holds no statement that can be read: it is cut short, or was changed on its way.");
+    throw new Unreadable(t`The address holds no statement that can be read: it is cut short, or was changed on its way.`);
   }
 }

@@ -2,8 +2,9 @@
 
 import * as api from "./api.js";
 import { Choosing } from "./choosing.js";
-import { el, words } from "./dom.js";
+import { el } from "./dom.js";
 import { Shown } from "./design.js";
+import { foreign, t, term, translated } from "./messages.js";
 import { missed } from "./misses.js";
 import { Strip } from "./strip.js";
 
@@ -31,7 +32,7 @@ export function answer(place, desk, job, state, solve) {
   leave(place, desk);
   if (!job.result) {
     place.append(el("p", { class: job.status === "failed" ? "error" : "note" },
-      job.status === "failed" ? `${job.error?.title ?? "Failed"}: ${job.error?.detail ?? ""}` : `The job was ${job.status}.`));
+      job.status === "failed" ? `${translated(job.error?.title ?? "Failed")}: ${translated(job.error?.detail ?? "")}` : t`The job was ${term(job.status)}.`));
     desk.stage.offer(false);
     return;
   }
@@ -46,19 +47,19 @@ export function answer(place, desk, job, state, solve) {
   const count = el("p", { class: "warn", role: "status" });
   const choice = designs.length > 1 ? new Choosing(desk.choosing, desk, job, row, () => {
     const kept = row.kept.filter(Boolean).length;
-    count.textContent = kept < designs.length ? `${kept} of ${designs.length} designs meet the bounds and are shown.` : "";
+    count.textContent = kept < designs.length ? t`${kept} of ${designs.length} designs meet the bounds and are shown.` : "";
   }) : null;
   choosing = choice;
   place.append(
-    el("div", { class: "known", tabindex: 0, role: "group", "aria-label": "What is known" },
-      el("p", { class: "warn outdated" }, "Answers to an earlier statement."), count,
-      el("p", { class: "summary" }, summary), el("p", { class: "note" }, known(search, designs.length))), row.node);
+    el("div", { class: "known", tabindex: 0, role: "group", "aria-label": t`What is known` },
+      el("p", { class: "warn outdated" }, t`Answers to an earlier statement.`), count,
+      el("p", { class: "summary", lang: foreign(summary) }, translated(summary)), el("p", { class: "note" }, known(search, designs.length))), row.node);
   if (designs.length) row.select(0);
   desk.drawer.on("compare", choice && { opened: () => choice.opened(), closed: () => choice.closed() });
   desk.drawer.offer("compare", choice !== null);
   if (designs.length) return;
-  desk.stage.offer(true, nearest_miss ? "None found; this comes nearest" : "None found");
-  desk.frame.say(...(nearest_miss ? [missed(nearest_miss, job.problem, solve)] : [el("p", { class: "note" }, summary)]));
+  desk.stage.offer(true, nearest_miss ? t`None found; this comes nearest` : t`None found`);
+  desk.frame.say(...(nearest_miss ? [missed(nearest_miss, job.problem, solve)] : [el("p", { class: "note", lang: foreign(summary) }, translated(summary))]));
   desk.stage.show("watch");
 }
 
@@ -82,9 +83,9 @@ export function pin() {
 /** What the search has shown, in a sentence. @param {any} search @param {number} found */
 function known(search, found) {
   if (!search) return "";
-  const counted = Object.entries(search.rejected ?? {}).filter(([, n]) => n).map(([why, n]) => `${words(why).toLowerCase()} ${n}`);
+  const counted = Object.entries(search.rejected ?? {}).filter(([, n]) => n).map(([why, n]) => `${term(why)} ${n}`);
   const sure = search.complete
-    ? found ? "Complete: the search has left out nothing that the problem allows; the best are shown." : "Complete: no design exists."
-    : found ? "Not complete: there may be others." : "None found; that is no proof that none exists.";
-  return `${sure} ${counted.length ? `Left out: ${counted.join(", ")}.` : ""}`;
+    ? found ? t`Complete: the search has left out nothing that the problem allows; the best are shown.` : t`Complete: no design exists.`
+    : found ? t`Not complete: there may be others.` : t`None found; that is no proof that none exists.`;
+  return `${sure} ${counted.length ? t`Left out: ${counted.join(", ")}.` : ""}`;
 }

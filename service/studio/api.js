@@ -1,5 +1,6 @@
 /** The public API of the service, and nothing else: all that the studio knows comes through here. */
 
+import { t, translated } from "./messages.js";
 import { ofTheTab } from "./storage.js";
 
 /** @typedef {{path: string, detail: string}} FieldError */
@@ -29,11 +30,11 @@ const LOST_TRIES = 3;
 export class Refused extends Error {
   /** @param {any} problem @param {number} status */
   constructor(problem, status) {
-    super(problem.detail ?? `The service answered ${status}.`);
+    super(problem.detail ? translated(problem.detail) : t`The service answered ${status}.`);
     this.status = status;
-    this.title = problem.title ?? "Error";
+    this.title = problem.title ? translated(problem.title) : t`Error`;
     /** @type {FieldError[]} */
-    this.errors = problem.errors ?? [];
+    this.errors = (problem.errors ?? []).map((/** @type {FieldError} */ one) => ({ ...one, detail: translated(one.detail) }));
   }
 }
 

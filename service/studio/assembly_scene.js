@@ -373,7 +373,7 @@ export class AssemblyScene {
   /** The picture as it is seen now. @returns {Promise<Blob>} */
   picture() {
     this.draw();
-    return new Promise((done, failed) => this.canvas.toBlob((blob) => (blob ? done(blob) : failed(new Error("The picture is too large."))), "image/png"));
+    return new Promise((done, failed) => this.canvas.toBlob((blob) => (blob ? done(blob) : failed(new Error("the picture is too large"))), "image/png"));
   }
 
   stop() {

@@ -3,6 +3,7 @@
 import * as api from "./api.js";
 import { el, shown } from "./dom.js";
 import { saved } from "./downloads.js";
+import { foreign, t, term, translated } from "./messages.js";
 import { between } from "./player.js";
 import { symbolOf } from "./units.js";
 
@@ -16,7 +17,7 @@ const POSITIONS = 144;
 /** The scale that a refusal says will do. */
 const SCALE = /fit from scale ([\d.e+]+) on|; scale ([\d.e+-]+) is the greatest/;
 
-const PROCESSES = { laser: "cut by laser", print: "printed", mill: "milled" };
+const PROCESSES = { laser: t`cut by laser`, print: t`printed`, mill: t`milled` };
 
 export class AssemblyView {
   /**
@@ -75,15 +76,15 @@ export class AssemblyView {
       return el("span", { class: "field" }, el("label", { for: box.id }, title), box);
     };
     const number = (/** @type {string} */ hint) => el("input", { type: "number", min: 0, step: "any", inputmode: "decimal", placeholder: hint });
-    const form = el("form", { class: "row sizes", "aria-label": "What the parts are made of", novalidate: true,
+    const form = el("form", { class: "row sizes", "aria-label": t`What the parts are made of`, novalidate: true,
       onsubmit: (/** @type {Event} */ event) => {
         event.preventDefault();
         this.load();
       } },
-    field("process", "Made", el("select", { onchange: () => this.load() },
+    field("process", t`Made`, el("select", { onchange: () => this.load() },
       ...Object.entries(PROCESSES).map(([value, title]) => el("option", { value }, title)))),
-    field("pin", `Pin (${unit})`, number("what fits")), field("width", `Width (${unit})`, number("2.5 pins")), field("scale", "Scale", number("1")),
-    el("button", { type: "submit", class: "small" }, "Make them so"));
+    field("pin", t`Pin (${unit})`, number(t`what fits`)), field("width", t`Width (${unit})`, number(t`2.5 pins`)), field("scale", t`Scale`, number("1")),
+    el("button", { type: "submit", class: "small" }, t`Make them so`));
     this.fault.id = "assembly-fault";
     return form;
   }
@@ -97,10 +98,10 @@ export class AssemblyView {
   async load() {
     this.asked?.abort();
     const asked = (this.asked = new AbortController());
-    this.words.textContent = "The parts are being made …";
+    this.words.textContent = t`The parts are being made …`;
     this.body.setAttribute("aria-busy", "true");
     this.clear();
-    if (!this.scene) this.said("The parts are being made …");
+    if (!this.scene) this.said(t`The parts are being made …`);
     try {
       const query = this.stated();
       const [assembly, drawing] = await Promise.all([api.assembly(this.job.id, this.n, { ...query, positions: String(POSITIONS) }, asked.signal),
@@ -112,7 +113,7 @@ export class AssemblyView {
       if (asked.signal.aborted || this.gone.signal.aborted) return;
       this.words.replaceChildren();
       this.body.hidden = true;
-      this.said("There are no such parts.");
+      this.said(t`There are no such parts.`);
       this.scene?.stop();
       this.scene = null;
       this.refused(error);
@@ -143,7 +144,7 @@ export class AssemblyView {
     this.fault.append(el("button", { type: "button", class: "small", onclick: () => {
       this.form.querySelector('[name="scale"]').value = String(Number(scale));
       this.load();
-    } }, `Build it at scale ${Number(scale)}`));
+    } }, t`Build it at scale ${Number(scale)}`));
   }
 
   /** @param {Assembly} assembly @param {Record<string, string>} query by which it was asked for */
@@ -154,25 +155,25 @@ export class AssemblyView {
     const kinds = new Set(assembly.parts.map(({ item }) => item));
     this.hidden = new Set([...this.hidden].filter((item) => kinds.has(item)));
     this.chosen = null;
-    this.words.textContent = [`${assembly.parts.length} parts of ${kinds.size} kinds`, assembly.scale !== 1 && `${shown(assembly.scale)} times the design`]
+    this.words.textContent = [t`${assembly.parts.length} parts of ${kinds.size} kinds`, assembly.scale !== 1 && t`${shown(assembly.scale)} times the design`]
       .filter(Boolean).join(", ") + ".";
     this.list = this.listed(assembly, query);
     this.body.hidden = false;
     if (!this.drawing) {
-      const reason = "This browser does not draw in three dimensions (WebGL 2 is missing or switched off). The parts are listed, and their files are there.";
+      const reason = t`This browser does not draw in three dimensions (WebGL 2 is missing or switched off). The parts are listed, and their files are there.`;
       this.said(reason);
       this.body.replaceChildren(this.list);
       return;
     }
     const canvas = el("canvas", { class: "canvas solid", tabindex: 0, role: "application", "aria-describedby": "assembly-keys",
-      "aria-label": `The assembly in three dimensions, ${assembly.parts.length} parts`,
+      "aria-label": t`The assembly in three dimensions, ${assembly.parts.length} parts`,
       onkeydown: (/** @type {KeyboardEvent} */ event) => {
         if (!event.ctrlKey && !event.metaKey && !event.altKey && this.scene?.key(event)) event.preventDefault();
       } });
     this.body.replaceChildren(this.list);
     this.board.replaceChildren(el("figure", { class: "solids" }, this.tools(), canvas, this.sliders(),
-      el("p", { class: "note", id: "assembly-keys" }, "Drag to turn, with the right button or two fingers to move, the wheel or + and − to zoom; arrow keys turn, with Shift they move; Home shows all."),
-      this.beyond, ...assembly.notes.map((note) => el("p", { class: "note" }, note))));
+      el("p", { class: "note", id: "assembly-keys" }, t`Drag to turn, with the right button or two fingers to move, the wheel or + and − to zoom; arrow keys turn, with Shift they move; Home shows all.`),
+      this.beyond, ...assembly.notes.map((note) => el("p", { class: "note", lang: foreign(note) }, translated(note)))));
     this.scene = new this.drawing.AssemblyScene(canvas, assembly, { hover: (item) => this.hover(item), choose: (item) => this.choose(item) });
     for (const item of this.hidden) this.scene.hide(item, false);
     this.scene.explode(this.explosion);
@@ -184,10 +185,10 @@ export class AssemblyView {
   /** Where it is looked at from, and its picture. */
   tools() {
     const button = (/** @type {string} */ title, /** @type {() => void} */ does) => el("button", { type: "button", class: "small", onclick: does }, title);
-    return el("div", { class: "row", role: "toolbar", "aria-label": "View of the assembly" },
+    return el("div", { class: "row", role: "toolbar", "aria-label": t`View of the assembly` },
       ...Object.keys(this.drawing?.VIEWS ?? {}).map((name) => button(name, () => this.scene?.look(name))),
-      button("Fit", () => this.scene?.fit()),
-      button("Save picture", async () => this.scene && saved(URL.createObjectURL(await this.scene.picture()), `${this.job.kind}-${this.n + 1}-assembly.png`)));
+      button(t`Fit`, () => this.scene?.fit()),
+      button(t`Save picture`, async () => this.scene && saved(URL.createObjectURL(await this.scene.picture()), `${this.job.kind}-${this.n + 1}-assembly.png`)));
   }
 
   /** How far its planes are apart; it moves with the drawing, whose clock stands beside it. */
@@ -198,11 +199,11 @@ export class AssemblyView {
       this.scene?.explode(this.explosion);
     } });
     apart.setAttribute("aria-valuetext", `${Math.round(100 * this.explosion)} %`);
-    return el("div", { class: "row" }, el("label", { for: "explode" }, "Apart"), apart,
+    return el("div", { class: "row" }, el("label", { for: "explode" }, t`Apart`), apart,
       el("button", { type: "button", class: "small", onclick: () => {
         apart.value = this.explosion > 0 ? 0 : 1;
         apart.dispatchEvent(new Event("input"));
-      } }, "Together / apart"));
+      } }, t`Together / apart`));
   }
 
   /** The parts by kind: shown or hidden, chosen, and their files. @param {Assembly} assembly @param {Record<string, string>} query */
@@ -213,12 +214,12 @@ export class AssemblyView {
     this.fileFault.replaceChildren();
     this.boxes.clear();
     const all = el("div", { class: "row" },
-      el("button", { type: "button", class: "small", onclick: () => this.shown([...kinds.keys()], true) }, "Show all"),
-      el("button", { type: "button", class: "small", onclick: () => this.shown([...kinds.keys()], false) }, "Hide all"),
-      this.file("All files", "All files as a zip", `${this.job.kind}-${this.n + 1}-parts.zip`, () => api.parts(this.job.id, this.n, query)));
+      el("button", { type: "button", class: "small", onclick: () => this.shown([...kinds.keys()], true) }, t`Show all`),
+      el("button", { type: "button", class: "small", onclick: () => this.shown([...kinds.keys()], false) }, t`Hide all`),
+      this.file(t`All files`, t`All files as a zip`, `${this.job.kind}-${this.n + 1}-parts.zip`, () => api.parts(this.job.id, this.n, query)));
     const rows = [...kinds].map(([item, [part, ...others]]) => {
-      const called = others.length ? item.replaceAll("_", " ") : part.described;
-      const box = el("input", { type: "checkbox", id: `show-${item}`, "aria-label": `Show ${called}`, onchange: () => this.shown([item], box.checked) });
+      const called = others.length ? term(item) : translated(part.described);
+      const box = el("input", { type: "checkbox", id: `show-${item}`, "aria-label": t`Show ${called}`, onchange: () => this.shown([item], box.checked) });
       box.checked = !this.hidden.has(item);
       this.boxes.set(item, box);
       const swatch = el("span", { class: "swatch", "aria-hidden": "true" });
@@ -228,12 +229,12 @@ export class AssemblyView {
         el("button", { type: "button", class: "called", "aria-pressed": "false", onclick: () => this.choose(this.chosen === item ? null : item) },
           called, others.length > 0 && ` × ${others.length + 1}`),
         el("span", { class: "note" }, part.standard || part.material),
-        el("span", { class: "files" }, ...part.files.map((form) => this.file(form.toUpperCase(), `${called} as ${form.toUpperCase()}`, `${item}.${form}`,
+        el("span", { class: "files" }, ...part.files.map((form) => this.file(form.toUpperCase(), t`${called} as ${form.toUpperCase()}`, `${item}.${form}`,
           () => api.part(this.job.id, this.n, item, form, query)))));
     });
-    return el("div", { class: "parts" }, el("h4", { id: "assembly-parts" }, "Parts"), all, this.fileFault,
+    return el("div", { class: "parts" }, el("h4", { id: "assembly-parts" }, t`Parts`), all, this.fileFault,
       el("ul", { "aria-labelledby": "assembly-parts" }, ...rows),
-      !api.makesSolids() && el("p", { class: "note" }, "Outlines of plates are there. For solids the service needs its extra cad."));
+      !api.makesSolids() && el("p", { class: "note" }, t`Outlines of plates are there. For solids the service needs its extra cad.`));
   }
 
   /** @param {string} title @param {string} described @param {string} name @param {() => Promise<string>} make */
@@ -302,7 +303,7 @@ export class AssemblyView {
     const { low, high, quantity } = this.assembly.input;
     const unit = quantity === "angle" ? "°" : ` ${symbolOf("length", this.job.problem)}`;
     this.beyond.hidden = within;
-    this.beyond.textContent = `The parts are made for inputs from ${shown(Number(low.toFixed(2)))}${unit} to ${shown(Number(high.toFixed(2)))}${unit}; the drawing is beyond, and they wait at the end.`;
+    this.beyond.textContent = t`The parts are made for inputs from ${shown(Number(low.toFixed(2)))}${unit} to ${shown(Number(high.toFixed(2)))}${unit}; the drawing is beyond, and they wait at the end.`;
   }
 
   stop() {

@@ -1,6 +1,7 @@
 /** A picture behind the canvas, to trace over: it is laid there, and scaled by two points whose distance is known. */
 
 import { el, shown, svg } from "./dom.js";
+import { t } from "./messages.js";
 
 /** @typedef {[number, number]} Point */
 
@@ -33,7 +34,7 @@ export class Backdrop {
       await image.decode();
     } catch {
       URL.revokeObjectURL(url);
-      throw new Error(`${file.name} is no picture that a browser can show.`);
+      throw new Error(t`${file.name} is no picture that a browser can show.`);
     }
     this.clear();
     this.unit = unit;
@@ -97,16 +98,16 @@ export class Backdrop {
       const apart = picked?.length === 2 ? Math.hypot(picked[1][0] - picked[0][0], picked[1][1] - picked[0][1]) : NaN;
       const distance = el("input", { type: "number", id: "backdrop-distance", step: "any", min: 0, value: Number(apart.toPrecision(6)) });
       const set = () => this.rescale(((placed?.scale ?? 1) * distance.valueAsNumber) / apart, /** @type {Point[]} */ (picked)[0]);
-      this.node.replaceChildren(el("fieldset", { class: "choice" }, el("legend", {}, `Behind the canvas: ${picture.name}`),
-        el("div", { class: "row" }, el("label", { for: "backdrop-width" }, `Its width (${unit})`), width,
-          button("backdrop-pick", picked ? "Leave" : "Scale by two points", () => {
+      this.node.replaceChildren(el("fieldset", { class: "choice" }, el("legend", {}, t`Behind the canvas: ${picture.name}`),
+        el("div", { class: "row" }, el("label", { for: "backdrop-width" }, t`Its width (${unit})`), width,
+          button("backdrop-pick", picked ? t`Leave` : t`Scale by two points`, () => {
             this.picked = picked ? null : [];
             this.show();
-          }), button("backdrop-clear", "Take it away", () => this.clear())),
-        el("p", { class: "note", role: "status" }, !picked ? `A pixel is ${shown(placed?.scale)} ${unit}.`
-          : ["Click one end of a length that you know.", "Click its other end.", "State how long it is."][picked.length]),
-        picked?.length === 2 && apart > 0 && el("div", { class: "row" }, el("label", { for: "backdrop-distance" }, `From one point to the other (${unit})`), distance,
-          button("backdrop-set", "Set", set))));
+          }), button("backdrop-clear", t`Take it away`, () => this.clear())),
+        el("p", { class: "note", role: "status" }, !picked ? t`A pixel is ${shown(placed?.scale)} ${unit}.`
+          : [t`Click one end of a length that you know.`, t`Click its other end.`, t`State how long it is.`][picked.length]),
+        picked?.length === 2 && apart > 0 && el("div", { class: "row" }, el("label", { for: "backdrop-distance" }, t`From one point to the other (${unit})`), distance,
+          button("backdrop-set", t`Set`, set))));
       if (picked?.length === 2) distance.focus();
     }
     if (redraw) this.changed();

@@ -2,6 +2,7 @@
 
 import { Turning } from "./cam.js";
 import { svg } from "./dom.js";
+import { t } from "./messages.js";
 import { between } from "./player.js";
 import { View } from "./view.js";
 
@@ -9,7 +10,7 @@ import { View } from "./view.js";
 
 export class Barrel extends Turning {
   get label() {
-    return "The groove of the barrel, unrolled, passing the roller";
+    return t`The groove of the barrel, unrolled, passing the roller`;
   }
 
   scene() {

@@ -1,6 +1,7 @@
 /** Statements that begin with a linkage as it was dragged. */
 
 import { telling } from "./circuits.js";
+import { t } from "./messages.js";
 
 /** How many points of a curve a statement takes. */
 const POINTS = 24;
@@ -16,18 +17,18 @@ export function beginnings(problem, skeleton, motion, targets) {
   const { O2, O4 } = skeleton.joints;
   if (O2 && O4 && problem.kind === "motion") {
     const side = (/** @type {any} */ choices, /** @type {Point} */ at) => ({ dyad: choices.dyad, fixed_pivot: at.map(round) });
-    found.push({ text: "Begin a statement with these fixed pivots", statement: () =>
+    found.push({ text: t`Begin a statement with these fixed pivots`, statement: () =>
       ({ ...problem, input_side: side(problem.input_side, O2), output_side: side(problem.output_side, O4), ground_line: null }) });
   }
   if (O2 && O4 && "fixed_pivots" in problem && problem.kind === "path") {
-    found.push({ text: "Begin a statement with these fixed pivots", statement: () => ({ ...problem, fixed_pivots: { input: O2.map(round), output: O4.map(round) } }) });
+    found.push({ text: t`Begin a statement with these fixed pivots`, statement: () => ({ ...problem, fixed_pivots: { input: O2.map(round), output: O4.map(round) } }) });
   }
   if (problem.kind === "motion" && "P" in skeleton.joints) {
-    found.push({ text: "Begin a statement with the positions that it takes", statement: () => ({ ...problem, positions: taken(problem, skeleton, motion, targets) }) });
+    found.push({ text: t`Begin a statement with the positions that it takes`, statement: () => ({ ...problem, positions: taken(problem, skeleton, motion, targets) }) });
   }
   const known = curve(motion, telling(skeleton));
   if (known.length > 3) {
-    found.push({ text: "Begin a path statement with its curve", statement: () => ({ kind: "path", length_unit: problem.length_unit,
+    found.push({ text: t`Begin a path statement with its curve`, statement: () => ({ kind: "path", length_unit: problem.length_unit,
       points: spread(known, motion.valid.every(Boolean)), closed: motion.valid.every(Boolean) }) });
   }
   return found;

@@ -2,6 +2,7 @@
 
 import { el } from "./dom.js";
 import { differ, range, told } from "./measured.js";
+import { t } from "./messages.js";
 
 /** @typedef {import("./measured.js").Quantity} Quantity */
 
@@ -21,10 +22,10 @@ export class Bounds {
       this.set.clear();
       this.show(this.shown);
       changed();
-    } }, "Show all");
+    } }, t`Show all`);
     /** @type {number[]} */
     this.shown = [];
-    this.node = el("section", { "aria-label": "Bounds" }, el("h4", {}, "Bounds"), this.rows,
+    this.node = el("section", { "aria-label": t`Bounds` }, el("h4", {}, t`Bounds`), this.rows,
       el("p", { class: "row" }, this.said, this.all));
   }
 
@@ -51,7 +52,7 @@ export class Bounds {
     const step = (high - low) / STEPS;
     const id = `bound-${k}`;
     let least = this.set.get(k)?.least ?? quantity.more;
-    const sense = el("select", { "aria-label": `${quantity.text}: which side`, onchange: () => {
+    const sense = el("select", { "aria-label": t`${quantity.text}: which side`, onchange: () => {
       least = sense.value === "≥";
       slider.value = String(least ? 0 : STEPS);
       this.set.delete(k);
@@ -71,7 +72,7 @@ export class Bounds {
     const reading = el("output", { for: id, class: "reading" });
     const say = () => {
       reading.value = told(quantity, limit());
-      slider.setAttribute("aria-valuetext", `${least ? "at least" : "at most"} ${reading.value}`);
+      slider.setAttribute("aria-valuetext", `${least ? t`at least` : t`at most`} ${reading.value}`);
     };
     say();
     return el("div", { class: "bound" }, el("label", { for: id }, quantity.text), sense, slider, reading);
@@ -87,7 +88,7 @@ export class Bounds {
     const kept = this.kept();
     const some = kept.filter(Boolean).length;
     this.all.hidden = this.set.size === 0;
-    this.said.textContent = this.set.size ? `${some} of ${kept.length} designs meet ${this.set.size > 1 ? "all of them" : "it"}.`
-      : `All ${kept.length} designs are shown.`;
+    this.said.textContent = this.set.size ? this.set.size > 1 ? t`${some} of ${kept.length} designs meet all of them.` : t`${some} of ${kept.length} designs meet it.`
+      : t`All ${kept.length} designs are shown.`;
   }
 }

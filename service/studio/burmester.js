@@ -3,6 +3,7 @@
 import * as api from "./api.js";
 import { el, shown, svg } from "./dom.js";
 import { Grip, led } from "./grip.js";
+import { t, term, translated } from "./messages.js";
 import { roomOf } from "./stage.js";
 import { View } from "./view.js";
 import { Zoom } from "./zoom.js";
@@ -43,7 +44,7 @@ export class Burmester {
     this.view = new View(/** @type {Point[]} */ (around), width, height, Math.min(90, 0.2 * Math.min(width, height)));
     this.dyads = SIDES.map(({ moving }) => this.nearest("circle_points", joints[moving]));
     this.lines = SIDES.map((_, k) => svg("line", { class: k ? "arm" : "arm input" }));
-    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas drag", role: "group", "aria-label": "Burmester's curves, pivots to be drawn along them" },
+    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas drag", role: "group", "aria-label": t`Burmester's curves, pivots to be drawn along them` },
       svg("rect", { class: "paper", width, height }),
       ...this.branches.flatMap((branch) => [
         svg("path", { class: "centre-points", d: this.view.path(branch.centre_points) + (branch.closed ? "Z" : "") }),
@@ -52,15 +53,15 @@ export class Burmester {
       ...this.lines);
     this.handles = SIDES.flatMap((names, k) => [this.handle(k, "circle_points", names.moving), this.handle(k, "centre_points", names.fixed)]);
     this.picture.append(...this.handles.map(({ grip }) => grip.node));
-    this.told = el("p", { class: "note", role: "status" }, "Draw a pivot along its curve, or move it with the arrow keys: the linkage on these pivots is solved.");
+    this.told = el("p", { class: "note", role: "status" }, t`Draw a pivot along its curve, or move it with the arrow keys: the linkage on these pivots is solved.`);
     this.keep = el("button", { type: "button", class: "small", hidden: true, onclick: () => {
       const kept = this.trial;
       this.trial = "";
       location.hash = `job=${kept}`;
-    } }, "Keep this linkage as a job");
+    } }, t`Keep this linkage as a job`);
     place.replaceChildren(el("p", { class: "note" },
-      el("span", { class: "key circle-key" }, "Circle points"), ": where the moving pivots may be in the first position; ",
-      el("span", { class: "key centre-key" }, "centre points"), ": their fixed pivots."), el("div", { class: "stage" }, this.picture, new Zoom(this.picture).buttons), el("div", { class: "row" }, this.told, this.keep));
+      el("span", { class: "key circle-key" }, t`Circle points`), ": ", t`where the moving pivots may be in the first position`, "; ",
+      el("span", { class: "key centre-key" }, t`centre points`), ": ", t`their fixed pivots`, "."), el("div", { class: "stage" }, this.picture, new Zoom(this.picture).buttons), el("div", { class: "row" }, this.told, this.keep));
     this.draw();
   }
 
@@ -115,7 +116,7 @@ export class Burmester {
       const { branch, at } = this.dyads[k];
       const [x, y] = this.branches[branch][which][at];
       grip.put(this.view.at(x, y));
-      grip.call(`${name} on ${which === "circle_points" ? "the circle points" : "the centre points"}, branch ${branch + 1}`);
+      grip.call(which === "circle_points" ? t`${name} on the circle points, branch ${branch + 1}` : t`${name} on the centre points, branch ${branch + 1}`);
       grip.node.setAttribute("aria-valuemax", String(this.branches[branch][which].length - 1));
       grip.node.setAttribute("aria-valuenow", String(at));
       grip.node.setAttribute("aria-valuetext", `x ${shown(x)}, y ${shown(y)}`);
@@ -132,9 +133,9 @@ export class Burmester {
     const asking = (this.asking = new AbortController());
     const chosen = Object.fromEntries(SIDES.map(({ side }, k) =>
       [side, { moving_pivot: this.branches[this.dyads[k].branch].circle_points[this.dyads[k].at] }]));
-    this.told.replaceChildren("The linkage on these pivots is being solved …");
+    this.told.replaceChildren(t`The linkage on these pivots is being solved …`);
     try {
-      const job = await api.solved({ ...this.problem, ...chosen, include_failed: true, max_designs: 1 }, "Pivots on Burmester's curves", asking.signal);
+      const job = await api.solved({ ...this.problem, ...chosen, include_failed: true, max_designs: 1 }, t`Pivots on Burmester's curves`, asking.signal);
       if (asking.signal.aborted || this.gone.signal.aborted) {
         await api.remove(job.id).catch(() => undefined);
         return;
@@ -142,10 +143,10 @@ export class Burmester {
       const before = this.trial;
       this.trial = job.id;
       this.keep.hidden = false;
-      if (!job.result) this.told.replaceChildren(`The job is ${job.status}; open it to follow it.`);
+      if (!job.result) this.told.replaceChildren(t`The job is ${term(job.status)}; open it to follow it.`);
       else {
         const found = job.result.designs.length;
-        this.told.replaceChildren(found ? `Solved: ${job.result.designs[0].verification.passed ? "it passes all checks." : "it fails a check; see below which."}` : job.result.summary);
+        this.told.replaceChildren(found ? (job.result.designs[0].verification.passed ? t`Solved: it passes all checks.` : t`Solved: it fails a check; see below which.`) : translated(job.result.summary));
         if (found) this.showSolved(job);
       }
       // Only now, when nothing of it is asked for any more.

@@ -2,6 +2,7 @@
 
 import { el, shown, svg } from "./dom.js";
 import { Gauge } from "./gauge.js";
+import { t } from "./messages.js";
 import { Player, between } from "./player.js";
 import { plots } from "./plots.js";
 import { along } from "./quantities.js";
@@ -20,11 +21,11 @@ export function diagrams(mechanism, motion, problem) {
   const over = (/** @type {string} */ name) => along(angles, [...program[name], program[name][0]], motion.input_angle);
   const swings = mechanism.follower.type.startsWith("oscillating");
   const unit = swings ? "°" : problem.length_unit;
-  const titles = { s: `Displacement s (${unit})`, v: "Velocity v (by rad)", a: "Acceleration a (by rad²)", j: "Jerk j (by rad³)" };
+  const titles = { s: t`Displacement s (${unit})`, v: t`Velocity v (by rad)`, a: t`Acceleration a (by rad²)`, j: t`Jerk j (by rad³)` };
   const lift = Math.max(...program.s) - Math.min(...program.s);
   return [
     ...Object.entries(titles).map(([name, title]) => ({ title, lines: { "": over(name) }, least: lift })),
-    { title: "Pressure angle (°)", lines: { "": motion.pressure_angle }, limit: problem.limits?.pressure_angle, least: 1 },
+    { title: t`Pressure angle (°)`, lines: { "": motion.pressure_angle }, limit: problem.limits?.pressure_angle, least: 1 },
   ];
 }
 
@@ -46,8 +47,8 @@ export class Turning {
     const scene = this.scene();
     // A flat face that only moves along has none.
     this.gauge = motion.pressure_angle.some((/** @type {any} */ one) => one > 0.01)
-      ? new Gauge("Pressure angle", motion.pressure_angle, { limit: problem.limits?.pressure_angle, atMost: true }) : null;
-    this.player = new Player({ count: this.count, closed: true, label: "Cam", reading: (at) => this.reading(at), show: (at) => this.show(at) });
+      ? new Gauge(t`Pressure angle`, motion.pressure_angle, { limit: problem.limits?.pressure_angle, atMost: true }) : null;
+    this.player = new Player({ count: this.count, closed: true, label: t`Cam`, reading: (at) => this.reading(at), show: (at) => this.show(at) });
     this.marks = plots(diagrams(this.mechanism, motion, problem), motion.input_angle, (at) => this.player.lead(at));
     this.facts = el("dl", { class: "facts" });
     const [width, height] = this.size;
@@ -61,7 +62,7 @@ export class Turning {
 
   /** What the picture shows, in words. */
   get label() {
-    return "The cam, turning under its follower";
+    return t`The cam, turning under its follower`;
   }
 
   /** @returns {Element[]} */
@@ -185,7 +186,7 @@ export class Disc extends Turning {
       this.holder.setAttribute("d", view.path(other ? [...(this.swings ? [centre, end, other] : [other, centre, end])] : [centre, end]));
       if (other) this.other.setAttribute("transform", `translate(${view.at(...other).map((one) => one.toFixed(2)).join(" ")})`);
     } else this.holder.setAttribute("d", this.face(touching));
-    const what = this.swings ? "Arm" : "Follower";
+    const what = this.swings ? t`Arm` : t`Follower`;
     this.facts.replaceChildren(el("dt", {}, what), el("dd", {}, this.place(at)));
   }
 

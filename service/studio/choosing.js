@@ -4,6 +4,7 @@ import { Bounds } from "./bounds.js";
 import { Comparison, sideBySide } from "./comparison.js";
 import { el } from "./dom.js";
 import { quantities } from "./measured.js";
+import { t, term } from "./messages.js";
 import { Scatter } from "./scatter.js";
 
 /** Of a front, the names of what stands in the metrics under another name. @type {Record<string, string>} */
@@ -48,7 +49,7 @@ export class Choosing {
       onclick: () => {
         this.manner = this.manner === manner ? null : manner;
         this.compare();
-      } }, manner === "beside" ? "Side by side" : "Overlay"));
+      } }, manner === "beside" ? t`Side by side` : t`Overlay`));
     strip.changed = () => this.tell();
   }
 
@@ -66,12 +67,11 @@ export class Choosing {
     this.open = true;
     this.bounds.show(this.scatter.axes);
     this.place.replaceChildren(this.scatter.node,
-      ...(this.front.length ? [el("p", { class: "note" }, "Ringed: no other design beats it in all of ",
-        `${this.job.result.front.quantities.map((/** @type {string} */ name) => FRONT[name] ?? name).join(", ").replaceAll("_", " ")}.`)] : []),
+      ...(this.front.length ? [el("p", { class: "note" }, t`Ringed: no other design beats it in all of ${this.job.result.front.quantities.map((/** @type {string} */ name) => term(FRONT[name] ?? name)).join(", ")}.`)] : []),
       this.bounds.node,
-      el("section", { "aria-label": "Two designs" }, el("h4", {}, "Compare"),
-        el("div", { class: "row" }, el("label", { for: "compare-with" }, "With"), this.pick,
-          el("div", { class: "row", role: "group", "aria-label": "On the stage" }, ...this.manners)), this.table));
+      el("section", { "aria-label": t`Two designs` }, el("h4", {}, t`Compare`),
+        el("div", { class: "row" }, el("label", { for: "compare-with" }, t`With`), this.pick,
+          el("div", { class: "row", role: "group", "aria-label": t`On the stage` }, ...this.manners)), this.table));
     this.tell();
     this.compare();
   }
@@ -103,7 +103,7 @@ export class Choosing {
     const { chosen, pinned } = this.strip;
     this.scatter.show({ chosen, pinned, kept: this.bounds.kept(), front: this.front });
     this.pick.replaceChildren(el("option", { value: "" }, "–"), ...this.strip.row.filter((n) => n !== chosen)
-      .map((n) => el("option", { value: n }, `Design ${n + 1}${pinned.includes(n) ? " ★" : ""}`)));
+      .map((n) => el("option", { value: n }, t`Design ${n + 1}`, pinned.includes(n) && " ★")));
     this.pick.value = this.other === null ? "" : String(this.other);
   }
 
@@ -118,7 +118,7 @@ export class Choosing {
       button.disabled = other === null || (k === 1 && !both);
       button.setAttribute("aria-pressed", String(manner === of && !button.disabled));
     });
-    this.table.replaceChildren(other === null ? el("p", { class: "note" }, "Choose a second design: what differs is marked.")
+    this.table.replaceChildren(other === null ? el("p", { class: "note" }, t`Choose a second design: what differs is marked.`)
       : sideBySide(designs, [strip.chosen, other], this.job.problem));
     if (other === null || manner === null || !shown || (manner === "over" && !both)) return;
     this.desk.stage.show("watch");

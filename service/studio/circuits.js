@@ -2,6 +2,7 @@
 
 import { el, svg } from "./dom.js";
 import { Linkage, drawn, grounded } from "./linkage.js";
+import { t } from "./messages.js";
 
 /** @typedef {[number, number]} Point */
 /** @typedef {{from: number, to: number, full: boolean, reference: boolean, circuit: number, joints: Record<string, {x: (number | null)[], y: (number | null)[]}>}} Branch */
@@ -41,11 +42,13 @@ export class Circuits {
     box.checked = this.branches.length <= 3;
     this.node.toggleAttribute("hidden", !box.checked);
     const branches = circuits.reduce((/** @type {number} */ sum, /** @type {any} */ one) => sum + one.branches.length, 0);
-    const on = own < 0 ? "" : `: it moves on circuit ${own + 1} of ${circuits.length}`;
-    const text = circuits.length === 1 ? `Other ${branches === 2 ? "branch" : "branches"} of its one circuit, faint`
-      : `Other circuit${circuits.length > 2 ? "s" : ""}, faint${on}${branches > circuits.length ? `, with ${branches} branches in all` : ""}`;
+    const text = circuits.length === 1
+      ? branches === 2 ? t`Other branch of its one circuit, faint` : t`Other branches of its one circuit, faint`
+      : [circuits.length > 2 ? t`Other circuits, faint` : t`Other circuit, faint`,
+        [own >= 0 && t`it moves on circuit ${own + 1} of ${circuits.length}`, branches > circuits.length && t`with ${branches} branches in all`]
+          .filter(Boolean).join(", ")].filter(Boolean).join(": ");
     this.control = this.branches.length ? el("label", { class: "flag", for: "circuits" }, box, text)
-      : circuits.length === 1 && el("span", { class: "note" }, "It has one circuit, without toggles.");
+      : circuits.length === 1 && el("span", { class: "note" }, t`It has one circuit, without toggles.`);
   }
 
   /** Where the other circuits are at the same input. @param {number | null} input degrees, or a length along the slide @param {number} period */

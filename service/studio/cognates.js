@@ -2,6 +2,7 @@
 
 import * as api from "./api.js";
 import { el, shown, words } from "./dom.js";
+import { foreign, t, translated } from "./messages.js";
 
 /** @typedef {{name: string, mechanism: any, note: string, metrics: Record<string, any>}} Choice with what was measured of it */
 
@@ -14,40 +15,42 @@ const BY_CURVE = ["path", "straight_line"];
  */
 export async function cognates(design, problem, signal) {
   const { mechanism } = design;
-  const own = { name: "Design", mechanism, note: design.cognate_choice ?? "", metrics: design.metrics ?? {} };
+  const own = { name: t`Design`, mechanism, note: design.cognate_choice ?? "", metrics: design.metrics ?? {} };
   if (mechanism.type !== "fourbar" || !BY_CURVE.includes(problem.kind)) return [own];
   if (design.cognates?.length) {
     return [own, ...design.cognates.map((/** @type {any} */ cognate) => {
       const { side, mechanism: its, ...metrics } = cognate;
-      return { name: `${words(side)} cognate`, mechanism: its, note: told(cognate), metrics };
+      return { name: side === "left" ? t`Left cognate` : t`Right cognate`, mechanism: its, note: told(cognate), metrics };
     })];
   }
   const question = { mechanism, motion: { at: mechanism.reference_input_angle }, include: ["cognates"] };
   const pair = await api.analysis(question, signal).then((answer) => answer.fourbar.cognates, () => null);
   if (!pair) return [own];
   return [own,
-    { name: "Left cognate", mechanism: pair.left, metrics: {}, note: "It traces the same curve; its input turns with the design's coupler." },
-    { name: "Right cognate", mechanism: pair.right, metrics: {}, note: "It traces the same curve; its input turns with the design's input." }];
+    { name: t`Left cognate`, mechanism: pair.left, metrics: {}, note: t`It traces the same curve; its input turns with the design's coupler.` },
+    { name: t`Right cognate`, mechanism: pair.right, metrics: {}, note: t`It traces the same curve; its input turns with the design's input.` }];
 }
 
 /** @param {any} one a cognate as measured */
 function told(one) {
   const able = [
-    `${words(one.grashof)}, transmits at ${shown(Math.round(10 * one.min_transmission_angle) / 10)}° at least`,
-    one.same_timing ? "keeps the crank angles" : "has other crank angles",
-    one.same_branch ? "passes all targets without a toggle" : "passes a toggle between the targets",
-    `traces the curve within ${shown(Number(one.deviation.toPrecision(2)))}`,
+    t`${words(one.grashof)}, transmits at ${shown(Math.round(10 * one.min_transmission_angle) / 10)}° at least`,
+    one.same_timing ? t`keeps the crank angles` : t`has other crank angles`,
+    one.same_branch ? t`passes all targets without a toggle` : t`passes a toggle between the targets`,
+    t`traces the curve within ${shown(Number(one.deviation.toPrecision(2)))}`,
   ];
   return `${able.join("; ")}.`;
 }
 
 /** @param {Choice[]} choices @param {(choice: Choice) => void} choose */
 export function picker(choices, choose) {
-  const note = el("span", { class: "note" }, choices[0].note);
-  return el("fieldset", { id: "cognates", class: "row choice" }, el("legend", {}, "The same curve by"),
+  // Of the design the service tells, of the others the page.
+  const notes = choices.map((one, k) => (k ? el("span", {}, one.note) : el("span", { lang: foreign(one.note) }, translated(one.note))));
+  const note = el("span", { class: "note" }, notes[0]);
+  return el("fieldset", { id: "cognates", class: "row choice" }, el("legend", {}, t`The same curve by`),
     ...choices.map((one, k) => {
       const box = el("input", { type: "radio", name: "cognate", id: `cognate-${k}`, onchange: () => {
-        note.replaceChildren(one.note);
+        note.replaceChildren(notes[k]);
         choose(one);
       } });
       box.checked = k === 0;

@@ -8,6 +8,7 @@ import { Mover } from "./mover.js";
 import { Frame } from "./stage.js";
 import { jointsAt } from "./sweep.js";
 import { telling } from "./circuits.js";
+import { t } from "./messages.js";
 import { STEPS, TURN_STEPS, VIEWS } from "./views.js";
 
 /** @typedef {[number, number]} Point */
@@ -66,7 +67,7 @@ export class Comparison {
       shown.again();
       return;
     }
-    const frame = new Second(desk.other, `Design ${this.n + 1}: ${words(design.mechanism.type)}`);
+    const frame = new Second(desk.other, t`Design ${this.n + 1}: ${words(design.mechanism.type)}`);
     const View = VIEWS[design.mechanism.type];
     this.moving = View ? new View(frame, design, motion, job.problem) : new Mover(frame, design, motion, job.problem);
     const { player } = this.moving;
@@ -107,7 +108,7 @@ export class Comparison {
     const { other } = this.desk;
     other.hidden = !is;
     other.parentElement?.classList.toggle("split", is);
-    other.replaceChildren(...(is ? [el("div", { class: "said" }, el("p", { class: "note" }, "The motion is being computed …"))] : []));
+    other.replaceChildren(...(is ? [el("div", { class: "said" }, el("p", { class: "note" }, t`The motion is being computed …`))] : []));
   }
 
   stop() {
@@ -139,13 +140,13 @@ export function sideBySide(designs, which, problem) {
     // As many digits as it takes to tell the two apart.
     const close = differs && a.text === b.text;
     return el("tr", { class: differs ? "differs" : null },
-      el("th", { scope: "row" }, words(name), differs && el("span", { class: "hidden" }, ", differs")),
+      el("th", { scope: "row" }, words(name), differs && el("span", { class: "hidden" }, ", ", t`differs`)),
       ...[a, b].map((cell) => el("td", { title: cell.title }, close ? cell.title : cell.text)));
   });
   return el("div", { class: "side-by-side" }, el("table", { class: "figures" },
-    el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Quantities"), ...which.map((n) => el("th", { scope: "col" }, `Design ${n + 1}`)))),
+    el("thead", {}, el("tr", {}, el("th", { scope: "col" }, t`Quantities`), ...which.map((n) => el("th", { scope: "col" }, t`Design ${n + 1}`)))),
     el("tbody", {}, ...rows(told)),
-    el("tbody", {}, el("tr", {}, el("th", { scope: "rowgroup", colspan: 3, class: "part" }, "Dimensions")), ...rows(sizes))));
+    el("tbody", {}, el("tr", {}, el("th", { scope: "rowgroup", colspan: 3, class: "part" }, t`Dimensions`)), ...rows(sizes))));
 }
 
 /** @typedef {{text: string, title: string | null}} Cell */

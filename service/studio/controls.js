@@ -1,12 +1,13 @@
 /** Controls of a single value, as forms and tables have them. */
 
 import { el, words } from "./dom.js";
+import { t, term } from "./messages.js";
 
 /** @param {string[]} choices @param {any} value @param {boolean} nullable @param {(value: any) => void} set */
 export function choice(choices, value, nullable, set) {
   const names = nullable ? ["", ...choices] : choices;
   const box = el("select", { onchange: () => set(box.value === "" ? undefined : box.value) },
-    ...names.map((one) => el("option", { value: one }, one === "" ? "–" : String(one).replaceAll("_", " "))));
+    ...names.map((one) => el("option", { value: one }, one === "" ? "–" : term(String(one)))));
   box.value = value ?? names[0];
   return box;
 }
@@ -58,7 +59,7 @@ export function jsonBox(value, set) {
       set(text === "" ? undefined : JSON.parse(text));
       box.setCustomValidity("");
     } catch {
-      box.setCustomValidity("This is no JSON yet.");
+      box.setCustomValidity(t`This is no JSON yet.`);
     }
   } });
   if (value !== undefined && value !== null) box.value = JSON.stringify(value, null, 1);
@@ -87,7 +88,7 @@ export function choices(name, note, path, all, value, set) {
     return box;
   });
   return el("fieldset", { class: "field", "data-path": path, tabindex: -1 }, el("legend", {}, words(name)),
-    ...boxes.map((box, k) => el("label", { class: "flag", for: box.id }, box, all[k].replaceAll("_", " "))),
+    ...boxes.map((box, k) => el("label", { class: "flag", for: box.id }, box, term(all[k]))),
     el("p", { class: "error" }), note && el("p", { class: "note" }, note));
 }
 

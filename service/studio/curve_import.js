@@ -7,6 +7,7 @@ import * as api from "./api.js";
 import { el, shown, svg } from "./dom.js";
 import { called, rounded, spread } from "./drawing_import.js";
 import { segmentsOf } from "./follower_table.js";
+import { t } from "./messages.js";
 import { rolesOf, stateArea } from "./room.js";
 import { View } from "./view.js";
 
@@ -34,10 +35,10 @@ export class CurveImport {
     this.backdrop = backdrop;
     this.stated = stated;
     this.changed = changed;
-    this.chooser = el("input", { type: "file", id: "curve-file", class: "hidden", accept: ACCEPTED, "aria-label": "Drawing, table or picture", tabindex: -1,
+    this.chooser = el("input", { type: "file", id: "curve-file", class: "hidden", accept: ACCEPTED, "aria-label": t`Drawing, table or picture`, tabindex: -1,
       onchange: () => this.take(this.chooser.files[0]) });
-    this.button = el("button", { type: "button", class: "small", id: "curve-import", onclick: () => this.chooser.click() }, "Import curves");
-    this.hint = el("span", { class: "note" }, "SVG, DXF, CSV or PNG; or drop a file anywhere on the page");
+    this.button = el("button", { type: "button", class: "small", id: "curve-import", onclick: () => this.chooser.click() }, t`Import curves`);
+    this.hint = el("span", { class: "note" }, t`SVG, DXF, CSV or PNG; or drop a file anywhere on the page`);
     this.said = el("p", { class: "note", role: "status" });
     this.list = el("div", {});
     this.node = el("div", { id: "curves" }, this.chooser, el("div", { class: "row" }, this.button, this.hint), this.said, this.list, backdrop.node);
@@ -71,13 +72,13 @@ export class CurveImport {
     /** @type {Use[]} */
     const uses = [];
     if (problem.kind === "path") {
-      uses.push({ name: "points", text: "Points of the path", closed: null, most: OF_PATH, state: (points, closed) => {
+      uses.push({ name: "points", text: t`Points of the path`, closed: null, most: OF_PATH, state: (points, closed) => {
         problem.points = points.map(([x, y]) => ({ x, y }));
         problem.closed = closed;
       } });
     }
     if (problem.kind === "cam") {
-      uses.push({ name: "motion", text: "Motion of the follower", closed: false, most: OF_CAM, state: (points) => {
+      uses.push({ name: "motion", text: t`Motion of the follower`, closed: false, most: OF_CAM, state: (points) => {
         problem.segments = segmentsOf(points, problem.follower?.type?.startsWith("oscillating") ? Math.PI / 180 : 1);
       } });
     }
@@ -108,7 +109,7 @@ export class CurveImport {
     const { file } = this;
     if (!file) return;
     const unit = this.stated().problem.length_unit ?? "mm";
-    this.said.textContent = `Reading ${file.name} …`;
+    this.said.textContent = t`Reading ${file.name} …`;
     this.button.disabled = true;
     try {
       const found = await api.curves(file, unit, most);
@@ -139,42 +140,42 @@ export class CurveImport {
       return [rounded(u), rounded(v)];
     });
     const rows = found.curves.map((curve, k) => row(curve, k, uses));
-    const place = el("button", { type: "button", class: "small", id: "curve-place", onclick: () => this.place(file.name, rows, (k, area) => placed((area ? areas : found).curves[k])) }, "Use");
+    const place = el("button", { type: "button", class: "small", id: "curve-place", onclick: () => this.place(file.name, rows, (k, area) => placed((area ? areas : found).curves[k])) }, t`Use`);
     const told = () => {
       for (const { curve, size } of rows) {
         const points = placed(curve);
         const [width, height] = [spread(points, 0), spread(points, 1)];
-        size.textContent = `${shown(width)} × ${shown(height)} ${unit}, ${points.length} points, ${curve.closed ? "closed" : "open"}`;
+        size.textContent = `${shown(width)} × ${shown(height)} ${unit}, ${curve.closed ? t`${points.length} points, closed` : t`${points.length} points, open`}`;
       }
       place.disabled = this.stated().problem !== stated || rows.every(({ use }) => !use.value) || !(laid() || Number.isFinite(factor()));
     };
     for (const { use } of rows) use.addEventListener("change", told);
-    const states = found.format === "png" && found.length_unit === null ? `the picture states no scale, and a pixel is taken as ${shown(found.scale)} ${unit}`
-      : found.length_unit === null ? `the file states no unit, and its numbers are taken as ${unit}` : `a unit of the file is ${shown(found.millimetres_per_unit)} mm`;
-    this.said.textContent = `${file.name}: ${found.curves.length} curve${found.curves.length === 1 ? "" : "s"}; ${states}.`;
-    if (!uses.length) this.said.append(" Problems of this kind take no curve.");
+    const states = found.format === "png" && found.length_unit === null ? t`the picture states no scale, and a pixel is taken as ${shown(found.scale)} ${unit}`
+      : found.length_unit === null ? t`the file states no unit, and its numbers are taken as ${unit}` : t`a unit of the file is ${shown(found.millimetres_per_unit)} mm`;
+    this.said.textContent = `${file.name}: ${found.curves.length === 1 ? t`1 curve` : t`${found.curves.length} curves`}; ${states}.`;
+    if (!uses.length) this.said.append(" ", t`Problems of this kind take no curve.`);
     this.list.replaceChildren(
-      el("div", { class: "row" }, el("label", { for: "curve-scale" }, `Scale (${unit} in a unit of the file)`), scale,
-        el("label", { for: "curve-points" }, "Points at most"), count),
-      el("ul", { class: "drawn", "aria-label": `Curves in ${file.name}` }, ...rows.map(({ node }) => node)),
-      found.left_out_count > 0 && el("details", {}, el("summary", {}, `${found.left_out_count} left out`),
+      el("div", { class: "row" }, el("label", { for: "curve-scale" }, t`Scale (${unit} in a unit of the file)`), scale,
+        el("label", { for: "curve-points" }, t`Points at most`), count),
+      el("ul", { class: "drawn", "aria-label": t`Curves in ${file.name}` }, ...rows.map(({ node }) => node)),
+      found.left_out_count > 0 && el("details", {}, el("summary", {}, t`${found.left_out_count} left out`),
         el("ul", { class: "reasons" }, ...found.left_out.map((one) => el("li", {}, `${called(one)}: ${one.reason}`)))) || "",
       el("div", { class: "row" }, place, found.format === "png" && this.layer(file, found.length_unit === null ? null : found.scale),
-        el("button", { type: "button", class: "small", onclick: () => this.close("") }, "Close")));
+        el("button", { type: "button", class: "small", onclick: () => this.close("") }, t`Close`)));
     this.told = told;
     told();
   }
 
   /** The button that lays a picture behind the canvas. @param {File} file @param {number | null} scale */
   layer(file, scale) {
-    return el("button", { type: "button", class: "small", id: "curve-behind", onclick: () => this.behind(file, scale) }, "Lay it behind the canvas");
+    return el("button", { type: "button", class: "small", id: "curve-behind", onclick: () => this.behind(file, scale) }, t`Lay it behind the canvas`);
   }
 
   /** @param {File} file @param {number | null} [scale] */
   async behind(file, scale = null) {
     try {
       await this.backdrop.lay(file, this.stated().problem.length_unit ?? "mm", scale);
-      this.said.textContent = `${file.name} lies behind the canvas.`;
+      this.said.textContent = t`${file.name} lies behind the canvas.`;
       this.told?.();
     } catch (error) {
       this.said.textContent = error instanceof Error ? error.message : String(error);
@@ -196,7 +197,7 @@ export class CurveImport {
       this.said.textContent = `${name}: ${error instanceof Error ? error.message : error}`;
       return;
     }
-    this.close(`${count} curve${count === 1 ? "" : "s"} taken from ${name}.`);
+    this.close(count === 1 ? t`1 curve taken from ${name}.` : t`${count} curves taken from ${name}.`);
     this.changed();
   }
 
@@ -214,7 +215,7 @@ function row(curve, k, uses) {
   const view = new View(points, 46, 34, 3);
   const size = el("p", { class: "note" });
   const id = `curve${k}`;
-  const use = el("select", { id }, el("option", { value: "" }, "not used"),
+  const use = el("select", { id }, el("option", { value: "" }, t`not used`),
     ...uses.filter(({ closed }) => closed === null || closed === curve.closed).map(({ name, text }) => el("option", { value: name }, text)));
   const node = el("li", {}, svg("svg", { viewBox: "0 0 46 34", width: 46, height: 34, "aria-hidden": "true" },
     svg("path", { class: "area", d: `${view.path(points)}${curve.closed ? "Z" : ""}` })),

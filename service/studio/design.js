@@ -10,11 +10,12 @@ import { downloads } from "./downloads.js";
 import { Explorer } from "./explorer.js";
 import { Forces } from "./forces.js";
 import { checks, dimensions, figures, made, table } from "./figures.js";
+import { t } from "./messages.js";
 import { Mover, demanded } from "./mover.js";
 import { thumbnail } from "./thumbnail.js";
 import { STEPS, TURN_STEPS, VIEWS } from "./views.js";
 
-const OF_THE_DESIGN = "Checks, drawing and files are those of the design: choose it above the numbers to see them.";
+const OF_THE_DESIGN = t`Checks, drawing and files are those of the design: choose it above the numbers to see them.`;
 
 /** @typedef {import("./views.js").Moving} Moving */
 /** @typedef {{choice: import("./cognates.js").Choice, design: any, motion: any, circuits: any}} Film */
@@ -54,7 +55,7 @@ export class Shown {
     this.n = n;
     this.design = job.result.designs[n];
     this.burmester(job, n);
-    this.present(job, n, `Design ${n + 1}`);
+    this.present(job, n, t`Design ${n + 1}`);
   }
 
   /** Show a design of a job. @param {api.Job} job @param {number} n @param {string} title */
@@ -83,7 +84,7 @@ export class Shown {
   /** The numbers of the design. */
   tabulated() {
     const { design, job } = this;
-    return [el("div", { class: "columns" }, checks(design, job.problem), table("Quantities", figures(design), job.problem), ...made(design), dimensions(design, job.problem))];
+    return [el("div", { class: "columns" }, checks(design, job.problem), table(t`Quantities`, figures(design), job.problem), ...made(design), dimensions(design, job.problem))];
   }
 
   /** Its files, and its drawing. */
@@ -99,7 +100,7 @@ export class Shown {
     if (!url) return;
     if (gone.aborted) return URL.revokeObjectURL(url);
     this.url = url;
-    this.drawing.replaceChildren(el("img", { src: url, alt: `Drawing of design ${this.n + 1} with its dimensions` }));
+    this.drawing.replaceChildren(el("img", { src: url, alt: t`Drawing of design ${this.n + 1} with its dimensions` }));
   }
 
   /** @param {AbortSignal} gone */
@@ -107,7 +108,7 @@ export class Shown {
     const { mechanism } = this.design;
     const { frame } = this.desk;
     if (!frame.idle) frame.wait(true);
-    else frame.say(thumbnail(this.design) ?? "", el("p", { class: "note" }, "The motion is being computed …"));
+    else frame.say(thumbnail(this.design) ?? "", el("p", { class: "note" }, t`The motion is being computed …`));
     try {
       const View = VIEWS[mechanism.type];
       if (View) {
@@ -211,7 +212,7 @@ export class Shown {
     const details = el("details", { id: "forces", open: Boolean(job.problem.dynamics ?? design.dynamics), ontoggle: () => {
       this.forces?.stop();
       this.forces = details.open && details.isConnected ? new Forces(inside, job, n, this.mover) : null;
-    } }, el("summary", {}, "Forces: what it bears, and what drives it"), inside);
+    } }, el("summary", {}, t`Forces: what it bears, and what drives it`), inside);
     return [details];
   }
 
@@ -251,14 +252,14 @@ export class Shown {
     drawer.on("curves", there ? {
       opened: () => {
         split(true);
-        this.curves = new Burmester(curves, job, job.result.designs[n], (solved) => this.present(solved, 0, "On these pivots"));
+        this.curves = new Burmester(curves, job, job.result.designs[n], (solved) => this.present(solved, 0, t`On these pivots`));
       },
       closed: () => {
         split(false);
         this.curves?.stop();
         this.curves = null;
         curves.replaceChildren();
-        if (this.job !== job && !this.ended) this.present(job, n, `Design ${n + 1}`);
+        if (this.job !== job && !this.ended) this.present(job, n, t`Design ${n + 1}`);
       },
     } : null);
     drawer.offer("curves", there);
@@ -298,6 +299,6 @@ function cognateNumbers({ choice, design }, problem) {
   const measured = figures(design);
   return [
     el("p", { class: "note" }, OF_THE_DESIGN),
-    el("div", { class: "columns" }, measured.length > 0 && table(`Quantities of the ${choice.name.toLowerCase()}`, measured, problem), dimensions(design, problem)),
+    el("div", { class: "columns" }, measured.length > 0 && table(t`Quantities of the ${`${choice.name.charAt(0).toLowerCase()}${choice.name.slice(1)}`}`, measured, problem), dimensions(design, problem)),
   ];
 }

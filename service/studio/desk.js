@@ -2,6 +2,7 @@
 
 import { byId, el } from "./dom.js";
 import { Drawer } from "./drawer.js";
+import { t } from "./messages.js";
 import { Stage } from "./stage.js";
 
 export class Desk {
@@ -22,12 +23,12 @@ export class Desk {
     this.other = byId("other");
     this.choosing = byId("choosing");
     this.assembly = byId("assembly");
-    for (const [name, text] of [["task", "Task"], ["answers", "Answers"]]) {
+    for (const [name, text] of [["task", t`Task`], ["answers", t`Answers`]]) {
       this.drawer.add(name, text, byId(name === "task" ? "statement" : "answers"), true);
     }
-    for (const text of ["Numbers", "Plots", "Explore", "Compare", "Curves", "Assembly", "Files", "Jobs"]) {
-      this.drawer.add(text.toLowerCase(), text, byId(`pane-${text.toLowerCase()}`));
-    }
+    const tabs = { numbers: t`Numbers`, plots: t`Plots`, explore: t`Explore`, compare: t`Compare`, curves: t`Curves`,
+      assembly: t`Assembly`, files: t`Files`, jobs: t`Jobs` };
+    for (const [name, text] of Object.entries(tabs)) this.drawer.add(name, text, byId(`pane-${name}`));
     for (const name of ["compare", "curves", "assembly"]) this.drawer.offer(name, false);
   }
 
@@ -42,9 +43,9 @@ export class Desk {
     this.frame.say();
     this.before.replaceChildren();
     this.forced.replaceChildren();
-    for (const [place, what] of /** @type {[HTMLElement, string][]} */ ([[this.numbers, "numbers"],
-      [this.frame.plots, "plots"], [this.files, "files"]])) {
-      place.replaceChildren(el("p", { class: "note" }, `The ${what} of a design stand here when there is one.`));
+    for (const [place, text] of /** @type {[HTMLElement, string][]} */ ([[this.numbers, t`The numbers of a design stand here when there is one.`],
+      [this.frame.plots, t`The plots of a design stand here when there is one.`], [this.files, t`The files of a design stand here when there is one.`]])) {
+      place.replaceChildren(el("p", { class: "note" }, text));
     }
     this.explored(false);
   }
@@ -52,7 +53,7 @@ export class Desk {
   /** Say whether a linkage can be explored. @param {boolean} is */
   explored(is) {
     this.exploring.replaceChildren();
-    const note = "Linkages are explored: their pins are dragged, and what they do then is told here.";
+    const note = t`Linkages are explored: their pins are dragged, and what they do then is told here.`;
     this.explore.replaceChildren(...(is ? [] : [el("p", { class: "note" }, note)]));
   }
 }

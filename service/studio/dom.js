@@ -3,6 +3,8 @@
  * says can be read as HTML.
  */
 
+import { number, term } from "./messages.js";
+
 /** @typedef {Node | string | number | null | undefined | false} Child */
 /** @typedef {Record<string, string | number | boolean | null | undefined | ((event: any) => void)>} Attributes */
 
@@ -90,7 +92,7 @@ export function remade(places, make) {
  * @param {string} name
  */
 export function words(name) {
-  const text = name.replaceAll("_", " ");
+  const text = term(name);
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
 
@@ -100,9 +102,9 @@ export function words(name) {
  */
 export function shown(value) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
-  if (Number.isInteger(value) && Math.abs(value) < 1e7) return String(value).replace("-", "−");
+  if (Number.isInteger(value) && Math.abs(value) < 1e7) return number(value).replace("-", "−");
   const digits = Number(value.toPrecision(5));
-  if (digits === 0 || (Math.abs(digits) >= 1e-4 && Math.abs(digits) < 1e7)) return String(digits).replaceAll("-", "−");
+  if (digits === 0 || (Math.abs(digits) >= 1e-4 && Math.abs(digits) < 1e7)) return number(digits).replaceAll("-", "−");
   const [factor, power] = digits.toExponential().split("e");
-  return `${factor.replace("-", "−")}·10${[...power.replace("+", "")].map((one) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(one)]).join("")}`;
+  return `${number(factor).replace("-", "−")}·10${[...power.replace("+", "")].map((one) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(one)]).join("")}`;
 }

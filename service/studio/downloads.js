@@ -2,18 +2,19 @@
 
 import * as api from "./api.js";
 import { el } from "./dom.js";
+import { t } from "./messages.js";
 
 /** @type {Record<string, [string, string]>} */
 const SIMULATIONS = {
-  "mjcf": ["MuJoCo", "A model of MuJoCo: loops closed, the input driven"],
-  "urdf": ["URDF", "A tree of links and joints for robotics programs, its loops beside it"],
-  "mo": ["Modelica", "A model of Modelica's MultiBody library"],
-  "sim.py": ["Simulation", "A Python script that runs the design in MuJoCo and compares it with the analysis"],
+  "mjcf": ["MuJoCo", t`A model of MuJoCo: loops closed, the input driven`],
+  "urdf": ["URDF", t`A tree of links and joints for robotics programs, its loops beside it`],
+  "mo": ["Modelica", t`A model of Modelica's MultiBody library`],
+  "sim.py": [t`Simulation`, t`A Python script that runs the design in MuJoCo and compares it with the analysis`],
 };
 
 /** @param {api.Job} job @param {number} n @param {HTMLElement} drawing where the labelled drawing stands */
 export function downloads(job, n, drawing) {
-  const place = el("div", { class: "row", id: "downloads", role: "group", "aria-label": "Files to take home" }, el("span", {}, "Take home"));
+  const place = el("div", { class: "row", id: "downloads", role: "group", "aria-label": t`Files to take home` }, el("span", {}, t`Take home`));
   const fault = el("span", { class: "error", role: "alert" });
   const button = (/** @type {string} */ title, /** @type {string} */ name, /** @type {() => Promise<string>} */ make) =>
     el("button", { type: "button", class: "small", onclick: async (/** @type {any} */ event) => {
@@ -41,7 +42,7 @@ export function downloads(job, n, drawing) {
     }),
     button("PNG", `${job.kind}-${n + 1}.png`, async () => {
       const image = drawing.querySelector("img");
-      if (!image) throw new Error("The drawing is not there yet.");
+      if (!image) throw new Error(t`The drawing is not there yet.`);
       return raster(image);
     }),
     button("JSON", `${job.kind}.json`, async () => {
@@ -50,9 +51,9 @@ export function downloads(job, n, drawing) {
     }),
     ...(api.hasParts(job.result.designs[n].mechanism) ? made(job, n, button) : []),
     ...(job.result.designs[n].mechanism.skeleton ? [opened(job, n, button)] : []),
-    button("Report", `${job.kind}.html`, () => api.report(job.id)),
+    button(t`Report`, `${job.kind}.html`, () => api.report(job.id)),
     // A link cannot send a key.
-    api.key() ? "" : el("a", { href: api.reportAt(job.id), target: "_blank", rel: "noopener" }, "Open the report"),
+    api.key() ? "" : el("a", { href: api.reportAt(job.id), target: "_blank", rel: "noopener" }, t`Open the report`),
     fault);
   return place;
 }
@@ -63,13 +64,13 @@ export function downloads(job, n, drawing) {
  * @param {(title: string, name: string, make: () => Promise<string>) => HTMLElement} button
  */
 function made(job, n, button) {
-  const cut = button("Parts", `${job.kind}-${n + 1}-parts.zip`, () => api.parts(job.id, n, { process: "laser" }));
-  cut.title = "Plates to be cut, with what joins them, a drawing of the assembly and a bill";
-  const printed = button("Printed parts", `${job.kind}-${n + 1}-printed.zip`, () => api.parts(job.id, n, { process: "print" }));
-  printed.title = "STL and 3MF files of all parts, and their assembly";
+  const cut = button(t`Parts`, `${job.kind}-${n + 1}-parts.zip`, () => api.parts(job.id, n, { process: "laser" }));
+  cut.title = t`Plates to be cut, with what joins them, a drawing of the assembly and a bill`;
+  const printed = button(t`Printed parts`, `${job.kind}-${n + 1}-printed.zip`, () => api.parts(job.id, n, { process: "print" }));
+  printed.title = t`STL and 3MF files of all parts, and their assembly`;
   if (!api.makesSolids()) {
     printed.setAttribute("disabled", "");
-    printed.title = "This service makes no solids: it runs without its extra cad (MECHSYNTH_CAD=1 make serve)";
+    printed.title = t`This service makes no solids: it runs without its extra cad (MECHSYNTH_CAD=1 make serve)`;
   }
   return [cut, printed];
 }
@@ -85,7 +86,7 @@ function opened(job, n, button) {
     el("a", { href: url, target: "_blank", rel: "noopener noreferrer" }).click();
     return "";
   });
-  there.title = "Open it in PMKS+, whose models are in their addresses: app.pmksplus.com is told all of it";
+  there.title = t`Open it in PMKS+, whose models are in their addresses: app.pmksplus.com is told all of it`;
   return there;
 }
 
@@ -98,7 +99,7 @@ async function raster(image) {
   pen.fillRect(0, 0, canvas.width, canvas.height);
   pen.drawImage(image, 0, 0, canvas.width, canvas.height);
   const blob = /** @type {Blob | null} */ (await new Promise((done) => canvas.toBlob(done, "image/png")));
-  if (!blob) throw new Error("The drawing is too large for a picture in pixels; the SVG has it whole.");
+  if (!blob) throw new Error(t`The drawing is too large for a picture in pixels; the SVG has it whole.`);
   return URL.createObjectURL(blob);
 }
 

@@ -3,6 +3,7 @@
 import * as api from "./api.js";
 import { el, shown, svg } from "./dom.js";
 import { outline } from "./hatch.js";
+import { t } from "./messages.js";
 import { rolesOf, stateArea } from "./room.js";
 import { View } from "./view.js";
 
@@ -21,8 +22,8 @@ export class DrawingImport {
     this.problem = problem;
     this.placed = placed;
     this.file = el("input", { type: "file", id: "drawing-file", class: "hidden", accept: ".svg,.dxf,image/svg+xml,image/vnd.dxf",
-      "aria-label": "Drawing, SVG or DXF", tabindex: -1, onchange: () => this.read() });
-    this.button = el("button", { type: "button", class: "small", onclick: () => this.file.click() }, "Import drawing");
+      "aria-label": t`Drawing, SVG or DXF`, tabindex: -1, onchange: () => this.read() });
+    this.button = el("button", { type: "button", class: "small", onclick: () => this.file.click() }, t`Import drawing`);
     this.said = el("p", { class: "note", role: "status" });
     this.list = el("div", {});
     /** What is under the button, and outlives a canvas that is made anew. */
@@ -35,7 +36,7 @@ export class DrawingImport {
     const [file] = this.file.files;
     if (!file) return;
     this.list.replaceChildren();
-    this.said.textContent = `Reading ${file.name} …`;
+    this.said.textContent = t`Reading ${file.name} …`;
     this.button.disabled = true;
     try {
       this.show(file.name, await api.outlines(file, this.problem.length_unit ?? "mm"));
@@ -56,7 +57,7 @@ export class DrawingImport {
     const scale = el("input", { type: "number", id: "drawing-scale", step: "any", min: 0, value: Number(found.scale.toPrecision(DIGITS)), oninput: () => told() });
     const factor = () => (scale.valueAsNumber > 0 ? scale.valueAsNumber / found.scale : NaN);
     const rows = found.outlines.map((one, k) => this.row(one, k));
-    const place = el("button", { type: "button", class: "small", id: "drawing-place", onclick: () => this.place(name, rows, factor()) }, "Place");
+    const place = el("button", { type: "button", class: "small", id: "drawing-place", onclick: () => this.place(name, rows, factor()) }, t`Place`);
     const told = () => {
       for (const row of rows) row.told(factor(), unit);
       place.disabled = !Number.isFinite(factor()) || rows.every((row) => !row.use.value);
@@ -66,16 +67,16 @@ export class DrawingImport {
       told();
     } }, ...this.options(rolesOf(this.problem)));
     for (const { use } of rows) use.addEventListener("change", told);
-    const states = found.millimetres_per_unit === null ? `the drawing states no unit, and its numbers are taken as ${unit}`
-      : `a unit of the drawing is ${shown(found.millimetres_per_unit)} mm`;
-    this.said.textContent = `${name}: ${found.outlines.length} closed outline${found.outlines.length === 1 ? "" : "s"}; ${states}. Curves are polygons within ${shown(found.tolerance)} ${unit}.`;
+    const states = found.millimetres_per_unit === null ? t`the drawing states no unit, and its numbers are taken as ${unit}`
+      : t`a unit of the drawing is ${shown(found.millimetres_per_unit)} mm`;
+    this.said.textContent = `${name}: ${found.outlines.length === 1 ? t`1 closed outline` : t`${found.outlines.length} closed outlines`}; ${states}. ${t`Curves are polygons within ${shown(found.tolerance)} ${unit}.`}`;
     this.list.replaceChildren(
-      el("div", { class: "row" }, el("label", { for: "drawing-scale" }, `Scale (${unit} in a unit of the drawing)`), scale,
-        rows.length > 1 && el("label", { for: "drawing-all" }, "All as"), rows.length > 1 && all),
-      el("ul", { class: "drawn", "aria-label": `Outlines in ${name}` }, ...rows.map((row) => row.node)),
-      found.left_out_count > 0 && el("details", {}, el("summary", {}, `${found.left_out_count} left out`),
+      el("div", { class: "row" }, el("label", { for: "drawing-scale" }, t`Scale (${unit} in a unit of the drawing)`), scale,
+        rows.length > 1 && el("label", { for: "drawing-all" }, t`All as`), rows.length > 1 && all),
+      el("ul", { class: "drawn", "aria-label": t`Outlines in ${name}` }, ...rows.map((row) => row.node)),
+      found.left_out_count > 0 && el("details", {}, el("summary", {}, t`${found.left_out_count} left out`),
         el("ul", { class: "reasons" }, ...found.left_out.map((one) => el("li", {}, `${called(one)}: ${one.reason}`)))) || "",
-      el("div", { class: "row" }, place, el("button", { type: "button", class: "small", onclick: () => this.close("") }, "Close")));
+      el("div", { class: "row" }, place, el("button", { type: "button", class: "small", onclick: () => this.close("") }, t`Close`)));
     told();
   }
 
@@ -93,14 +94,14 @@ export class DrawingImport {
     el("div", {}, el("label", { for: id }, called(one)), size), use);
     const told = (/** @type {number} */ factor, /** @type {string} */ unit) => {
       const [width, height] = [0, 1].map((axis) => factor * spread(points, axis));
-      size.textContent = one.circle ? `⌀ ${shown(width)} ${unit}` : `${shown(width)} × ${shown(height)} ${unit}, ${corners.length} corners`;
+      size.textContent = one.circle ? `⌀ ${shown(width)} ${unit}` : `${shown(width)} × ${shown(height)} ${unit}, ${t`${corners.length} corners`}`;
     };
     return { one, node, use, told };
   }
 
   /** @param {Role[]} roles */
   options(roles) {
-    return [el("option", { value: "" }, "not placed"), ...roles.map((role) => el("option", { value: role.name }, role.text))];
+    return [el("option", { value: "" }, t`not placed`), ...roles.map((role) => el("option", { value: role.name }, role.text))];
   }
 
   /** @param {string} name @param {{one: Drawn, use: any}[]} rows @param {number} factor */
@@ -118,8 +119,8 @@ export class DrawingImport {
       path = stateArea(problem, role, circle && role.name !== "box" ? { circle } : { polygon: corners });
     }
     this.last = { before, after: stated(problem.space) };
-    this.close(`${count} area${count === 1 ? "" : "s"} placed from ${name}. `);
-    this.said.append(el("button", { type: "button", class: "small", id: "drawing-undo", onclick: () => this.undo() }, "Undo"));
+    this.close(`${count === 1 ? t`1 area placed from ${name}.` : t`${count} areas placed from ${name}.`} `);
+    this.said.append(el("button", { type: "button", class: "small", id: "drawing-undo", onclick: () => this.undo() }, t`Undo`));
     this.placed(path);
   }
 
@@ -128,14 +129,14 @@ export class DrawingImport {
     const { last, problem } = this;
     if (!last) return;
     if (stated(problem.space) !== last.after) {
-      this.said.textContent = "The room has been changed since; choose what is to go, and delete it.";
+      this.said.textContent = t`The room has been changed since; choose what is to go, and delete it.`;
       return;
     }
     const before = JSON.parse(last.before);
     if (before === null) delete problem.space;
     else problem.space = before;
     this.last = null;
-    this.close("Undone.");
+    this.close(t`Undone.`);
     this.placed(undefined);
   }
 
@@ -156,7 +157,7 @@ function stated(space) {
 /** @param {{element: string, id: string | null, name: string | null, layer: string | null}} one */
 export function called({ element, id, name, layer }) {
   const own = [name, id].filter((text) => text !== null).join(", ") || element;
-  return layer === null ? own : `${own} on ${layer}`;
+  return layer === null ? own : t`${own} on ${layer}`;
 }
 
 /** Corners of the square around a circle. @param {{center: Point, radius: number}} circle @returns {Point[]} */

@@ -3,6 +3,7 @@
 import { telling } from "./circuits.js";
 import { shown, words } from "./dom.js";
 import { degrees } from "./gauge.js";
+import { t } from "./messages.js";
 
 /** @typedef {[number, number]} Point */
 
@@ -34,10 +35,10 @@ export function driven(answer, skeleton, targets) {
   const turns = answer.valid.every(Boolean);
   const { grashof } = answer.classification;
   return { turns, least, grashof, missed, facts: {
-    ...(grashof ? { "Grashof": words(grashof) } : {}),
-    "Input turns through": turns ? "yes" : "no",
-    "Least transmission angle": degrees(least),
-    ...(missed.length ? { "Farthest target from the curve": shown(Number(Math.max(...missed).toPrecision(3))) } : {}),
-    "Circuits": shown(answer.circuits.length),
+    ...(grashof ? { [t`Grashof`]: words(grashof) } : {}),
+    [t`Input turns through`]: turns ? t`yes` : t`no`,
+    [t`Least transmission angle`]: degrees(least),
+    ...(missed.length ? { [t`Farthest target from the curve`]: shown(Number(Math.max(...missed).toPrecision(3))) } : {}),
+    [t`Circuits`]: shown(answer.circuits.length),
   } };
 }

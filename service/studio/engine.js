@@ -1,6 +1,7 @@
 /** A piston engine that turns: its cylinders side by side, each seen along the shaft with its own axis upwards. */
 
 import { el, shown, svg } from "./dom.js";
+import { t } from "./messages.js";
 import { Player, between } from "./player.js";
 
 /** Room above and below, pixels. */
@@ -20,7 +21,7 @@ export class Engine {
     // A single cylinder stands in the middle, and not at the top.
     const top = Math.max(EDGE, 0.5 * (height - this.scale * (mechanism.rod + 2.8 * this.crank)));
     this.low = top + this.scale * (mechanism.rod + 1.7 * this.crank);
-    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": "The cylinders, turning" },
+    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The cylinders, turning` },
       svg("rect", { class: "paper", width, height }));
     this.drawings = mechanism.cylinders.map((/** @type {any} */ cylinder, /** @type {number} */ n) => {
       const middle = column * (n + 0.5);
@@ -29,17 +30,17 @@ export class Engine {
       const rod = svg("path", { class: "link" });
       const piston = svg("rect", { class: "pin", x: middle - half, width: 2 * half, height: 0.6 * this.scale * this.crank });
       const walls = svg("path", { class: "ground", d: `M${middle - half} ${top}V${this.low - this.scale * (mechanism.rod - this.crank)}M${middle + half} ${top}V${this.low - this.scale * (mechanism.rod - this.crank)}` });
-      this.picture.append(svg("g", {}, svg("title", {}, `Cylinder ${cylinder.number}`), walls, rod, crank, piston,
+      this.picture.append(svg("g", {}, svg("title", {}, t`Cylinder ${cylinder.number}`), walls, rod, crank, piston,
         svg("circle", { class: "pin", cx: middle, cy: this.low, r: 3.5 })));
       return { cylinder, middle, crank, rod, piston };
     });
     const fires = design.firing.orders[0];
-    this.player = new Player({ count: motion.input_angle.length, closed: true, endless: true, label: "Crank",
+    this.player = new Player({ count: motion.input_angle.length, closed: true, endless: true, label: t`Crank`,
       reading: (at) => `${shown(Math.round(10 * this.degrees(at)) / 10)}°`, show: (at) => this.show(at) });
     frame.fill({ picture: this.picture, clock: this.player.row, beside: [
-      el("dl", { class: "facts speeds" }, el("dt", {}, "Firing order"), el("dd", {}, fires.order.join("-")),
-        ...fires.order.flatMap((/** @type {number} */ number, /** @type {number} */ k) => [el("dt", {}, `Cylinder ${number}`), el("dd", {}, `${shown(fires.angles[k])}°`)])),
-      el("p", { class: "note" }, "The cylinders from the front to the back; each is seen with its own axis upwards.")] });
+      el("dl", { class: "facts speeds" }, el("dt", {}, t`Firing order`), el("dd", {}, fires.order.join("-")),
+        ...fires.order.flatMap((/** @type {number} */ number, /** @type {number} */ k) => [el("dt", {}, t`Cylinder ${number}`), el("dd", {}, `${shown(fires.angles[k])}°`)])),
+      el("p", { class: "note" }, t`The cylinders from the front to the back; each is seen with its own axis upwards.`)] });
     this.player.begin();
   }
 

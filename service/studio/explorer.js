@@ -8,6 +8,7 @@ import { Grip, keyed, led } from "./grip.js";
 import { Linkage, drawn } from "./linkage.js";
 import { Player, between } from "./player.js";
 import { beginnings } from "./beginnings.js";
+import { t } from "./messages.js";
 import { CLOCK, roomOf } from "./stage.js";
 import { View } from "./view.js";
 import { Zoom } from "./zoom.js";
@@ -40,7 +41,7 @@ export class Explorer {
     this.curve = svg("path", { class: "curve" });
     this.linkage = new Linkage(this.view, this.skeleton, { names: false });
     this.ghost = new Linkage(this.view, this.skeleton, { names: false, faint: true });
-    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas drag", role: "group", "aria-label": "The linkage, its pins to be dragged" },
+    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas drag", role: "group", "aria-label": t`The linkage, its pins to be dragged` },
       svg("rect", { class: "paper", width, height }), this.curve,
       ...targets.map((one) => {
         const [u, v] = this.view.at(one.x, one.y);
@@ -49,12 +50,12 @@ export class Explorer {
       this.ghost.node, this.linkage.node);
     this.handles = drawn(this.skeleton).map((name) => this.handle(name));
     this.picture.append(...this.handles.map(({ grip }) => grip.node));
-    this.player = new Player({ count: STEPS + 1, closed: true, name: "explore-", label: "Input", reading: (at) => this.reading(at), show: (at) => this.move(at) });
+    this.player = new Player({ count: STEPS + 1, closed: true, name: "explore-", label: t`Input`, reading: (at) => this.reading(at), show: (at) => this.move(at) });
     this.facts = el("dl", { class: "facts", "aria-live": "polite" });
     this.checks = el("ul", { class: "checks" });
     this.buttons = el("p", { class: "row" });
     place.replaceChildren(
-      el("p", { class: "note" }, "Drag a pin, or move it with the arrow keys: curve, motion and figures are those of the linkage as it is then."),
+      el("p", { class: "note" }, t`Drag a pin, or move it with the arrow keys: curve, motion and figures are those of the linkage as it is then.`),
       el("div", { class: "columns" }, this.facts, this.checks), this.buttons);
     board.replaceChildren(el("div", { class: "stage" }, this.picture, new Zoom(this.picture).buttons), this.player.row);
     this.draw();
@@ -105,7 +106,7 @@ export class Explorer {
     for (const { name, grip } of this.handles) {
       const [x, y] = this.joints[name];
       grip.put(this.view.at(x, y));
-      grip.call(`${name}: x ${shown(x)}, y ${shown(y)}. Arrow keys move it.`);
+      grip.call(`${name}: x ${shown(x)}, y ${shown(y)}. ${t`Arrow keys move it.`}`);
     }
   }
 
@@ -131,7 +132,7 @@ export class Explorer {
         this.ghost.node.setAttribute("hidden", "");
         const refused = /** @type {api.Refused} */ (error);
         for (const one of [this.facts, this.checks, this.buttons]) delete one.dataset.said;
-        this.facts.replaceChildren(el("dt", {}, "Refused"), el("dd", {}, refused.errors?.[0]?.detail ?? refused.message));
+        this.facts.replaceChildren(el("dt", {}, t`Refused`), el("dd", {}, refused.errors?.[0]?.detail ?? refused.message));
         this.checks.replaceChildren();
         this.buttons.replaceChildren();
       }
@@ -160,14 +161,14 @@ export class Explorer {
     /** @type {[string, boolean][]} */
     const checks = [];
     // The curve is known at so many places only: nearer than their distance nothing can be told.
-    if (missed.length) checks.push([`Passes the targets within ${shown(Number((0.01 * size).toPrecision(2)))}`, Math.max(...missed) <= 0.01 * size]);
-    if (wanted.full_rotation) checks.push(["Full rotation", turns]);
-    if (wanted.min_transmission_angle) checks.push([`Transmission angle of ${shown(wanted.min_transmission_angle)}° in the whole motion`, least !== null && least >= wanted.min_transmission_angle]);
+    if (missed.length) checks.push([t`Passes the targets within ${shown(Number((0.01 * size).toPrecision(2)))}`, Math.max(...missed) <= 0.01 * size]);
+    if (wanted.full_rotation) checks.push([t`Full rotation`, turns]);
+    if (wanted.min_transmission_angle) checks.push([t`Transmission angle of ${shown(wanted.min_transmission_angle)}° in the whole motion`, least !== null && least >= wanted.min_transmission_angle]);
     if (wanted.grashof && wanted.grashof !== "any" && grashof) {
       checks.push([words(wanted.grashof), wanted.grashof === "non_grashof" ? grashof === "rocker_rocker" : grashof === wanted.grashof]);
     }
     renewed(this.checks, checks, ([name, passed]) => [el("li", { class: passed ? "good" : "bad" },
-      el("span", {}, passed ? "✓ " : "✗ "), name, el("span", { class: "hidden" }, passed ? " passed" : " failed"))]);
+      el("span", {}, passed ? "✓ " : "✗ "), name, el("span", { class: "hidden" }, " ", passed ? t`passed` : t`failed`))]);
   }
 
   /** @param {number} at */

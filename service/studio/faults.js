@@ -1,6 +1,7 @@
 /** What is wrong with a statement, said at the fields it belongs to. */
 
-import { el, words } from "./dom.js";
+import { el } from "./dom.js";
+import { foreign, t, term } from "./messages.js";
 
 let said_ids = 0;
 
@@ -33,8 +34,8 @@ export function tell(form, list, refusal) {
     const rest = fault.path.slice(place.path.length + 1);
     const [row, name] = fault.path.split("/").slice(-2);
     const cell = place.control.parentElement?.matches("td") && /^\d+$/.test(row);
-    const where = cell ? `Row ${Number(row) + 1}, ${words(name).toLowerCase()}: ` : rest ? `${rest}: ` : "";
-    const said = el("span", { id: `fault${++said_ids}` }, `${where}${fault.detail} `);
+    const where = cell ? `${t`Row ${Number(row) + 1}, ${term(name)}`}: ` : rest ? `${rest}: ` : "";
+    const said = el("span", { id: `fault${++said_ids}` }, where, el("span", { lang: foreign(fault.detail) }, `${fault.detail} `));
     place.slot?.append(said);
     if (cell) {
       place.control.setAttribute("aria-describedby", said.id);
@@ -43,8 +44,8 @@ export function tell(form, list, refusal) {
     for (let above = place.control.closest("details"); above; above = above.parentElement?.closest("details") ?? null) above.open = true;
     first ??= place.control;
   }
-  list.append(el("p", { class: "error" }, refusal.message),
-    ...(lost.length ? [el("ul", {}, ...lost.map((fault) => el("li", {}, `${fault.path || "the statement"}: ${fault.detail}`)))] : []));
+  list.append(el("p", { class: "error", lang: foreign(refusal.message) }, refusal.message),
+    ...(lost.length ? [el("ul", {}, ...lost.map((fault) => el("li", {}, `${fault.path || t`the statement`}: ${fault.detail}`)))] : []));
   first?.focus();
   first?.scrollIntoView({ block: "nearest" });
 }

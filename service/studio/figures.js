@@ -2,6 +2,7 @@
 
 import * as api from "./api.js";
 import { el, shown, words } from "./dom.js";
+import { BETWEEN, number, t, term, translated } from "./messages.js";
 import { symbolOf } from "./units.js";
 
 /** What a card shows first of a design's metrics, where the design has it. */
@@ -53,12 +54,12 @@ export function figure(name, value, problem, size) {
   const unit = problem ? unitFor(name, problem) : "";
   if (typeof value !== "number") return { text: text(value), title: null };
   const plain = problem && exact(name, value, api.measures(problem.kind)[name], size);
-  return { text: plain ? "exact" : beside(brief(value), unit), title: beside(String(value), unit) };
+  return { text: plain ? t`exact` : beside(brief(value), unit), title: beside(number(value), unit) };
 }
 
 /** @param {any} value @param {string} [unit] beside a number */
 export function text(value, unit = "") {
-  return typeof value === "number" ? beside(shown(value), unit) : typeof value === "boolean" ? (value ? "yes" : "no") : words(String(value));
+  return typeof value === "number" ? beside(shown(value), unit) : typeof value === "boolean" ? (value ? t`yes` : t`no`) : words(String(value));
 }
 
 /** The unit of a number of a design by its name; empty for a pure number. @param {string} name @param {any} problem */
@@ -82,17 +83,17 @@ function measured(check, problem) {
   const unit = symbolOf(dimension, problem);
   const limit = typeof check.limit === "number" ? check.limit : null;
   const close = !passed || (limit !== null && brief(value) === brief(limit));
-  const told = (/** @type {(value: number) => string} */ as) => `${beside(as(value), unit)}${limit === null ? "" : `, limit ${beside(as(limit), unit)}`}`;
-  return el("span", { class: "note", title: told(String) }, passed && exact(name, value, dimension) ? " exact" : ` ${told(close ? shown : brief)}`);
+  const told = (/** @type {(value: number) => string} */ as) => `${beside(as(value), unit)}${limit === null ? "" : `, ${t`limit ${beside(as(limit), unit)}`}`}`;
+  return el("span", { class: "note", title: told(number) }, passed && exact(name, value, dimension) ? ` ${t`exact`}` : ` ${told(close ? shown : brief)}`);
 }
 
 /** @param {any} design @param {any} problem */
 export function checks(design, problem) {
-  return el("section", {}, el("h4", {}, "Checks"), el("ul", { class: "checks" },
+  return el("section", {}, el("h4", {}, t`Checks`), el("ul", { class: "checks" },
     ...(design.verification?.checks ?? []).map((/** @type {any} */ check) => el("li", { class: check.passed ? "good" : "bad" },
       el("span", {}, check.passed ? "✓ " : "✗ "), words(check.name),
       typeof check.value === "number" && measured(check, problem),
-      el("span", { class: "hidden" }, check.passed ? " passed" : " failed")))));
+      el("span", { class: "hidden" }, " ", check.passed ? t`passed` : t`failed`)))));
 }
 
 /** @param {string} title @param {[string, any][]} rows @param {any} [problem] whose units stand beside the numbers */
@@ -114,17 +115,17 @@ export function made(design) {
   const share = design.metrics?.yield;
   const { worst_case: worst, cost } = told;
   /** @type {[string, any][]} */
-  const rows = [["yield", share?.value], ["yield, at least", share?.low], ["yield, at most", share?.high],
-    ["worst error", worst?.max_error], ["worst angle error, °", worst?.max_angle_error],
-    ["tolerances that matter", told.matter?.join(", ") || undefined],
-    ["rounding cost, rms residual", cost?.rms_residual], ["rounding cost, error", cost?.max_error], ["remark", told.remark],
-    ...Object.entries(told.dimensions ?? {}).map(([name, value]) => /** @type {[string, any]} */ ([`made: ${name.replaceAll(".", " ")}`, value]))];
-  return [table("As it is made", rows.filter(([, value]) => value !== undefined && value !== null))];
+  const rows = [[t`yield`, share?.value], [t`yield, at least`, share?.low], [t`yield, at most`, share?.high],
+    [t`worst error`, worst?.max_error], [t`worst angle error, °`, worst?.max_angle_error],
+    [t`tolerances that matter`, told.matter?.join(", ") || undefined],
+    [t`rounding cost, rms residual`, cost?.rms_residual], [t`rounding cost, error`, cost?.max_error], [t`remark`, translated(told.remark ?? "") || undefined],
+    ...Object.entries(told.dimensions ?? {}).map(([name, value]) => /** @type {[string, any]} */ ([t`made: ${name.split(".").map(term).join(" ")}`, value]))];
+  return [table(t`As it is made`, rows.filter(([, value]) => value !== undefined && value !== null))];
 }
 
 /** The dimensions of a mechanism, as they are made, as deep as they go; curves and skeletons are in the JSON. @param {any} design @param {any} problem */
 export function dimensions(design, problem) {
-  return rowed("Dimensions", dimensionRows(design, problem));
+  return rowed(t`Dimensions`, dimensionRows(design, problem));
 }
 
 /** Names and values of the dimensions. @param {any} design @param {any} problem @returns {[string, {text: string, title: string | null}][]} */
@@ -132,17 +133,17 @@ export function dimensionRows(design, problem) {
   /** @type {[string, {text: string, title: string | null}][]} */
   const rows = [];
   const row = (/** @type {string} */ name, /** @type {number[]} */ all, /** @type {string} */ unit) =>
-    rows.push([name, { text: beside(all.map(shown).join(", "), unit), title: beside(all.join(", "), unit) }]);
+    rows.push([name, { text: beside(all.map(shown).join(BETWEEN), unit), title: beside(all.map(number).join(BETWEEN), unit) }]);
   const walk = (/** @type {string} */ name, /** @type {any} */ value, /** @type {string} */ unit) => {
     if (Array.isArray(value)) {
       if (!value.length) return;
       if (value.length <= 4 && value.every((one) => typeof one === "number")) row(name, value, unit);
       else if (value.length <= 8 && value.every((one) => typeof one === "object")) value.forEach((one, k) => walk(`${name} ${k + 1}`, one, unit));
     } else if (value && typeof value === "object") {
-      for (const [inner, one] of Object.entries(value)) walk(name ? `${name} ${inner}` : inner, one, unitFor(inner, problem) || unit);
+      for (const [inner, one] of Object.entries(value)) walk(name ? `${name} ${term(inner)}` : term(inner), one, unitFor(inner, problem) || unit);
     } else if (typeof value === "number") row(name, [value], unit);
     else if (value !== null) rows.push([name, { text: text(value), title: null }]);
   };
-  for (const [name, value] of Object.entries(design.mechanism)) if (!["type", "skeleton", "profile", "pitch_curve", "program", "outer_wall"].includes(name)) walk(name, value, unitFor(name, problem));
+  for (const [name, value] of Object.entries(design.mechanism)) if (!["type", "skeleton", "profile", "pitch_curve", "program", "outer_wall"].includes(name)) walk(term(name), value, unitFor(name, problem));
   return rows;
 }

@@ -1,6 +1,7 @@
 /** A flywheel that turns, with a spoke that shows how far; faster and slower as its shaft does. */
 
 import { el, shown, svg } from "./dom.js";
+import { t } from "./messages.js";
 import { Player, between } from "./player.js";
 import { View } from "./view.js";
 
@@ -19,16 +20,16 @@ export class Flywheel {
     const circle = (/** @type {number} */ far, /** @type {string} */ name) =>
       svg("circle", { class: name, cx: this.middle[0], cy: this.middle[1], r: this.view.scale * far });
     this.spoke = svg("path", { class: "spoke", d: `M${(this.view.scale * inner).toFixed(1)} 0H${(this.view.scale * radius).toFixed(1)}` });
-    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": "The flywheel, turning" },
+    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The flywheel, turning` },
       svg("rect", { class: "paper", width, height }),
       svg("g", { class: "wheel t0" }, circle(radius, "teeth"), inner > 0 && circle(inner, "hollow"), this.spoke,
         svg("circle", { class: "pin", cx: this.middle[0], cy: this.middle[1], r: 3.5 })));
     this.speed = el("dd", {});
     this.torque = el("dd", {});
-    this.player = new Player({ count: course.angle.length, closed: true, label: "Shaft",
+    this.player = new Player({ count: course.angle.length, closed: true, label: t`Shaft`,
       reading: (at) => `${shown(Math.round(10 * Number(between(this.angles, at))) / 10)}°`, show: (at) => this.show(at) });
     frame.fill({ picture: this.picture, clock: this.player.row,
-      beside: [el("dl", { class: "facts speeds" }, el("dt", {}, "Speed, rev/min"), this.speed, el("dt", {}, "Torque"), this.torque)] });
+      beside: [el("dl", { class: "facts speeds" }, el("dt", {}, t`Speed, rev/min`), this.speed, el("dt", {}, t`Torque`), this.torque)] });
     this.player.begin();
   }
 

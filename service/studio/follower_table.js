@@ -1,5 +1,7 @@
 /** A follower's motion that is tabulated, as segments of a cam: the cubic spline through the points, once around. */
 
+import { t } from "./messages.js";
+
 /** @typedef {[number, number]} Point */
 
 /** Degrees of a turn. */
@@ -22,13 +24,13 @@ export function segmentsOf(points, unit) {
   const [first, last] = [points[0], points[points.length - 1]];
   const span = last[0] - first[0];
   const ordered = span < 0 ? [...points].reverse() : points;
-  if (points.length < 4) throw new Error("A motion takes four points at least.");
-  if (ordered.some(([x], k) => k > 0 && !(x > ordered[k - 1][0]))) throw new Error("The curve turns back: a motion has one displacement at each angle.");
+  if (points.length < 4) throw new Error(t`A motion takes four points at least.`);
+  if (ordered.some(([x], k) => k > 0 && !(x > ordered[k - 1][0]))) throw new Error(t`The curve turns back: a motion has one displacement at each angle.`);
   const heights = ordered.map(([, y]) => y);
   const low = Math.min(...heights);
   const travel = Math.max(...heights) - low;
-  if (!(travel > 0)) throw new Error("The follower never moves.");
-  if (Math.abs(last[1] - first[1]) > CLOSES * travel) throw new Error("The motion must end at the displacement at which it began: a cam goes around.");
+  if (!(travel > 0)) throw new Error(t`The follower never moves.`);
+  if (Math.abs(last[1] - first[1]) > CLOSES * travel) throw new Error(t`The motion must end at the displacement at which it began: a cam goes around.`);
   const angles = ordered.map(([x]) => rounded((TURN * (x - ordered[0][0])) / Math.abs(span)));
   const lifts = heights.slice(0, -1).map((y) => rounded(y - low));
   const widths = lifts.map((_, k) => angles[k + 1] - angles[k]);

@@ -2,6 +2,7 @@
 
 import { el, shown, svg } from "./dom.js";
 import { slope } from "./linkage.js";
+import { t, term } from "./messages.js";
 import { between } from "./player.js";
 
 /** @typedef {[number, number]} Point */
@@ -45,6 +46,12 @@ function peakOf({ x, y }) {
   return x.reduce((/** @type {number} */ most, one, k) => (one === null ? most : Math.max(most, Math.hypot(one, Number(y[k])))), 0);
 }
 
+/** What a force comes from or acts on, as a person reads it. @param {string} part */
+function called(part) {
+  const [, kind, name] = /^(pin|line of) (.*)$/.exec(part) ?? [];
+  return kind === undefined ? term(part) : kind === "pin" ? t`pin ${name}` : t`line of ${term(name)}`;
+}
+
 export class ForceArrows {
   /**
    * @param {import("./view.js").View} view @param {Force[]} forces @param {string} unit of forces
@@ -67,8 +74,8 @@ export class ForceArrows {
     this.now = {};
     this.node = svg("g", { class: "forces" }, this.layer, this.legend(unit));
     this.choice = el("select", { id: "force-on", onchange: () => this.choose(this.choice.value) },
-      el("option", { value: "" }, "a link of each joint"),
-      ...[...new Set(forces.map(({ on }) => on))].filter((on) => !on.startsWith("pin ")).map((on) => el("option", { value: on }, on.replaceAll("_", " "))));
+      el("option", { value: "" }, t`a link of each joint`),
+      ...[...new Set(forces.map(({ on }) => on))].filter((on) => !on.startsWith("pin ")).map((on) => el("option", { value: on }, term(on))));
     this.choose("");
   }
 
@@ -93,7 +100,7 @@ export class ForceArrows {
     const chosen = link ? this.forces.filter(({ on }) => on === link) : once(this.forces);
     this.arrows = chosen.map((force) => {
       const [shaft, head] = [svg("line", { class: "shaft-of-force" }), svg("path", { class: "head-of-force" })];
-      return { force, shaft, head, node: svg("g", { class: "force", "data-joint": force.joint, "data-on": force.on }, svg("title", {}, `Force of ${force.from} on ${force.on}`), shaft, head) };
+      return { force, shaft, head, node: svg("g", { class: "force", "data-joint": force.joint, "data-on": force.on }, svg("title", {}, t`Force of ${called(force.from)} on ${called(force.on)}`), shaft, head) };
     });
     this.layer.replaceChildren(...this.arrows.map(({ node }) => node));
     if (Number.isFinite(this.input)) this.show(this.input, this.now);
@@ -101,7 +108,7 @@ export class ForceArrows {
 
   /** An arrow of a round number, and what it stands for. @param {string} unit */
   legend(unit) {
-    if (!this.peak) return svg("text", { class: "force-scale", x: 12, y: this.view.height - 12 }, "No joint bears a force.");
+    if (!this.peak) return svg("text", { class: "force-scale", x: 12, y: this.view.height - 12 }, t`No joint bears a force.`);
     const power = 10 ** Math.floor(Math.log10(this.peak));
     const value = power * ([5, 2, 1].find((one) => one * power <= this.peak) ?? 1);
     const length = this.scale * value;

@@ -5,6 +5,7 @@ import { el, shown, words } from "./dom.js";
 import { ForceArrows, forcesIn } from "./force_arrows.js";
 import { Hodograph } from "./hodograph.js";
 import { LoadEditor } from "./load_editor.js";
+import { foreign, t, term, translated } from "./messages.js";
 import { between, within } from "./player.js";
 import { brief, plots, runs } from "./plots.js";
 import { placeOf } from "./sweep.js";
@@ -18,12 +19,12 @@ const TOGETHER = 4;
 
 /** Why numbers are missing, or are to be read with care, by the status of a position. @type {Record<string, string>} */
 const REASONS = {
-  not_assembled: "the linkage does not close there",
-  dead_centre: "dead centre: the forces are not determined",
-  load_undetermined: "the ends of a spring meet, and its force has no direction",
-  friction_jam: "it jams by friction",
-  stick: "something with friction stands still: the numbers are those without its friction",
-  statically_indeterminate: "statically indeterminate: constraints are redundant, and where no number stands the force is not unique",
+  not_assembled: t`the linkage does not close there`,
+  dead_centre: t`dead centre: the forces are not determined`,
+  load_undetermined: t`the ends of a spring meet, and its force has no direction`,
+  friction_jam: t`it jams by friction`,
+  stick: t`something with friction stands still: the numbers are those without its friction`,
+  statically_indeterminate: t`statically indeterminate: constraints are redundant, and where no number stands the force is not unique`,
 };
 
 /** @typedef {(number | null)[]} Series */
@@ -58,11 +59,11 @@ export class Forces {
     this.editor?.attach(mover);
     const { forces } = this.design;
     // A remark that begins with a field says that the block does not fit the design, and there is nothing to ask for.
-    if (forces?.remark?.startsWith("/")) this.pictures.replaceChildren(el("p", { class: "error" }, `The design has no forces: ${forces.remark}.`));
+    if (forces?.remark?.startsWith("/")) this.pictures.replaceChildren(el("p", { class: "error" }, t`The design has no forces: ${forces.remark}.`));
     else if (job.problem.dynamics ?? this.design.dynamics) {
-      this.pictures.replaceChildren(el("p", { class: "note" }, "The forces are being computed …"));
+      this.pictures.replaceChildren(el("p", { class: "note" }, t`The forces are being computed …`));
       this.ask(null).catch((error) => this.fail(error));
-    } else this.pictures.replaceChildren(el("p", { class: "note" }, "The problem does not state what the linkage weighs and carries: its forces are not known until that is stated above."));
+    } else this.pictures.replaceChildren(el("p", { class: "note" }, t`The problem does not state what the linkage weighs and carries: its forces are not known until that is stated above.`));
   }
 
   /** Ask for the forces and show them. @param {any} block null for that of the problem */
@@ -143,7 +144,7 @@ export class Forces {
       el("p", { class: "row force-choice" }),
       this.now(), ...this.remarks(), this.peaks(),
       el("div", { class: "plots force-plots" }, ...made.map(({ figure }) => figure)),
-      el("div", { class: "row" }, el("label", { for: "hodograph-of" }, "Hodograph of"), pick), this.hodograph);
+      el("div", { class: "row" }, el("label", { for: "hodograph-of" }, t`Hodograph of`), pick), this.hodograph);
     this.trace(wheres[0]);
   }
 
@@ -152,12 +153,12 @@ export class Forces {
     const [name, unit] = this.driven();
     const box = el("output", { class: "reading" }, "–");
     this.readings.push({ box, series: this.answer.dynamics.drive ?? [], unit });
-    return el("p", { class: "row drive-now" }, el("span", {}, `${name} now`), box, this.outside);
+    return el("p", { class: "row drive-now" }, el("span", {}, t`${name} now`), box, this.outside);
   }
 
   /** @returns {[string, string]} name and unit of what drives */
   driven() {
-    return this.sliding ? ["Drive force", this.unit("force")] : ["Drive torque", this.unit("torque")];
+    return this.sliding ? [t`Drive force`, this.unit("force")] : [t`Drive torque`, this.unit("torque")];
   }
 
   /** @returns {import("./plots.js").Plotted[]} */
@@ -173,9 +174,9 @@ export class Forces {
     /** @type {import("./plots.js").Plotted[]} */
     const all = [
       { title: titled(name, unit), lines: { "": dynamics.drive ?? [] } },
-      ...chunks.map((some) => ({ title: titled(some.length > 1 ? "Pin forces" : `Pin force ${some[0][0]}`, force), lines: Object.fromEntries(some) })),
-      ...(shaking ? [{ title: titled("Shaking force", force), lines: { total: greatest([shaking.force]), x: shaking.force.x, y: shaking.force.y } },
-        { title: titled("Shaking moment", this.unit("torque")), lines: { "": shaking.moment } }] : []),
+      ...chunks.map((some) => ({ title: titled(some.length > 1 ? t`Pin forces` : t`Pin force ${some[0][0]}`, force), lines: Object.fromEntries(some) })),
+      ...(shaking ? [{ title: titled(t`Shaking force`, force), lines: { total: greatest([shaking.force]), x: shaking.force.x, y: shaking.force.y } },
+        { title: titled(t`Shaking moment`, this.unit("torque")), lines: { "": shaking.moment } }] : []),
     ];
     return all.map((one) => ({ ...one, gaps: Object.values(one.lines)[0].map((value, k) => unknown[k] || value === null) }));
   }
@@ -183,8 +184,8 @@ export class Forces {
   /** What there is a hodograph of. @returns {{title: string, x: Series, y: Series}[]} */
   hodographs() {
     const { joints, shaking } = this.answer.dynamics;
-    return [...Object.entries(joints ?? {}).flatMap(([joint, links]) => Object.entries(/** @type {any} */ (links)).map(([on, { x, y }]) => ({ title: `pin ${joint} on ${on.replaceAll("_", " ")}`, x, y }))),
-      ...(shaking ? [{ title: "shaking force", x: shaking.force.x, y: shaking.force.y }] : [])];
+    return [...Object.entries(joints ?? {}).flatMap(([joint, links]) => Object.entries(/** @type {any} */ (links)).map(([on, { x, y }]) => ({ title: t`pin ${joint} on ${term(on)}`, x, y }))),
+      ...(shaking ? [{ title: t`shaking force`, x: shaking.force.x, y: shaking.force.y }] : [])];
   }
 
   /** @param {{title: string, x: Series, y: Series} | undefined} chosen */
@@ -202,9 +203,9 @@ export class Forces {
     const found = [...new Set(/** @type {string[]} */ (dynamics.status))].filter((one) => one !== "ok").flatMap((status) =>
       runs(dynamics.status.map((/** @type {string} */ one) => one === status)).map(([from, to]) => el("li", {},
         el("button", { type: "button", class: "small", onclick: () => this.mover?.lead(inputs[from]) },
-          from === to ? this.input(inputs[from]) : `${this.input(inputs[from])} to ${this.input(inputs[to])}`), ` ${REASONS[status] ?? words(status)}`)));
+          from === to ? this.input(inputs[from]) : t`${this.input(inputs[from])} to ${this.input(inputs[to])}`), ` ${REASONS[status] ?? words(status)}`)));
     return [...(found.length ? [el("ul", { class: "gaps" }, ...found)] : []),
-      ...dynamics.warnings.map((/** @type {string} */ one) => el("p", { class: "note" }, one))];
+      ...dynamics.warnings.map((/** @type {string} */ one) => el("p", { class: "note", lang: foreign(one) }, translated(one)))];
   }
 
   /** The greatest of everything, with the input at which it stands and the value that it has now. */
@@ -214,20 +215,20 @@ export class Forces {
     const [force, torque] = [this.unit("force"), this.unit("torque")];
     /** @type {[string, number | null, number | null, string, Series | null][]} */
     const rows = [
-      [`${name}, greatest`, extremes.drive.max, extremes.drive.at, unit, drive ?? null], [`${name}, least`, extremes.drive.min, extremes.drive.at_min, unit, null],
+      [t`${name}, greatest`, extremes.drive.max, extremes.drive.at, unit, drive ?? null], [t`${name}, least`, extremes.drive.min, extremes.drive.at_min, unit, null],
       ...Object.entries(extremes.joints).map(([joint, peak]) => /** @type {[string, number | null, number | null, string, Series | null]} */ (
-        [`Pin force ${joint}`, peak.max, peak.at, force, joints?.[joint] ? greatest(Object.values(joints[joint])) : null])),
-      ["Shaking force", extremes.shaking_force.max, extremes.shaking_force.at, force, shaking ? greatest([shaking.force]) : null],
-      ["Shaking moment", extremes.shaking_moment.max, extremes.shaking_moment.at, torque, shaking?.moment ?? null],
-      ["Power of the drive", power.peak, null, this.unit("power"), null],
+        [t`Pin force ${joint}`, peak.max, peak.at, force, joints?.[joint] ? greatest(Object.values(joints[joint])) : null])),
+      [t`Shaking force`, extremes.shaking_force.max, extremes.shaking_force.at, force, shaking ? greatest([shaking.force]) : null],
+      [t`Shaking moment`, extremes.shaking_moment.max, extremes.shaking_moment.at, torque, shaking?.moment ?? null],
+      [t`Power of the drive`, power.peak, null, this.unit("power"), null],
     ];
     return el("div", { class: "table" }, el("table", { class: "figures peaks" },
-      el("thead", {}, el("tr", {}, ...["Peaks", "Value", "At the input", "Now"].map((head) => el("th", { scope: "col" }, head)))),
+      el("thead", {}, el("tr", {}, ...[t`Peaks`, t`Value`, t`At the input`, t`Now`].map((head) => el("th", { scope: "col" }, head)))),
       el("tbody", {}, ...rows.map(([title, value, at, of, series]) => {
         const box = el("td", { class: "reading" });
         if (series) this.readings.push({ box, series, unit: of });
         return el("tr", {}, el("th", { scope: "row" }, title), el("td", {}, value === null ? "–" : `${shown(value)} ${of}`.trim()),
-          el("td", {}, at === null ? "–" : el("button", { type: "button", class: "small", "aria-label": `${title}: go to ${this.input(at)}`, onclick: () => this.mover?.lead(at) }, this.input(at))), box);
+          el("td", {}, at === null ? "–" : el("button", { type: "button", class: "small", "aria-label": t`${title}: go to ${this.input(at)}`, onclick: () => this.mover?.lead(at) }, this.input(at))), box);
       }))));
   }
 
@@ -241,7 +242,7 @@ export class Forces {
       box.textContent = value === null ? "–" : `${brief(value)} ${unit}`.trim();
     }
     const status = at === null ? "ok" : this.answer.dynamics.status[Math.round(at)];
-    const said = at === null ? `Forces are known from ${this.input(inputs[0])} to ${this.input(inputs[inputs.length - 1])}, the range that the design was verified along.` : REASONS[status] ?? "";
+    const said = at === null ? t`Forces are known from ${this.input(inputs[0])} to ${this.input(inputs[inputs.length - 1])}, the range that the design was verified along.` : REASONS[status] ?? "";
     if (this.outside.textContent !== said) this.outside.textContent = said;
     if (at !== null) for (const mark of this.marks) mark.show(at);
     this.hodographed?.show(at);

@@ -7,6 +7,7 @@
 
 import { choice, choices, jsonBox, numberBox, plain, pointsBox, stockBox, textBox } from "./controls.js";
 import { el, words } from "./dom.js";
+import { prose, t } from "./messages.js";
 import { discriminator, initial, kinded, optionOf, resolved, shapeOf, tagsOf } from "./schema.js";
 import { table } from "./table.js";
 import { unitOf } from "./units.js";
@@ -70,7 +71,7 @@ function folded(sheet, schema, value, path, order = Object.keys(schema.propertie
   const [first, rest] = [made(order.filter(used)), made(order.filter((name) => !used(name)))];
   if (rest.length < FOLDED) return [...first, ...rest];
   const more = el("details", { class: "more", "data-path": `${path}/*`, onreveal: () => (more.open = true) },
-    el("summary", {}, `${path === "/problem" ? "More" : "More limits"} (${rest.length})`), el("div", { class: "fields" }, ...rest));
+    el("summary", {}, `${path === "/problem" ? t`More` : t`More limits`} (${rest.length})`), el("div", { class: "fields" }, ...rest));
   return [...first, more];
 }
 
@@ -92,7 +93,7 @@ function field(sheet, schema, name, owner, path, required) {
   const value = owner[name];
   const unit = unitOf(schema, sheet.problem);
   const about = schema.description ?? (what.options.length === 1 ? resolved(what.options[0], sheet.root).description : "");
-  const note = (about ?? "").split("\n\n")[0].replace(/[`\n]+/g, (/** @type {string} */ one) => (one.includes("`") ? "" : " "));
+  const note = prose(about);
   const fallback = schema.default ?? null;
   switch (what.control) {
     case "fixed":
@@ -110,9 +111,9 @@ function field(sheet, schema, name, owner, path, required) {
     case "numbers":
       return labelled(name, unit, note, path, required, textBox(value, fallback, set, (text) => numbers(text, what.options)));
     case "points":
-      return labelled(name, unit, note ? `${note} One point to a line, as in 120, 35.` : "One point to a line, as in 120, 35.", path, required, pointsBox(value, set));
+      return labelled(name, unit, note ? t`${note} One point to a line, as in 120, 35.` : t`One point to a line, as in 120, 35.`, path, required, pointsBox(value, set));
     case "stock":
-      return labelled(name, unit, `${note} As in 20, 24 × 3, 30.`, path, required, stockBox(value, set));
+      return labelled(name, unit, t`${note} As in 20, 24 × 3, 30.`, path, required, stockBox(value, set));
     case "table":
       return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () => {
         // A list that is only looked at is not stated: it becomes part of the problem with its first row.
@@ -137,9 +138,9 @@ function field(sheet, schema, name, owner, path, required) {
     case "shapes":
       return shapes(sheet, what, schema, name, note, path, required, owner, set);
     default:
-      if (what.options.every((one) => one.type === "array" && one.items?.type === "string")) return labelled(name, "", `${note} As in input, output.`, path, required, textBox(value, fallback, set, named));
+      if (what.options.every((one) => one.type === "array" && one.items?.type === "string")) return labelled(name, "", t`${note} As in input, output.`, path, required, textBox(value, fallback, set, named));
       // A mechanism as an analysis has it, or the corners of a shape, each in one of several ways.
-      return labelled(name, unit, note ? `${note} As JSON.` : "As JSON.", path, required, jsonBox(value, set));
+      return labelled(name, unit, note ? t`${note} As JSON.` : t`As JSON.`, path, required, jsonBox(value, set));
   }
 }
 
@@ -147,8 +148,8 @@ function field(sheet, schema, name, owner, path, required) {
 function shapeName(option) {
   if (option.const !== undefined) return String(option.const);
   const names = Object.keys(option.properties ?? {});
-  if (option.type === "object") return names.length === 2 && names.every((one) => ["min", "max"].includes(one)) ? "a range" : "in detail";
-  return { boolean: "yes or no", array: "a list", string: "a word", null: "left open" }[/** @type {string} */ (option.type)] ?? "a number";
+  if (option.type === "object") return names.length === 2 && names.every((one) => ["min", "max"].includes(one)) ? t`a range` : t`in detail`;
+  return { boolean: t`yes or no`, array: t`a list`, string: t`a word`, null: t`left open` }[/** @type {string} */ (option.type)] ?? t`a number`;
 }
 
 /**
@@ -171,7 +172,7 @@ function shapes(sheet, what, schema, name, note, path, required, owner, set) {
     sheet.rebuild();
   });
   if (now.const !== undefined || now.type === "null") return labelled(name, "", note, path, required, way);
-  way.setAttribute("aria-label", `${words(name)}: how it is stated`);
+  way.setAttribute("aria-label", t`${words(name)}: how it is stated`);
   const one = { ...now, ...(dimension ? { "x-dimension": dimension } : {}) };
   // What is not stated yet stays unstated while it is only looked at.
   const inside = now.type === "object" || kinded(now, sheet.root).control === "table"
@@ -192,16 +193,16 @@ function shapes(sheet, what, schema, name, note, path, required, owner, set) {
 function members(sheet, item, owner, field, path) {
   /** @type {Record<string, any>} */
   const found = owner[field] ?? {};
-  const name = el("input", { type: "text", "aria-label": "Name of another one", spellcheck: "false" });
+  const name = el("input", { type: "text", "aria-label": t`Name of another one`, spellcheck: "false" });
   const add = el("button", { type: "button", class: "small", onclick: () => {
     const stated = name.value.trim();
     if (!stated) return name.focus();
     // What is only looked at is not stated.
     owner[field] = { ...found, [stated]: found[stated] ?? initial(item, sheet.root) };
     sheet.rebuild();
-  } }, "Add");
+  } }, t`Add`);
   return [...Object.keys(found).flatMap((key) => [
-    el("div", { class: "row member" }, el("strong", {}, key), el("button", { type: "button", class: "small", "aria-label": `Remove ${key}`, onclick: () => {
+    el("div", { class: "row member" }, el("strong", {}, key), el("button", { type: "button", class: "small", "aria-label": t`Remove ${key}`, onclick: () => {
       delete found[key];
       sheet.rebuild();
     } }, "×")),
@@ -255,7 +256,7 @@ function group(sheet, schema, name, note, path, always, owner, set, inside) {
       sheet.rebuild();
     } });
     box.checked = stated;
-    details.append(el("label", { class: "flag", for: box.id }, box, "State it"));
+    details.append(el("label", { class: "flag", for: box.id }, box, t`State it`));
   }
   details.append(body);
   if (open) fillBody();
@@ -278,7 +279,7 @@ function labelled(name, unit, note, path, required, control) {
   control.setAttribute("aria-describedby", `${id}e${note ? ` ${id}n` : ""}`);
   if (required) control.setAttribute("aria-required", "true");
   return el("div", { class: "field" },
-    el("label", { for: id }, words(name), unit && el("span", { class: "unit" }, ` (${unit})`), required && el("span", { class: "required", title: "required" }, " *")),
+    el("label", { for: id }, words(name), unit && el("span", { class: "unit" }, ` (${unit})`), required && el("span", { class: "required", title: t`required` }, " *")),
     control,
     el("p", { class: "error", id: `${id}e` }),
     note && el("p", { class: "note", id: `${id}n` }, note));

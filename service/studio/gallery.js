@@ -1,6 +1,7 @@
 /** All examples with their names and pictures, grouped by what a person wants; a click states one and solves it. */
 
 import { byId, el, svg } from "./dom.js";
+import { translated } from "./messages.js";
 
 /** @typedef {{kind: string, n: number, name: string, group: string, line: string, problem: any}} Example */
 
@@ -24,7 +25,7 @@ export class Gallery {
     const order = ORDER.concat(groups.filter((one) => !ORDER.includes(one))).filter((one) => groups.includes(one));
     this.place.replaceChildren(...order.map((group) => {
       const cards = examples.filter((one) => one.group === group).map((one) => el("li", {}, this.card(one)));
-      return el("section", {}, el("h3", {}, group), el("ul", { class: "gallery-cards" }, ...cards));
+      return el("section", {}, el("h3", {}, translated(group)), el("ul", { class: "gallery-cards" }, ...cards));
     }));
   }
 
@@ -34,7 +35,7 @@ export class Gallery {
     return el("button", { type: "button", class: "gallery-card", "data-example": `${kind}-${n}`, onclick: () => {
       this.dialog.close();
       this.choose(example);
-    } }, el("span", { class: "gallery-picture" }), el("strong", {}, name), el("span", { class: "note" }, line));
+    } }, el("span", { class: "gallery-picture" }), el("strong", {}, translated(name)), el("span", { class: "note" }, translated(line)));
   }
 
   open() {

@@ -1,6 +1,7 @@
 /** A gauge of an angle from 0° to 90°: a needle where it is now, a mark at the least, and the limit that was set. */
 
 import { el, shown, svg } from "./dom.js";
+import { t } from "./messages.js";
 
 const WIDTH = 190;
 const RADIUS = 70;
@@ -33,7 +34,7 @@ export class Gauge {
     const known = /** @type {number[]} */ (series.filter((one) => one !== null));
     const whole = atMost ? Math.max(...known) : Math.min(...known);
     const extreme = used ?? whole;
-    const word = atMost ? "most" : "least";
+    const told = atMost ? t`most ${degrees(extreme)}` : t`least ${degrees(extreme)}`;
     const partly = Math.abs(whole - extreme) > 0.5;
     this.needle = svg("path", { class: "needle" });
     const [x, y] = at(Math.min(90, extreme), RADIUS + 9);
@@ -45,15 +46,15 @@ export class Gauge {
     this.node = el("figure", { class: "gauge" },
       el("figcaption", {}, title, this.now),
       svg("svg", { viewBox: `0 0 ${WIDTH} 104`, role: "img",
-        "aria-label": `${title}: ${degrees(extreme)} at ${word}${partly ? ` between the targets, ${degrees(whole)} in the whole motion` : ""}${typeof limit === "number" ? `, limit ${degrees(limit)}` : ""}` },
+        "aria-label": [`${title}: ${told}`, partly && t`between the targets; ${degrees(whole)} in the whole motion`, typeof limit === "number" && t`limit ${degrees(limit)}`].filter(Boolean).join(", ") },
       arc(0, 90, "dial"), bad, svg("line", { class: "least", x1: x, y1: y, x2: u, y2: v }), this.needle,
       svg("circle", { class: "pin", r: 3.5, cx: CENTRE[0], cy: CENTRE[1] }),
       ...[0, 30, 60, 90].map((mark) => {
         const [tx, ty] = at(mark, RADIUS - 15);
         return svg("text", { class: "tick", x: tx, y: ty + 3, "text-anchor": "middle" }, mark);
       }),
-      svg("text", { x: CENTRE[0], y: 101, "text-anchor": "middle" }, `${word} ${degrees(extreme)}`)),
-      partly && el("p", { class: "note" }, `between the targets; ${degrees(whole)} in the whole motion`));
+      svg("text", { x: CENTRE[0], y: 101, "text-anchor": "middle" }, told)),
+      partly && el("p", { class: "note" }, t`between the targets; ${degrees(whole)} in the whole motion`));
   }
 
   /** @param {number | null} angle */

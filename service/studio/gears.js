@@ -2,6 +2,7 @@
 
 import * as api from "./api.js";
 import { el, shown, svg, words } from "./dom.js";
+import { t, term } from "./messages.js";
 import { Player, between } from "./player.js";
 import { wheels } from "./trains.js";
 import { View } from "./view.js";
@@ -16,12 +17,12 @@ export class Gears {
     this.problem = problem;
     this.motion = motion;
     this.gone = new AbortController();
-    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": "The gears, turning" });
+    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The gears, turning` });
     this.facts = el("dl", { class: "facts speeds" });
-    this.player = new Player({ count: motion.input_angle.length, closed: true, endless: true, label: "Input",
+    this.player = new Player({ count: motion.input_angle.length, closed: true, endless: true, label: t`Input`,
       reading: (at) => `${shown(Math.round(10 * this.degrees(at)) / 10)}°`, show: (at) => this.show(at) });
     frame.fill({ picture: this.picture, clock: this.player.row, beside: [this.engaging(), this.facts, el("p", { class: "note" },
-      "Circles are pitch circles. Each gear turns as fast as the analysis says, one turn of the input in four seconds at speed 1.")] });
+      t`Circles are pitch circles. Each gear turns as fast as the analysis says, one turn of the input in four seconds at speed 1.`)] });
     this.view = new View([], width, height);
     this.build();
     this.player.begin();
@@ -51,11 +52,11 @@ export class Gears {
   /** @returns {[string, string][]} */
   speeds() {
     const { bodies, shafts, gears } = this.motion;
-    const told = (/** @type {number | null} */ ratio) => (ratio === null ? "open" : `${shown(Number(ratio.toPrecision(6)))} × input`);
-    if (bodies) return bodies.map((/** @type {any} */ body) => [words(body.name), body.speed === 0 ? "held" : told(body.speed)]);
-    if (this.motion.units) return shafts.map((/** @type {any} */ shaft, /** @type {number} */ k) => [k === 0 ? "Input" : k === shafts.length - 1 ? "Output" : `Shaft ${k + 1}`, told(shaft.speed_ratio)]);
+    const told = (/** @type {number | null} */ ratio) => (ratio === null ? t`open` : t`${shown(Number(ratio.toPrecision(6)))} × input`);
+    if (bodies) return bodies.map((/** @type {any} */ body) => [words(body.name), body.speed === 0 ? t`held` : told(body.speed)]);
+    if (this.motion.units) return shafts.map((/** @type {any} */ shaft, /** @type {number} */ k) => [k === 0 ? t`Input` : k === shafts.length - 1 ? t`Output` : t`Shaft ${k + 1}`, told(shaft.speed_ratio)]);
     if (shafts?.[0]?.name) return shafts.map((/** @type {any} */ shaft) => [words(shaft.name), told(shaft.speed_ratio)]);
-    return gears.map((/** @type {any} */ gear) => [`Stage ${gear.stage} ${gear.role}, ${gear.teeth} teeth`, told(gear.speed_ratio)]);
+    return gears.map((/** @type {any} */ gear) => [t`Stage ${gear.stage} ${term(gear.role)}, ${gear.teeth} teeth`, told(gear.speed_ratio)]);
   }
 
   /** Of a gearbox: which gear is engaged. */
@@ -64,21 +65,21 @@ export class Gears {
     const { speeds } = this.motion;
     if (!speeds?.[0]?.engaged) return null;
     const boxed = mechanism.type === "gearbox";
-    const name = (/** @type {any} */ one) => (boxed ? `pairs ${one.engaged.map((/** @type {number} */ k) => k + 1).join(", ")}`
-      : one.engaged[0] === mechanism.gears.length ? "reverse" : `gear ${one.engaged[0] + 1}`);
+    const name = (/** @type {any} */ one) => (boxed ? t`pairs ${one.engaged.map((/** @type {number} */ k) => k + 1).join(", ")}`
+      : one.engaged[0] === mechanism.gears.length ? t`reverse` : t`gear ${one.engaged[0] + 1}`);
     const pick = el("select", { id: "engaged", onchange: () => this.engage(speeds[Number(pick.value)].engaged) },
-      ...speeds.map((/** @type {any} */ one, /** @type {number} */ k) => el("option", { value: k }, `${name(one)}: ${shown(Number(one.speed_ratio.toPrecision(4)))} × input`)));
+      ...speeds.map((/** @type {any} */ one, /** @type {number} */ k) => el("option", { value: k }, t`${name(one)}: ${shown(Number(one.speed_ratio.toPrecision(4)))} × input`)));
     pick.value = String(speeds.findIndex((/** @type {any} */ one) => String(one.engaged) === String(this.motion.engaged)));
-    return el("div", { class: "row" }, el("label", { for: "engaged" }, "Engaged"), pick);
+    return el("div", { class: "row" }, el("label", { for: "engaged" }, t`Engaged`), pick);
   }
 
   /** @param {number[]} engaged */
   async engage(engaged) {
     const { mechanism } = this.design;
-    const which = mechanism.type === "gearbox" ? { engaged } : { gear: engaged[0] === mechanism.gears.length ? "reverse" : engaged[0] + 1 };
+    const which = mechanism.type === "gearbox" ? { engaged } : { gear: engaged[0] === mechanism.gears.length ? t`reverse` : engaged[0] + 1 };
     const motion = { from: 0, to: 360, steps: this.motion.input_angle.length - 1 };
     const found = await api.analysis({ mechanism, motion, ...which }, this.gone.signal).catch((error) => {
-      if (!this.gone.signal.aborted) this.facts.replaceChildren(el("dt", {}, "Refused"), el("dd", {}, error.message));
+      if (!this.gone.signal.aborted) this.facts.replaceChildren(el("dt", {}, t`Refused`), el("dd", {}, error.message));
     });
     if (!found || this.gone.signal.aborted) return;
     this.motion = found;

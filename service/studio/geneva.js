@@ -1,6 +1,7 @@
 /** A Geneva drive that turns: its wheel by steps, the crank with its locking disc and rollers steadily. */
 
 import { el, shown, svg } from "./dom.js";
+import { t } from "./messages.js";
 import { Player, between } from "./player.js";
 import { plots } from "./plots.js";
 import { View } from "./view.js";
@@ -46,22 +47,22 @@ export class Geneva {
         const [across, down] = view.at(x + centre, y);
         return svg("circle", { class: "pin", cx: across, cy: down, r: (view.scale * mechanism.roller_diameter) / 2 });
       }));
-    const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": "The Geneva drive, turning" },
+    const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The Geneva drive, turning` },
       svg("rect", { class: "paper", width, height }),
       mechanism.ring_radius && svg("g", { class: "wheel t0" }, svg("circle", { class: "pitch", cx: u, cy: v, r: view.scale * mechanism.ring_radius })),
       svg("g", { class: "wheel t0" }, this.wheel), svg("g", { class: "wheel t1" }, this.crank),
       this.link && this.bars, ...this.axes.map(([cx, cy]) => svg("circle", { class: "pin", cx, cy, r: 3.5 })));
     this.angle = el("dd", {});
     this.state = el("dd", {});
-    this.player = new Player({ count: motion.input_angle.length, closed: true, endless: true, label: "Crank",
+    this.player = new Player({ count: motion.input_angle.length, closed: true, endless: true, label: t`Crank`,
       reading: (at) => `${shown(Math.round(10 * this.over(motion.input_angle, at)) / 10)}°`, show: (at) => this.show(at) });
     this.marks = plots([
-      { title: "Wheel turned (°)", lines: { "": motion.angle } },
-      { title: "Velocity v (rad by rad)", lines: { "": motion.omega } },
-      { title: "Acceleration a (rad by rad²)", lines: { "": motion.alpha } },
+      { title: t`Wheel turned (°)`, lines: { "": motion.angle } },
+      { title: t`Velocity v (rad by rad)`, lines: { "": motion.omega } },
+      { title: t`Acceleration a (rad by rad²)`, lines: { "": motion.alpha } },
     ], motion.input_angle, (at) => this.player.lead(at));
     frame.fill({ picture, clock: this.player.row,
-      beside: [el("dl", { class: "facts speeds" }, el("dt", {}, "Wheel"), this.angle, el("dt", {}, "State"), this.state)],
+      beside: [el("dl", { class: "facts speeds" }, el("dt", {}, t`Wheel`), this.angle, el("dt", {}, t`Motion`), this.state)],
       plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))] });
     this.player.begin();
   }
@@ -85,7 +86,7 @@ export class Geneva {
       part.setAttribute("transform", `rotate(${(-turns[k]).toFixed(3)} ${this.axes[k][0].toFixed(2)} ${this.axes[k][1].toFixed(2)})`);
     });
     this.angle.textContent = `${shown(Math.round(10 * turned) / 10)}°`;
-    this.state.textContent = motion.moves[Math.round(within)] ? "turns" : "rests, locked";
+    this.state.textContent = motion.moves[Math.round(within)] ? t`turns` : t`rests, locked`;
     for (const mark of this.marks) mark.show(within);
   }
 

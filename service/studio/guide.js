@@ -2,6 +2,7 @@
 
 import { byId, el } from "./dom.js";
 import { GUIDES } from "./guides.js";
+import { t } from "./messages.js";
 
 /** @typedef {import("./guides.js").Guide} Guide */
 
@@ -34,15 +35,15 @@ export class Leader {
     this.thing = null;
     this.count = el("span", { class: "note" });
     this.text = el("p", { role: "status" });
-    this.there = el("button", { type: "button", class: "small", onclick: () => this.go() }, "Go there");
-    this.on = el("button", { type: "button", class: "small", onclick: () => this.step(this.n + 1) }, "Skip");
-    this.note = el("section", { id: "guide", class: "guide", "aria-label": "Guided task", hidden: true,
+    this.there = el("button", { type: "button", class: "small", onclick: () => this.go() }, t`Go there`);
+    this.on = el("button", { type: "button", class: "small", onclick: () => this.step(this.n + 1) }, t`Skip`);
+    this.note = el("section", { id: "guide", class: "guide", "aria-label": t`Guided task`, hidden: true,
       onkeydown: (/** @type {KeyboardEvent} */ event) => {
         if (event.key !== "Escape") return;
         event.stopPropagation();
         this.leave();
       } }, this.count, this.text,
-    el("div", { class: "row" }, this.there, this.on, el("button", { type: "button", class: "small", onclick: () => this.leave() }, "Leave")));
+    el("div", { class: "row" }, this.there, this.on, el("button", { type: "button", class: "small", onclick: () => this.leave() }, t`Leave`)));
     // Before the panels, so that the keys come to it first.
     byId("status").after(this.note);
   }
@@ -75,10 +76,10 @@ export class Leader {
     const step = guide.steps[n];
     this.before = structuredClone(page.problem());
     this.chosen = document.querySelector('.card[aria-pressed="true"]')?.getAttribute("data-design") ?? "";
-    this.count.textContent = step ? `${guide.name}, ${n + 1} of ${guide.steps.length}` : guide.name;
-    this.text.textContent = step?.text ?? "That is all: everything can be undone, changed, and solved again.";
+    this.count.textContent = step ? t`${guide.name}, ${n + 1} of ${guide.steps.length}` : guide.name;
+    this.text.textContent = step?.text ?? t`That is all: everything can be undone, changed, and solved again.`;
     this.there.hidden = !step;
-    this.on.textContent = step ? "Skip" : "Done";
+    this.on.textContent = step ? t`Skip` : t`Done`;
     if (step?.stage) page.desk.stage.show(step.stage);
     if (step && ["task", "answers"].includes(step.tab)) page.desk.drawer.select(step.tab);
     this.look();

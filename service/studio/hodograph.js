@@ -1,6 +1,7 @@
 /** The hodograph of a force: its components against each other over the motion, with a mark where the motion stands. */
 
 import { el, shown, svg } from "./dom.js";
+import { t } from "./messages.js";
 import { between } from "./player.js";
 import { View } from "./view.js";
 
@@ -24,12 +25,12 @@ export class Hodograph {
     this.reading = el("span", { class: "reading" });
     this.unit = unit;
     this.figure = el("figure", { class: "plot hodograph" }, el("figcaption", {}, el("span", {}, title), this.reading),
-      svg("svg", { viewBox: `0 0 ${SIZE} ${SIZE}`, role: "img", "aria-label": `${title}: up to ${shown(Number(peak.toPrecision(4)))} ${unit}` },
+      svg("svg", { viewBox: `0 0 ${SIZE} ${SIZE}`, role: "img", "aria-label": t`${title}: up to ${shown(Number(peak.toPrecision(4)))} ${unit}` },
         svg("rect", { class: "paper", width: SIZE, height: SIZE }),
         svg("circle", { class: "grid round", cx: u, cy: v, r: SIZE / 2 - MARGIN }),
         svg("line", { class: "zero", x1: MARGIN, x2: SIZE - MARGIN, y1: v, y2: v }), svg("line", { class: "zero", y1: MARGIN, y2: SIZE - MARGIN, x1: u, x2: u }),
         svg("text", { class: "tick", x: SIZE - 4, y: v - 5, "text-anchor": "end" }, "x"), svg("text", { class: "tick", x: u + 6, y: 14 }, "y"),
-        svg("text", { class: "tick", x: 6, y: SIZE - 8 }, `Circle: ${shown(Number(peak.toPrecision(3)))} ${unit}`.trim()),
+        svg("text", { class: "tick", x: 6, y: SIZE - 8 }, t`Circle: ${shown(Number(peak.toPrecision(3)))} ${unit}`.trim()),
         svg("path", { class: "series s0", d: this.view.path(points) }), this.ray, this.dot));
   }
 

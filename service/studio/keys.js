@@ -4,6 +4,7 @@
  */
 
 import { byId, el } from "./dom.js";
+import { t } from "./messages.js";
 import { lasting } from "./storage.js";
 
 const OFF = "mechsynth.letters-off";
@@ -26,7 +27,7 @@ export class Keys {
     letters.checked = lasting.read(OFF) === null;
     letters.addEventListener("change", () => lasting.write(OFF, letters.checked ? null : "1"));
     this.letters = letters;
-    const cap = (/** @type {string} */ one) => (one === "or" ? " or " : el("kbd", {}, one));
+    const cap = (/** @type {string} */ one) => (one === t`or` ? ` ${one} ` : el("kbd", {}, one));
     const caps = (/** @type {string} */ shown) => shown.split(" ").map(cap);
     byId("keys-list").replaceChildren(...bindings.filter(({ shown }) => shown).map(({ shown, text }) =>
       el("div", {}, el("dt", {}, ...caps(shown)), el("dd", {}, text))));

@@ -2,6 +2,7 @@
 
 import { addressOf } from "./address.js";
 import { el } from "./dom.js";
+import { t } from "./messages.js";
 
 /** How long it says so. */
 const TOLD_MS = 5000;
@@ -18,15 +19,15 @@ export class Link {
   async copy() {
     const sent = this.sent();
     const address = await addressOf(sent);
-    const held = sent.mechanism ? "the statement and the linkage that is shown" : "the statement";
+    const held = sent.mechanism ? t`the statement and the linkage that is shown` : t`the statement`;
     try {
       await navigator.clipboard.writeText(address);
-      this.tell(`Link copied. It holds ${held}, and opens on any service.`);
+      this.tell(t`Link copied. It holds ${held}, and opens on any service.`);
       this.telling = setTimeout(() => this.tell(), TOLD_MS);
     } catch {
       // Only pages of this machine and those by HTTPS may write there.
-      const text = el("input", { readonly: true, value: address, "aria-label": "The link", onblur: () => this.tell() });
-      this.tell(`Copy this link. It holds ${held}, and opens on any service.`, text);
+      const text = el("input", { readonly: true, value: address, "aria-label": t`The link`, onblur: () => this.tell() });
+      this.tell(t`Copy this link. It holds ${held}, and opens on any service.`, text);
       text.select();
     }
   }

@@ -4,6 +4,7 @@ import { Refused } from "./api.js";
 import { choice, numberBox } from "./controls.js";
 import { el, words } from "./dom.js";
 import * as faults from "./faults.js";
+import { t, term } from "./messages.js";
 import { symbolOf } from "./units.js";
 
 /** How near to a pin a click means it, pixels of the picture. */
@@ -38,9 +39,9 @@ export class LoadEditor {
     this.rows = el("div", { class: "fields loads" });
     this.hint = el("p", { class: "note", role: "status" });
     this.faults = el("div", { role: "alert" });
-    this.button = el("button", { type: "submit", class: "main" }, "Show the forces");
+    this.button = el("button", { type: "submit", class: "main" }, t`Show the forces`);
     const kept = Object.entries(this.block).filter(([name, value]) => !EDITED.includes(name) && Object.keys(value ?? {}).length).map(([name]) => name);
-    this.form = el("form", { novalidate: true, "aria-label": "Masses and loads", onsubmit: (/** @type {Event} */ event) => {
+    this.form = el("form", { novalidate: true, "aria-label": t`Masses and loads`, onsubmit: (/** @type {Event} */ event) => {
       event.preventDefault();
       this.submit();
     }, onkeydown: (/** @type {KeyboardEvent} */ event) => {
@@ -50,11 +51,11 @@ export class LoadEditor {
     el("div", { class: "row" }, ...[["point mass", () => this.masses.push({ joint: this.joints[0] })],
       ["force", () => this.loads.push({ joint: this.joints[0], force: { constant: [0, 0] } })],
       ["torque", () => this.loads.push({ link: this.links[0], torque: { constant: 0 } })]].map(([name, add]) =>
-      el("button", { type: "button", class: "small", onclick: () => this.add(/** @type {() => void} */ (add), String(name)) }, `Add a ${name}`))),
-    this.hint, kept.length > 0 && el("p", { class: "note" }, `Kept as the problem states it: ${kept.map((name) => words(name).toLowerCase()).join(", ")}.`),
+      el("button", { type: "button", class: "small", onclick: () => this.add(/** @type {() => void} */ (add), String(name)) }, t`Add a ${term(String(name))}`))),
+    this.hint, kept.length > 0 && el("p", { class: "note" }, t`Kept as the problem states it: ${kept.map(term).join(", ")}.`),
     this.faults, el("div", { class: "row" }, this.button));
     this.node = el("details", { class: "load-editor", open: !problem.dynamics, ontoggle: () => this.node.open || this.place(null) },
-      el("summary", {}, "State masses and loads"), this.form);
+      el("summary", {}, t`State masses and loads`), this.form);
     this.click = (/** @type {PointerEvent} */ event) => this.choose(event);
     this.list();
   }
@@ -97,7 +98,7 @@ export class LoadEditor {
   speed() {
     const name = this.sliding ? "speed" : "speed_rpm";
     const unit = this.sliding ? `${this.unit("length")}/s` : this.unit("rotational speed");
-    return this.number(`/dynamics/${name}`, "Speed of the input", unit, this.block[name], (value) => put(this.block, name, value), "0 is statics.");
+    return this.number(`/dynamics/${name}`, t`Speed of the input`, unit, this.block[name], (value) => put(this.block, name, value), t`0 is statics.`);
   }
 
   gravity() {
@@ -107,8 +108,8 @@ export class LoadEditor {
       if (pull.magnitude === undefined) delete this.block.gravity;
       else this.block.gravity = pull.angle === undefined ? { magnitude: pull.magnitude } : { ...pull };
     };
-    return [this.number("/dynamics/gravity/magnitude", "Gravity", this.unit("gravity"), pull.magnitude, set("magnitude"), "Empty: none."),
-      this.number("/dynamics/gravity/angle", "Gravity pulls towards", "°", pull.angle, set("angle"))];
+    return [this.number("/dynamics/gravity/magnitude", t`Gravity`, this.unit("gravity"), pull.magnitude, set("magnitude"), t`Empty: none.`),
+      this.number("/dynamics/gravity/angle", t`Gravity pulls towards`, "°", pull.angle, set("angle"))];
   }
 
   material() {
@@ -117,7 +118,7 @@ export class LoadEditor {
       put((block.links ??= {}), name, value);
       if (!Object.keys(block.links).length) delete block.links;
     });
-    return el("fieldset", { class: "field member", "data-path": "/dynamics/links", tabindex: -1 }, el("legend", {}, "Material of all links"),
+    return el("fieldset", { class: "field member", "data-path": "/dynamics/links", tabindex: -1 }, el("legend", {}, t`Material of all links`),
       el("div", { class: "fields" }, field("density", "density"), field("thickness", "length"), field("width", "length")), el("p", { class: "error" }));
   }
 
@@ -136,18 +137,18 @@ export class LoadEditor {
     this.place(null);
     this.rows.replaceChildren(
       ...this.masses.map((mass, k) => this.row(this.masses, k, `/dynamics/point_masses/${k}`, "point mass", this.at(mass, `/dynamics/point_masses/${k}/joint`),
-        this.number(`/dynamics/point_masses/${k}/mass`, "Mass", this.unit("mass"), mass.mass, (value) => put(mass, "mass", value)))),
+        this.number(`/dynamics/point_masses/${k}/mass`, t`Mass`, this.unit("mass"), mass.mass, (value) => put(mass, "mass", value)))),
       ...this.loads.map((load, k) => {
         const path = `/dynamics/loads/${k}`;
         if (load.joint !== undefined && load.force?.constant) {
-          const axis = (/** @type {number} */ n) => this.number(`${path}/force/constant/${n}`, `Force ${"xy"[n]}`, this.unit("force"), load.force.constant[n], (value) => (load.force.constant[n] = value ?? null));
+          const axis = (/** @type {number} */ n) => this.number(`${path}/force/constant/${n}`, t`Force ${"xy"[n]}`, this.unit("force"), load.force.constant[n], (value) => (load.force.constant[n] = value ?? null));
           return this.row(this.loads, k, path, "force", this.at(load, `${path}/joint`), axis(0), axis(1));
         }
         if (load.link !== undefined && load.torque && "constant" in load.torque) {
           return this.row(this.loads, k, path, "torque", this.named(this.links, load, "link", `${path}/link`),
-            this.number(`${path}/torque/constant`, "Torque", this.unit("torque"), load.torque.constant, (value) => (load.torque.constant = value ?? null)));
+            this.number(`${path}/torque/constant`, t`Torque`, this.unit("torque"), load.torque.constant, (value) => (load.torque.constant = value ?? null)));
         }
-        return this.row(this.loads, k, path, "load", el("p", { class: "note" }, `On ${load.joint ?? load.link}, kept as it is stated.`));
+        return this.row(this.loads, k, path, "load", el("p", { class: "note" }, t`On ${load.joint ?? load.link}, kept as it is stated.`));
       }));
   }
 
@@ -155,10 +156,10 @@ export class LoadEditor {
   row(all, k, path, sort, ...controls) {
     return el("fieldset", { class: "field member", "data-path": path, "data-sort": sort, tabindex: -1 }, el("legend", {}, words(sort)),
       el("div", { class: "fields" }, ...controls), el("p", { class: "error" }),
-      el("button", { type: "button", class: "small", "aria-label": `Remove ${sort} ${k + 1}`, onclick: () => {
+      el("button", { type: "button", class: "small", "aria-label": t`Remove ${`${term(sort)} ${k + 1}`}`, onclick: () => {
         all.splice(k, 1);
         this.list();
-      } }, "Remove"));
+      } }, t`Remove`));
   }
 
   /** @param {string[]} names @param {any} row @param {string} key @param {string} path */
@@ -173,7 +174,7 @@ export class LoadEditor {
   at(row, path) {
     const field = this.named(this.joints, row, "joint", path);
     const button = el("button", { type: "button", class: "small", "aria-pressed": "false", onclick: () =>
-      this.place(this.placing?.button === button ? null : { select: field.querySelector("select"), button }) }, "Choose on the drawing");
+      this.place(this.placing?.button === button ? null : { select: field.querySelector("select"), button }) }, t`Choose on the drawing`);
     field.append(button);
     return field;
   }
@@ -185,7 +186,7 @@ export class LoadEditor {
     placed?.button.setAttribute("aria-pressed", "true");
     this.mover?.picture.classList.toggle("placing", Boolean(placed));
     if (placed) this.mover?.pause();
-    this.hint.textContent = placed ? "Click a joint in the drawing above, or choose it from the list. Escape leaves the drawing." : "";
+    this.hint.textContent = placed ? t`Click a joint in the drawing above, or choose it from the list. Escape leaves the drawing.` : "";
   }
 
   /** @param {PointerEvent} event */
@@ -231,7 +232,7 @@ export class LoadEditor {
       const speed = `/dynamics/${this.sliding ? "speed" : "speed_rpm"}`;
       faults.tell(this.form, this.faults, { message: error.message, errors: error.errors.map(({ path, detail }) => ({ path: path === "/dynamics" ? speed : path, detail })) });
     } else if (error.name !== "AbortError") this.faults.replaceChildren(el("p", { class: "error" }, error.message));
-    if (this.answered) this.faults.append(el("p", { class: "note" }, "The forces below are those of what was stated before."));
+    if (this.answered) this.faults.append(el("p", { class: "note" }, t`The forces below are those of what was stated before.`));
   }
 }
 

@@ -3,6 +3,7 @@
 import { words } from "./dom.js";
 import { brief, exact, figures, unitFor } from "./figures.js";
 import * as api from "./api.js";
+import { t, term } from "./messages.js";
 import { symbolOf } from "./units.js";
 
 /**
@@ -30,7 +31,7 @@ export function quantities(designs, problem) {
       return plain(check.name, one?.value, check.dimension, sizes[n]);
     });
     const told = found.some((one) => one.values.every((value, n) => value === values[n]));
-    if (!told && differ(values)) found.push(made(`check:${check.name}`, `Check: ${words(check.name).toLowerCase()}`, symbolOf(check.dimension, problem), values));
+    if (!told && differ(values)) found.push(made(`check:${check.name}`, t`Check: ${term(check.name)}`, symbolOf(check.dimension, problem), values));
   }
   // What all have alike is no choice.
   return [...found.filter((one) => differ(one.values)), ...found.filter((one) => !differ(one.values))];

@@ -2,6 +2,7 @@
 
 import { el, shown, words } from "./dom.js";
 import { amount, unitFor } from "./figures.js";
+import { t, term } from "./messages.js";
 import { thumbnail } from "./thumbnail.js";
 
 /** @typedef {{check: string, value?: number, limit?: number, dimension?: string}} Gap */
@@ -12,6 +13,9 @@ import { thumbnail } from "./thumbnail.js";
  * @property {(problem: any) => void} apply changes a statement
  */
 /** @typedef {{text: string, statement: any}} Offer */
+
+/** Between the last two of a list. */
+const AND = ` ${t`and`} `;
 
 /** Digits of a limit that is eased. */
 const DIGITS = 4;
@@ -27,12 +31,12 @@ const STATED = {
 
 /** What has no measure, or no number that could be eased: it is left out. @type {Record<string, {text: string, path: string[], value: any}>} */
 const LEFT_OUT = {
-  grashof: { text: "with any class of linkage", path: ["constraints", "grashof"], value: "any" },
-  full_rotation: { text: "without a full turn of the input", path: ["constraints", "full_rotation"], value: false },
-  box: { text: "without the box", path: ["space", "box"], value: null },
-  obstacles: { text: "without the obstacles", path: ["space", "obstacles"], value: [] },
-  fixed_pivot_zones: { text: "without the zones of fixed pivots", path: ["space", "fixed_pivots"], value: null },
-  moving_pivot_zones: { text: "without the zones of moving pivots", path: ["space", "moving_pivots"], value: null },
+  grashof: { text: t`with any class of linkage`, path: ["constraints", "grashof"], value: "any" },
+  full_rotation: { text: t`without a full turn of the input`, path: ["constraints", "full_rotation"], value: false },
+  box: { text: t`without the box`, path: ["space", "box"], value: null },
+  obstacles: { text: t`without the obstacles`, path: ["space", "obstacles"], value: [] },
+  fixed_pivot_zones: { text: t`without the zones of fixed pivots`, path: ["space", "fixed_pivots"], value: null },
+  moving_pivot_zones: { text: t`without the zones of moving pivots`, path: ["space", "moving_pivots"], value: null },
 };
 
 /** Rectangles that are widened by as much as pivots lie outside of them. @type {Record<string, string[]>} */
@@ -47,15 +51,15 @@ const REACHED = { min_transmission_angle: "transmission_angle", max_link_ratio: 
 /** @param {any} miss @param {any} problem @param {(problem: any) => void} solve */
 export function missed(miss, problem, solve) {
   const { design, gaps, reachable } = miss;
-  const short = (/** @type {any} */ value) => [value].flat().map((one) => shown(Number(one.toPrecision(4)))).join(" and ");
+  const short = (/** @type {any} */ value) => [value].flat().map((one) => shown(Number(one.toPrecision(4)))).join(AND);
   const unit = (/** @type {string} */ name) => (name.includes("angle") ? "°" : "");
-  const within = Object.entries(reachable).map(([name, value]) => `${words(name).toLowerCase()} ${short(value)}${unit(name)}`);
+  const within = Object.entries(reachable).map(([name, value]) => `${term(name)} ${short(value)}${unit(name)}`);
   return el("section", { id: "miss" }, thumbnail(design),
-    el("strong", {}, `Nearest miss: ${words(design.mechanism.type)}`),
+    el("strong", {}, t`Nearest miss: ${words(design.mechanism.type)}`),
     ...gaps.map((/** @type {Gap} */ gap) => el("span", { class: "bad" }, `✗ ${words(gap.check)}`,
       typeof gap.value === "number" && ` ${amount(gap.value, gap, problem)}`,
-      typeof gap.limit === "number" && `, demanded ${amount(gap.limit, gap, problem)}`)),
-    within.length > 0 && el("span", { class: "note" }, `Within reach beside all other demands: ${within.join("; ")}.`),
+      typeof gap.limit === "number" && `, ${t`demanded ${amount(gap.limit, gap, problem)}`}`)),
+    within.length > 0 && el("span", { class: "note" }, t`Within reach beside all other demands: ${within.join("; ")}.`),
     ...offers(problem, miss).map(({ text, statement }, k) =>
       el("button", { type: "button", class: k ? "small" : "main", onclick: () => solve(statement) }, text)));
 }
@@ -72,7 +76,7 @@ export function offers(problem, { gaps, reachable }) {
   const found = sets.filter((/** @type {(Easing | null)[]} */ set) => set.length && set.every((one) => one)).map((/** @type {Easing[]} */ set) => {
     const statement = structuredClone(problem);
     for (const { apply } of set) apply(statement);
-    return { text: `Solve ${set.map((one) => one.text).join(" and ")}`, statement };
+    return { text: t`Solve ${set.map((one) => one.text).join(AND)}`, statement };
   });
   return found.filter((one, k) => found.findIndex((other) => JSON.stringify(other.statement) === JSON.stringify(one.statement)) === k);
 }
@@ -83,7 +87,7 @@ function eased(problem, gap) {
   const region = WIDENED[check];
   if (region && typeof value === "number" && at(problem, region)) {
     const by = rounded(value, true);
-    return { text: `with ${words(check).toLowerCase()} wider by ${amount(by, gap, problem)}`, apply: (statement) => {
+    return { text: t`with ${term(check)} wider by ${amount(by, gap, problem)}`, apply: (statement) => {
       const zone = at(statement, region);
       for (const way of ["x", "y"]) zone[way] = [zone[way][0] - by, zone[way][1] + by];
     } };
@@ -103,7 +107,7 @@ function reached(problem, name, value) {
   const path = check ? STATED[check] : [name];
   if (name === "dwell_angles" && Array.isArray(problem.dwells)) {
     const angles = value.map((/** @type {number} */ one) => rounded(one, false));
-    return { text: `with dwells of ${angles.map((/** @type {number} */ one) => `${shown(one)}°`).join(" and ")}`,
+    return { text: t`with dwells of ${angles.map((/** @type {number} */ one) => `${shown(one)}°`).join(AND)}`,
       apply: (statement) => statement.dwells.forEach((/** @type {any} */ dwell, /** @type {number} */ k) => (dwell.angle = angles[k])) };
   }
   const limit = at(problem, path);
@@ -114,8 +118,8 @@ function reached(problem, name, value) {
 
 /** Another limit. @param {string[]} path @param {string} check @param {number} value @param {boolean} up @param {string} told @returns {Easing} */
 function limited(path, check, value, up, told) {
-  const name = path.at(-1) === "tolerance" ? "tolerance" : path.at(-1) === "clearance" ? "clearance" : words(check).toLowerCase();
-  return { text: `with ${name} ${told}`, apply: (statement) => put(statement, path, rounded(value, up)) };
+  const name = term(["tolerance", "clearance"].find((one) => one === path.at(-1)) ?? check);
+  return { text: t`with ${name} ${told}`, apply: (statement) => put(statement, path, rounded(value, up)) };
 }
 
 /** Rounded to the side on which it is reached. @param {number} value @param {boolean} up */

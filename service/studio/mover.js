@@ -1,14 +1,15 @@
 /** A linkage in motion: the arrays of its cycle, drawn at the display's own rate. */
 
 import { Circuits, others, telling, track } from "./circuits.js";
-import { el, shown, svg, words } from "./dom.js";
+import { el, shown, svg } from "./dom.js";
 import { Gauge } from "./gauge.js";
 import { led } from "./grip.js";
 import { Linkage, drawn, grounded } from "./linkage.js";
+import { t } from "./messages.js";
 import { Planes, planeClass } from "./planes.js";
 import { Player, between, within } from "./player.js";
 import { plots } from "./plots.js";
-import { judged, moved, parts } from "./quantities.js";
+import { judged, moved, partName, parts } from "./quantities.js";
 import { RoomView } from "./room_view.js";
 import { Ruler } from "./ruler.js";
 import { Sweep, jointsAt, placeOf, rangeOf } from "./sweep.js";
@@ -52,14 +53,14 @@ export class Mover {
     this.linkage = new Linkage(this.view, this.skeleton, { classes: Object.fromEntries(Object.entries(planes).map(([name, plane]) => [name, planeClass(Number(plane))])) });
     this.circuits = new Circuits(this.view, this.skeleton, circuits);
     const closed = returns(motion, this.count);
-    this.player = new Player({ count: this.count, closed, label: "Input",
+    this.player = new Player({ count: this.count, closed, label: t`Input`,
       reading: (at) => this.reading(at), show: (at) => this.show(at) });
     const range = rangeOf(motion, this.room.cycle ? null : design.metrics?.used_range ?? design.metrics?.used_stroke, closed);
     this.sweep = new Sweep(this.view, this.skeleton, this.room, (at) => jointsAt(motion, at), range, () => this.player.keep(this.sweep.on ? range : null));
     this.closed = closed;
     this.planes = layered ? new Planes(this.view, design, problem, (input) => this.lead(input)) : null;
     this.gauge = motion.transmission_angle?.some((/** @type {any} */ one) => one !== null)
-      ? new Gauge("Transmission angle", motion.transmission_angle, {
+      ? new Gauge(t`Transmission angle`, motion.transmission_angle, {
         limit: problem.constraints?.min_transmission_angle, used: partly(design) ? design.metrics.min_transmission_angle : null }) : null;
     /** @type {{figure: HTMLElement, show: (at: number) => void}[]} */
     this.marks = [];
@@ -83,7 +84,7 @@ export class Mover {
     const [width, height] = this.size;
     const still = grounded(skeleton);
     const moving = drawn(skeleton).filter((name) => !still.includes(name));
-    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": "The linkage in motion" },
+    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The linkage in motion` },
       svg("rect", { class: "paper", width, height }), this.sweep.node, this.room.draw(view), this.circuits.node,
       ...moving.map((name) => svg("path", { class: name === "P" ? "curve" : "trail", d: view.path(this.track(name)) })),
       ...this.toggles(), ...this.targets.map((one, k) => this.target(one, k)), this.linkage.node);
@@ -98,11 +99,11 @@ export class Mover {
       for (const mark of this.marks) mark.show(this.player.at);
     };
     const pick = el("select", { id: "part", onchange: () => choose(pick.value) },
-      ...choices.map((part) => el("option", { value: part }, words(part))));
+      ...choices.map((part) => el("option", { value: part }, partName(part))));
     this.frame.fill({ picture: this.picture, tools: [ruler.button], clock: this.player.row, below: [this.planes?.node],
       beside: [this.gauge?.node, this.sweep.control, this.circuits.control, ...this.room.legend],
-      plots: [el("div", { class: "row" }, el("label", { for: "part" }, "Plots of"), pick,
-        el("span", { class: "note" }, "Rates are by the radian of the input; click in a plot to go there.")), box] });
+      plots: [el("div", { class: "row" }, el("label", { for: "part" }, t`Plots of`), pick,
+        el("span", { class: "note" }, t`Rates are by the radian of the input; click in a plot to go there.`)), box] });
     if (choices.length) choose(choices[0]);
   }
 
@@ -140,7 +141,7 @@ export class Mover {
     return [...ends, ...motion.toggles.map((/** @type {number} */ degrees) => {
       const angle = (degrees * Math.PI) / 180;
       const [u, v] = view.at(ox + crank * Math.cos(angle), oy + crank * Math.sin(angle));
-      return svg("g", { class: "stop" }, svg("title", {}, `Toggle at ${shown(Math.round(10 * degrees) / 10)}°`),
+      return svg("g", { class: "stop" }, svg("title", {}, t`Toggle at ${shown(Math.round(10 * degrees) / 10)}°`),
         svg("path", { d: `M${u - 5} ${v - 5}l10 10m0 -10l-10 10` }));
     })];
   }

@@ -1,7 +1,8 @@
 /** What moves when the page opens: an example with its answer, made of the service's own by `tools/studio`. */
 
-import { byId, el, words } from "./dom.js";
+import { byId, el } from "./dom.js";
 import { checks, figures, table } from "./figures.js";
+import { foreign, t, term, translated } from "./messages.js";
 import { Mover } from "./mover.js";
 
 export class Opening {
@@ -23,14 +24,14 @@ export class Opening {
       .then((one) => (one.ok ? one.json() : null), () => null);
     if (!answer || gone.signal.aborted) return;
     const { problem, design, motion, circuits, found, summary } = answer;
-    desk.stage.offer(true, `Example: ${this.name}`);
+    desk.stage.offer(true, t`Example: ${translated(this.name)}`);
     desk.stage.show("watch");
     desk.shown = design;
     this.moving = new Mover(desk.frame, design, motion, problem, circuits);
-    desk.title.replaceChildren(`Example: ${this.name}, ${words(design.mechanism.type).toLowerCase()}`);
-    this.tabulate = () => desk.numbers.replaceChildren(el("p", { class: "note" }, `The best of ${found}. ${summary}`),
-      el("p", { class: "note" }, "Solve it to have all of them, with drawings and files; or state something else."),
-      el("div", { class: "columns" }, checks(design, problem), table("Quantities", figures(design), problem)));
+    desk.title.replaceChildren(t`Example: ${`${translated(this.name)}, ${term(design.mechanism.type)}`}`);
+    this.tabulate = () => desk.numbers.replaceChildren(el("p", { class: "note" }, t`The best of ${found}.`, " ", el("span", { lang: foreign(summary) }, translated(summary))),
+      el("p", { class: "note" }, t`Solve it to have all of them, with drawings and files; or state something else.`),
+      el("div", { class: "columns" }, checks(design, problem), table(t`Quantities`, figures(design), problem)));
     this.tabulate();
   }
 

@@ -2,6 +2,7 @@
 
 import { svg } from "./dom.js";
 import { hatched, outline } from "./hatch.js";
+import { t } from "./messages.js";
 
 /** @typedef {[number, number]} Point */
 /** @typedef {import("./room.js").Zone} Zone */
@@ -139,7 +140,7 @@ export class Pen {
       const [u, v] = view.at(...corner);
       return `M${u - 4} ${v}a4 4 0 1 0 8 0a4 4 0 1 0 -8 0Z`;
     }).join(""));
-    if (circle) this.on.tell(`Radius ${circle.radius}`);
+    if (circle) this.on.tell(t`Radius ${circle.radius}`);
     else if (zone) this.on.tell(`${view.rounded(line[2][0] - line[0][0])} × ${view.rounded(line[2][1] - line[0][1])}`);
     else if (at && corners.length) this.on.tell(`x ${at[0]}, y ${at[1]}. ${this.how()}`);
   }
@@ -149,11 +150,11 @@ export class Pen {
   }
 
   how() {
-    if (this.tool === "rectangle") return "Drag from corner to corner. Enter puts one into the middle, Escape ends.";
-    if (this.tool === "circle") return "Drag from the centre outward. Enter puts one into the middle, Escape ends.";
-    if (!this.corners.length) return "Click its corners. Enter puts one into the middle, Escape ends.";
-    return this.corners.length < 3 ? "Click the next corner. Backspace takes one back, Escape ends."
-      : "Click the first corner, or press Enter, to close it. Backspace takes one back.";
+    if (this.tool === "rectangle") return t`Drag from corner to corner. Enter puts one into the middle, Escape ends.`;
+    if (this.tool === "circle") return t`Drag from the centre outward. Enter puts one into the middle, Escape ends.`;
+    if (!this.corners.length) return t`Click its corners. Enter puts one into the middle, Escape ends.`;
+    return this.corners.length < 3 ? t`Click the next corner. Backspace takes one back, Escape ends.`
+      : t`Click the first corner, or press Enter, to close it. Backspace takes one back.`;
   }
 
   leave() {

@@ -2,6 +2,7 @@
 
 import { el, shown, svg, words } from "./dom.js";
 import { grounded } from "./linkage.js";
+import { foreign, t, term, translated } from "./messages.js";
 import { symbolOf } from "./units.js";
 
 /** @typedef {[number, number]} Point */
@@ -35,7 +36,7 @@ function wheels(skeleton) {
     const idled = ratio > 0 ? 2 * Math.min(1, ratio) : 0;
     const unit = Math.hypot(q[0] - o[0], q[1] - o[1]) / (1 + Math.abs(ratio) + idled);
     const share = (Math.abs(ratio) + 0.5 * idled) / (1 + Math.abs(ratio) + idled);
-    return [[`gear of ${links[0]}`, { centre: o, radius: Math.abs(ratio) * unit }], [`gear of ${links[1]}`, { centre: q, radius: unit }],
+    return [[t`gear of ${links[0]}`, { centre: o, radius: Math.abs(ratio) * unit }], [t`gear of ${links[1]}`, { centre: q, radius: unit }],
       ...(idled ? [["idler", { centre: [o[0] + share * (q[0] - o[0]), o[1] + share * (q[1] - o[1])], radius: 0.5 * idled * unit }]] : [])];
   }));
 }
@@ -63,30 +64,30 @@ export class Planes {
     const { layout } = this;
     const unit = symbolOf("length", problem);
     const listed = Object.entries(layout.planes).sort(([, one], [, other]) => other - one);
-    this.node = el("section", { class: "planes", "aria-label": "Planes" },
-      el("h4", {}, layout.remark ? "No layout" : `${layout.count} ${layout.count === 1 ? "plane" : "planes"}${layout.least ? ", the fewest there are" : ""}, ${shown(Number(layout.height.toPrecision(4)))} ${unit} high`),
-      layout.remark && el("p", { class: "note" }, layout.remark),
-      listed.length > 0 && this.picture(), listed.length > 0 && el("ul", { class: "legend", "aria-label": "Links by plane" },
+    this.node = el("section", { class: "planes", "aria-label": t`Planes` },
+      el("h4", {}, layout.remark ? t`No layout` : [layout.count === 1 ? t`1 plane` : t`${layout.count} planes`, layout.least && t`the fewest there are`, t`${shown(Number(layout.height.toPrecision(4)))} ${unit} high`].filter(Boolean).join(", ")),
+      layout.remark && el("p", { class: "note", lang: foreign(layout.remark) }, translated(layout.remark)),
+      listed.length > 0 && this.picture(), listed.length > 0 && el("ul", { class: "legend", "aria-label": t`Links by plane` },
         ...listed.map(([name, plane]) => el("li", {}, svg("svg", { viewBox: "0 0 26 16", width: 26, height: 16, "aria-hidden": "true" },
           svg("rect", { class: `bar ${planeClass(plane)}`, x: 1, y: 1, width: 24, height: 14, rx: 3 }), svg("text", { class: "plane-number", x: 13, y: 12.5 }, plane)),
-        el("span", { class: "hidden" }, `Plane ${plane}: `), words(name)))),
-      listed.length > 0 && el("p", { class: "note" }, "Across it is in line with the picture above; upward it is not to scale."),
-      layout.stub_shafts.length > 0 && el("p", { class: "note" }, `Stub shafts at ${layout.stub_shafts.join(", ")}: no shaft can pass all planes there.`),
+        el("span", { class: "hidden" }, t`Plane ${plane}`, ": "), words(name)))),
+      listed.length > 0 && el("p", { class: "note" }, t`Across it is in line with the picture above; upward it is not to scale.`),
+      layout.stub_shafts.length > 0 && el("p", { class: "note" }, t`Stub shafts at ${layout.stub_shafts.join(", ")}: no shaft can pass all planes there.`),
       ...this.clashes(unit, lead));
   }
 
   /** @param {string} unit @param {(input: number) => void} lead */
   clashes(unit, lead) {
     const { clashes, free_range: range, free_stroke: stroke } = this.layout;
-    if (!clashes.length) return [el("p", { class: "good" }, "✓ Nothing clashes over the motion that is looked at.")].filter(() => !this.layout.remark);
+    if (!clashes.length) return [el("p", { class: "good" }, `✓ ${t`Nothing clashes over the motion that is looked at.`}`)].filter(() => !this.layout.remark);
     const rounded = (/** @type {number} */ value) => shown(Math.round(10 * value) / 10);
-    const free = range ? `${rounded(range[0])}° to ${rounded(range[1])}°` : stroke ? `${shown(stroke[0])} to ${shown(stroke[1])} ${unit}` : "";
+    const free = range ? t`${`${rounded(range[0])}°`} to ${`${rounded(range[1])}°`}` : stroke ? t`${shown(stroke[0])} to ${`${shown(stroke[1])} ${unit}`}` : "";
     return [el("ul", { class: "clashes" }, ...clashes.map((/** @type {any} */ { parts, distance, input_angle: angle, input_place: place }) => {
       const at = angle ?? place;
-      return el("li", {}, el("span", { class: "bad" }, `✗ ${words(parts[0])} and ${parts[1].replaceAll("_", " ")}: `),
-        distance < 0 ? `${shown(Number((-distance).toPrecision(3)))} ${unit} into each other ` : `${shown(Number(distance.toPrecision(3)))} ${unit} apart `,
-        Number.isFinite(at) && el("button", { type: "button", class: "small", onclick: () => lead(at) }, `Go to ${rounded(at)}${angle === undefined ? ` ${unit}` : "°"}`));
-    })), el("p", { class: "note" }, free ? `Nothing clashes from ${free}.` : "No part of the motion is free of clashes.")];
+      return el("li", {}, el("span", { class: "bad" }, `✗ ${t`${words(parts[0])} and ${term(parts[1])}`}: `),
+        distance < 0 ? t`${shown(Number((-distance).toPrecision(3)))} ${unit} into each other` : t`${shown(Number(distance.toPrecision(3)))} ${unit} apart`, " ",
+        Number.isFinite(at) && el("button", { type: "button", class: "small", onclick: () => lead(at) }, t`Go to ${`${rounded(at)}${angle === undefined ? ` ${unit}` : "°"}`}`));
+    })), el("p", { class: "note" }, free ? t`Nothing clashes from ${free}.` : t`No part of the motion is free of clashes.`)];
   }
 
   /** The empty picture with its bases; links and pins come with the motion. */
@@ -108,7 +109,7 @@ export class Planes {
         text: svg("text", { class: "joint", y: HEIGHT - (k % 2 ? 6 : 24) }, name) };
     });
     this.side = svg("svg", { viewBox: `0 0 ${view.width} ${HEIGHT}`, class: "canvas side", role: "img",
-      "aria-label": `The linkage from the side: ${layout.count} planes${second ? " between two bases" : " on a base"}` },
+      "aria-label": second ? t`The linkage from the side: ${layout.count} planes between two bases` : t`The linkage from the side: ${layout.count} planes on a base` },
     svg("rect", { class: "paper", width: view.width, height: HEIGHT }), base(this.floor), second && base(ceiling - BASE),
     ...Array.from({ length: layout.count }, (_, k) => svg("text", { class: "tick", x: 10, y: this.below(k + 1) - 0.5 * this.scale * stated.thickness + 4 }, k + 1)),
     ...this.bars.map(({ bar }) => bar), ...this.pins.flatMap(({ bar, text }) => [bar, text]));

@@ -1,6 +1,7 @@
 /** The clock of a motion: play and pause, speed, a scrubber, and the reading beside it. One motion plays at a time. */
 
 import { el } from "./dom.js";
+import { t } from "./messages.js";
 
 /** Seconds that a cycle takes at speed 1. */
 const CYCLE_S = 4;
@@ -31,7 +32,7 @@ export class Player {
     this.last = moved.count - 1;
     /** Told the share of the way whenever it changes. @type {Set<(share: number) => void>} */
     this.followers = new Set();
-    this.button = el("button", { type: "button", id: `${moved.name ?? ""}play`, class: "small", onclick: () => (this.playing ? this.stop() : this.play()) }, "Play");
+    this.button = el("button", { type: "button", id: `${moved.name ?? ""}play`, class: "small", onclick: () => (this.playing ? this.stop() : this.play()) }, t`Play`);
     this.slider = el("input", { type: "range", id: scrub, min: 0, max: this.last, step: "any", value: 0,
       oninput: () => this.lead(this.slider.valueAsNumber),
       onkeydown: (/** @type {KeyboardEvent} */ event) => {
@@ -47,7 +48,7 @@ export class Player {
     speed.value = "1";
     this.reading = el("output", { for: scrub, class: "reading" });
     this.row = el("div", { class: "row player" }, this.button, el("label", { for: scrub }, moved.label), this.slider, this.reading,
-      el("label", { for: speeds }, "Speed"), speed);
+      el("label", { for: speeds }, t`Speed`), speed);
   }
 
   /** Begin: at the first place, and moving unless the system asks for little motion. */
@@ -85,7 +86,7 @@ export class Player {
   play() {
     if (this.playing) return;
     this.playing = true;
-    this.button.textContent = "Pause";
+    this.button.textContent = t`Pause`;
     if (this.range) this.at = this.range[0] + within(this.at - this.range[0], this.last);
     let before = performance.now();
     const step = (/** @type {number} */ now) => {
@@ -108,7 +109,7 @@ export class Player {
   stop() {
     this.playing = false;
     cancelAnimationFrame(this.frame);
-    this.button.textContent = "Play";
+    this.button.textContent = t`Play`;
   }
 }
 

@@ -1,5 +1,7 @@
 /** A plot to take home: its numbers as a table, and its picture. */
 
+import { t } from "./messages.js";
+
 /** Pixels of a picture for one of the plot. */
 const SCALE = 4;
 
@@ -13,7 +15,7 @@ const STYLES = ["fill", "stroke", "stroke-width", "stroke-dasharray", "opacity",
 export function comma(title, lines, input, unit) {
   const quoted = (/** @type {string} */ text) => `"${text.replaceAll('"', '""')}"`;
   const names = Object.keys(lines);
-  const heads = [input ? `Input (${unit})` : "Sample", ...names.map((name) => (names.length > 1 ? `${title}: ${name}` : title))];
+  const heads = [input ? t`Input (${unit})` : t`Sample`, ...names.map((name) => (names.length > 1 ? `${title}: ${name}` : title))];
   const count = Object.values(lines)[0].length;
   const rows = Array.from({ length: count }, (_, k) => [input ? input[k] : k, ...Object.values(lines).map((series) => series[k] ?? "")].join(","));
   return URL.createObjectURL(new Blob([`${[heads.map(quoted).join(","), ...rows].join("\r\n")}\r\n`], { type: "text/csv" }));
@@ -41,7 +43,7 @@ export async function pictured(picture, title) {
   const head = 20 * SCALE;
   Object.assign(canvas, { width: SCALE * width, height: SCALE * height + head });
   const pen = canvas.getContext("2d");
-  if (!pen) throw new Error("This browser draws no pictures.");
+  if (!pen) throw new Error(t`This browser draws no pictures.`);
   const style = getComputedStyle(document.body);
   pen.fillStyle = style.getPropertyValue("--sheet");
   pen.fillRect(0, 0, canvas.width, canvas.height);
@@ -50,6 +52,6 @@ export async function pictured(picture, title) {
   pen.fillText(title, 8 * SCALE, 15 * SCALE);
   pen.drawImage(image, 0, head);
   const blob = /** @type {Blob | null} */ (await new Promise((done) => canvas.toBlob(done, "image/png")));
-  if (!blob) throw new Error("The picture could not be made.");
+  if (!blob) throw new Error(t`The picture could not be made.`);
   return URL.createObjectURL(blob);
 }

@@ -2,6 +2,7 @@
 
 import { saved } from "./downloads.js";
 import { el, remade, shown, svg } from "./dom.js";
+import { BETWEEN, t } from "./messages.js";
 import { comma, pictured } from "./plot_files.js";
 
 const WIDTH = 300;
@@ -95,7 +96,7 @@ function plot(plotted, input, lead, unit, { whole = false, range: looked } = {})
   let pointed = null;
   const reading = el("span", { class: "reading" });
   const names = Object.keys(lines);
-  const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": `${title}: from ${shown(extremes[0])} to ${shown(extremes[1])}` },
+  const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": t`${title}: from ${shown(extremes[0])} to ${shown(extremes[1])}` },
     svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
     ...runs(used ?? []).map(([from, to]) => svg("rect", { class: "used", x: x(from), y: EDGE.top, width: x(to) - x(from), height: HEIGHT - EDGE.top - EDGE.bottom })),
     ...runs(gaps ?? []).map(([from, to]) => svg("rect", { class: "gap", x: x(from) - 1, y: EDGE.top, width: x(to) - x(from) + 2, height: HEIGHT - EDGE.top - EDGE.bottom })),
@@ -155,18 +156,18 @@ function plot(plotted, input, lead, unit, { whole = false, range: looked } = {})
   };
   const small = (/** @type {string} */ text, /** @type {string} */ label, /** @type {() => void} */ act, disabled = false) =>
     el("button", { type: "button", class: "small", "aria-label": `${label}: ${title}`, title: label, disabled, onclick: act }, text);
-  const name = title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "");
-  const more = el("details", { class: "plot-more" }, el("summary", { "aria-label": `More of: ${title}`, title: "Look nearer, take it home" }, "⋯"),
-    el("div", { class: "row" }, small("−", "Farther", () => nearer(1 / NEARER), end - start >= samples),
-      small("+", "Nearer to where the motion stands", () => nearer(NEARER), end - start <= FEWEST),
-      small("CSV", "Take the numbers home as CSV", () => saved(comma(title, lines, input, unit), `${name}.csv`)),
-      small("Picture", "Take the picture home", async () => saved(await pictured(picture, title), `${name}.png`))));
+  const name = title.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-|-$/g, "");
+  const more = el("details", { class: "plot-more" }, el("summary", { "aria-label": t`More of: ${title}`, title: t`Look nearer, take it home` }, "⋯"),
+    el("div", { class: "row" }, small("−", t`Farther`, () => nearer(1 / NEARER), end - start >= samples),
+      small("+", t`Nearer to where the motion stands`, () => nearer(NEARER), end - start <= FEWEST),
+      small("CSV", t`Take the numbers home as CSV`, () => saved(comma(title, lines, input, unit), `${name}.csv`)),
+      small(t`Picture`, t`Take the picture home`, async () => saved(await pictured(picture, title), `${name}.png`))));
   const button = (cut.length > 0 || whole) && el("button", { type: "button", class: "small cut", onclick: () => look({ whole: !whole }) },
-    whole ? "Cut the peaks" : `${cut.length > 1 ? "Peaks" : "Peak"} ${cut.map((one) => brief(one)).join(" and ")} cut; show all`);
+    whole ? t`Cut the peaks` : cut.length > 1 ? t`Peaks ${cut.map((one) => brief(one)).join(` ${t`and`} `)} cut; show all` : t`Peak ${brief(cut[0])} cut; show all`);
   const figure = el("figure", { class: "plot" }, caption, picture, button, more);
   const read = (/** @type {number} */ k) => {
     const place = input && pointed !== null ? `${shown(Math.round(10 * input[Math.round(k)]) / 10)}${unit}: ` : "";
-    reading.textContent = place + Object.values(lines).map((series) => brief(series[Math.round(k)], noise)).join(", ");
+    reading.textContent = place + Object.values(lines).map((series) => brief(series[Math.round(k)], noise)).join(BETWEEN);
   };
   const show = (/** @type {number} */ now) => {
     at = now;

@@ -1,7 +1,7 @@
 /** What is worth a plot in the motion of a linkage: force, error, and how one chosen part moves. */
 
-import { words } from "./dom.js";
 import { drawn, grounded } from "./linkage.js";
+import { t, term } from "./messages.js";
 
 /** @typedef {import("./plots.js").Plotted} Plotted */
 /** @typedef {(number | null)[]} Series */
@@ -16,34 +16,41 @@ export function parts(motion, skeleton) {
   return [...joints.filter(first), ...slides, ...links.reverse(), ...joints.filter((part) => !first(part))];
 }
 
+/** A part as a person reads it. @param {string} part */
+export function partName(part) {
+  const [kind, ...rest] = part.split(" ");
+  const name = rest.join(" ");
+  return kind === "link" ? t`Link ${term(name)}` : kind === "slide" ? t`Slide ${name}` : t`Point ${name}`;
+}
+
 /** Position, velocity and acceleration of a part, by the radian (or length unit) of the input. @param {any} motion @param {string} part @returns {Plotted[]} */
 export function moved(motion, part) {
   const [kind, ...rest] = part.split(" ");
   const name = rest.join(" ");
-  const what = kind !== "link" ? name : words(name).toLowerCase();
+  const what = kind !== "link" ? name : term(name);
   if (kind === "point") {
     const { x, y, vx, vy, ax, ay } = motion.joints[name];
     const size = extent(x, y);
     return [
-      { title: `Position of ${what}`, lines: { x, y }, least: size },
-      { title: `Velocity of ${what}`, lines: { total: length(vx, vy), x: vx, y: vy }, least: size },
-      { title: `Acceleration of ${what}`, lines: { total: length(ax, ay), x: ax, y: ay }, least: size },
+      { title: t`Position of ${what}`, lines: { x, y }, least: size },
+      { title: t`Velocity of ${what}`, lines: { [t`total`]: length(vx, vy), x: vx, y: vy }, least: size },
+      { title: t`Acceleration of ${what}`, lines: { [t`total`]: length(ax, ay), x: ax, y: ay }, least: size },
     ];
   }
   if (kind === "slide") {
     const { position, velocity, acceleration } = motion.slides[name];
     const size = extent(position, position);
     return [
-      { title: `Position of ${what} on its line`, lines: { "": position }, least: size },
-      { title: `Velocity of ${what}`, lines: { "": velocity }, least: size },
-      { title: `Acceleration of ${what}`, lines: { "": acceleration }, least: size },
+      { title: t`Position of ${what} on its line`, lines: { "": position }, least: size },
+      { title: t`Velocity of ${what}`, lines: { "": velocity }, least: size },
+      { title: t`Acceleration of ${what}`, lines: { "": acceleration }, least: size },
     ];
   }
   const { angle, omega, alpha } = motion.links[name];
   return [
-    { title: `Angle of ${what} (°)`, lines: { "": angle }, least: 180 },
-    { title: `Angular velocity of ${what}`, lines: { "": omega }, least: 1 },
-    { title: `Angular acceleration of ${what}`, lines: { "": alpha }, least: 1 },
+    { title: t`Angle of ${what} (°)`, lines: { "": angle }, least: 180 },
+    { title: t`Angular velocity of ${what}`, lines: { "": omega }, least: 1 },
+    { title: t`Angular acceleration of ${what}`, lines: { "": alpha }, least: 1 },
   ];
 }
 
@@ -54,7 +61,7 @@ export function judged(motion, design, problem) {
   const error = errorCurve(design);
   if (error) found.push({ title: error.title, lines: { "": along(error.at, error.values, motion.input_angle) } });
   const used = usedRange(design, motion.input_angle);
-  found.push({ title: "Transmission angle (°)", lines: { "": motion.transmission_angle ?? [] }, limit: problem.constraints?.min_transmission_angle, least: 90, used });
+  found.push({ title: t`Transmission angle (°)`, lines: { "": motion.transmission_angle ?? [] }, limit: problem.constraints?.min_transmission_angle, least: 90, used });
   return found;
 }
 
@@ -76,11 +83,11 @@ function usedRange(design, inputs) {
 function errorCurve(design) {
   const structural = design.structural_error;
   if (structural?.curve) {
-    return { title: `Structural error (${structural.unit === "degrees" ? "°" : "length"})`, at: structural.curve.input_angle, values: structural.curve.error };
+    return { title: t`Structural error (${structural.unit === "degrees" ? "°" : t`length`})`, at: structural.curve.input_angle, values: structural.curve.error };
   }
   const targets = design.targets ?? [];
   if (targets.length > 2 && targets.every((/** @type {any} */ one) => Number.isFinite(one.error) && Number.isFinite(inputOf(one)))) {
-    return { title: "Steering error (°)", at: targets.map(inputOf), values: targets.map((/** @type {any} */ one) => one.error) };
+    return { title: t`Steering error (°)`, at: targets.map(inputOf), values: targets.map((/** @type {any} */ one) => one.error) };
   }
   return null;
 }

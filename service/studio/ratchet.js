@@ -1,6 +1,7 @@
 /** A ratchet wheel that turns on under its pawls. */
 
 import { el, shown, svg } from "./dom.js";
+import { t } from "./messages.js";
 import { Player, between } from "./player.js";
 import { plots } from "./plots.js";
 import { View } from "./view.js";
@@ -23,16 +24,16 @@ export class Ratchet {
       const [u, v] = view.at(pawl.pivot[0], pawl.pivot[1]);
       return { at: [u, v], bar: svg("path", { class: "link", d: view.path([pawl.pivot, over(pawl, mechanism.tooth_height), pawl.nose]) }) };
     });
-    const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": "The ratchet, turning" },
+    const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The ratchet, turning` },
       svg("rect", { class: "paper", width, height }), svg("g", { class: "wheel t0" }, this.wheel),
       ...this.pawls.map((/** @type {any} */ pawl) => pawl.bar),
       ...[this.axis, ...this.pawls.map((/** @type {any} */ pawl) => pawl.at)].map(([cx, cy]) => svg("circle", { class: "pin", cx, cy, r: 3.5 })));
-    this.player = new Player({ count: motion.input_angle.length, closed: true, label: "Wheel",
+    this.player = new Player({ count: motion.input_angle.length, closed: true, label: t`Wheel`,
       reading: (at) => `${shown(Math.round(10 * Number(between(motion.input_angle, at))) / 10)}°`, show: (at) => this.show(at) });
-    this.marks = plots([{ title: "Lift of pawls (°)", lines: Object.fromEntries(motion.pawls.map((/** @type {any} */ pawl, /** @type {number} */ k) => [motion.pawls.length > 1 ? `${k + 1}` : "", pawl.lift])) }],
+    this.marks = plots([{ title: t`Lift of pawls (°)`, lines: Object.fromEntries(motion.pawls.map((/** @type {any} */ pawl, /** @type {number} */ k) => [motion.pawls.length > 1 ? `${k + 1}` : "", pawl.lift])) }],
       motion.input_angle, (at) => this.player.lead(at));
     frame.fill({ picture, clock: this.player.row,
-      beside: [el("p", { class: "note" }, "The wheel turns on; turning back it is held at the next stop.")],
+      beside: [el("p", { class: "note" }, t`The wheel turns on; turning back it is held at the next stop.`)],
       plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))] });
     this.player.begin();
   }

@@ -1,5 +1,7 @@
 /** The room of a linkage, `space` of a statement: zones, box, outline of the body and obstacles as areas of the plane. */
 
+import { t } from "./messages.js";
+
 /** @typedef {[number, number]} Point */
 /** @typedef {{polygon?: Point[] | null, circle?: {center: Point, radius: number} | null, frame?: string}} Zone */
 /** @typedef {"polygon" | "rectangle" | "circle"} Tool */
@@ -16,13 +18,13 @@
 
 /** @type {Role[]} */
 export const ROLES = [
-  { name: "o2", text: "Zone for O2 (fixed pivot, input)", mark: "O2", field: ["fixed_pivots", "input"], tools: ["polygon", "rectangle", "circle"] },
-  { name: "o4", text: "Zone for O4 (fixed pivot, output)", mark: "O4", field: ["fixed_pivots", "output"], tools: ["polygon", "rectangle", "circle"] },
-  { name: "a", text: "Zone for A (moving pivot, input)", mark: "A", field: ["moving_pivots", "input"], tools: ["polygon", "rectangle", "circle"] },
-  { name: "b", text: "Zone for B (moving pivot, output)", mark: "B", field: ["moving_pivots", "output"], tools: ["polygon", "rectangle", "circle"] },
-  { name: "obstacle", text: "Obstacle", mark: "", field: ["obstacles"], tools: ["polygon", "rectangle", "circle"] },
-  { name: "box", text: "Box around everything", mark: "box", field: ["box"], tools: ["rectangle"] },
-  { name: "body", text: "Outline of the body", mark: "body", field: ["body", "outline"], tools: ["polygon", "rectangle"] },
+  { name: "o2", text: t`Zone for O2 (fixed pivot, input)`, mark: "O2", field: ["fixed_pivots", "input"], tools: ["polygon", "rectangle", "circle"] },
+  { name: "o4", text: t`Zone for O4 (fixed pivot, output)`, mark: "O4", field: ["fixed_pivots", "output"], tools: ["polygon", "rectangle", "circle"] },
+  { name: "a", text: t`Zone for A (moving pivot, input)`, mark: "A", field: ["moving_pivots", "input"], tools: ["polygon", "rectangle", "circle"] },
+  { name: "b", text: t`Zone for B (moving pivot, output)`, mark: "B", field: ["moving_pivots", "output"], tools: ["polygon", "rectangle", "circle"] },
+  { name: "obstacle", text: t`Obstacle`, mark: "", field: ["obstacles"], tools: ["polygon", "rectangle", "circle"] },
+  { name: "box", text: t`Box around everything`, mark: "box", field: ["box"], tools: ["rectangle"] },
+  { name: "body", text: t`Outline of the body`, mark: "body", field: ["body", "outline"], tools: ["polygon", "rectangle"] },
 ];
 
 /** The roles that areas of a problem can have: only a body that is carried has an outline. @param {any} problem */

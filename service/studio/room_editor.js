@@ -1,10 +1,11 @@
 /** The room on the canvas of a statement: areas are drawn, chosen, moved, shaped and removed, with the pointer and by keys. */
 
 import { lines } from "./controls.js";
-import { el, shown, svg } from "./dom.js";
+import { el, shown, svg, words } from "./dom.js";
 import { DrawingImport } from "./drawing_import.js";
 import { Grip, keyed, led } from "./grip.js";
 import { hatched, legend, outline } from "./hatch.js";
+import { t } from "./messages.js";
 import { Pen } from "./pen.js";
 import { areas, rolesOf, stateArea } from "./room.js";
 
@@ -72,16 +73,16 @@ export class RoomEditor {
       const again = memory.pen?.tool === tool;
       this.rest();
       if (!again) this.take(role(), tool);
-    } }, tool.charAt(0).toUpperCase() + tool.slice(1)));
+    } }, words(tool)));
     const fit = () => buttons.forEach((button, k) => (button.disabled = !role().tools.includes(TOOLS[k])));
     fit();
     this.remover = el("button", { type: "button", class: "small", disabled: !this.chosen, onclick: () => {
       if (this.chosen) this.remove(this.chosen);
-    } }, "Delete");
+    } }, t`Delete`);
     const used = roles.filter((one) => this.areas.some((area) => area.role === one));
-    return el("fieldset", { class: "choice", id: "room-tools" }, el("legend", {}, "Room"),
-      el("div", { class: "row" }, el("label", { for: "room-role" }, "Draw"), pick,
-        el("div", { class: "row", role: "group", "aria-label": "Shape" }, ...buttons), this.remover, this.drawing.button),
+    return el("fieldset", { class: "choice", id: "room-tools" }, el("legend", {}, t`Room`),
+      el("div", { class: "row" }, el("label", { for: "room-role" }, t`Draw`), pick,
+        el("div", { class: "row", role: "group", "aria-label": t`Shape` }, ...buttons), this.remover, this.drawing.button),
       this.said, this.drawing.node, used.length > 0 && legend(used));
   }
 
@@ -112,8 +113,8 @@ export class RoomEditor {
   /** What can be done now. */
   hint() {
     const { chosen } = this;
-    this.said.textContent = !chosen ? "Say what is drawn, choose a shape, and draw it in the picture."
-      : `${chosen.label}: drag it or its ${chosen.circle ? "radius" : "corners"}${chosen.free ? "; double-click a side for another corner" : ""}.`;
+    this.said.textContent = !chosen ? t`Say what is drawn, choose a shape, and draw it in the picture.`
+      : `${chosen.label}: ${[chosen.circle ? t`drag it or its radius` : t`drag it or its corners`, chosen.free && t`double-click a side for another corner`].filter(Boolean).join("; ")}.`;
   }
 
   /** @param {Area} area */
@@ -149,8 +150,8 @@ export class RoomEditor {
       const [u, v] = this.view.at(...area.top);
       mark.setAttribute("x", u);
       mark.setAttribute("y", v);
-      const what = area.circle ? `circle of radius ${shown(area.circle.radius)}` : `${area.corners.length} corners`;
-      body.setAttribute("aria-label", `${area.label}, ${what}. Arrow keys move it, Delete removes it.`);
+      const what = area.circle ? t`circle of radius ${shown(area.circle.radius)}` : t`${area.corners.length} corners`;
+      body.setAttribute("aria-label", `${area.label}, ${what}. ${t`Arrow keys move it, Delete removes it.`}`);
       for (const grip of grips) grip.show();
     };
     this.dragged(body, () => this.choose(area), (by) => area.shift(by, (value) => this.view.fine(value)), altered, area.path);
@@ -192,18 +193,18 @@ export class RoomEditor {
   /** The corners of an area, or the end of a circle's radius. @param {Area} area @param {() => void} all shows all of it */
   grips(area, all) {
     const { circle, view } = { circle: area.circle, view: this.view };
-    const places = circle ? [{ name: `Radius of ${area.label}`, get: () => /** @type {Point} */ ([circle.center[0] + circle.radius, circle.center[1]]), put: (/** @type {Point} */ [x, y]) => {
+    const places = circle ? [{ name: t`Radius of ${area.label}`, get: () => /** @type {Point} */ ([circle.center[0] + circle.radius, circle.center[1]]), put: (/** @type {Point} */ [x, y]) => {
       const radius = Number(Math.hypot(x - circle.center[0], y - circle.center[1]).toPrecision(4));
       if (radius > 0) circle.radius = radius;
-    } }] : area.corners.map((_, k) => ({ name: `Corner ${k + 1} of ${area.label}`, get: () => area.corners[k], put: (/** @type {Point} */ point) => area.put(k, point) }));
+    } }] : area.corners.map((_, k) => ({ name: t`Corner ${k + 1} of ${area.label}`, get: () => area.corners[k], put: (/** @type {Point} */ point) => area.put(k, point) }));
     return places.map(({ name, get, put }, k) => {
       const key = `${area.path}#${k}`;
       const grip = new Grip({ kind: "grip", dot: "corner", radius: 5, key });
       const show = () => {
         const [x, y] = get();
         grip.put(view.at(x, y));
-        const more = area.free && area.corners.length > 3 ? ", Delete removes it" : "";
-        grip.call(`${name}: x ${shown(x)}, y ${shown(y)}. Arrow keys move it${more}.`);
+        const more = area.free && area.corners.length > 3 ? t`Arrow keys move it, Delete removes it.` : t`Arrow keys move it.`;
+        grip.call(`${name}: x ${shown(x)}, y ${shown(y)}. ${more}`);
       };
       const by = (/** @type {Point} */ [dx, dy]) => {
         const [x, y] = get();

@@ -1,6 +1,7 @@
 /** A rotor that turns: its planes of correction with their masses, and the forces on its bearings beside it. */
 
 import { el, shown, svg } from "./dom.js";
+import { t } from "./messages.js";
 import { Player, between } from "./player.js";
 import { plots } from "./plots.js";
 import { symbolOf } from "./units.js";
@@ -15,18 +16,18 @@ export class Rotor {
     const [width, height] = this.size;
     const { mechanism, metrics } = design;
     this.motion = motion;
-    this.player = new Player({ count: motion.input_angle.length, closed: true, label: "Rotor",
+    this.player = new Player({ count: motion.input_angle.length, closed: true, label: t`Rotor`,
       reading: (at) => `${shown(Math.round(10 * this.degrees(at)) / 10)}°`, show: (at) => this.show(at) });
     this.faces = mechanism.planes.map((/** @type {number} */ _z, /** @type {number} */ n) => this.face(mechanism, n));
-    const names = ["Before", "After"];
+    const names = [t`Before`, t`After`];
     const facts = (metrics.bearings ?? []).flatMap((/** @type {any} */ bearing) => [bearing.before, bearing.after].flatMap((force, k) =>
-      [el("dt", {}, `${names[k]}, bearing at ${shown(bearing.z)} ${problem.length_unit}`), el("dd", {}, `${shown(Number(force.toPrecision(4)))} ${symbolOf("force", problem)}`)]));
-    const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": "The planes of correction, turning with the rotor" },
+      [el("dt", {}, `${names[k]}, ${t`bearing at ${shown(bearing.z)} ${problem.length_unit}`}`), el("dd", {}, `${shown(Number(force.toPrecision(4)))} ${symbolOf("force", problem)}`)]));
+    const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The planes of correction, turning with the rotor` },
       svg("rect", { class: "paper", width, height }), ...this.faces.map((/** @type {any} */ one) => one.node));
-    const lines = Object.fromEntries(motion.bearings.map((/** @type {any} */ bearing, /** @type {number} */ n) => [`bearing ${n + 1}`, bearing.force.x]));
-    this.marks = motion.bearings.length ? plots([{ title: "Force on the bearings at 1 rad/s, along x", lines, least: 1e-9 }], motion.input_angle, (at) => this.player.lead(at)) : [];
+    const lines = Object.fromEntries(motion.bearings.map((/** @type {any} */ bearing, /** @type {number} */ n) => [t`bearing ${n + 1}`, bearing.force.x]));
+    this.marks = motion.bearings.length ? plots([{ title: t`Force on the bearings at 1 rad/s, along x`, lines, least: 1e-9 }], motion.input_angle, (at) => this.player.lead(at)) : [];
     frame.fill({ picture, clock: this.player.row,
-      beside: [el("dl", { class: "facts" }, ...facts), el("p", { class: "note" }, "Filled: masses that are added. Open: masses that are taken away.")],
+      beside: [el("dl", { class: "facts" }, ...facts), el("p", { class: "note" }, t`Filled: masses that are added. Open: masses that are taken away.`)],
       plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))] });
     this.player.begin();
   }

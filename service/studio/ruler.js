@@ -3,6 +3,7 @@
 import { el, shown, svg } from "./dom.js";
 import { brief } from "./figures.js";
 import { Grip, keyed, led } from "./grip.js";
+import { t } from "./messages.js";
 
 /** @typedef {[number, number]} Point */
 
@@ -26,8 +27,8 @@ export class Ruler {
     this.title = svg("title");
     this.grips = [0, 1].map((k) => this.grip(k));
     this.node = svg("g", { class: "ruler" }, this.line, svg("g", {}, this.title, this.text), ...this.grips.map((one) => one.node));
-    this.button = el("button", { type: "button", class: "small", "aria-pressed": "false", title: "Ruler: drag its ends (R)", "data-tool": "ruler",
-      onclick: () => this.turn() }, "Ruler");
+    this.button = el("button", { type: "button", class: "small", "aria-pressed": "false", title: t`Ruler: drag its ends (R)`, "data-tool": "ruler",
+      onclick: () => this.turn() }, t`Ruler`);
     this.show();
   }
 
@@ -44,7 +45,7 @@ export class Ruler {
   /** @param {number} k */
   grip(k) {
     const grip = new Grip({ kind: "grip", dot: "ruler-end", radius: 5, key: `ruler${k}` });
-    grip.call(`End ${k + 1} of the ruler`);
+    grip.call(t`End ${k + 1} of the ruler`);
     const put = (/** @type {Point} */ at) => {
       if (this.memory.ends) this.memory.ends[k] = at;
       this.show();
@@ -82,7 +83,7 @@ export class Ruler {
     const [length, angle] = [Math.hypot(dx, dy), (Math.atan2(dy, dx) * 180) / Math.PI];
     const unit = this.unit && ` ${this.unit}`;
     this.text.textContent = `${brief(length)}${unit}, ${brief(Number(angle.toFixed(1)))}°`;
-    this.title.textContent = `${length}${unit}, ${angle}°; across ${dx}${unit}, up ${dy}${unit}`;
+    this.title.textContent = t`${length}${unit}, ${angle}°; across ${dx}${unit}, up ${dy}${unit}`;
     this.text.setAttribute("x", (x + u) / 2);
     this.text.setAttribute("y", (y + v) / 2 - 9);
     this.grips.forEach(({ node, hit, dot }, k) => {
@@ -91,7 +92,7 @@ export class Ruler {
         one.setAttribute("cx", cu);
         one.setAttribute("cy", cv);
       }
-      node.setAttribute("aria-label", `End ${k + 1} of the ruler: x ${shown(ends[k][0])}, y ${shown(ends[k][1])}; it measures ${this.text.textContent}. Arrow keys move it, Delete takes the ruler away.`);
+      node.setAttribute("aria-label", `${t`End ${k + 1} of the ruler`}: x ${shown(ends[k][0])}, y ${shown(ends[k][1])}; ${t`it measures ${this.text.textContent}. Arrow keys move it, Delete takes the ruler away.`}`);
     });
   }
 }

@@ -2,6 +2,7 @@
 
 import * as api from "./api.js";
 import { el } from "./dom.js";
+import { t, term, translated } from "./messages.js";
 
 /** @type {AbortController | null} */
 let following = null;
@@ -21,12 +22,12 @@ export function leave(place) {
 export async function run(place, id) {
   leave(place);
   const control = (following = new AbortController());
-  const bar = el("progress", { max: 1, value: 0, "aria-label": "Progress of the job" });
-  const message = el("span", { class: "note" }, "queued");
+  const bar = el("progress", { max: 1, value: 0, "aria-label": t`Progress of the job` });
+  const message = el("span", { class: "note" }, term("queued"));
   const cancel = el("button", { type: "button", id: "cancel", onclick: async () => {
     cancel.disabled = true;
     await api.remove(id).catch((error) => message.replaceChildren(error.message));
-  } }, "Cancel");
+  } }, t`Cancel`);
   place.replaceChildren(el("div", { class: "row running" }, bar, cancel, message));
   let removed = false;
   await api.follow(id, (event, data) => {
@@ -34,7 +35,7 @@ export async function run(place, id) {
     else {
       const progress = data.progress ?? data;
       bar.value = progress.fraction;
-      message.replaceChildren(`${Math.round(100 * progress.fraction)} %, ${progress.message}`);
+      message.replaceChildren(`${Math.round(100 * progress.fraction)} %, ${translated(progress.message)}`);
     }
   }, control.signal);
   if (control.signal.aborted) return null;

@@ -4,6 +4,7 @@ import { el, remade, svg } from "./dom.js";
 import { brief } from "./figures.js";
 import { spacing } from "./grid.js";
 import { range, titled, told } from "./measured.js";
+import { t } from "./messages.js";
 
 /** @typedef {import("./measured.js").Quantity} Quantity */
 
@@ -43,10 +44,10 @@ export class Scatter {
       box.value = String(axes[k]);
       return el("div", { class: "axis" }, el("label", { for: id }, text), box);
     };
-    this.picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "group", "aria-label": "Designs by two quantities; arrow keys choose",
+    this.picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "group", "aria-label": t`Designs by two quantities; arrow keys choose`,
       onkeydown: (/** @type {KeyboardEvent} */ event) => this.keyed(event) });
     this.place = el("div", { class: "scatter" }, this.picture);
-    this.node = el("figure", {}, el("div", { class: "axes" }, pick(1, "axis-up", "Up"), pick(0, "axis-across", "Across")), this.place);
+    this.node = el("figure", {}, el("div", { class: "axes" }, pick(1, "axis-up", t`Up`), pick(0, "axis-across", t`Across`)), this.place);
   }
 
   /** @param {Told} now */
@@ -81,8 +82,8 @@ export class Scatter {
     if (!place) return "";
     const [u, v] = place;
     const [across, up] = this.axes.map((k) => this.quantities[k]);
-    const says = [`Design ${n + 1}`, ...[up, across].map((one) => `${one.text} ${told(one, Number(one.values[n]))}`),
-      ...(now.front.includes(n) ? ["no other beats it"] : []), ...(now.pinned.includes(n) ? ["pinned"] : [])].join(", ");
+    const says = [t`Design ${n + 1}`, ...[up, across].map((one) => `${one.text} ${told(one, Number(one.values[n]))}`),
+      ...(now.front.includes(n) ? [t`no other beats it`] : []), ...(now.pinned.includes(n) ? [t`pinned`] : [])].join(", ");
     const marks = [now.chosen === n && "chosen", !now.kept[n] && "beyond", now.pinned.includes(n) && "pinned"].filter(Boolean).join(" ");
     return svg("g", { class: `spot ${marks}`, tabindex: n === this.stop(now) ? 0 : -1, role: "button", "aria-pressed": String(n === now.chosen),
       "aria-label": says, "data-grip": `spot${n}`, "aria-disabled": now.kept[n] ? null : "true", onclick: () => this.choose(n) },

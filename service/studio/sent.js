@@ -2,9 +2,10 @@
 
 import * as api from "./api.js";
 import { overTheCycle, stands } from "./cycle.js";
-import { el, words } from "./dom.js";
+import { el } from "./dom.js";
 import { driven } from "./driven.js";
 import { Explorer } from "./explorer.js";
+import { t, term } from "./messages.js";
 import { Mover, demanded } from "./mover.js";
 
 /** Samples of its cycle. */
@@ -33,7 +34,7 @@ export class SentLinkage {
     const from = stands(mechanism.skeleton);
     const turn = from === null ? motion : await api.analysis({ mechanism, motion: { from, to: from + 360, steps: STEPS } }, gone.signal);
     if (gone.signal.aborted) return;
-    const named = `From the address: ${words(mechanism.type).toLowerCase()}`;
+    const named = t`From the address: ${term(mechanism.type)}`;
     const problem = sent.placed ? { ...sent.problem, positions: [], points: [] } : sent.problem;
     desk.stage.offer(true, named);
     desk.stage.show("watch");
@@ -42,7 +43,7 @@ export class SentLinkage {
     this.moving = new Mover(desk.frame, { mechanism }, motion, problem, circuits);
     const { facts } = driven(turn, mechanism.skeleton, demanded(problem, null));
     desk.numbers.replaceChildren(
-      el("p", { class: "note" }, "This linkage came in the address. What is told of it here this service has found by driving it; whether it does what is stated, Solve says."),
+      el("p", { class: "note" }, t`This linkage came in the address. What is told of it here this service has found by driving it; whether it does what is stated, Solve says.`),
       el("dl", { class: "facts" }, ...Object.entries(facts).flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)])));
     desk.explored(true);
     desk.drawer.on("explore", {

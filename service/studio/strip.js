@@ -2,6 +2,7 @@
 
 import { el, words } from "./dom.js";
 import { figure, figures } from "./figures.js";
+import { t } from "./messages.js";
 import { pin, pinned } from "./pins.js";
 import { thumbnail } from "./thumbnail.js";
 
@@ -20,13 +21,13 @@ export class Strip {
     this.kept = designs.map(() => true);
     /** @type {HTMLElement[]} */
     this.cards = designs.map((/** @type {any} */ design, /** @type {number} */ n) => card(design, n, job.problem, () => this.select(n)));
-    this.pins = this.cards.map((_, n) => el("button", { type: "button", class: "pin-button", "aria-label": `Pin design ${n + 1}`,
-      title: "Pin it: it then comes first", "aria-pressed": "false", onclick: () => this.pin(n) }, "☆"));
+    this.pins = this.cards.map((_, n) => el("button", { type: "button", class: "pin-button", "aria-label": t`Pin design ${n + 1}`,
+      title: t`Pin it: it then comes first`, "aria-pressed": "false", onclick: () => this.pin(n) }, "☆"));
     this.slots = this.cards.map((one, n) => el("div", { class: "slot" }, one, this.pins[n]));
     this.pinned = pinned(job.id).filter((n) => n < this.cards.length);
     /** Told when pins change. */
     this.changed = () => {};
-    this.node = el("div", { class: "cards", role: "group", "aria-label": "Designs, best first; arrow keys choose",
+    this.node = el("div", { class: "cards", role: "group", "aria-label": t`Designs, best first; arrow keys choose`,
       onkeydown: (/** @type {KeyboardEvent} */ event) => this.keyed(event) });
     this.order();
   }
@@ -93,7 +94,7 @@ function card(design, n, problem, choose) {
     thumbnail(design),
     el("span", { class: "told" },
       el("strong", { title: words(design.mechanism.type) }, `${n + 1}. ${words(design.mechanism.type)}`),
-      el("span", { class: passed ? "good" : "bad" }, passed ? "✓ verified" : "✗ fails a check"),
+      el("span", { class: passed ? "good" : "bad" }, passed ? `✓ ${t`verified`}` : `✗ ${t`fails a check`}`),
       ...figures(design).slice(0, 1).map(([name, value]) => {
         const told = figure(name, value, problem, design.metrics?.size);
         return el("span", { class: "figure", title: told.title }, el("span", {}, words(name)), el("span", {}, told.text));

@@ -15,6 +15,7 @@ import { Leader } from "./guide.js";
 import { History } from "./history.js";
 import { Keys, scrub, scrubTo, visible } from "./keys.js";
 import { Link } from "./link.js";
+import { choose, language, languages, prose, t, translatePage, translated } from "./messages.js";
 import { Opening } from "./opening.js";
 import * as running from "./run.js";
 import { misfit } from "./schema.js";
@@ -41,6 +42,8 @@ let imported;
 let gallery;
 /** Whether the gallery has been asked for before it was there. */
 let wanted = false;
+
+translatePage();
 
 const fields = byId("fields");
 const text = byId("json-text");
@@ -96,7 +99,7 @@ function show({ form = true, sketch = true, json = true } = {}) {
 async function outlined() {
   const { kind: of } = problem;
   const place = el("div", { class: "said" }, el("p", { class: "note" },
-    "Nothing of this is placed in the plane: it is stated beside the stage. Solve shows it in motion."));
+    t`Nothing of this is placed in the plane: it is stated beside the stage. Solve shows it in motion.`));
   byId("sketch").replaceChildren(place);
   // The example is chosen when its statement has been shown.
   await Promise.resolve();
@@ -182,9 +185,9 @@ function begun(statement) {
 /** The kind, its examples, and what it is about. */
 function introduce() {
   byId("kind").value = problem.kind;
-  byId("example").replaceChildren(el("option", { value: "" }, "as edited"),
-    ...examples().map((/** @type {any} */ _, /** @type {number} */ n) => el("option", { value: n }, kind().examples[n].name)));
-  byId("about").textContent = kind().description.split("\n\n")[0].replaceAll("\n", " ");
+  byId("example").replaceChildren(el("option", { value: "" }, t`as edited`),
+    ...examples().map((/** @type {any} */ _, /** @type {number} */ n) => el("option", { value: n }, translated(kind().examples[n].name))));
+  byId("about").textContent = prose(kind().description);
 }
 
 function choices() {
@@ -192,7 +195,7 @@ function choices() {
     vacate();
     resume(pick.value);
     desk.stage.show("state");
-  } }, ...kinds.map((one) => el("option", { value: one.kind }, one.title)));
+  } }, ...kinds.map((one) => el("option", { value: one.kind }, translated(one.title))));
   const example = el("select", { id: "example", onchange: () => {
     if (example.value === "") return;
     const chosen = example.value;
@@ -200,14 +203,14 @@ function choices() {
     example.value = chosen;
   } });
   byId("choices").replaceChildren(
-    el("div", { class: "choices" }, el("label", { for: "kind" }, "Kind"), pick,
-      el("label", { for: "example" }, "Example"), example),
-    el("p", { class: "note", id: "draft", hidden: true }, "Your draft, as you left it. ",
+    el("div", { class: "choices" }, el("label", { for: "kind" }, t`Kind`), pick,
+      el("label", { for: "example" }, t`Example`), example),
+    el("p", { class: "note", id: "draft", hidden: true }, t`Your draft, as you left it.`, " ",
       el("button", { type: "button", class: "small", onclick: () => {
         forgetDraft(problem.kind);
         state(kind().example);
         example.value = "0";
-      } }, "Back to the example")),
+      } }, t`Back to the example`)),
     el("p", { class: "note", id: "about" }));
 }
 
@@ -222,7 +225,7 @@ async function solve() {
     const job = await api.solve(statement, byId("label").value || null);
     posted = { id: job.id, problem: statement };
     desk.drawer.select("answers");
-    const note = el("p", { class: "note" }, "Designs stand here as soon as they are found.");
+    const note = el("p", { class: "note" }, t`Designs stand here as soon as they are found.`);
     if (answered === null) byId("result").replaceChildren(note);
     location.hash = `job=${job.id}`;
   } catch (error) {
@@ -258,12 +261,12 @@ async function unpack() {
     posted = { id: "", problem: null };
     begun(sent.problem);
     byId("label").value = sent.label;
-    byId("result").replaceChildren(el("p", { class: "note" }, "This statement came in the address. Solve finds its answers."));
+    byId("result").replaceChildren(el("p", { class: "note" }, t`This statement came in the address. Solve finds its answers.`));
     desk.stage.show("state");
     const linkage = new SentLinkage(desk, sent, state);
     guest = linkage;
     await linkage.show().catch((error) => {
-      throw new Unreadable(`The linkage in the address is not shown: ${error.errors?.[0]?.detail ?? error.message}`);
+      throw new Unreadable(t`The linkage in the address is not shown: ${error.errors?.[0]?.detail ?? error.message}`);
     });
   } catch (error) {
     tell(error);
@@ -316,7 +319,7 @@ function left() {
   answered = null;
   answers.leave(byId("result"), desk);
   desk.stage.offer(false);
-  byId("result").replaceChildren(el("p", { class: "note" }, "State a problem, or take an example, and solve it."));
+  byId("result").replaceChildren(el("p", { class: "note" }, t`State a problem, or take an example, and solve it.`));
   window.history.replaceState(null, "", location.pathname);
 }
 
@@ -334,7 +337,7 @@ async function begin() {
   gallery = new Gallery(kinds, (example) => {
     state(example.problem);
     byId("example").value = String(example.n);
-    byId("label").value = example.name;
+    byId("label").value = translated(example.name);
     solve();
   });
   const leader = new Leader({ desk, problem: () => problem, answered: () => answered !== null && byId("stale").hidden && !byId("answers").hasAttribute("aria-busy"),
@@ -344,9 +347,9 @@ async function begin() {
       left();
       state(example.problem);
       byId("example").value = String(example.n);
-      byId("label").value = name;
+      byId("label").value = translated(name);
     } });
-  byId("guides").replaceChildren(el("p", { class: "note" }, "Guided, a minute each"), ...leader.list(() => gallery?.dialog.close()));
+  byId("guides").replaceChildren(el("p", { class: "note" }, t`Guided, a minute each`), ...leader.list(() => gallery?.dialog.close()));
   if (wanted) gallery.open();
   opening.measured();
   const last = location.hash ? "" : lastKind();
@@ -398,37 +401,37 @@ function fitted() {
 }
 
 const keys = new Keys([
-  { keys: ["Ctrl+Enter"], shown: "Ctrl Enter", text: "Solve", everywhere: true, act: () => {
+  { keys: ["Ctrl+Enter"], shown: t`Ctrl Enter`, text: t`Solve`, everywhere: true, act: () => {
     if (!byId("solve").disabled) solve();
   } },
-  { keys: ["Ctrl+z"], shown: "Ctrl Z", text: "Undo", everywhere: true, act: () => undo.undo() },
-  { keys: ["Ctrl+Shift+z", "Ctrl+y"], shown: "Ctrl Shift Z", text: "Redo", everywhere: true, act: () => undo.redo() },
-  { keys: [" "], shown: "Space", text: "Play and pause", act: () => visible(".player button")?.click() },
-  { keys: ["ArrowLeft"], shown: "← or →", text: "One degree back or on; ten with Shift", act: () => scrub(-1) },
+  { keys: ["Ctrl+z"], shown: t`Ctrl Z`, text: t`Undo`, everywhere: true, act: () => undo.undo() },
+  { keys: ["Ctrl+Shift+z", "Ctrl+y"], shown: t`Ctrl Shift Z`, text: t`Redo`, everywhere: true, act: () => undo.redo() },
+  { keys: [" "], shown: t`Space`, text: t`Play and pause`, act: () => visible(".player button")?.click() },
+  { keys: ["ArrowLeft"], shown: t`← or →`, text: t`One degree back or on; ten with Shift`, act: () => scrub(-1) },
   { keys: ["ArrowRight"], shown: "", text: "", act: () => scrub(1) },
   { keys: ["Shift+ArrowLeft"], shown: "", text: "", act: () => scrub(-10) },
   { keys: ["Shift+ArrowRight"], shown: "", text: "", act: () => scrub(10) },
-  { keys: ["Home"], shown: "Home or End", text: "Beginning and end of the motion", act: () => scrubTo(0) },
+  { keys: ["Home"], shown: t`Home or End`, text: t`Beginning and end of the motion`, act: () => scrubTo(0) },
   { keys: ["End"], shown: "", text: "", act: () => scrubTo(1) },
-  { keys: [..."123456789"], shown: "1 … 9", text: "Choose a design", act: (event) => answers.select(Number(event.key)) },
-  { keys: ["["], shown: "[ or ]", text: "The design before, the next one", act: () => answers.further(-1) },
+  { keys: [..."123456789"], shown: "1 … 9", text: t`Choose a design`, act: (event) => answers.select(Number(event.key)) },
+  { keys: ["["], shown: t`[ or ]`, text: t`The design before, the next one`, act: () => answers.further(-1) },
   { keys: ["]"], shown: "", text: "", act: () => answers.further(1) },
-  { keys: ["c"], shown: "C", text: "Compare designs", act: () => desk.drawer.press("compare") },
-  { keys: ["k"], shown: "K", text: "Pin the chosen design, or unpin it", act: () => answers.pin() },
-  { keys: ["+", "="], shown: "+ or −", text: "Nearer, farther", act: press("Nearer") },
-  { keys: ["-"], shown: "", text: "", act: press("Farther") },
-  { keys: ["f"], shown: "F", text: "Fit everything", act: press("Fit everything") },
-  { keys: ["r"], shown: "R", text: "Ruler", act: () => visible('[data-tool="ruler"]')?.click() },
-  { keys: ["s"], shown: "S or W", text: "The stage states, or watches", act: () => desk.stage.show("state") },
+  { keys: ["c"], shown: "C", text: t`Compare designs`, act: () => desk.drawer.press("compare") },
+  { keys: ["k"], shown: "K", text: t`Pin the chosen design, or unpin it`, act: () => answers.pin() },
+  { keys: ["+", "="], shown: t`+ or −`, text: t`Nearer, farther`, act: press(t`Nearer`) },
+  { keys: ["-"], shown: "", text: "", act: press(t`Farther`) },
+  { keys: ["f"], shown: "F", text: t`Fit everything`, act: press(t`Fit everything`) },
+  { keys: ["r"], shown: "R", text: t`Ruler`, act: () => visible('[data-tool="ruler"]')?.click() },
+  { keys: ["s"], shown: t`S or W`, text: t`The stage states, or watches`, act: () => desk.stage.show("state") },
   { keys: ["w"], shown: "", text: "", act: () => desk.stage.show("watch") },
-  { keys: ["t"], shown: "T", text: "Fold the task, where there is little room", act: () => visible("#fold")?.click() },
-  { keys: ["n"], shown: "N", text: "Numbers", act: () => desk.drawer.press("numbers") },
-  { keys: ["p"], shown: "P", text: "Plots", act: () => desk.drawer.press("plots") },
-  { keys: ["e"], shown: "E", text: "Explore", act: () => desk.drawer.press("explore") },
-  { keys: ["l"], shown: "L", text: "Copy a link to the statement, and to the linkage that is shown", act: () => link.copy() },
-  { keys: ["g"], shown: "G", text: "Gallery", act: () => browse() },
-  { keys: ["?"], shown: "?", text: "These keys", act: () => keys.open() },
-  { keys: [], shown: "Esc", text: "Close what lies over the stage; put the pen away", act: () => {} },
+  { keys: ["t"], shown: "T", text: t`Fold the task, where there is little room`, act: () => visible("#fold")?.click() },
+  { keys: ["n"], shown: "N", text: t`Numbers`, act: () => desk.drawer.press("numbers") },
+  { keys: ["p"], shown: "P", text: t`Plots`, act: () => desk.drawer.press("plots") },
+  { keys: ["e"], shown: "E", text: t`Explore`, act: () => desk.drawer.press("explore") },
+  { keys: ["l"], shown: "L", text: t`Copy a link to the statement, and to the linkage that is shown`, act: () => link.copy() },
+  { keys: ["g"], shown: "G", text: t`Gallery`, act: () => browse() },
+  { keys: ["?"], shown: "?", text: t`These keys`, act: () => keys.open() },
+  { keys: [], shown: t`Esc`, text: t`Close what lies over the stage; put the pen away`, act: () => {} },
 ]);
 byId("stale-solve").addEventListener("click", () => solve());
 byId("stale-back").addEventListener("click", () => begun(answered));
@@ -438,7 +441,7 @@ byId("keys-open").addEventListener("click", () => keys.open());
 text.addEventListener("input", () => {
   try {
     const stated = JSON.parse(text.value);
-    if (!kinds.some((one) => one.kind === stated?.kind)) throw new SyntaxError("“kind” must name a kind of problem.");
+    if (!kinds.some((one) => one.kind === stated?.kind)) throw new SyntaxError(t`“kind” must name a kind of problem.`);
     const other = stated.kind !== problem.kind;
     problem = stated;
     text.removeAttribute("aria-invalid");
@@ -457,6 +460,8 @@ byId("key").querySelector("form").addEventListener("submit", (/** @type {Event} 
   byId("key").open = false;
   begin();
 });
+byId("language").replaceChildren(...Object.entries(languages).map(([code, { name }]) => el("option", { value: code, lang: code, selected: code === language }, `${code.toUpperCase()} · ${name}`)));
+byId("language").addEventListener("change", () => choose(byId("language").value));
 window.addEventListener("hashchange", restore);
 let resizing = 0;
 window.addEventListener("resize", () => {

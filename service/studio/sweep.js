@@ -2,6 +2,7 @@
 
 import { el, svg } from "./dom.js";
 import { outline } from "./hatch.js";
+import { t } from "./messages.js";
 import { between, within } from "./player.js";
 import { plateOf } from "./room_view.js";
 
@@ -25,7 +26,7 @@ export class Sweep {
       toggled();
     } });
     this.node = svg("g", { class: "sweep", hidden: true });
-    this.control = el("label", { class: "flag", for: "sweep" }, this.box, room.cycle ? "Sweep over the whole cycle" : "Sweep over the used range");
+    this.control = el("label", { class: "flag", for: "sweep" }, this.box, room.cycle ? t`Sweep over the whole cycle` : t`Sweep over the used range`);
   }
 
   get on() {

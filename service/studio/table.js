@@ -2,6 +2,7 @@
 
 import { choice, numberBox, plain, textBox } from "./controls.js";
 import { el, words } from "./dom.js";
+import { prose, t, term } from "./messages.js";
 import { alternatives, beyond, columns, discriminator, initial, kinded, optionOf } from "./schema.js";
 import { unitOf } from "./units.js";
 
@@ -17,7 +18,7 @@ export function table(sheet, item, rows, path, count) {
   const line = (/** @type {any} */ row, /** @type {number} */ k) => [el("tr", {},
     el("th", { scope: "row" }, k + 1),
     ...heads.map((head) => el("td", {}, cell(sheet, head, row, `${path}/${k}/${head.name}`, k, item))),
-    el("td", { class: "acts" }, ...inDetail(sheet, item, row, k), count === undefined && el("button", { type: "button", class: "small", "aria-label": `Remove row ${k + 1}`, onclick: () => {
+    el("td", { class: "acts" }, ...inDetail(sheet, item, row, k), count === undefined && el("button", { type: "button", class: "small", "aria-label": t`Remove row ${k + 1}`, onclick: () => {
       rows.splice(k, 1);
       sheet.rebuild();
     } }, "×"))), ...more(sheet, item, row, `${path}/${k}`, heads.length + 2, k)];
@@ -34,15 +35,15 @@ export function table(sheet, item, rows, path, count) {
   const view = el("div", { class: "table", onpaste },
     el("table", {},
       el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "#"),
-        ...heads.map((head) => el("th", { scope: "col", title: head.schema.description }, words(head.name),
+        ...heads.map((head) => el("th", { scope: "col", title: prose(head.schema.description) }, words(head.name),
           unitOf(head.schema, sheet.problem) && el("span", { class: "unit" }, ` (${unitOf(head.schema, sheet.problem)})`))), el("td"))),
       el("tbody", {}, ...rows.flatMap(line))),
     el("div", { class: "row" },
       count === undefined && el("button", { type: "button", class: "small", onclick: () => {
         rows.push(rows.length ? structuredClone(rows[rows.length - 1]) : initial(item, sheet.root));
         sheet.rebuild();
-      } }, "Add a row"),
-      el("span", { class: "note" }, "Paste rows from a spreadsheet into any cell.")));
+      } }, t`Add a row`),
+      el("span", { class: "note" }, t`Paste rows from a spreadsheet into any cell.`)));
   return view;
 }
 
@@ -72,10 +73,10 @@ function cell(sheet, head, row, path, k, item) {
     control = box;
   } else if (head.kinded.control === "text") {
     control = textBox(value, head.schema.default, set, plain);
-  } else if (typeof value === "object" && value !== null) return "below";
+  } else if (typeof value === "object" && value !== null) return t`below`;
   else control = numberBox(value, head.schema.default, set);
   control.setAttribute("data-path", path);
-  control.setAttribute("aria-label", `${words(head.name)}, row ${k + 1}`);
+  control.setAttribute("aria-label", t`${words(head.name)}, row ${k + 1}`);
   return control;
 }
 
@@ -108,7 +109,7 @@ function more(sheet, item, row, path, width, k) {
   const details = el("details", { "data-path": `${path}/`, open: stated, ontoggle: fill, onreveal: () => {
     details.open = true;
     fill();
-  } }, el("summary", {}, `Row ${k + 1}: ${names.map((name) => words(name).toLowerCase()).join(", ")}`), inside);
+  } }, el("summary", {}, t`Row ${k + 1}: ${names.map(term).join(", ")}`), inside);
   if (stated) fill();
   return [el("tr", { class: "more" }, el("td", { colspan: width }, details))];
 }
@@ -119,7 +120,7 @@ function inDetail(sheet, item, row, k) {
   return beyond(option, sheet.root).flatMap((name) => {
     const what = kinded(option.properties[name], sheet.root);
     if (what.control !== "shapes" || structured(row[name])) return [];
-    const title = `${words(name)} of row ${k + 1} in detail`;
+    const title = t`${words(name)} of row ${k + 1} in detail`;
     return [el("button", { type: "button", class: "small", title, "aria-label": title, onclick: () => {
       row[name] = initial(what.options.find((one) => one.type === "object") ?? {}, sheet.root);
       sheet.rebuild();

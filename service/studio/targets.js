@@ -5,6 +5,7 @@ import { stroke } from "./freehand.js";
 import { grid, snapping } from "./grid.js";
 import { Grip, keyed, led } from "./grip.js";
 import { chosenPivots, matched, opened, stated } from "./handles.js";
+import { t, term } from "./messages.js";
 import { areas } from "./room.js";
 import { RoomEditor } from "./room_editor.js";
 import { Ruler } from "./ruler.js";
@@ -79,7 +80,7 @@ function drawnPlane(place, problem, { handles, lines, word, add, offers, freehan
   const { width, height } = view;
   if (roomy) memory.view = view;
   view.snap = tools.snap ? snapping(view) : 0;
-  const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "group", "aria-label": "The problem in the plane" });
+  const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "group", "aria-label": t`The problem in the plane` });
   const trail = svg("path", { class: "trail" });
   const pen = svg("path", { class: "pen" });
   const areasOf = roomy ? new RoomEditor(picture, view, problem, memory.room, changed) : null;
@@ -96,13 +97,13 @@ function drawnPlane(place, problem, { handles, lines, word, add, offers, freehan
       tools[name] = !tools[name];
       changed(true);
     } }, text);
-  const chosen = el("div", { class: "canvas-tools", role: "group", "aria-label": "Tools of the canvas" },
+  const chosen = el("div", { class: "canvas-tools", role: "group", "aria-label": t`Tools of the canvas` },
     ...shapes.map(({ text, title, make }) => el("button", { type: "button", class: "small", title, onclick: () => {
       make((value) => view.fine(value));
       changed(true);
     } }, text)),
-    toggle("grid", "Grid", "Lines at round coordinates"),
-    toggle("snap", "Snap", `Places snap to ${shown(snapping(view))}, angles to ${SNAP_TURN}°; Alt lets them be`), ruler?.button);
+    toggle("grid", t`Grid`, t`Lines at round coordinates`),
+    toggle("snap", t`Snap`, t`Places snap to ${shown(snapping(view))}, angles to ${SNAP_TURN}°; Alt lets them be`), ruler?.button);
 
   const mode = el("input", { type: "checkbox", id: "freehand" });
   // Somewhere else the plane is drawn anew: its lines, and what coordinates are rounded to, are those of the new scale.
@@ -135,17 +136,18 @@ function drawnPlane(place, problem, { handles, lines, word, add, offers, freehan
   });
   const last = handles.at(-1)?.get() ?? [0, 0];
   const size = (0.4 * Math.min(width, 640)) / view.scale;
-  const how = `${freehand && problem.closed ? "Closed: the whole curve is matched. " : ""}Drag to move${handles.some((one) => one.turn) ? ", drag the end to turn" : ""}${add ? "; double-click adds one" : ""}.`;
+  const how = [freehand && problem.closed && t`Closed: the whole curve is matched.`, handles.some((one) => one.turn) ? t`Drag to move, drag the end to turn.` : t`Drag to move.`,
+    add && t`A double click adds one.`].filter(Boolean).join(" ");
   // An empty plane says nothing: what may be placed in it stands below.
   picture.toggleAttribute("hidden", !handles.length && !add && !roomy);
   if (picture.hasAttribute("hidden")) chosen.hidden = true;
   return el("div", { class: "plane" }, el("div", { class: "stage" }, picture, chosen), el("div", { class: "bar" }, el("div", { class: "row" },
-    add && el("button", { type: "button", class: "small", onclick: () => put([last[0] + 40 / view.scale, last[1]]) }, `Add a ${word}`),
+    add && el("button", { type: "button", class: "small", onclick: () => put([last[0] + 40 / view.scale, last[1]]) }, t`Add a ${term(word ?? "")}`),
     ...offers.map(({ text, make }) => el("button", { type: "button", class: "small", onclick: () => {
       make([view.rounded(view.middle[0]), view.rounded(view.middle[1])], view.rounded(size));
       changed(true);
     } }, text)),
-    freehand && el("label", { class: "flag", for: "freehand" }, mode, "Draw freehand"),
+    freehand && el("label", { class: "flag", for: "freehand" }, mode, t`Draw freehand`),
     zoom?.buttons, handles.length > 0 && el("span", { class: "note", title: how }, how)), areasOf?.tools));
 }
 
@@ -179,7 +181,7 @@ function held(handle, key, view, picture, all, redraw, changed) {
     const [x, y] = handle.get();
     const [u, v] = view.at(x, y);
     grip.put([u, v]);
-    grip.call(`${label}: x ${shown(x)}, y ${shown(y)}${turn ? `, angle ${shown(turn.get())}°` : ""}. Arrow keys move it${turn ? ", page keys turn it" : ""}${handle.remove ? ", Delete removes it" : ""}.`);
+    grip.call(`${label}: x ${shown(x)}, y ${shown(y)}${turn ? `, ${t`angle ${shown(turn.get())}°`}` : ""}. ${[t`Arrow keys move it`, turn && t`page keys turn it`, handle.remove && t`Delete removes it`].filter(Boolean).join(", ")}.`);
     if (!knob || !end || !turn) return;
     const angle = (turn.get() * Math.PI) / 180;
     const [ku, kv] = [u + ARM * Math.cos(angle), v - ARM * Math.sin(angle)];

@@ -1,5 +1,6 @@
 /** Where the gears of each type of train stand, from its teeth and the speeds that the analysis gives. */
 
+import { t, term } from "./messages.js";
 import { facing, radius } from "./wheels.js";
 
 /** @typedef {import("./wheels.js").Wheel} Wheel */
@@ -33,7 +34,7 @@ function series(mechanism, motion, design, problem) {
     const aside = n ? right + 0.15 * (high - low) - low : 0;
     right = high + aside;
     const share = motion.shafts[n].speed_ratio;
-    found.push(...own.map((wheel) => ({ ...wheel, name: `Unit ${n + 1}, ${wheel.name}`, centre: /** @type {Point} */ ([wheel.centre[0] + aside, wheel.centre[1]]),
+    found.push(...own.map((wheel) => ({ ...wheel, name: t`Unit ${n + 1}, ${wheel.name}`, centre: /** @type {Point} */ ([wheel.centre[0] + aside, wheel.centre[1]]),
       axis: /** @type {Point} */ ([aside, 0]), speed: share * wheel.speed, ...(wheel.orbit === undefined ? {} : { orbit: share * wheel.orbit }) })));
   });
   return found;
@@ -62,7 +63,7 @@ function ordinary(motion, problem) {
     const wide = Math.abs(apart - 1) > 1e-9 ? apart : 1;
     for (const gear of gears) {
       /** @type {Wheel} */
-      const wheel = { name: `Stage ${stage} ${gear.role}`, teeth: gear.teeth, module: gear.module * wide, centre: shaft, tooth: contact, speed: gear.speed_ratio, tone: stage - 1,
+      const wheel = { name: t`Stage ${stage} ${term(gear.role)}`, teeth: gear.teeth, module: gear.module * wide, centre: shaft, tooth: contact, speed: gear.speed_ratio, tone: stage - 1,
         ...(inside ? { internal: gear.teeth === Math.max(...gears.map((/** @type {any} */ one) => one.teeth)) } : {}),
         ...(kind === "worm" && gear.role === "driver" ? { module: gear.pitch_diameter / gear.teeth, idle: true } : {}) };
       if (before) {
@@ -190,9 +191,9 @@ function gearbox(mechanism, motion) {
       const idle = motion.engaged[n] !== k;
       const common = { module: mechanism.module, tone: n, idle };
       /** @type {Wheel} */
-      const one = { ...common, name: `Stage ${n + 1}, pair ${k + 1}, driver`, teeth: pair.driver, centre: [from, 0], tooth: 0, speed: motion.shafts[n].speed_ratio };
+      const one = { ...common, name: t`Stage ${n + 1}, pair ${k + 1}, driver`, teeth: pair.driver, centre: [from, 0], tooth: 0, speed: motion.shafts[n].speed_ratio };
       /** @type {Wheel} */
-      const other = { ...common, name: `Stage ${n + 1}, pair ${k + 1}, driven`, teeth: pair.driven, centre: [to, 0], tooth: 0, speed: motion.shafts[n + 1].speed_ratio };
+      const other = { ...common, name: t`Stage ${n + 1}, pair ${k + 1}, driven`, teeth: pair.driven, centre: [to, 0], tooth: 0, speed: motion.shafts[n + 1].speed_ratio };
       other.tooth = facing(one, other, 0);
       found.push(one, other);
     });
@@ -214,7 +215,7 @@ function layshaft(mechanism, motion) {
     let before = null;
     for (const [teeth, speed, centre, shaft] of row) {
       /** @type {Wheel} */
-      const wheel = { name: `${name}, on the ${shaft}`, teeth, module, centre, tooth: 0, speed, tone, idle };
+      const wheel = { name: `${name}, ${shaft}`, teeth, module, centre, tooth: 0, speed, tone, idle };
       if (before) wheel.tooth = facing(before, wheel, Math.atan2(centre[1] - before.centre[1], centre[0] - before.centre[0]));
       found.push(wheel);
       before = wheel;
@@ -222,17 +223,17 @@ function layshaft(mechanism, motion) {
   };
   const [axis, beside] = /** @type {[Point, Point]} */ ([[0, 0], [distance, 0]]);
   gears.forEach((/** @type {any} */ pair, /** @type {number} */ k) => {
-    if (pair.layshaft !== null) add(`Gear ${k + 1}`, 1, k !== engaged, [[pair.layshaft, lay, beside, "layshaft"], [pair.mainshaft, main, axis, "main shaft"]]);
+    if (pair.layshaft !== null) add(t`Gear ${k + 1}`, 1, k !== engaged, [[pair.layshaft, lay, beside, t`on the layshaft`], [pair.mainshaft, main, axis, t`on the main shaft`]]);
   });
   if (reverse) {
     const [near, far] = [(module * (reverse.idler + reverse.layshaft)) / 2, (module * (reverse.idler + reverse.mainshaft)) / 2];
     const x = (distance ** 2 + far ** 2 - near ** 2) / (2 * distance);
     const centre = /** @type {Point} */ ([x, Math.sqrt(Math.max(far ** 2 - x ** 2, 0))]);
     const back = engaged === gears.length;
-    add("Reverse", 2, !back, [[reverse.layshaft, lay, beside, "layshaft"],
-      [reverse.idler, (-lay * reverse.layshaft) / reverse.idler, centre, "idler's pin"], [reverse.mainshaft, main, axis, "main shaft"]]);
+    add(t`Reverse`, 2, !back, [[reverse.layshaft, lay, beside, t`on the layshaft`],
+      [reverse.idler, (-lay * reverse.layshaft) / reverse.idler, centre, t`on the idler's pin`], [reverse.mainshaft, main, axis, t`on the main shaft`]]);
   }
-  add("Head", 0, false, [[head.driver, input, axis, "input shaft"], [head.driven, lay, beside, "layshaft"]]);
+  add(t`Head`, 0, false, [[head.driver, input, axis, t`on the input shaft`], [head.driven, lay, beside, t`on the layshaft`]]);
   return found.sort((one, other) => Number(other.idle) - Number(one.idle));
 }
 

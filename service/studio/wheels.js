@@ -1,6 +1,7 @@
 /** Toothed wheels, and where they stand: the shafts of a train in the plane, teeth in mesh. */
 
 import { svg } from "./dom.js";
+import { t } from "./messages.js";
 
 /** @typedef {[number, number]} Point */
 
@@ -59,7 +60,7 @@ function outline(wheel, scale) {
 export function drawn(view, wheel) {
   const r = view.scale * radius(wheel);
   const spoke = wheel.internal ? [r + view.scale * 1.4 * wheel.module, r + view.scale * 2.9 * wheel.module] : [0, 0.8 * r];
-  const node = svg("g", { class: `wheel t${wheel.tone % 4}${wheel.idle ? " idle" : ""}` }, svg("title", {}, `${wheel.name}: ${wheel.teeth} teeth`),
+  const node = svg("g", { class: `wheel t${wheel.tone % 4}${wheel.idle ? " idle" : ""}` }, svg("title", {}, t`${wheel.name}: ${wheel.teeth} teeth`),
     !wheel.idle && svg("path", { class: "teeth", "fill-rule": "evenodd", d: outline(wheel, view.scale) }),
     svg("circle", { class: "pitch", r }),
     !wheel.idle && svg("path", { class: "spoke", d: `M${spoke[0]} 0H${spoke[1]}` }),

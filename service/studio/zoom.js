@@ -4,6 +4,7 @@
  */
 
 import { el } from "./dom.js";
+import { t } from "./messages.js";
 
 /** How much nearer or farther a press of a button takes the picture, and a step of the wheel. */
 const PRESS = 1.5;
@@ -51,8 +52,8 @@ export class Zoom {
     this.middle = [x + width / 2, y + height / 2];
     const button = (/** @type {string} */ text, /** @type {string} */ label, /** @type {() => void} */ act) =>
       el("button", { type: "button", class: "small", "aria-label": label, title: label, onclick: act }, text);
-    this.buttons = el("div", { class: "zoom" }, button("−", "Farther", () => this.press(1 / PRESS)),
-      button("+", "Nearer", () => this.press(PRESS)), button("Fit", "Fit everything", () => {
+    this.buttons = el("div", { class: "zoom" }, button("−", t`Farther`, () => this.press(1 / PRESS)),
+      button("+", t`Nearer`, () => this.press(PRESS)), button(t`Fit`, t`Fit everything`, () => {
         this.fit();
         this.settled(null);
       }));

@@ -12,7 +12,8 @@ from service.api.studio import POLICY, studio_files
 FOLDER = Path(service.__file__).parent / "studio"
 OWN = sorted(path.name for path in FOLDER.iterdir() if path.is_file())
 VENDORED = sorted(f"vendor/{path.name}" for path in (FOLDER / "vendor").iterdir())
-NAMES = sorted(OWN + VENDORED)
+SPOKEN = sorted(f"messages/{path.name}" for path in (FOLDER / "messages").iterdir())
+NAMES = sorted(OWN + VENDORED + SPOKEN)
 NAMESPACE = "http://www.w3.org/2000/svg"
 IMPORTED = re.compile(r'(?:from ?|import\()"\./([^"]+)"')
 TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml",
@@ -107,7 +108,7 @@ def versions():
 def test_a_bundle_has_each_module_once_after_those_that_it_imports():
     bundle = studio_files()[name_of("studio.js")].content.decode()
     modules = imported(re.compile(r'from "\./([^"]+)"'))
-    begun = re.findall(r"^const \$(\w+) = \(\(\) => \{$", bundle, re.MULTILINE)
+    begun = re.findall(r"^const \$(\w+) = (?:await \(async |\()\(\) => \{$", bundle, re.MULTILINE)
     assert sorted(begun) == sorted(name.removesuffix(".js") for name in modules)
     for name in modules:
         for needed in re.findall(r'^import .* from "\./(\w+)\.js"', (FOLDER / name).read_text(), re.MULTILINE):
@@ -119,9 +120,10 @@ def test_a_bundle_exports_what_its_first_module_does_and_leaves_what_is_of_other
         "a.js": 'import * as b from "./b.js";\nimport { C } from "./vendor/c.js";\nexport const a = b.b(C);\n',
         "b.js": 'import { e as f } from "./e.js";\nexport async function b() {\n  return import("./d.js");\n}\n',
         "d.js": "export class D {}\nexport function d() {}\n",
-        "e.js": "export const e = 1;\n",
+        "e.js": "export const e = await fetch(1);\n",
     }
     made = bundles(own, "a.js")
+    assert "const $e = await (async () => {\nconst e = await fetch(1);" in made["a.bundle.js"]
     assert sorted(made) == ["a.bundle.js", "d.bundle.js"]
     assert made["a.bundle.js"].startswith('import { C } from "./vendor/c.js";\n')
     assert made["a.bundle.js"].endswith("export const { a } = $a;\n")

@@ -1,0 +1,124 @@
+/**
+ * The language of the page: its texts, by what they are in English, and the numbers in them.
+ *
+ * The sources say what they say in English. The tag t looks a text of the page up among the messages of the chosen language,
+ * and translated a text of the service; what is not found there stays English. English itself has no messages and waits
+ * for none.
+ */
+
+import { lasting } from "./storage.js";
+
+/** The language of the sources. */
+const SOURCE = "en";
+
+/** Under which name the choice is kept. */
+const KEPT = "mechsynth.language";
+
+/** What the person reads of an element that is no text of its own. */
+const READ = ["aria-label", "title", "placeholder", "content"];
+
+/** The languages that the page has: the head of the page lists them. @type {Record<string, {name: string, messages: string}>} */
+export const languages = {
+  [SOURCE]: { name: "English", messages: "" },
+  ...Object.fromEntries([.../** @type {NodeListOf<HTMLLinkElement>} */ (document.querySelectorAll("link[hreflang]"))]
+    .map((link) => [link.hreflang, { name: link.title, messages: link.href }])),
+};
+
+/** The language that the page speaks. */
+export const language = chosen();
+
+/** What separates whole numbers from fractions in that language. */
+const POINT = new Intl.NumberFormat(language).formatToParts(0.5).find((part) => part.type === "decimal")?.value ?? ".";
+
+/** What separates the numbers of a list: a comma may be a decimal one. */
+export const BETWEEN = POINT === "," ? "; " : ", ";
+
+/** A number in English prose: what stands in its place is a number too. */
+const NUMBER = /(?<![\w{])[-−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w}])/g;
+
+/** Texts by what they are in English; of English itself none. @type {Record<string, string>} */
+const messages = language === SOURCE ? {} : await fetched(languages[language].messages);
+
+/** What was chosen, or the first of the languages of the browser that there is. */
+function chosen() {
+  const wanted = [lasting.read(KEPT) ?? "", ...navigator.languages.map((one) => one.split("-")[0])];
+  return wanted.find((one) => one in languages) ?? SOURCE;
+}
+
+/** The page is then read anew: texts are looked up as they are written. @param {string} code */
+export function choose(code) {
+  lasting.write(KEPT, code);
+  location.reload();
+}
+
+/** Where they do not come, the page speaks English. @param {string} address @returns {Promise<Record<string, string>>} */
+async function fetched(address) {
+  try {
+    return await (await fetch(address)).json();
+  } catch {
+    return {};
+  }
+}
+
+/**
+ * A text of the page in its language, as the tag of a template; values stand as `{0}`, `{1}` in what is looked up.
+ * @param {TemplateStringsArray} parts @param {...(string | number | null | undefined)} values
+ */
+export function t(parts, ...values) {
+  const key = parts.reduce((text, part, k) => `${text}{${k - 1}}${part}`);
+  return filled(messages[key] ?? key, values.map((one) => (typeof one === "number" ? number(one) : String(one))));
+}
+
+/** @param {string} message @param {string[]} values */
+function filled(message, values) {
+  return values.length ? message.replace(/\{(\d+)\}/g, (place, k) => values[Number(k)] ?? place) : message;
+}
+
+/** A text of the service in the language of the page. It may have numbers in it: `72 starts` is found as `{0} starts`. @param {string} text */
+export function translated(text) {
+  if (language === SOURCE || text in messages) return messages[text] ?? text;
+  /** @type {string[]} */
+  const values = [];
+  const message = messages[text.replace(NUMBER, (one) => `{${values.push(number(one)) - 1}}`)];
+  return message === undefined ? text : filled(message, values);
+}
+
+/** The language of a text of the service, where it is not that of the page. @param {string} text */
+export function foreign(text) {
+  return language !== SOURCE && translated(text) === text ? SOURCE : null;
+}
+
+/** The first paragraph of a description, as prose. @param {string | undefined} description */
+export function prose(description = "") {
+  return translated(description.split("\n\n")[0].replaceAll("`", "").replaceAll("\n", " "));
+}
+
+/** `min_transmission_angle` as it stands within a sentence: `min transmission angle`. @param {string} name */
+export function term(name) {
+  const plain = name.replaceAll("_", " ");
+  return messages[plain] ?? plain;
+}
+
+/** A number as the language writes it; its digits are those that it has. @param {number | string} value */
+export function number(value) {
+  return POINT === "." ? String(value) : String(value).replace(".", POINT);
+}
+
+/** Put what stands in the page from the beginning into its language. */
+export function translatePage() {
+  document.documentElement.lang = language;
+  if (language === SOURCE) return;
+  const walker = document.createTreeWalker(document.documentElement, NodeFilter.SHOW_TEXT | NodeFilter.SHOW_ELEMENT);
+  while (walker.nextNode()) {
+    const node = walker.currentNode;
+    if (node instanceof Element) {
+      for (const name of READ) if (node.hasAttribute(name)) node.setAttribute(name, read(String(node.getAttribute(name))));
+    } else if (node.textContent) node.textContent = read(node.textContent);
+  }
+}
+
+/** A text of the page's markup; the space around it stays. @param {string} text */
+function read(text) {
+  const bare = text.trim();
+  return text.replace(bare, () => messages[bare.replace(/\s+/g, " ")] ?? bare);
+}

@@ -1,0 +1,272 @@
+"""What the page says, to be translated: ``python -m tools.studio.messages de`` lists what is missing and what is left.
+
+Texts are collected where they are: those of the page from its modules and its markup, those of the service from the
+kinds of problems, their schemas, and the names of what answers hold. English itself is the key of a message.
+"""
+
+from __future__ import annotations
+
+import argparse
+import inspect
+import json
+import re
+from collections.abc import Iterator
+from functools import cache
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+from synthesis.registry import KINDS
+
+ROOT = Path(__file__).parents[2]
+STUDIO = ROOT / "service" / "studio"
+
+_TAG = re.compile(r"(?<![\w$.])t`")
+_READ = ("aria-label", "title", "placeholder", "content")
+_CHECK = re.compile(
+    r"\b(?:Check\(\s*name=|(?:at_least|at_most|tolerated|check|_fitted|within_zone|reject)\(\s*|name, \w+ = )"
+    r"\"([a-z]\w*)\""
+    r"|^[A-Z_]+ = \"([a-z]+_[a-z_]+|outranked)\"$",
+    re.MULTILINE,
+)
+"""Names of checks and of reasons for which candidates are left out, as modules say them."""
+
+_PROGRESS = re.compile(r"\bprogress\([^\n]*, (f?)\"((?:[^\"{\n]|\{[^}\n]*\})*)\"\)")
+_VALUE = re.compile(r"\{[^}]*\}")
+
+STATES = ("queued", "running", "succeeded", "failed", "cancelled")
+"""Of jobs."""
+
+SHAPES = ("polygon", "rectangle", "circle")
+"""Which areas of the room are drawn as."""
+
+NOT_TOLD = {"type", "skeleton", "profile", "pitch_curve", "program", "outer_wall", "lower_wall", "upper_wall"}
+"""Parts of a mechanism that the page does not list among the dimensions."""
+
+
+def messages(language: str) -> dict[str, str]:
+    """What the page says in a language, by what it says in English."""
+    read: dict[str, str] = json.loads((STUDIO / "messages" / f"{language}.json").read_text("utf-8"))
+    return read
+
+
+def spoken() -> list[str]:
+    """All that has to be translated, each text once."""
+    return list(dict.fromkeys([*of_the_page(), *of_the_service(), *names(), *progress()]))
+
+
+def of_the_page() -> Iterator[str]:
+    """Texts of the modules and of the markup."""
+    for module in sorted(STUDIO.glob("*.js")):
+        yield from tagged(module.read_text("utf-8"))
+    markup = _Markup()
+    markup.feed((STUDIO / "index.html").read_text("utf-8"))
+    yield from markup.texts
+
+
+def tagged(source: str) -> Iterator[str]:
+    """Keys of the templates of a module that have the tag ``t``.
+
+    >>> list(tagged("el(t`Design ${n + 1} of ${`${all}`}`, t`none`)"))
+    ['Design {0} of {1}', 'none']
+    """
+    for found in _TAG.finditer(source):
+        yield _template(source, found.end())[0]
+
+
+def _template(source: str, at: int) -> tuple[str, int]:
+    """The key of the template whose text begins there, and where it ends."""
+    key, values = "", 0
+    while source[at] != "`":
+        if source.startswith("${", at):
+            at = _expression(source, at + 2)
+            key += f"{{{values}}}"
+            values += 1
+        else:
+            at += source[at] == "\\"
+            key += source[at]
+            at += 1
+    return key, at + 1
+
+
+def _expression(source: str, at: int) -> int:
+    """Where the expression in a template ends."""
+    depth = 1
+    while depth:
+        if source[at] == "`":
+            at = _template(source, at + 1)[1]
+        elif source[at] in "\"'":
+            at = source.index(source[at], at + 1) + 1
+        else:
+            depth += {"{": 1, "}": -1}.get(source[at], 0)
+            at += 1
+    return at
+
+
+class _Markup(HTMLParser):
+    """Texts of a page, and the attributes that are read to a person; what states its language is left alone."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.texts: list[str] = []
+        self.foreign = False
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Take what is read of an element."""
+        self.foreign = tag == "noscript" or (self.foreign and tag != "script")
+        told = dict(attrs)
+        if tag not in ("link", "html") and not (tag == "meta" and told.get("name") != "description"):
+            self.texts += [_bare(text) for name in _READ if (text := told.get(name))]
+
+    def handle_endtag(self, tag: str) -> None:
+        """Go on after what states its language."""
+        self.foreign = self.foreign and tag != "noscript"
+
+    def handle_data(self, data: str) -> None:
+        """Take a text."""
+        if not self.foreign and re.search(r"[A-Za-z]", data):
+            self.texts.append(_bare(data))
+
+
+def _bare(text: str) -> str:
+    return " ".join(text.split())
+
+
+def of_the_service() -> Iterator[str]:
+    """Titles, lines and descriptions of the kinds of problems, their examples and their fields."""
+    for name, kind in KINDS.items():
+        yield kind.problem.model_config.get("title") or name
+        yield prose(inspect.getdoc(kind.problem) or "")
+        for example in kind.gallery:
+            yield from (example.name, example.group, example.line)
+        for field, root in _fields(_schemas(name)[0]):
+            if text := prose(_description(field, root)):
+                yield text
+
+
+@cache
+def _schemas(kind: str) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Of the statements of a kind, and of their answers."""
+    return KINDS[kind].problem.model_json_schema(), KINDS[kind].result.model_json_schema()
+
+
+def prose(description: str) -> str:
+    """The first paragraph of a description, as the page shows it.
+
+    >>> prose("Of the `crank`,\\nin degrees.\\n\\nMore.")
+    'Of the crank, in degrees.'
+    """
+    return description.split("\n\n")[0].replace("`", "").replace("\n", " ")
+
+
+def _fields(schema: dict[str, Any]) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
+    """The schemas of all fields, however deep."""
+    for node in _nodes(schema):
+        for field in node.get("properties", {}).values():
+            yield field, schema
+
+
+def _nodes(schema: Any) -> Iterator[dict[str, Any]]:
+    if isinstance(schema, dict):
+        yield schema
+    for part in schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ():
+        yield from _nodes(part)
+
+
+def _description(field: dict[str, Any], root: dict[str, Any]) -> str:
+    """Of a field, or of the only thing that it can be."""
+    if "description" in field:
+        return str(field["description"])
+    options = [one for one in _options(field, root) if one.get("type") != "null"]
+    return str(options[0].get("description", "")) if len(options) == 1 else ""
+
+
+def _options(schema: dict[str, Any], root: dict[str, Any]) -> list[dict[str, Any]]:
+    if "$ref" in schema:
+        return _options(root["$defs"][schema["$ref"].rpartition("/")[2]], root)
+    several = schema.get("anyOf") or schema.get("oneOf")
+    return [one for option in several for one in _options(option, root)] if several else [schema]
+
+
+def names() -> Iterator[str]:
+    """Names of fields, choices, quantities, checks and dimensions, as they stand within a sentence."""
+    found: set[str] = {*STATES, *SHAPES, *KINDS}
+    for kind in KINDS:
+        statement, answer = _schemas(kind)
+        found |= _named(statement) | _of_designs(answer)
+    found |= {one or other for one, other in _CHECK.findall(_synthesis())}
+    yield from sorted({name.replace("_", " ") for name in found if name[:1] not in "-+<" and not name.startswith("/")})
+
+
+def _named(schema: Any) -> set[str]:
+    """Names of fields and the words that they may have."""
+    found: set[str] = set()
+    for node in _nodes(schema):
+        found |= set(node.get("properties", {}))
+        found |= {one for one in (*node.get("enum", []), node.get("const")) if isinstance(one, str)}
+    return found
+
+
+def _of_designs(root: dict[str, Any]) -> set[str]:
+    """Names of metrics that are one number or word, and of the dimensions of mechanisms."""
+    found: set[str] = set()
+    for definition in root["$defs"].values():
+        design = definition.get("properties", {})
+        if "mechanism" not in design:
+            continue
+        found |= _dimensions(design["mechanism"], root, set())
+        for metrics in _options(design.get("metrics", {}), root):
+            for name, field in metrics.get("properties", {}).items():
+                plain = [one for one in _options(field, root) if one.get("type") not in ("array", "object", "null")]
+                found |= {name} if plain else set()
+                found |= {str(word) for one in plain for word in one.get("enum", [])}
+    return found
+
+
+def _dimensions(schema: Any, root: dict[str, Any], seen: set[str]) -> set[str]:
+    found: set[str] = set()
+    if isinstance(schema, list):
+        return found.union(*(_dimensions(one, root, seen) for one in schema))
+    if not isinstance(schema, dict):
+        return found
+    name = str(schema.get("$ref", "")).rpartition("/")[2]
+    if name and name not in seen:
+        seen.add(name)
+        found |= _dimensions(root["$defs"][name], root, seen)
+    found |= {str(word) for word in (*schema.get("enum", []), *([schema["const"]] if "const" in schema else []))}
+    for field, inner in schema.get("properties", {}).items():
+        if field not in NOT_TOLD:
+            found |= {field} | _dimensions(inner, root, seen)
+        elif field == "type":
+            found |= _dimensions(inner, root, seen)
+    for key, inner in schema.items():
+        if key not in ("properties", "enum", "const", "$ref"):
+            found |= _dimensions(inner, root, seen)
+    return found
+
+
+def progress() -> Iterator[str]:
+    """What jobs say of their progress, with places for what is counted."""
+    for formatted, text in _PROGRESS.findall(_synthesis()):
+        *before, last = _VALUE.split(text) if formatted else [text]
+        yield "".join(f"{part}{{{k}}}" for k, part in enumerate(before)) + last
+
+
+@cache
+def _synthesis() -> str:
+    return "\n".join(module.read_text("utf-8") for module in sorted((ROOT / "synthesis").rglob("*.py")))
+
+
+def main() -> None:
+    """Print what a language lacks, as JSON to be filled in, and what nothing says any more."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("language", help="as de")
+    here = messages(parser.parse_args().language)
+    said = spoken()
+    print(json.dumps({text: "" for text in said if text not in here}, ensure_ascii=False, indent=2))
+    for text in here.keys() - set(said):
+        print(f"left over: {text}")
+
+
+if __name__ == "__main__":
+    main()
