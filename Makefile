@@ -9,6 +9,7 @@
 # make campaign  the checks with thousands of random problems: a twentieth of them, or all with SHARE=1 (independent
 #              multibody programs are installed for them), and the studio's kinds on a phone
 # make fuzz    hundreds of requests of each operation, and of absurd problems of each kind; half an hour
+# make format  format the sources as make check and make test-browser want them
 # make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
 # make docs    the site, in var/site: all pages, the references, and a gallery of machines that are solved for it
 # make test-docs  make the site, and see that every link holds and that what it shows has run
@@ -38,7 +39,7 @@ BESIDES := --ignore tests/browser --ignore tests/cad
 
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: vendor serve test fuzz test-cluster engines test-faults test-browser chromium campaign demo check quick bench openapi lock package docs \
+.PHONY: vendor serve test format fuzz test-cluster engines test-faults test-browser chromium campaign demo check quick bench openapi lock package docs \
     test-docs clean suite test-cad cad-suite cluster-rabbitmq cluster-redis
 
 serve: $(SERVING) $(if $(filter-out 0 false no,$(MECHSYNTH_CAD)),$(CAD))
@@ -120,6 +121,10 @@ check: $(STAMP)
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+format: $(STAMP) $(NODE)
+	$(BIN)/ruff format .
+	cd service/studio && ../../tests/node/node_modules/.bin/prettier --print-width 120 --write '*.js'
 
 # The inner loop: everything but the tests marked slow.
 quick: $(STAMP)

@@ -1,4 +1,7 @@
-/** A statement, and a linkage that answers it, within the fragment of an address: deflated JSON in base64url (RFC 4648, 5). */
+/**
+ * A statement, and a linkage that answers it, within the fragment of an address: deflated JSON in base64url (RFC 4648,
+ * 5).
+ */
 
 import { t } from "./messages.js";
 import { misfit } from "./schema.js";
@@ -15,7 +18,8 @@ const MOST_UNPACKED = 1_000_000;
  * @property {any} problem
  * @property {string} label of the task
  * @property {Mechanism | null} mechanism
- * @property {boolean} placed whether the linkage was shifted, turned and sized to what is stated, which it then need not pass as stated
+ * @property {boolean} placed whether the linkage was shifted, turned and sized to what is stated, which it then need
+ *   not pass as stated
  */
 
 /** A linkage as an analysis takes it. @typedef {{type: string, skeleton: any, driven_by?: string}} Mechanism */
@@ -43,7 +47,8 @@ export function holds(fragment) {
  * @param {string} fragment @param {import("./api.js").Kind[]} kinds @returns {Promise<Sent>}
  */
 export async function sentIn(fragment, kinds) {
-  if (fragment.length > MOST) throw new Unreadable(t`The address is longer than ${MOST} characters, which no statement needs.`);
+  if (fragment.length > MOST)
+    throw new Unreadable(t`The address is longer than ${MOST} characters, which no statement needs.`);
   const text = await unpacked(fragment.slice(MARK.length));
   /** @type {any} */
   let told;
@@ -56,9 +61,14 @@ export async function sentIn(fragment, kinds) {
   const kind = kinds.find((one) => one.kind === problem?.kind);
   if (!kind) throw new Unreadable(t`The address states a kind of problem that this service does not know.`);
   const wrong = misfit(problem, kind.schema, kind.schema);
-  if (wrong !== null) throw new Unreadable(t`The address states ${wrong.slice(1, 100) || t`something`} in a way that this service does not know.`);
-  if (typeof label !== "string" || typeof placed !== "boolean") throw new Unreadable(t`The address holds more than a statement and a linkage.`);
-  if (mechanism !== null && typeof mechanism?.skeleton !== "object") throw new Unreadable(t`The design in the address is no linkage.`);
+  if (wrong !== null)
+    throw new Unreadable(
+      t`The address states ${wrong.slice(1, 100) || t`something`} in a way that this service does not know.`,
+    );
+  if (typeof label !== "string" || typeof placed !== "boolean")
+    throw new Unreadable(t`The address holds more than a statement and a linkage.`);
+  if (mechanism !== null && typeof mechanism?.skeleton !== "object")
+    throw new Unreadable(t`The design in the address is no linkage.`);
   return { problem, label: label.slice(0, 200), mechanism, placed };
 }
 
@@ -66,18 +76,25 @@ export async function sentIn(fragment, kinds) {
 async function unpacked(coded) {
   try {
     const bytes = Uint8Array.from(atob(coded.replaceAll("-", "+").replaceAll("_", "/")), (one) => one.charCodeAt(0));
-    const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"))
-      .pipeThrough(new TextDecoderStream("utf-8", { fatal: true })).getReader();
+    const reader = new Blob([bytes])
+      .stream()
+      .pipeThrough(new DecompressionStream("deflate-raw"))
+      .pipeThrough(new TextDecoderStream("utf-8", { fatal: true }))
+      .getReader();
     let text = "";
-    for (let part; !(part = await reader.read()).done; ) {
+    for (let part; !(part = await reader.read()).done;) {
       text += part.value;
       if (text.length <= MOST_UNPACKED) continue;
       await reader.cancel();
-      throw new Unreadable(t`The statement in the address is longer than ${MOST_UNPACKED} characters, which no problem needs.`);
+      throw new Unreadable(
+        t`The statement in the address is longer than ${MOST_UNPACKED} characters, which no problem needs.`,
+      );
     }
     return text;
   } catch (error) {
     if (error instanceof Unreadable) throw error;
-    throw new Unreadable(t`The address holds no statement that can be read: it is cut short, or was changed on its way.`);
+    throw new Unreadable(
+      t`The address holds no statement that can be read: it is cut short, or was changed on its way.`,
+    );
   }
 }

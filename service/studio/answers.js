@@ -26,13 +26,21 @@ export function leave(place, desk) {
 
 /**
  * @param {HTMLElement} place @param {import("./desk.js").Desk} desk @param {api.Job} job
- * @param {(problem: any) => void} state begins another statement @param {(problem: any) => void} solve states and solves one
+ * @param {(problem: any) => void} state begins another statement
+ * @param {(problem: any) => void} solve states and solves one
  */
 export function answer(place, desk, job, state, solve) {
   leave(place, desk);
   if (!job.result) {
-    place.append(el("p", { class: job.status === "failed" ? "error" : "note" },
-      job.status === "failed" ? `${translated(job.error?.title ?? "Failed")}: ${translated(job.error?.detail ?? "")}` : t`The job was ${term(job.status)}.`));
+    place.append(
+      el(
+        "p",
+        { class: job.status === "failed" ? "error" : "note" },
+        job.status === "failed"
+          ? `${translated(job.error?.title ?? "Failed")}: ${translated(job.error?.detail ?? "")}`
+          : t`The job was ${term(job.status)}.`,
+      ),
+    );
     desk.stage.offer(false);
     return;
   }
@@ -45,21 +53,36 @@ export function answer(place, desk, job, state, solve) {
     choosing?.chosen(chosen);
   }));
   const count = el("p", { class: "warn", role: "status" });
-  const choice = designs.length > 1 ? new Choosing(desk.choosing, desk, job, row, () => {
-    const kept = row.kept.filter(Boolean).length;
-    count.textContent = kept < designs.length ? t`${kept} of ${designs.length} designs meet the bounds and are shown.` : "";
-  }) : null;
+  const choice =
+    designs.length > 1
+      ? new Choosing(desk.choosing, desk, job, row, () => {
+          const kept = row.kept.filter(Boolean).length;
+          count.textContent =
+            kept < designs.length ? t`${kept} of ${designs.length} designs meet the bounds and are shown.` : "";
+        })
+      : null;
   choosing = choice;
   place.append(
-    el("div", { class: "known", tabindex: 0, role: "group", "aria-label": t`What is known` },
-      el("p", { class: "warn outdated" }, t`Answers to an earlier statement.`), count,
-      el("p", { class: "summary", lang: foreign(summary) }, translated(summary)), el("p", { class: "note" }, known(search, designs.length))), row.node);
+    el(
+      "div",
+      { class: "known", tabindex: 0, role: "group", "aria-label": t`What is known` },
+      el("p", { class: "warn outdated" }, t`Answers to an earlier statement.`),
+      count,
+      el("p", { class: "summary", lang: foreign(summary) }, translated(summary)),
+      el("p", { class: "note" }, known(search, designs.length)),
+    ),
+    row.node,
+  );
   if (designs.length) row.select(0);
   desk.drawer.on("compare", choice && { opened: () => choice.opened(), closed: () => choice.closed() });
   desk.drawer.offer("compare", choice !== null);
   if (designs.length) return;
   desk.stage.offer(true, nearest_miss ? t`None found; this comes nearest` : t`None found`);
-  desk.frame.say(...(nearest_miss ? [missed(nearest_miss, job.problem, solve)] : [el("p", { class: "note", lang: foreign(summary) }, translated(summary))]));
+  desk.frame.say(
+    ...(nearest_miss
+      ? [missed(nearest_miss, job.problem, solve)]
+      : [el("p", { class: "note", lang: foreign(summary) }, translated(summary))]),
+  );
   desk.stage.show("watch");
 }
 
@@ -83,9 +106,15 @@ export function pin() {
 /** What the search has shown, in a sentence. @param {any} search @param {number} found */
 function known(search, found) {
   if (!search) return "";
-  const counted = Object.entries(search.rejected ?? {}).filter(([, n]) => n).map(([why, n]) => `${term(why)} ${n}`);
+  const counted = Object.entries(search.rejected ?? {})
+    .filter(([, n]) => n)
+    .map(([why, n]) => `${term(why)} ${n}`);
   const sure = search.complete
-    ? found ? t`Complete: the search has left out nothing that the problem allows; the best are shown.` : t`Complete: no design exists.`
-    : found ? t`Not complete: there may be others.` : t`None found; that is no proof that none exists.`;
+    ? found
+      ? t`Complete: the search has left out nothing that the problem allows; the best are shown.`
+      : t`Complete: no design exists.`
+    : found
+      ? t`Not complete: there may be others.`
+      : t`None found; that is no proof that none exists.`;
   return `${sure} ${counted.length ? t`Left out: ${counted.join(", ")}.` : ""}`;
 }

@@ -5,15 +5,35 @@ import { ofTheTab } from "./storage.js";
 
 /** @typedef {{path: string, detail: string}} FieldError */
 /** @typedef {{fraction: number, message: string}} Progress */
-/** @typedef {{id: string, kind: string, label: string | null, status: string, created_at: string, progress: Progress}} JobItem */
+/**
+ * @typedef {{id: string, kind: string, label: string | null, status: string, created_at: string, progress: Progress}}
+ *   JobItem
+ */
 /** @typedef {JobItem & {problem: any, result: any, error: any}} Job */
-/** @typedef {{kind: string, title: string, description: string, schema: any, example: any, files: Record<string, string[]>, examples: {name: string, group: string, line: string}[], measures: Record<string, string>}} Kind */
-/** @typedef {{element: string, id: string | null, name: string | null, layer: string | null, polygon: [number, number][] | null, circle: {center: [number, number], radius: number} | null, area: number, joined: number}} Drawn */
-/** @typedef {{element: string, id: string | null, name: string | null, layer: string | null, reason: string}} LeftOut */
-/** @typedef {{millimetres_per_unit: number | null, length_unit: string | null, scale: number, tolerance: number, outlines: Drawn[], left_out: LeftOut[], left_out_count: number}} Outlines */
+/**
+ * @typedef {{kind: string, title: string, description: string, schema: any, example: any, files: Record<string,
+ *   string[]>, examples: {name: string, group: string, line: string}[], measures: Record<string, string>}} Kind
+ */
+/**
+ * @typedef {{element: string, id: string | null, name: string | null, layer: string | null, polygon: [number, number][]
+ *   | null, circle: {center: [number, number], radius: number} | null, area: number, joined: number}} Drawn
+ */
+/**
+ * @typedef {{element: string, id: string | null, name: string | null, layer: string | null, reason: string}} LeftOut
+ */
+/**
+ * @typedef {{millimetres_per_unit: number | null, length_unit: string | null, scale: number, tolerance: number,
+ *   outlines: Drawn[], left_out: LeftOut[], left_out_count: number}} Outlines
+ */
 
-/** @typedef {{element: string, id: string | null, name: string | null, layer: string | null, points: {x: number, y: number}[], closed: boolean, length: number, tolerance: number, joined: number}} Curve */
-/** @typedef {{format: string, millimetres_per_unit: number | null, length_unit: string | null, scale: number, curves: Curve[], left_out: LeftOut[], left_out_count: number}} Curves */
+/**
+ * @typedef {{element: string, id: string | null, name: string | null, layer: string | null, points: {x: number, y:
+ *   number}[], closed: boolean, length: number, tolerance: number, joined: number}} Curve
+ */
+/**
+ * @typedef {{format: string, millimetres_per_unit: number | null, length_unit: string | null, scale: number, curves:
+ *   Curve[], left_out: LeftOut[], left_out_count: number}} Curves
+ */
 
 const KEY = "mechsynth.key";
 const RECONNECT_MS = 1000;
@@ -22,7 +42,9 @@ const RECONNECT_MS = 1000;
 const BUSY_TRIES = 4;
 const BUSY_MS = 5000;
 
-/** The service answers an analysis, or refuses it, within twenty seconds: what has not come by then was lost on its way. */
+/**
+ * The service answers an analysis, or refuses it, within twenty seconds: what has not come by then was lost on its way.
+ */
 const LOST_MS = 25_000;
 const LOST_TRIES = 3;
 
@@ -34,7 +56,10 @@ export class Refused extends Error {
     this.status = status;
     this.title = problem.title ? translated(problem.title) : t`Error`;
     /** @type {FieldError[]} */
-    this.errors = (problem.errors ?? []).map((/** @type {FieldError} */ one) => ({ ...one, detail: translated(one.detail) }));
+    this.errors = (problem.errors ?? []).map((/** @type {FieldError} */ one) => ({
+      ...one,
+      detail: translated(one.detail),
+    }));
   }
 }
 
@@ -147,16 +172,24 @@ export async function parts(id, design, sizes) {
 
 /**
  * A file of one part of a design, likewise.
- * @param {string} id @param {number} design @param {string} item @param {string} form @param {Record<string, string>} sizes
+ * @param {string} id
+ * @param {number} design
+ * @param {string} item
+ * @param {string} form
+ * @param {Record<string, string>} sizes
  */
 export async function part(id, design, item, form, sizes) {
-  const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/parts/${encodeURIComponent(item)}.${form}?${new URLSearchParams(sizes)}`;
+  const parts = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/parts`;
+  const path = `${parts}/${encodeURIComponent(item)}.${form}?${new URLSearchParams(sizes)}`;
   return URL.createObjectURL(await (await patiently(() => ask(path))).blob());
 }
 
 /**
  * The parts of a design and how they move.
- * @param {string} id @param {number} design @param {Record<string, string>} query sizes and positions @param {AbortSignal} signal
+ * @param {string} id
+ * @param {number} design
+ * @param {Record<string, string>} query sizes and positions
+ * @param {AbortSignal} signal
  * @returns {Promise<import("./assembly_view.js").Assembly>}
  */
 export async function assembly(id, design, query, signal) {
@@ -164,7 +197,12 @@ export async function assembly(id, design, query, signal) {
   return (await patiently(() => ask(path, { signal }), signal)).json();
 }
 
-/** The forms of files that there are of a type of mechanism. @param {string} kind @param {string} mechanism @returns {string[]} */
+/**
+ * The forms of files that there are of a type of mechanism.
+ * @param {string} kind
+ * @param {string} mechanism
+ * @returns {string[]}
+ */
 export function files(kind, mechanism) {
   return told.find((one) => one.kind === kind)?.files[mechanism] ?? [];
 }
@@ -189,7 +227,13 @@ export async function solve(problem, label) {
   return (await post("/v1/jobs", { problem, label })).json();
 }
 
-/** Solve a small problem, and wait for its answer. @param {any} problem @param {string} label @param {AbortSignal} signal @returns {Promise<Job>} */
+/**
+ * Solve a small problem, and wait for its answer.
+ * @param {any} problem
+ * @param {string} label
+ * @param {AbortSignal} signal
+ * @returns {Promise<Job>}
+ */
 export async function solved(problem, label, signal) {
   const headers = { "Content-Type": "application/json", Prefer: "wait=20" };
   return (await ask("/v1/jobs", { method: "POST", headers, body: JSON.stringify({ problem, label }), signal })).json();
@@ -200,7 +244,11 @@ export async function job(id) {
   return (await ask(`/v1/jobs/${encodeURIComponent(id)}`)).json();
 }
 
-/** @param {string} kind @param {string | null} cursor @returns {Promise<{jobs: JobItem[], next_cursor: string | null}>} */
+/**
+ * @param {string} kind
+ * @param {string | null} cursor
+ * @returns {Promise<{jobs: JobItem[], next_cursor: string | null}>}
+ */
 export async function jobs(kind, cursor) {
   const query = new URLSearchParams({ limit: "20" });
   if (kind) query.set("kind", kind);
@@ -221,11 +269,18 @@ export async function motion(id, design, steps, signal) {
 
 /**
  * The motion of a design with its forces: by the block of its problem, or by one of the page's.
- * @param {string} id @param {number} design @param {number} steps @param {any} block null for the problem's own @param {AbortSignal} signal
+ * @param {string} id
+ * @param {number} design
+ * @param {number} steps
+ * @param {any} block null for the problem's own
+ * @param {AbortSignal} signal
  */
 export async function forces(id, design, steps, block, signal) {
   const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/forces?steps=${steps}`;
-  return analysed((either) => (block === null ? ask(path, { signal: either }) : post(path, { dynamics: block }, either)), signal);
+  return analysed(
+    (either) => (block === null ? ask(path, { signal: either }) : post(path, { dynamics: block }, either)),
+    signal,
+  );
 }
 
 /** @param {any} question @param {AbortSignal} signal */
@@ -233,14 +288,26 @@ export async function analysis(question, signal) {
   return analysed((either) => post("/v1/analyses", question, either), signal);
 }
 
-/** The closed outlines of a drawing. @param {Blob} drawing @param {string} unit of the answer, where the drawing states its own @returns {Promise<Outlines>} */
+/**
+ * The closed outlines of a drawing.
+ * @param {Blob} drawing
+ * @param {string} unit of the answer, where the drawing states its own
+ * @returns {Promise<Outlines>}
+ */
 export async function outlines(drawing, unit) {
   const headers = { "Content-Type": "application/octet-stream" };
-  const asked = () => ask(`/v1/outlines?${new URLSearchParams({ length_unit: unit })}`, { method: "POST", headers, body: drawing });
+  const asked = () =>
+    ask(`/v1/outlines?${new URLSearchParams({ length_unit: unit })}`, { method: "POST", headers, body: drawing });
   return (await patiently(asked)).json();
 }
 
-/** The curves of a drawing, a table or a picture. @param {File} file @param {string} unit of the answer, where the file states its own @param {number} most points of a curve @returns {Promise<Curves>} */
+/**
+ * The curves of a drawing, a table or a picture.
+ * @param {File} file
+ * @param {string} unit of the answer, where the file states its own
+ * @param {number} most points of a curve
+ * @returns {Promise<Curves>}
+ */
 export async function curves(file, unit, most) {
   // Some systems know no type for a table.
   const headers = { "Content-Type": "application/octet-stream" };
@@ -274,7 +341,7 @@ export async function follow(id, tell, signal) {
       const answer = await ask(`/v1/jobs/${encodeURIComponent(id)}/events`, { headers, signal });
       if (answer.status === 204 || !answer.body) return;
       const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
-      for (let text = "", part; !(part = await reader.read()).done; ) {
+      for (let text = "", part; !(part = await reader.read()).done;) {
         text += part.value;
         const blocks = text.split("\n\n");
         text = blocks.pop() ?? "";

@@ -3,7 +3,8 @@
 /**
  * @typedef {{origins: number[][], along: number[][], normals: number[][]}} Standing
  * @typedef {{pivot: [number, number], angles: number[], places: [number, number][], frame: Standing | null}} Carrier
- * @typedef {{quantity: "angle" | "place", low: number, high: number, reference: number, closed: boolean, endless: boolean, values: number[]}} Inputs
+ * @typedef {{quantity: "angle" | "place", low: number, high: number, reference: number, closed: boolean, endless:
+ *   boolean, values: number[]}} Inputs
  */
 
 export class AssemblyMotion {
@@ -29,7 +30,7 @@ export class AssemblyMotion {
     const near = 1e-6 * (high - low);
     let value = input;
     if (round > 0) {
-      value = low + (((input - low) % round) + round) % round;
+      value = low + ((((input - low) % round) + round) % round);
       // What lies beyond a range that does not come back may be nearer to its beginning.
       if (!closed && value > high && low + round - value < value - high) value -= round;
       if (round - (value - low) < near) value = low;
@@ -58,19 +59,27 @@ export class AssemblyMotion {
     const share = count > 1 ? at - k : 0;
     let ahead = angles[next];
     if (next < k) {
-      // After a cycle it is as it was, but for whole turns; a wheel that is turned by a slot goes on by as much as before.
+      // After a cycle it is as it was, but for whole turns; a wheel that is turned by a slot goes on by as much as
+      // before.
       const step = angles[k] - angles[Math.max(0, k - 1)];
       const back = ahead + 360 * Math.round((angles[k] + step - ahead) / 360);
       ahead = Math.abs(angles[k] + step - back) < 1 + 2 * Math.abs(step) ? back : angles[k] + step;
     }
     const [[x, y], [u, v]] = [places[k], places[next]];
-    return { angle: ((angles[k] + share * (ahead - angles[k])) * Math.PI) / 180, place: [x + share * (u - x), y + share * (v - y)] };
+    return {
+      angle: ((angles[k] + share * (ahead - angles[k])) * Math.PI) / 180,
+      place: [x + share * (u - x), y + share * (v - y)],
+    };
   }
 }
 
 /** @typedef {{centre: [number, number], arm: [number, number], step: number}} Orbit */
 
-/** The circle on which evenly spaced places lie, and by how much each is farther round than the one before. @param {[number, number][]} places @returns {Orbit} */
+/**
+ * The circle on which evenly spaced places lie, and by how much each is farther round than the one before.
+ * @param {[number, number][]} places
+ * @returns {Orbit}
+ */
 function orbit(places) {
   const still = { centre: places[0], arm: /** @type {[number, number]} */ ([0, 0]), step: 0 };
   if (places.length < 3) return still;

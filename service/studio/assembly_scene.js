@@ -1,4 +1,6 @@
-/** An assembly in three dimensions, drawn by three.js: nothing else knows it, and it is loaded when the first is shown. */
+/**
+ * An assembly in three dimensions, drawn by three.js: nothing else knows it, and it is loaded when the first is shown.
+ */
 
 import * as THREE from "./vendor/three.module.min.js";
 import { OrbitControls } from "./vendor/OrbitControls.js";
@@ -6,7 +8,10 @@ import { AssemblyMotion } from "./assembly_motion.js";
 import { Surface } from "./solids.js";
 
 /** @typedef {import("./assembly_view.js").Assembly} Assembly */
-/** @typedef {{item: string, colour: string, group: THREE.Group, mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>, lift: number, low: number, along: THREE.Vector3}} Solid */
+/**
+ * @typedef {{item: string, colour: string, group: THREE.Group, mesh: THREE.Mesh<THREE.BufferGeometry,
+ *   THREE.MeshStandardMaterial>, lift: number, low: number, along: THREE.Vector3}} Solid
+ */
 
 /** Field of view, degrees. */
 const FIELD = 30;
@@ -43,7 +48,9 @@ export class AssemblyScene {
     this.chosen = null;
     /** @type {string | null} */
     this.hovered = null;
-    /** @type {{from: THREE.Vector3, to: THREE.Vector3, target: THREE.Vector3, aim: THREE.Vector3, began: number} | null} */
+    /**
+     * @type {{from: THREE.Vector3, to: THREE.Vector3, target: THREE.Vector3, aim: THREE.Vector3, began: number} | null}
+     */
     this.travel = null;
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
     this.renderer.shadowMap.enabled = true;
@@ -91,15 +98,25 @@ export class AssemblyScene {
 
   /** @param {import("./assembly_view.js").Part} part @returns {Solid} */
   solid(part) {
-    const surface = new Surface((outer, holes) => THREE.ShapeUtils.triangulateShape(
-      outer.map(([x, y]) => new THREE.Vector2(x, y)), holes.map((hole) => hole.map(([x, y]) => new THREE.Vector2(x, y)))));
+    const surface = new Surface((outer, holes) =>
+      THREE.ShapeUtils.triangulateShape(
+        outer.map(([x, y]) => new THREE.Vector2(x, y)),
+        holes.map((hole) => hole.map(([x, y]) => new THREE.Vector2(x, y))),
+      ),
+    );
     for (const shape of part.shapes) surface.add(shape);
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.Float32BufferAttribute(surface.places, 3));
     geometry.setAttribute("normal", new THREE.Float32BufferAttribute(surface.normals, 3));
     const metal = part.sort === "pin" || part.sort === "ring" || part.sort === "washer";
-    const material = new THREE.MeshStandardMaterial({ color: part.colour, roughness: metal ? 0.42 : 0.62, metalness: metal ? 0.25 : 0.02,
-      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+    const material = new THREE.MeshStandardMaterial({
+      color: part.colour,
+      roughness: metal ? 0.42 : 0.62,
+      metalness: metal ? 0.25 : 0.02,
+      polygonOffset: true,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1,
+    });
     const mesh = new THREE.Mesh(geometry, material);
     mesh.castShadow = mesh.receiveShadow = true;
     mesh.userData.item = part.item;
@@ -130,7 +147,14 @@ export class AssemblyScene {
     sun.shadow.mapSize.set(1024, 1024);
     sun.shadow.radius = 3;
     sun.shadow.normalBias = 0.002 * radius;
-    Object.assign(sun.shadow.camera, { left: -1.6 * radius, right: 1.6 * radius, top: 1.6 * radius, bottom: -1.6 * radius, near: 0.05 * radius, far: 6 * radius });
+    Object.assign(sun.shadow.camera, {
+      left: -1.6 * radius,
+      right: 1.6 * radius,
+      top: 1.6 * radius,
+      bottom: -1.6 * radius,
+      near: 0.05 * radius,
+      far: 6 * radius,
+    });
     const fill = new THREE.DirectionalLight(0xffffff, 0.7);
     fill.position.copy(centre).add(new THREE.Vector3(1.5, -0.6, 0.8).multiplyScalar(radius));
     fill.target.position.copy(centre);
@@ -145,7 +169,10 @@ export class AssemblyScene {
     const grid = new THREE.GridHelper(lines * step, lines);
     grid.rotation.x = Math.PI / 2;
     const middle = new THREE.Vector2(Math.round(centre.x / step) * step, Math.round(centre.y / step) * step);
-    const catcher = new THREE.Mesh(new THREE.PlaneGeometry(lines * step, lines * step), new THREE.ShadowMaterial({ opacity: 0.18 }));
+    const catcher = new THREE.Mesh(
+      new THREE.PlaneGeometry(lines * step, lines * step),
+      new THREE.ShadowMaterial({ opacity: 0.18 }),
+    );
     catcher.receiveShadow = true;
     catcher.position.z = -1e-3 * radius;
     const ground = new THREE.Group();
@@ -159,7 +186,10 @@ export class AssemblyScene {
   /** What the assembly reaches over its whole motion. */
   around() {
     const count = this.motion.inputs.values.length;
-    /** Corners of the boxes of all parts, and how far they go which way. @type {{place: THREE.Vector3, lift: number, along: THREE.Vector3}[]} */
+    /**
+     * Corners of the boxes of all parts, and how far they go which way.
+     * @type {{place: THREE.Vector3, lift: number, along: THREE.Vector3}[]}
+     */
     const corners = [];
     for (let k = 0; k < SEEN_AT; k++) {
       this.show(((count - 1) * k) / (SEEN_AT - 1));
@@ -173,7 +203,9 @@ export class AssemblyScene {
       }
     }
     this.show(0);
-    const sphere = new THREE.Box3().setFromPoints(corners.map(({ place }) => place)).getBoundingSphere(new THREE.Sphere());
+    const sphere = new THREE.Box3()
+      .setFromPoints(corners.map(({ place }) => place))
+      .getBoundingSphere(new THREE.Sphere());
     return { corners, centre: sphere.center, radius: sphere.radius || 1 };
   }
 
@@ -190,7 +222,9 @@ export class AssemblyScene {
     for (const { group, mesh, colour: own } of this.solids) {
       // On a dark ground dark parts would not be seen.
       mesh.material.color.set(own).lerp(new THREE.Color(0xffffff), dark ? 0.05 : 0.015);
-      const edges = /** @type {THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial>} */ (group.children[1]);
+      const edges = /** @type {THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial>} */ (
+        group.children[1]
+      );
       edges.material.color = ink;
       edges.material.opacity = dark ? 0.35 : 0.6;
     }
@@ -215,7 +249,8 @@ export class AssemblyScene {
       const carrier = this.motion.carriers[k];
       const { angle, place } = this.motion.carried(carrier, at);
       const [px, py] = carrier.pivot;
-      group.matrix.makeTranslation(place[0], place[1], 0)
+      group.matrix
+        .makeTranslation(place[0], place[1], 0)
         .multiply(new THREE.Matrix4().makeRotationZ(angle))
         .multiply(new THREE.Matrix4().makeTranslation(-px, -py, 0));
       if (carrier.frame) group.matrix.premultiply(standing(carrier.frame, at));
@@ -274,7 +309,9 @@ export class AssemblyScene {
   /** @param {THREE.Vector3} direction @param {boolean} animated */
   go(direction, animated) {
     this.fitted = true;
-    const corners = this.reach.corners.map(({ place, lift, along }) => place.clone().addScaledVector(along, this.explosion * lift));
+    const corners = this.reach.corners.map(({ place, lift, along }) =>
+      place.clone().addScaledVector(along, this.explosion * lift),
+    );
     const toward = direction.clone().normalize();
     const right = new THREE.Vector3(0, 0, 1).cross(toward).normalize();
     const up = toward.clone().cross(right);
@@ -289,14 +326,23 @@ export class AssemblyScene {
     const wide = high * this.camera.aspect;
     const away = corners.reduce((most, corner) => {
       const from = corner.clone().sub(aim);
-      return Math.max(most, from.dot(toward) + Math.max(Math.abs(from.dot(right)) / wide, Math.abs(from.dot(up)) / high));
+      return Math.max(
+        most,
+        from.dot(toward) + Math.max(Math.abs(from.dot(right)) / wide, Math.abs(from.dot(up)) / high),
+      );
     }, 0);
     const to = aim.clone().addScaledVector(toward, 1.06 * away);
     this.camera.near = Math.max(0.02 * this.reach.radius, 0.01);
     this.camera.far = 80 * this.reach.radius;
     this.camera.updateProjectionMatrix();
     if (animated) {
-      this.travel = { from: this.camera.position.clone(), to, target: this.controls.target.clone(), aim, began: performance.now() };
+      this.travel = {
+        from: this.camera.position.clone(),
+        to,
+        target: this.controls.target.clone(),
+        aim,
+        began: performance.now(),
+      };
       return;
     }
     this.travel = null;
@@ -316,7 +362,9 @@ export class AssemblyScene {
     // About what is looked at, and not through it.
     const [one, other] = [from.clone().sub(target), to.clone().sub(aim)];
     const way = one.clone().normalize().lerp(other.clone().normalize(), eased).normalize();
-    this.camera.position.copy(this.controls.target).addScaledVector(way, one.length() + eased * (other.length() - one.length()));
+    this.camera.position
+      .copy(this.controls.target)
+      .addScaledVector(way, one.length() + eased * (other.length() - one.length()));
     if (share === 1) {
       this.camera.position.copy(to);
       this.travel = null;
@@ -349,8 +397,14 @@ export class AssemblyScene {
     const under = (/** @type {PointerEvent} */ event) => {
       const { left, top, width, height } = this.canvas.getBoundingClientRect();
       const ray = new THREE.Raycaster();
-      ray.setFromCamera(new THREE.Vector2((2 * (event.clientX - left)) / width - 1, 1 - (2 * (event.clientY - top)) / height), this.camera);
-      const hit = ray.intersectObjects(this.solids.filter(({ group }) => group.visible).map(({ mesh }) => mesh), false)[0];
+      ray.setFromCamera(
+        new THREE.Vector2((2 * (event.clientX - left)) / width - 1, 1 - (2 * (event.clientY - top)) / height),
+        this.camera,
+      );
+      const hit = ray.intersectObjects(
+        this.solids.filter(({ group }) => group.visible).map(({ mesh }) => mesh),
+        false,
+      )[0];
       return hit ? String(hit.object.userData.item) : null;
     };
     this.canvas.addEventListener("pointermove", (event) => {
@@ -373,7 +427,9 @@ export class AssemblyScene {
   /** The picture as it is seen now. @returns {Promise<Blob>} */
   picture() {
     this.draw();
-    return new Promise((done, failed) => this.canvas.toBlob((blob) => (blob ? done(blob) : failed(new Error("the picture is too large"))), "image/png"));
+    return new Promise((done, failed) =>
+      this.canvas.toBlob((blob) => (blob ? done(blob) : failed(new Error("the picture is too large"))), "image/png"),
+    );
   }
 
   stop() {
@@ -392,9 +448,14 @@ export class AssemblyScene {
   }
 }
 
-/** Where a plane is at a place of the arrays; it stands still between two of them. @param {import("./assembly_motion.js").Standing} frame @param {number} at */
+/**
+ * Where a plane is at a place of the arrays; it stands still between two of them.
+ * @param {import("./assembly_motion.js").Standing} frame
+ * @param {number} at
+ */
 function standing({ origins, along, normals }, at) {
-  const of = (/** @type {number[][]} */ list) => new THREE.Vector3(...list[list.length === 1 ? 0 : Math.round(at) % list.length]);
+  const of = (/** @type {number[][]} */ list) =>
+    new THREE.Vector3(...list[list.length === 1 ? 0 : Math.round(at) % list.length]);
   const [x, z] = [of(along), of(normals)];
   return new THREE.Matrix4().makeBasis(x, z.clone().cross(x), z).setPosition(of(origins));
 }

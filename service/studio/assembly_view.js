@@ -1,4 +1,6 @@
-/** The assembly of a design: its parts in three dimensions, moving with the drawing, drawn apart, hidden and taken home. */
+/**
+ * The assembly of a design: its parts in three dimensions, moving with the drawing, drawn apart, hidden and taken home.
+ */
 
 import * as api from "./api.js";
 import { el, shown } from "./dom.js";
@@ -7,9 +9,18 @@ import { foreign, t, term, translated } from "./messages.js";
 import { between } from "./player.js";
 import { symbolOf } from "./units.js";
 
-/** @typedef {{name: string, described: string, sort: string, material: string, colour: string, standard: string, lift: number, carrier: number, shapes: import("./solids.js").Shape[], item: string, files: string[]}} Part */
-/** @typedef {{length_unit: string, unit: number, scale: number, low: number, high: number, notes: string[], input: import("./assembly_motion.js").Inputs, carriers: import("./assembly_motion.js").Carrier[], parts: Part[]}} Assembly */
-/** @typedef {{player: import("./player.js").Player, motion: {input_angle: (number | null)[]}}} Led what moves in the drawing */
+/**
+ * @typedef {{name: string, described: string, sort: string, material: string, colour: string, standard: string, lift:
+ *   number, carrier: number, shapes: import("./solids.js").Shape[], item: string, files: string[]}} Part
+ */
+/**
+ * @typedef {{length_unit: string, unit: number, scale: number, low: number, high: number, notes: string[], input:
+ *   import("./assembly_motion.js").Inputs, carriers: import("./assembly_motion.js").Carrier[], parts: Part[]}} Assembly
+ */
+/**
+ * @typedef {{player: import("./player.js").Player, motion: {input_angle: (number | null)[]}}} Led what moves in the
+ *   drawing
+ */
 
 /** Inputs that are asked for. */
 const POSITIONS = 144;
@@ -75,16 +86,33 @@ export class AssemblyView {
       box.setAttribute("aria-describedby", "assembly-fault");
       return el("span", { class: "field" }, el("label", { for: box.id }, title), box);
     };
-    const number = (/** @type {string} */ hint) => el("input", { type: "number", min: 0, step: "any", inputmode: "decimal", placeholder: hint });
-    const form = el("form", { class: "row sizes", "aria-label": t`What the parts are made of`, novalidate: true,
-      onsubmit: (/** @type {Event} */ event) => {
-        event.preventDefault();
-        this.load();
-      } },
-    field("process", t`Made`, el("select", { onchange: () => this.load() },
-      ...Object.entries(PROCESSES).map(([value, title]) => el("option", { value }, title)))),
-    field("pin", t`Pin (${unit})`, number(t`what fits`)), field("width", t`Width (${unit})`, number(t`2.5 pins`)), field("scale", t`Scale`, number("1")),
-    el("button", { type: "submit", class: "small" }, t`Make them so`));
+    const number = (/** @type {string} */ hint) =>
+      el("input", { type: "number", min: 0, step: "any", inputmode: "decimal", placeholder: hint });
+    const form = el(
+      "form",
+      {
+        class: "row sizes",
+        "aria-label": t`What the parts are made of`,
+        novalidate: true,
+        onsubmit: (/** @type {Event} */ event) => {
+          event.preventDefault();
+          this.load();
+        },
+      },
+      field(
+        "process",
+        t`Made`,
+        el(
+          "select",
+          { onchange: () => this.load() },
+          ...Object.entries(PROCESSES).map(([value, title]) => el("option", { value }, title)),
+        ),
+      ),
+      field("pin", t`Pin (${unit})`, number(t`what fits`)),
+      field("width", t`Width (${unit})`, number(t`2.5 pins`)),
+      field("scale", t`Scale`, number("1")),
+      el("button", { type: "submit", class: "small" }, t`Make them so`),
+    );
     this.fault.id = "assembly-fault";
     return form;
   }
@@ -92,7 +120,9 @@ export class AssemblyView {
   /** The fields that are filled in. @returns {Record<string, string>} */
   stated() {
     const boxes = /** @type {HTMLInputElement[]} */ ([...this.form.querySelectorAll("[name]")]);
-    return Object.fromEntries(boxes.filter(({ value }) => value.trim() !== "").map(({ name, value }) => [name, value.trim()]));
+    return Object.fromEntries(
+      boxes.filter(({ value }) => value.trim() !== "").map(({ name, value }) => [name, value.trim()]),
+    );
   }
 
   async load() {
@@ -104,8 +134,10 @@ export class AssemblyView {
     if (!this.scene) this.said(t`The parts are being made …`);
     try {
       const query = this.stated();
-      const [assembly, drawing] = await Promise.all([api.assembly(this.job.id, this.n, { ...query, positions: String(POSITIONS) }, asked.signal),
-        import("./assembly_scene.js")]);
+      const [assembly, drawing] = await Promise.all([
+        api.assembly(this.job.id, this.n, { ...query, positions: String(POSITIONS) }, asked.signal),
+        import("./assembly_scene.js"),
+      ]);
       if (asked.signal.aborted || this.gone.signal.aborted) return;
       this.drawing = drawing.drawable() ? drawing : null;
       this.present(assembly, query);
@@ -137,14 +169,25 @@ export class AssemblyView {
     const faults = error instanceof api.Refused ? error.errors : [];
     const reason = faults.map((one) => one.detail).join(" ") || error.message;
     this.fault.replaceChildren(el("p", { class: "error" }, reason));
-    for (const { path } of faults) this.form.querySelector(`[name="${path.replace("/query/", "")}"]`)?.setAttribute("aria-invalid", "true");
+    for (const { path } of faults)
+      this.form.querySelector(`[name="${path.replace("/query/", "")}"]`)?.setAttribute("aria-invalid", "true");
     const [, least, greatest] = SCALE.exec(reason) ?? [];
     const scale = least ?? greatest;
     if (scale === undefined) return;
-    this.fault.append(el("button", { type: "button", class: "small", onclick: () => {
-      this.form.querySelector('[name="scale"]').value = String(Number(scale));
-      this.load();
-    } }, t`Build it at scale ${Number(scale)}`));
+    this.fault.append(
+      el(
+        "button",
+        {
+          type: "button",
+          class: "small",
+          onclick: () => {
+            this.form.querySelector('[name="scale"]').value = String(Number(scale));
+            this.load();
+          },
+        },
+        t`Build it at scale ${Number(scale)}`,
+      ),
+    );
   }
 
   /** @param {Assembly} assembly @param {Record<string, string>} query by which it was asked for */
@@ -155,8 +198,13 @@ export class AssemblyView {
     const kinds = new Set(assembly.parts.map(({ item }) => item));
     this.hidden = new Set([...this.hidden].filter((item) => kinds.has(item)));
     this.chosen = null;
-    this.words.textContent = [t`${assembly.parts.length} parts of ${kinds.size} kinds`, assembly.scale !== 1 && t`${shown(assembly.scale)} times the design`]
-      .filter(Boolean).join(", ") + ".";
+    this.words.textContent =
+      [
+        t`${assembly.parts.length} parts of ${kinds.size} kinds`,
+        assembly.scale !== 1 && t`${shown(assembly.scale)} times the design`,
+      ]
+        .filter(Boolean)
+        .join(", ") + ".";
     this.list = this.listed(assembly, query);
     this.body.hidden = false;
     if (!this.drawing) {
@@ -165,16 +213,37 @@ export class AssemblyView {
       this.body.replaceChildren(this.list);
       return;
     }
-    const canvas = el("canvas", { class: "canvas solid", tabindex: 0, role: "application", "aria-describedby": "assembly-keys",
+    const canvas = el("canvas", {
+      class: "canvas solid",
+      tabindex: 0,
+      role: "application",
+      "aria-describedby": "assembly-keys",
       "aria-label": t`The assembly in three dimensions, ${assembly.parts.length} parts`,
       onkeydown: (/** @type {KeyboardEvent} */ event) => {
         if (!event.ctrlKey && !event.metaKey && !event.altKey && this.scene?.key(event)) event.preventDefault();
-      } });
+      },
+    });
     this.body.replaceChildren(this.list);
-    this.board.replaceChildren(el("figure", { class: "solids" }, this.tools(), canvas, this.sliders(),
-      el("p", { class: "note", id: "assembly-keys" }, t`Drag to turn, with the right button or two fingers to move, the wheel or + and − to zoom; arrow keys turn, with Shift they move; Home shows all.`),
-      this.beyond, ...assembly.notes.map((note) => el("p", { class: "note", lang: foreign(note) }, translated(note)))));
-    this.scene = new this.drawing.AssemblyScene(canvas, assembly, { hover: (item) => this.hover(item), choose: (item) => this.choose(item) });
+    this.board.replaceChildren(
+      el(
+        "figure",
+        { class: "solids" },
+        this.tools(),
+        canvas,
+        this.sliders(),
+        el(
+          "p",
+          { class: "note", id: "assembly-keys" },
+          t`Drag to turn, with the right button or two fingers to move, the wheel or + and − to zoom; arrow keys turn, with Shift they move; Home shows all.`,
+        ),
+        this.beyond,
+        ...assembly.notes.map((note) => el("p", { class: "note", lang: foreign(note) }, translated(note))),
+      ),
+    );
+    this.scene = new this.drawing.AssemblyScene(canvas, assembly, {
+      hover: (item) => this.hover(item),
+      choose: (item) => this.choose(item),
+    });
     for (const item of this.hidden) this.scene.hide(item, false);
     this.scene.explode(this.explosion);
     this.scene.fit(false);
@@ -184,72 +253,161 @@ export class AssemblyView {
 
   /** Where it is looked at from, and its picture. */
   tools() {
-    const button = (/** @type {string} */ title, /** @type {() => void} */ does) => el("button", { type: "button", class: "small", onclick: does }, title);
-    return el("div", { class: "row", role: "toolbar", "aria-label": t`View of the assembly` },
+    const button = (/** @type {string} */ title, /** @type {() => void} */ does) =>
+      el("button", { type: "button", class: "small", onclick: does }, title);
+    return el(
+      "div",
+      { class: "row", role: "toolbar", "aria-label": t`View of the assembly` },
       ...Object.keys(this.drawing?.VIEWS ?? {}).map((name) => button(name, () => this.scene?.look(name))),
       button(t`Fit`, () => this.scene?.fit()),
-      button(t`Save picture`, async () => this.scene && saved(URL.createObjectURL(await this.scene.picture()), `${this.job.kind}-${this.n + 1}-assembly.png`)));
+      button(
+        t`Save picture`,
+        async () =>
+          this.scene &&
+          saved(URL.createObjectURL(await this.scene.picture()), `${this.job.kind}-${this.n + 1}-assembly.png`),
+      ),
+    );
   }
 
   /** How far its planes are apart; it moves with the drawing, whose clock stands beside it. */
   sliders() {
-    const apart = el("input", { type: "range", id: "explode", min: 0, max: 1, step: 0.01, value: this.explosion, oninput: () => {
-      this.explosion = apart.valueAsNumber;
-      apart.setAttribute("aria-valuetext", `${Math.round(100 * this.explosion)} %`);
-      this.scene?.explode(this.explosion);
-    } });
+    const apart = el("input", {
+      type: "range",
+      id: "explode",
+      min: 0,
+      max: 1,
+      step: 0.01,
+      value: this.explosion,
+      oninput: () => {
+        this.explosion = apart.valueAsNumber;
+        apart.setAttribute("aria-valuetext", `${Math.round(100 * this.explosion)} %`);
+        this.scene?.explode(this.explosion);
+      },
+    });
     apart.setAttribute("aria-valuetext", `${Math.round(100 * this.explosion)} %`);
-    return el("div", { class: "row" }, el("label", { for: "explode" }, t`Apart`), apart,
-      el("button", { type: "button", class: "small", onclick: () => {
-        apart.value = this.explosion > 0 ? 0 : 1;
-        apart.dispatchEvent(new Event("input"));
-      } }, t`Together / apart`));
+    return el(
+      "div",
+      { class: "row" },
+      el("label", { for: "explode" }, t`Apart`),
+      apart,
+      el(
+        "button",
+        {
+          type: "button",
+          class: "small",
+          onclick: () => {
+            apart.value = this.explosion > 0 ? 0 : 1;
+            apart.dispatchEvent(new Event("input"));
+          },
+        },
+        t`Together / apart`,
+      ),
+    );
   }
 
-  /** The parts by kind: shown or hidden, chosen, and their files. @param {Assembly} assembly @param {Record<string, string>} query */
+  /**
+   * The parts by kind: shown or hidden, chosen, and their files.
+   * @param {Assembly} assembly
+   * @param {Record<string, string>} query
+   */
   listed(assembly, query) {
     /** @type {Map<string, Part[]>} */
     const kinds = new Map();
     for (const part of assembly.parts) kinds.set(part.item, [...(kinds.get(part.item) ?? []), part]);
     this.fileFault.replaceChildren();
     this.boxes.clear();
-    const all = el("div", { class: "row" },
+    const all = el(
+      "div",
+      { class: "row" },
       el("button", { type: "button", class: "small", onclick: () => this.shown([...kinds.keys()], true) }, t`Show all`),
-      el("button", { type: "button", class: "small", onclick: () => this.shown([...kinds.keys()], false) }, t`Hide all`),
-      this.file(t`All files`, t`All files as a zip`, `${this.job.kind}-${this.n + 1}-parts.zip`, () => api.parts(this.job.id, this.n, query)));
+      el(
+        "button",
+        { type: "button", class: "small", onclick: () => this.shown([...kinds.keys()], false) },
+        t`Hide all`,
+      ),
+      this.file(t`All files`, t`All files as a zip`, `${this.job.kind}-${this.n + 1}-parts.zip`, () =>
+        api.parts(this.job.id, this.n, query),
+      ),
+    );
     const rows = [...kinds].map(([item, [part, ...others]]) => {
       const called = others.length ? term(item) : translated(part.described);
-      const box = el("input", { type: "checkbox", id: `show-${item}`, "aria-label": t`Show ${called}`, onchange: () => this.shown([item], box.checked) });
+      const box = el("input", {
+        type: "checkbox",
+        id: `show-${item}`,
+        "aria-label": t`Show ${called}`,
+        onchange: () => this.shown([item], box.checked),
+      });
       box.checked = !this.hidden.has(item);
       this.boxes.set(item, box);
       const swatch = el("span", { class: "swatch", "aria-hidden": "true" });
       swatch.style.backgroundColor = part.colour;
-      return el("li", { "data-item": item, onpointerenter: () => this.scene?.hover(item), onpointerleave: () => this.scene?.hover(null) },
-        box, swatch,
-        el("button", { type: "button", class: "called", "aria-pressed": "false", onclick: () => this.choose(this.chosen === item ? null : item) },
-          called, others.length > 0 && ` × ${others.length + 1}`),
+      return el(
+        "li",
+        {
+          "data-item": item,
+          onpointerenter: () => this.scene?.hover(item),
+          onpointerleave: () => this.scene?.hover(null),
+        },
+        box,
+        swatch,
+        el(
+          "button",
+          {
+            type: "button",
+            class: "called",
+            "aria-pressed": "false",
+            onclick: () => this.choose(this.chosen === item ? null : item),
+          },
+          called,
+          others.length > 0 && ` × ${others.length + 1}`,
+        ),
         el("span", { class: "note" }, part.standard || part.material),
-        el("span", { class: "files" }, ...part.files.map((form) => this.file(form.toUpperCase(), t`${called} as ${form.toUpperCase()}`, `${item}.${form}`,
-          () => api.part(this.job.id, this.n, item, form, query)))));
+        el(
+          "span",
+          { class: "files" },
+          ...part.files.map((form) =>
+            this.file(form.toUpperCase(), t`${called} as ${form.toUpperCase()}`, `${item}.${form}`, () =>
+              api.part(this.job.id, this.n, item, form, query),
+            ),
+          ),
+        ),
+      );
     });
-    return el("div", { class: "parts" }, el("h4", { id: "assembly-parts" }, t`Parts`), all, this.fileFault,
+    return el(
+      "div",
+      { class: "parts" },
+      el("h4", { id: "assembly-parts" }, t`Parts`),
+      all,
+      this.fileFault,
       el("ul", { "aria-labelledby": "assembly-parts" }, ...rows),
-      !api.makesSolids() && el("p", { class: "note" }, t`Outlines of plates are there. For solids the service needs its extra cad.`));
+      !api.makesSolids() &&
+        el("p", { class: "note" }, t`Outlines of plates are there. For solids the service needs its extra cad.`),
+    );
   }
 
   /** @param {string} title @param {string} described @param {string} name @param {() => Promise<string>} make */
   file(title, described, name, make) {
-    const button = el("button", { type: "button", class: "small", "aria-label": described, title: described, onclick: async () => {
-      button.disabled = true;
-      this.fileFault.replaceChildren();
-      try {
-        saved(await make(), name);
-      } catch (error) {
-        const reasons = error instanceof api.Refused ? error.errors.map((one) => one.detail) : [];
-        this.fileFault.replaceChildren(reasons.join(" ") || /** @type {Error} */ (error).message);
-      }
-      button.disabled = false;
-    } }, title);
+    const button = el(
+      "button",
+      {
+        type: "button",
+        class: "small",
+        "aria-label": described,
+        title: described,
+        onclick: async () => {
+          button.disabled = true;
+          this.fileFault.replaceChildren();
+          try {
+            saved(await make(), name);
+          } catch (error) {
+            const reasons = error instanceof api.Refused ? error.errors.map((one) => one.detail) : [];
+            this.fileFault.replaceChildren(reasons.join(" ") || /** @type {Error} */ (error).message);
+          }
+          button.disabled = false;
+        },
+      },
+      title,
+    );
     return button;
   }
 
@@ -303,7 +461,8 @@ export class AssemblyView {
     const { low, high, quantity } = this.assembly.input;
     const unit = quantity === "angle" ? "°" : ` ${symbolOf("length", this.job.problem)}`;
     this.beyond.hidden = within;
-    this.beyond.textContent = t`The parts are made for inputs from ${shown(Number(low.toFixed(2)))}${unit} to ${shown(Number(high.toFixed(2)))}${unit}; the drawing is beyond, and they wait at the end.`;
+    const [from, to] = [low, high].map((end) => shown(Number(end.toFixed(2))) + unit);
+    this.beyond.textContent = t`The parts are made for inputs from ${from} to ${to}; the drawing is beyond, and they wait at the end.`;
   }
 
   stop() {

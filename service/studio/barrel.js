@@ -14,23 +14,62 @@ export class Barrel extends Turning {
   }
 
   scene() {
-    const { cylinder_radius: radius, follower, lower_wall: lower, upper_wall: upper, pitch_curve: pitch } = this.mechanism;
+    const {
+      cylinder_radius: radius,
+      follower,
+      lower_wall: lower,
+      upper_wall: upper,
+      pitch_curve: pitch,
+    } = this.mechanism;
     this.turn = 2 * Math.PI * radius;
-    const [floor, ceiling] = [Math.min(...lower.y) - follower.roller_radius, Math.max(...upper.y) + follower.roller_radius];
-    this.view = new View([[-this.turn / 2, floor], [this.turn / 2, ceiling]], ...this.size, 32);
+    const [floor, ceiling] = [
+      Math.min(...lower.y) - follower.roller_radius,
+      Math.max(...upper.y) + follower.roller_radius,
+    ];
+    this.view = new View(
+      [
+        [-this.turn / 2, floor],
+        [this.turn / 2, ceiling],
+      ],
+      ...this.size,
+      32,
+    );
     const { view } = this;
     // Three turns side by side, so that one is always in the picture.
-    const thrice = (/** @type {any} */ curve) => [-1, 0, 1].flatMap((n) => curve.x.map((/** @type {number} */ x, /** @type {number} */ k) => /** @type {Point} */ ([x + n * this.turn, curve.y[k]])));
-    this.groove = svg("g", { class: "cam" }, ...[lower, upper].map((wall) => svg("path", { class: "wall", d: view.path(thrice(wall)) })),
-      svg("path", { class: "pitch", d: view.path(thrice(pitch)) }));
+    const thrice = (/** @type {any} */ curve) =>
+      [-1, 0, 1].flatMap((n) =>
+        curve.x.map(
+          (/** @type {number} */ x, /** @type {number} */ k) => /** @type {Point} */ ([x + n * this.turn, curve.y[k]]),
+        ),
+      );
+    this.groove = svg(
+      "g",
+      { class: "cam" },
+      ...[lower, upper].map((wall) => svg("path", { class: "wall", d: view.path(thrice(wall)) })),
+      svg("path", { class: "pitch", d: view.path(thrice(pitch)) }),
+    );
     const [u, top] = view.at(0, ceiling);
     const [, bottom] = view.at(0, floor);
     const [west] = view.at(-this.turn / 2, 0);
     const [east] = view.at(this.turn / 2, 0);
     this.roller = svg("circle", { class: "tyre", cx: u, r: view.scale * follower.roller_radius });
-    const clip = svg("svg", { x: west, y: top, width: east - west, height: bottom - top, viewBox: `${west} ${top} ${east - west} ${bottom - top}` }, this.groove);
-    return [svg("rect", { class: "drum", x: west, y: top, width: east - west, height: bottom - top }), clip,
-      svg("line", { class: "rail", x1: u, y1: top, x2: u, y2: bottom }), this.roller];
+    const clip = svg(
+      "svg",
+      {
+        x: west,
+        y: top,
+        width: east - west,
+        height: bottom - top,
+        viewBox: `${west} ${top} ${east - west} ${bottom - top}`,
+      },
+      this.groove,
+    );
+    return [
+      svg("rect", { class: "drum", x: west, y: top, width: east - west, height: bottom - top }),
+      clip,
+      svg("line", { class: "rail", x1: u, y1: top, x2: u, y2: bottom }),
+      this.roller,
+    ];
   }
 
   /** @param {number} at @param {number} angle */

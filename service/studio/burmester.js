@@ -44,24 +44,62 @@ export class Burmester {
     this.view = new View(/** @type {Point[]} */ (around), width, height, Math.min(90, 0.2 * Math.min(width, height)));
     this.dyads = SIDES.map(({ moving }) => this.nearest("circle_points", joints[moving]));
     this.lines = SIDES.map((_, k) => svg("line", { class: k ? "arm" : "arm input" }));
-    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas drag", role: "group", "aria-label": t`Burmester's curves, pivots to be drawn along them` },
+    this.picture = svg(
+      "svg",
+      {
+        viewBox: `0 0 ${width} ${height}`,
+        class: "canvas drag",
+        role: "group",
+        "aria-label": t`Burmester's curves, pivots to be drawn along them`,
+      },
       svg("rect", { class: "paper", width, height }),
       ...this.branches.flatMap((branch) => [
         svg("path", { class: "centre-points", d: this.view.path(branch.centre_points) + (branch.closed ? "Z" : "") }),
-        svg("path", { class: "circle-points", d: this.view.path(branch.circle_points) + (branch.closed ? "Z" : "") })]),
+        svg("path", { class: "circle-points", d: this.view.path(branch.circle_points) + (branch.closed ? "Z" : "") }),
+      ]),
       ...job.problem.positions.map((/** @type {any} */ one, /** @type {number} */ k) => this.position(one, k)),
-      ...this.lines);
-    this.handles = SIDES.flatMap((names, k) => [this.handle(k, "circle_points", names.moving), this.handle(k, "centre_points", names.fixed)]);
+      ...this.lines,
+    );
+    this.handles = SIDES.flatMap((names, k) => [
+      this.handle(k, "circle_points", names.moving),
+      this.handle(k, "centre_points", names.fixed),
+    ]);
     this.picture.append(...this.handles.map(({ grip }) => grip.node));
-    this.told = el("p", { class: "note", role: "status" }, t`Draw a pivot along its curve, or move it with the arrow keys: the linkage on these pivots is solved.`);
-    this.keep = el("button", { type: "button", class: "small", hidden: true, onclick: () => {
-      const kept = this.trial;
-      this.trial = "";
-      location.hash = `job=${kept}`;
-    } }, t`Keep this linkage as a job`);
-    place.replaceChildren(el("p", { class: "note" },
-      el("span", { class: "key circle-key" }, t`Circle points`), ": ", t`where the moving pivots may be in the first position`, "; ",
-      el("span", { class: "key centre-key" }, t`centre points`), ": ", t`their fixed pivots`, "."), el("div", { class: "stage" }, this.picture, new Zoom(this.picture).buttons), el("div", { class: "row" }, this.told, this.keep));
+    this.told = el(
+      "p",
+      { class: "note", role: "status" },
+      t`Draw a pivot along its curve, or move it with the arrow keys: the linkage on these pivots is solved.`,
+    );
+    this.keep = el(
+      "button",
+      {
+        type: "button",
+        class: "small",
+        hidden: true,
+        onclick: () => {
+          const kept = this.trial;
+          this.trial = "";
+          location.hash = `job=${kept}`;
+        },
+      },
+      t`Keep this linkage as a job`,
+    );
+    place.replaceChildren(
+      el(
+        "p",
+        { class: "note" },
+        el("span", { class: "key circle-key" }, t`Circle points`),
+        ": ",
+        t`where the moving pivots may be in the first position`,
+        "; ",
+        el("span", { class: "key centre-key" }, t`centre points`),
+        ": ",
+        t`their fixed pivots`,
+        ".",
+      ),
+      el("div", { class: "stage" }, this.picture, new Zoom(this.picture).buttons),
+      el("div", { class: "row" }, this.told, this.keep),
+    );
     this.draw();
   }
 
@@ -69,18 +107,30 @@ export class Burmester {
   position(one, k) {
     const [u, v] = this.view.at(one.x, one.y);
     const angle = (one.angle * Math.PI) / 180;
-    return svg("g", { class: "goal" }, svg("circle", { cx: u, cy: v, r: 4 }),
-      svg("line", { x1: u, y1: v, x2: u + 22 * Math.cos(angle), y2: v - 22 * Math.sin(angle) }), svg("text", { x: u, y: v, dx: 7, dy: 14 }, k + 1));
+    return svg(
+      "g",
+      { class: "goal" },
+      svg("circle", { cx: u, cy: v, r: 4 }),
+      svg("line", { x1: u, y1: v, x2: u + 22 * Math.cos(angle), y2: v - 22 * Math.sin(angle) }),
+      svg("text", { x: u, y: v, dx: 7, dy: 14 }, k + 1),
+    );
   }
 
-  /** The dyad whose pivot is nearest to a place. @param {"circle_points" | "centre_points"} which @param {Point} place @returns {Dyad} */
+  /**
+   * The dyad whose pivot is nearest to a place.
+   * @param {"circle_points" | "centre_points"} which
+   * @param {Point} place
+   * @returns {Dyad}
+   */
   nearest(which, [x, y]) {
     let least = Infinity;
     let found = { branch: 0, at: 0 };
-    this.branches.forEach((branch, n) => branch[which].forEach(([px, py], k) => {
-      const away = Math.hypot(px - x, py - y);
-      if (away < least) [least, found] = [away, { branch: n, at: k }];
-    }));
+    this.branches.forEach((branch, n) =>
+      branch[which].forEach(([px, py], k) => {
+        const away = Math.hypot(px - x, py - y);
+        if (away < least) [least, found] = [away, { branch: n, at: k }];
+      }),
+    );
     return found;
   }
 
@@ -95,7 +145,9 @@ export class Burmester {
       event.preventDefault();
       const { branch, at } = this.dyads[k];
       const { circle_points: points, closed } = this.branches[branch];
-      const next = closed ? (at + by + points.length) % points.length : Math.min(points.length - 1, Math.max(0, at + by));
+      const next = closed
+        ? (at + by + points.length) % points.length
+        : Math.min(points.length - 1, Math.max(0, at + by));
       this.put(k, { branch, at: next });
     });
     return { k, which, name, grip };
@@ -116,14 +168,21 @@ export class Burmester {
       const { branch, at } = this.dyads[k];
       const [x, y] = this.branches[branch][which][at];
       grip.put(this.view.at(x, y));
-      grip.call(which === "circle_points" ? t`${name} on the circle points, branch ${branch + 1}` : t`${name} on the centre points, branch ${branch + 1}`);
+      grip.call(
+        which === "circle_points"
+          ? t`${name} on the circle points, branch ${branch + 1}`
+          : t`${name} on the centre points, branch ${branch + 1}`,
+      );
       grip.node.setAttribute("aria-valuemax", String(this.branches[branch][which].length - 1));
       grip.node.setAttribute("aria-valuenow", String(at));
       grip.node.setAttribute("aria-valuetext", `x ${shown(x)}, y ${shown(y)}`);
     }
     this.lines.forEach((line, k) => {
       const { branch, at } = this.dyads[k];
-      const [[x1, y1], [x2, y2]] = [this.branches[branch].centre_points[at], this.branches[branch].circle_points[at]].map((one) => this.view.at(...one));
+      const [[x1, y1], [x2, y2]] = [
+        this.branches[branch].centre_points[at],
+        this.branches[branch].circle_points[at],
+      ].map((one) => this.view.at(...one));
       for (const [name, value] of Object.entries({ x1, y1, x2, y2 })) line.setAttribute(name, String(value));
     });
   }
@@ -131,11 +190,19 @@ export class Burmester {
   /** The problem with both moving pivots chosen: one linkage, or the reason why there is none. */
   async solve() {
     const asking = (this.asking = new AbortController());
-    const chosen = Object.fromEntries(SIDES.map(({ side }, k) =>
-      [side, { moving_pivot: this.branches[this.dyads[k].branch].circle_points[this.dyads[k].at] }]));
+    const chosen = Object.fromEntries(
+      SIDES.map(({ side }, k) => [
+        side,
+        { moving_pivot: this.branches[this.dyads[k].branch].circle_points[this.dyads[k].at] },
+      ]),
+    );
     this.told.replaceChildren(t`The linkage on these pivots is being solved …`);
     try {
-      const job = await api.solved({ ...this.problem, ...chosen, include_failed: true, max_designs: 1 }, t`Pivots on Burmester's curves`, asking.signal);
+      const job = await api.solved(
+        { ...this.problem, ...chosen, include_failed: true, max_designs: 1 },
+        t`Pivots on Burmester's curves`,
+        asking.signal,
+      );
       if (asking.signal.aborted || this.gone.signal.aborted) {
         await api.remove(job.id).catch(() => undefined);
         return;
@@ -146,7 +213,13 @@ export class Burmester {
       if (!job.result) this.told.replaceChildren(t`The job is ${term(job.status)}; open it to follow it.`);
       else {
         const found = job.result.designs.length;
-        this.told.replaceChildren(found ? (job.result.designs[0].verification.passed ? t`Solved: it passes all checks.` : t`Solved: it fails a check; see below which.`) : translated(job.result.summary));
+        this.told.replaceChildren(
+          found
+            ? job.result.designs[0].verification.passed
+              ? t`Solved: it passes all checks.`
+              : t`Solved: it fails a check; see below which.`
+            : translated(job.result.summary),
+        );
         if (found) this.showSolved(job);
       }
       // Only now, when nothing of it is asked for any more.

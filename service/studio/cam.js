@@ -1,4 +1,7 @@
-/** A cam that turns under its follower: the roller rolls on it, or the face slides; s v a j and pressure angle beside it. */
+/**
+ * A cam that turns under its follower: the roller rolls on it, or the face slides; s v a j and pressure angle beside
+ * it.
+ */
 
 import { el, shown, svg } from "./dom.js";
 import { Gauge } from "./gauge.js";
@@ -13,7 +16,13 @@ const STEM = 0.8;
 
 /** @typedef {[number, number]} Point */
 
-/** Displacement and its derivatives over the motion, with the pressure angle. @param {any} mechanism @param {any} motion @param {any} problem @returns {import("./plots.js").Plotted[]} */
+/**
+ * Displacement and its derivatives over the motion, with the pressure angle.
+ * @param {any} mechanism
+ * @param {any} motion
+ * @param {any} problem
+ * @returns {import("./plots.js").Plotted[]}
+ */
 export function diagrams(mechanism, motion, problem) {
   const { program } = mechanism;
   // A turn of the cam comes back to its beginning.
@@ -21,11 +30,21 @@ export function diagrams(mechanism, motion, problem) {
   const over = (/** @type {string} */ name) => along(angles, [...program[name], program[name][0]], motion.input_angle);
   const swings = mechanism.follower.type.startsWith("oscillating");
   const unit = swings ? "°" : problem.length_unit;
-  const titles = { s: t`Displacement s (${unit})`, v: t`Velocity v (by rad)`, a: t`Acceleration a (by rad²)`, j: t`Jerk j (by rad³)` };
+  const titles = {
+    s: t`Displacement s (${unit})`,
+    v: t`Velocity v (by rad)`,
+    a: t`Acceleration a (by rad²)`,
+    j: t`Jerk j (by rad³)`,
+  };
   const lift = Math.max(...program.s) - Math.min(...program.s);
   return [
     ...Object.entries(titles).map(([name, title]) => ({ title, lines: { "": over(name) }, least: lift })),
-    { title: t`Pressure angle (°)`, lines: { "": motion.pressure_angle }, limit: problem.limits?.pressure_angle, least: 1 },
+    {
+      title: t`Pressure angle (°)`,
+      lines: { "": motion.pressure_angle },
+      limit: problem.limits?.pressure_angle,
+      least: 1,
+    },
   ];
 }
 
@@ -47,15 +66,30 @@ export class Turning {
     const scene = this.scene();
     // A flat face that only moves along has none.
     this.gauge = motion.pressure_angle.some((/** @type {any} */ one) => one > 0.01)
-      ? new Gauge(t`Pressure angle`, motion.pressure_angle, { limit: problem.limits?.pressure_angle, atMost: true }) : null;
-    this.player = new Player({ count: this.count, closed: true, label: t`Cam`, reading: (at) => this.reading(at), show: (at) => this.show(at) });
+      ? new Gauge(t`Pressure angle`, motion.pressure_angle, { limit: problem.limits?.pressure_angle, atMost: true })
+      : null;
+    this.player = new Player({
+      count: this.count,
+      closed: true,
+      label: t`Cam`,
+      reading: (at) => this.reading(at),
+      show: (at) => this.show(at),
+    });
     this.marks = plots(diagrams(this.mechanism, motion, problem), motion.input_angle, (at) => this.player.lead(at));
     this.facts = el("dl", { class: "facts" });
     const [width, height] = this.size;
-    const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": this.label },
-      svg("rect", { class: "paper", width, height }), ...scene);
-    frame.fill({ picture, clock: this.player.row, beside: [this.gauge?.node, this.facts],
-      plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))] });
+    const picture = svg(
+      "svg",
+      { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": this.label },
+      svg("rect", { class: "paper", width, height }),
+      ...scene,
+    );
+    frame.fill({
+      picture,
+      clock: this.player.row,
+      beside: [this.gauge?.node, this.facts],
+      plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))],
+    });
     this.displacement = /** @type {any} */ (diagrams(this.mechanism, motion, problem)[0].lines)[""];
     this.player.begin();
   }
@@ -100,37 +134,84 @@ export class Disc extends Turning {
     this.swings = follower.type.startsWith("oscillating");
     this.base = this.mechanism.base_radius ?? this.mechanism.prime_radius - this.radius;
     const outline = ring(profile);
-    const far = Math.max(...outline.map(([x, y]) => Math.hypot(x, y)), ...(wall ? ring(wall).map(([x, y]) => Math.hypot(x, y)) : []));
-    const high = Math.max(...pitch.x.map((/** @type {number} */ x, /** @type {number} */ k) => Math.hypot(x, pitch.y[k])));
-    const reach = this.swings ? [follower.pivot_distance + 0.1 * this.base, 0.2 * this.base] : [high + this.radius + STEM * this.base, 0];
+    const far = Math.max(
+      ...outline.map(([x, y]) => Math.hypot(x, y)),
+      ...(wall ? ring(wall).map(([x, y]) => Math.hypot(x, y)) : []),
+    );
+    const high = Math.max(
+      ...pitch.x.map((/** @type {number} */ x, /** @type {number} */ k) => Math.hypot(x, pitch.y[k])),
+    );
+    const reach = this.swings
+      ? [follower.pivot_distance + 0.1 * this.base, 0.2 * this.base]
+      : [high + this.radius + STEM * this.base, 0];
     const beside = second ? Math.max(...ring(second.pitch_curve).map(([x, y]) => Math.hypot(x, y))) + this.radius : 0;
     const wide = Math.max(far, high, beside);
     this.view = new View([[-wide, -wide], [wide, wide], /** @type {Point} */ (reach)], ...this.size, 32);
     const { view } = this;
     const [u, v] = view.at(0, 0);
-    const circle = (/** @type {string} */ kind, /** @type {number} */ radius) => svg("circle", { class: kind, cx: u, cy: v, r: view.scale * radius });
-    this.cam = svg("g", { class: "cam" },
+    const circle = (/** @type {string} */ kind, /** @type {number} */ radius) =>
+      svg("circle", { class: kind, cx: u, cy: v, r: view.scale * radius });
+    this.cam = svg(
+      "g",
+      { class: "cam" },
       wall && svg("circle", { class: "disc", cx: u, cy: v, r: 1.06 * view.scale * far }),
       wall && svg("path", { class: "hollow", d: `${view.path(ring(wall))}Z` }),
       svg("path", { class: "profile", d: `${view.path(outline)}Z` }),
       second && svg("path", { class: "conjugate", d: `${view.path(ring(second.profile))}Z` }),
       this.rolls && svg("path", { class: "pitch", d: `${view.path(ring(pitch))}Z` }),
-      svg("path", { class: "spoke", d: view.path([[0, 0], [0.5 * this.base, 0]]) }));
+      svg("path", {
+        class: "spoke",
+        d: view.path([
+          [0, 0],
+          [0.5 * this.base, 0],
+        ]),
+      }),
+    );
     this.spin = this.rolling();
-    this.wheel = svg("g", { class: "roller" }, svg("circle", { class: "tyre", r: Math.max(2, view.scale * this.radius) }),
-      this.radius > 0 && svg("path", { d: [0, 60, 120].map((turn) => {
-        const [c, s] = [0.85 * view.scale * this.radius * Math.cos((turn * Math.PI) / 180), 0.85 * view.scale * this.radius * Math.sin((turn * Math.PI) / 180)];
-        return `M${-c} ${-s}L${c} ${s}`;
-      }).join("") }));
+    this.wheel = svg(
+      "g",
+      { class: "roller" },
+      svg("circle", { class: "tyre", r: Math.max(2, view.scale * this.radius) }),
+      this.radius > 0 &&
+        svg("path", {
+          d: [0, 60, 120]
+            .map((turn) => {
+              const [c, s] = [
+                0.85 * view.scale * this.radius * Math.cos((turn * Math.PI) / 180),
+                0.85 * view.scale * this.radius * Math.sin((turn * Math.PI) / 180),
+              ];
+              return `M${-c} ${-s}L${c} ${s}`;
+            })
+            .join(""),
+        }),
+    );
     this.holder = svg("path", { class: "holder" });
-    this.other = svg("g", { class: "roller" }, svg("circle", { class: "tyre", r: Math.max(2, view.scale * this.radius) }));
+    this.other = svg(
+      "g",
+      { class: "roller" },
+      svg("circle", { class: "tyre", r: Math.max(2, view.scale * this.radius) }),
+    );
     this.touch = svg("circle", { class: "touch", r: 3.5 });
     this.normal = svg("line", { class: "normal" });
-    const pivot = this.swings && svg("circle", { class: "pin", r: 5, cx: view.at(follower.pivot_distance, 0)[0], cy: v });
-    return [circle("rim", this.base), this.cam, circle("pin", 4 / view.scale), this.normal, this.holder, ...(this.rolls ? [this.wheel] : []), ...(second ? [this.other] : []), this.touch, ...(pivot ? [pivot] : [])];
+    const pivot =
+      this.swings && svg("circle", { class: "pin", r: 5, cx: view.at(follower.pivot_distance, 0)[0], cy: v });
+    return [
+      circle("rim", this.base),
+      this.cam,
+      circle("pin", 4 / view.scale),
+      this.normal,
+      this.holder,
+      ...(this.rolls ? [this.wheel] : []),
+      ...(second ? [this.other] : []),
+      this.touch,
+      ...(pivot ? [pivot] : []),
+    ];
   }
 
-  /** How far the roller has turned at each sample: its contact has gone along it as far as along the profile. @returns {number[]} radians */
+  /**
+   * How far the roller has turned at each sample: its contact has gone along it as far as along the profile.
+   * @returns {number[]} radians
+   */
   rolling() {
     const { x, y } = this.motion.contact;
     if (!this.rolls || !(this.radius > 0)) return [];
@@ -150,7 +231,8 @@ export class Disc extends Turning {
   /** Of the roller, in the ground's frame. @param {number} angle @returns {Point} */
   centre(angle) {
     const { angle: at, x, y } = this.mechanism.pitch_curve;
-    const past = (/** @type {number} */ from, /** @type {number} */ to) => to - from - 360 * Math.floor((to - from) / 360);
+    const past = (/** @type {number} */ from, /** @type {number} */ to) =>
+      to - from - 360 * Math.floor((to - from) / 360);
     const degrees = past(0, (angle * 180) / Math.PI);
     // Points stand closer where the cam is curved most.
     let [k, end] = [0, at.length];
@@ -166,7 +248,10 @@ export class Disc extends Turning {
 
   /** @param {number} at @param {number} angle */
   put(at, angle) {
-    const { view, mechanism: { follower } } = this;
+    const {
+      view,
+      mechanism: { follower },
+    } = this;
     const [u, v] = view.at(0, 0);
     this.cam.setAttribute("transform", `rotate(${(-this.sense * angle * 180) / Math.PI} ${u} ${v})`);
     const [across, up] = [between(this.motion.contact.x, at), between(this.motion.contact.y, at)];
@@ -179,23 +264,46 @@ export class Disc extends Turning {
       const centre = this.centre(angle);
       const [cu, cv] = view.at(...centre);
       const spin = this.spin.length ? Number(between(this.spin, at)) : 0;
-      this.wheel.setAttribute("transform", `translate(${cu.toFixed(2)} ${cv.toFixed(2)}) rotate(${((-spin * 180) / Math.PI).toFixed(2)})`);
-      for (const [name, value] of Object.entries({ x1: tu, y1: tv, x2: 3 * cu - 2 * tu, y2: 3 * cv - 2 * tv })) this.normal.setAttribute(name, String(value));
-      const end = /** @type {Point} */ (this.swings ? [follower.pivot_distance, 0] : [centre[0] + this.radius + STEM * this.base, centre[1]]);
+      this.wheel.setAttribute(
+        "transform",
+        `translate(${cu.toFixed(2)} ${cv.toFixed(2)}) rotate(${((-spin * 180) / Math.PI).toFixed(2)})`,
+      );
+      for (const [name, value] of Object.entries({ x1: tu, y1: tv, x2: 3 * cu - 2 * tu, y2: 3 * cv - 2 * tv }))
+        this.normal.setAttribute(name, String(value));
+      const end = /** @type {Point} */ (
+        this.swings ? [follower.pivot_distance, 0] : [centre[0] + this.radius + STEM * this.base, centre[1]]
+      );
       const other = this.opposite(centre);
-      this.holder.setAttribute("d", view.path(other ? [...(this.swings ? [centre, end, other] : [other, centre, end])] : [centre, end]));
-      if (other) this.other.setAttribute("transform", `translate(${view.at(...other).map((one) => one.toFixed(2)).join(" ")})`);
+      this.holder.setAttribute(
+        "d",
+        view.path(other ? [...(this.swings ? [centre, end, other] : [other, centre, end])] : [centre, end]),
+      );
+      if (other)
+        this.other.setAttribute(
+          "transform",
+          `translate(${view
+            .at(...other)
+            .map((one) => one.toFixed(2))
+            .join(" ")})`,
+        );
     } else this.holder.setAttribute("d", this.face(touching));
     const what = this.swings ? t`Arm` : t`Follower`;
     this.facts.replaceChildren(el("dt", {}, what), el("dd", {}, this.place(at)));
   }
 
-  /** The second roller of conjugate cams, which the same follower carries. @param {Point} centre @returns {Point | null} */
+  /**
+   * The second roller of conjugate cams, which the same follower carries.
+   * @param {Point} centre
+   * @returns {Point | null}
+   */
   opposite([x, y]) {
     const { second, follower } = this.mechanism;
     if (!second) return null;
     if (!this.swings) return [x - second.roller_distance, y];
-    const [u, v] = turned([x - follower.pivot_distance, y], -this.sense * follower.sense * (second.arm_angle * Math.PI) / 180);
+    const [u, v] = turned(
+      [x - follower.pivot_distance, y],
+      (-this.sense * follower.sense * (second.arm_angle * Math.PI)) / 180,
+    );
     return [follower.pivot_distance + u, v];
   }
 
@@ -209,11 +317,24 @@ export class Disc extends Turning {
 
   /** A flat face through the contact, with what carries it. @param {Point} touching */
   face(touching) {
-    const { view, mechanism: { follower }, base } = this;
+    const {
+      view,
+      mechanism: { follower },
+      base,
+    } = this;
     const [x, y] = touching;
     if (!this.swings) {
       const half = Math.max(0.45 * base, 1.1 * Math.abs(y));
-      return view.path([[x, -half], [x, half]]) + view.path([[x, 0], [x + STEM * base, 0]]);
+      return (
+        view.path([
+          [x, -half],
+          [x, half],
+        ]) +
+        view.path([
+          [x, 0],
+          [x + STEM * base, 0],
+        ])
+      );
     }
     const [rx, ry] = [x - follower.pivot_distance, y];
     const offset = follower.face_offset ?? 0;
@@ -224,7 +345,10 @@ export class Disc extends Turning {
     const [ax, ay] = [(rx * c + ry * s) / size, (ry * c - rx * s) / size];
     const near = rx * ax + ry * ay;
     const start = /** @type {Point} */ ([x - near * ax, y - near * ay]);
-    return view.path([start, [x + 0.35 * base * ax, y + 0.35 * base * ay]]) + view.path([start, [follower.pivot_distance, 0]]);
+    return (
+      view.path([start, [x + 0.35 * base * ax, y + 0.35 * base * ay]]) +
+      view.path([start, [follower.pivot_distance, 0]])
+    );
   }
 }
 

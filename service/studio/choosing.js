@@ -12,7 +12,9 @@ const FRONT = { rms: "rms_residual" };
 
 export class Choosing {
   /**
-   * @param {HTMLElement} place @param {import("./desk.js").Desk} desk @param {import("./api.js").Job} job with two designs at least
+   * @param {HTMLElement} place
+   * @param {import("./desk.js").Desk} desk
+   * @param {import("./api.js").Job} job with two designs at least
    * @param {import("./strip.js").Strip} strip @param {() => void} narrowed told when bounds hide designs
    */
   constructor(place, desk, job, strip, narrowed) {
@@ -36,42 +38,83 @@ export class Choosing {
     this.open = false;
     const axes = this.axes();
     this.bounds = new Bounds(this.quantities, () => this.bounded());
-    this.scatter = new Scatter(this.quantities, axes, (n) => strip.select(n), () => {
-      this.bounds.show(this.scatter.axes);
-      this.tell();
-    });
+    this.scatter = new Scatter(
+      this.quantities,
+      axes,
+      (n) => strip.select(n),
+      () => {
+        this.bounds.show(this.scatter.axes);
+        this.tell();
+      },
+    );
     this.table = el("div");
-    this.pick = el("select", { id: "compare-with", onchange: () => {
-      this.other = this.pick.value === "" ? null : Number(this.pick.value);
-      this.compare();
-    } });
-    this.manners = /** @type {const} */ (["beside", "over"]).map((manner) => el("button", { type: "button", class: "small", "aria-pressed": "false",
-      onclick: () => {
-        this.manner = this.manner === manner ? null : manner;
+    this.pick = el("select", {
+      id: "compare-with",
+      onchange: () => {
+        this.other = this.pick.value === "" ? null : Number(this.pick.value);
         this.compare();
-      } }, manner === "beside" ? t`Side by side` : t`Overlay`));
+      },
+    });
+    this.manners = /** @type {const} */ (["beside", "over"]).map((manner) =>
+      el(
+        "button",
+        {
+          type: "button",
+          class: "small",
+          "aria-pressed": "false",
+          onclick: () => {
+            this.manner = this.manner === manner ? null : manner;
+            this.compare();
+          },
+        },
+        manner === "beside" ? t`Side by side` : t`Overlay`,
+      ),
+    );
     strip.changed = () => this.tell();
   }
 
-  /** Along the front where there is one, else by the first two quantities in which the designs differ. @returns {[number, number]} */
+  /**
+   * Along the front where there is one, else by the first two quantities in which the designs differ.
+   * @returns {[number, number]}
+   */
   axes() {
     const names = (this.job.result.front?.quantities ?? []).map((/** @type {string} */ name) => FRONT[name] ?? name);
-    const of = (/** @type {string} */ name) => this.quantities.findIndex((one) => one.name === name && one.values.some((value) => value !== one.values[0]));
+    const of = (/** @type {string} */ name) =>
+      this.quantities.findIndex((one) => one.name === name && one.values.some((value) => value !== one.values[0]));
     const found = names.map(of).filter((/** @type {number} */ k) => k >= 0);
     const [up, across] = [...found, ...this.quantities.keys()].filter((k, n, all) => all.indexOf(k) === n);
     return [across ?? up, up];
+  }
+
+  /** What the designs of the front are not beaten in. @returns {string[]} */
+  beaten() {
+    return this.job.result.front.quantities.map((/** @type {string} */ name) => term(FRONT[name] ?? name));
   }
 
   /** The tab has been opened. */
   opened() {
     this.open = true;
     this.bounds.show(this.scatter.axes);
-    this.place.replaceChildren(this.scatter.node,
-      ...(this.front.length ? [el("p", { class: "note" }, t`Ringed: no other design beats it in all of ${this.job.result.front.quantities.map((/** @type {string} */ name) => term(FRONT[name] ?? name)).join(", ")}.`)] : []),
+    this.place.replaceChildren(
+      this.scatter.node,
+      ...(this.front.length
+        ? [el("p", { class: "note" }, t`Ringed: no other design beats it in all of ${this.beaten().join(", ")}.`)]
+        : []),
       this.bounds.node,
-      el("section", { "aria-label": t`Two designs` }, el("h4", {}, t`Compare`),
-        el("div", { class: "row" }, el("label", { for: "compare-with" }, t`With`), this.pick,
-          el("div", { class: "row", role: "group", "aria-label": t`On the stage` }, ...this.manners)), this.table));
+      el(
+        "section",
+        { "aria-label": t`Two designs` },
+        el("h4", {}, t`Compare`),
+        el(
+          "div",
+          { class: "row" },
+          el("label", { for: "compare-with" }, t`With`),
+          this.pick,
+          el("div", { class: "row", role: "group", "aria-label": t`On the stage` }, ...this.manners),
+        ),
+        this.table,
+      ),
+    );
     this.tell();
     this.compare();
   }
@@ -102,8 +145,12 @@ export class Choosing {
     if (!this.open) return;
     const { chosen, pinned } = this.strip;
     this.scatter.show({ chosen, pinned, kept: this.bounds.kept(), front: this.front });
-    this.pick.replaceChildren(el("option", { value: "" }, "–"), ...this.strip.row.filter((n) => n !== chosen)
-      .map((n) => el("option", { value: n }, t`Design ${n + 1}`, pinned.includes(n) && " ★")));
+    this.pick.replaceChildren(
+      el("option", { value: "" }, "–"),
+      ...this.strip.row
+        .filter((n) => n !== chosen)
+        .map((n) => el("option", { value: n }, t`Design ${n + 1}`, pinned.includes(n) && " ★")),
+    );
     this.pick.value = this.other === null ? "" : String(this.other);
   }
 
@@ -118,8 +165,11 @@ export class Choosing {
       button.disabled = other === null || (k === 1 && !both);
       button.setAttribute("aria-pressed", String(manner === of && !button.disabled));
     });
-    this.table.replaceChildren(other === null ? el("p", { class: "note" }, t`Choose a second design: what differs is marked.`)
-      : sideBySide(designs, [strip.chosen, other], this.job.problem));
+    this.table.replaceChildren(
+      other === null
+        ? el("p", { class: "note" }, t`Choose a second design: what differs is marked.`)
+        : sideBySide(designs, [strip.chosen, other], this.job.problem),
+    );
     if (other === null || manner === null || !shown || (manner === "over" && !both)) return;
     this.desk.stage.show("watch");
     this.comparison = new Comparison(this.desk, this.job, other, manner, shown);

@@ -5,19 +5,29 @@ import { Linkage, drawn, grounded } from "./linkage.js";
 import { t } from "./messages.js";
 
 /** @typedef {[number, number]} Point */
-/** @typedef {{from: number, to: number, full: boolean, reference: boolean, circuit: number, joints: Record<string, {x: (number | null)[], y: (number | null)[]}>}} Branch */
+/**
+ * @typedef {{from: number, to: number, full: boolean, reference: boolean, circuit: number, joints: Record<string, {x:
+ *   (number | null)[], y: (number | null)[]}>}} Branch
+ */
 
-/** Branches other than the one that moves, as far as their joints are known. @param {any} motion with `branches` included @returns {Branch[]} */
+/**
+ * Branches other than the one that moves, as far as their joints are known.
+ * @param {any} motion with `branches` included
+ * @returns {Branch[]}
+ */
 export function others(motion) {
   return (motion?.circuits ?? []).flatMap((/** @type {any} */ circuit, /** @type {number} */ n) =>
-    circuit.branches.filter((/** @type {any} */ branch) => !branch.reference && branch.joints).map((/** @type {any} */ branch) => ({ ...branch, circuit: n })));
+    circuit.branches
+      .filter((/** @type {any} */ branch) => !branch.reference && branch.joints)
+      .map((/** @type {any} */ branch) => ({ ...branch, circuit: n })),
+  );
 }
 
 /** The joint whose path tells the most: P, or the last pin that moves. @param {any} skeleton */
 export function telling(skeleton) {
   const still = grounded(skeleton);
   const names = drawn(skeleton).filter((name) => !still.includes(name));
-  return names.includes("P") ? "P" : names.at(-1) ?? "";
+  return names.includes("P") ? "P" : (names.at(-1) ?? "");
 }
 
 /** @param {Branch} branch @param {string} name @returns {Point[]} */
@@ -32,26 +42,57 @@ export class Circuits {
     const circuits = motion?.circuits ?? [];
     this.branches = others(motion);
     const name = telling(skeleton);
-    const own = circuits.findIndex((/** @type {any} */ one) => one.branches.some((/** @type {any} */ branch) => branch.reference));
-    this.ghosts = this.branches.map((branch) => ({ branch, linkage: new Linkage(view, skeleton, { names: false, faint: true }) }));
-    this.node = svg("g", { class: "others" },
+    const own = circuits.findIndex((/** @type {any} */ one) =>
+      one.branches.some((/** @type {any} */ branch) => branch.reference),
+    );
+    this.ghosts = this.branches.map((branch) => ({
+      branch,
+      linkage: new Linkage(view, skeleton, { names: false, faint: true }),
+    }));
+    this.node = svg(
+      "g",
+      { class: "others" },
       ...this.branches.map((branch) => svg("path", { class: "curve other", d: view.path(track(branch, name)) })),
-      ...this.ghosts.map((ghost) => ghost.linkage.node));
-    const box = el("input", { type: "checkbox", id: "circuits", onchange: () => this.node.toggleAttribute("hidden", !box.checked) });
+      ...this.ghosts.map((ghost) => ghost.linkage.node),
+    );
+    const box = el("input", {
+      type: "checkbox",
+      id: "circuits",
+      onchange: () => this.node.toggleAttribute("hidden", !box.checked),
+    });
     // Of a linkage with many branches, as Peaucellier's, a drawing of all shows nothing any more.
     box.checked = this.branches.length <= 3;
     this.node.toggleAttribute("hidden", !box.checked);
-    const branches = circuits.reduce((/** @type {number} */ sum, /** @type {any} */ one) => sum + one.branches.length, 0);
-    const text = circuits.length === 1
-      ? branches === 2 ? t`Other branch of its one circuit, faint` : t`Other branches of its one circuit, faint`
-      : [circuits.length > 2 ? t`Other circuits, faint` : t`Other circuit, faint`,
-        [own >= 0 && t`it moves on circuit ${own + 1} of ${circuits.length}`, branches > circuits.length && t`with ${branches} branches in all`]
-          .filter(Boolean).join(", ")].filter(Boolean).join(": ");
-    this.control = this.branches.length ? el("label", { class: "flag", for: "circuits" }, box, text)
+    const branches = circuits.reduce(
+      (/** @type {number} */ sum, /** @type {any} */ one) => sum + one.branches.length,
+      0,
+    );
+    const text =
+      circuits.length === 1
+        ? branches === 2
+          ? t`Other branch of its one circuit, faint`
+          : t`Other branches of its one circuit, faint`
+        : [
+            circuits.length > 2 ? t`Other circuits, faint` : t`Other circuit, faint`,
+            [
+              own >= 0 && t`it moves on circuit ${own + 1} of ${circuits.length}`,
+              branches > circuits.length && t`with ${branches} branches in all`,
+            ]
+              .filter(Boolean)
+              .join(", "),
+          ]
+            .filter(Boolean)
+            .join(": ");
+    this.control = this.branches.length
+      ? el("label", { class: "flag", for: "circuits" }, box, text)
       : circuits.length === 1 && el("span", { class: "note" }, t`It has one circuit, without toggles.`);
   }
 
-  /** Where the other circuits are at the same input. @param {number | null} input degrees, or a length along the slide @param {number} period */
+  /**
+   * Where the other circuits are at the same input.
+   * @param {number | null} input degrees, or a length along the slide
+   * @param {number} period
+   */
   show(input, period = 360) {
     if (this.node.hasAttribute("hidden")) return;
     for (const { branch, linkage } of this.ghosts) {
@@ -62,13 +103,21 @@ export class Circuits {
       if (!(share >= 0 && share <= 1)) continue;
       // Between toggles the places lie closer together at the ends.
       if (!branch.full) share = Math.acos(1 - 2 * share) / Math.PI;
-      linkage.show(Object.fromEntries(Object.entries(branch.joints).map(([name, { x, y }]) => {
-        const at = share * (x.length - 1);
-        const k = Math.min(x.length - 2, Math.floor(at));
-        const [one, next] = [x[k], x[k + 1]];
-        return [name, one === null || next === null ? null
-          : [one + (at - k) * (next - one), Number(y[k]) + (at - k) * (Number(y[k + 1]) - Number(y[k]))]];
-      })));
+      linkage.show(
+        Object.fromEntries(
+          Object.entries(branch.joints).map(([name, { x, y }]) => {
+            const at = share * (x.length - 1);
+            const k = Math.min(x.length - 2, Math.floor(at));
+            const [one, next] = [x[k], x[k + 1]];
+            return [
+              name,
+              one === null || next === null
+                ? null
+                : [one + (at - k) * (next - one), Number(y[k]) + (at - k) * (Number(y[k + 1]) - Number(y[k]))],
+            ];
+          }),
+        ),
+      );
     }
   }
 }

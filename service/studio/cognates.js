@@ -4,7 +4,10 @@ import * as api from "./api.js";
 import { el, shown, words } from "./dom.js";
 import { foreign, t, translated } from "./messages.js";
 
-/** @typedef {{name: string, mechanism: any, note: string, metrics: Record<string, any>}} Choice with what was measured of it */
+/**
+ * @typedef {{name: string, mechanism: any, note: string, metrics: Record<string, any>}} Choice with what was measured
+ *   of it
+ */
 
 /** Kinds whose answer is the curve of P and not the turning of the body. */
 const BY_CURVE = ["path", "straight_line"];
@@ -18,17 +21,40 @@ export async function cognates(design, problem, signal) {
   const own = { name: t`Design`, mechanism, note: design.cognate_choice ?? "", metrics: design.metrics ?? {} };
   if (mechanism.type !== "fourbar" || !BY_CURVE.includes(problem.kind)) return [own];
   if (design.cognates?.length) {
-    return [own, ...design.cognates.map((/** @type {any} */ cognate) => {
-      const { side, mechanism: its, ...metrics } = cognate;
-      return { name: side === "left" ? t`Left cognate` : t`Right cognate`, mechanism: its, note: told(cognate), metrics };
-    })];
+    return [
+      own,
+      ...design.cognates.map((/** @type {any} */ cognate) => {
+        const { side, mechanism: its, ...metrics } = cognate;
+        return {
+          name: side === "left" ? t`Left cognate` : t`Right cognate`,
+          mechanism: its,
+          note: told(cognate),
+          metrics,
+        };
+      }),
+    ];
   }
   const question = { mechanism, motion: { at: mechanism.reference_input_angle }, include: ["cognates"] };
-  const pair = await api.analysis(question, signal).then((answer) => answer.fourbar.cognates, () => null);
+  const pair = await api.analysis(question, signal).then(
+    (answer) => answer.fourbar.cognates,
+    () => null,
+  );
   if (!pair) return [own];
-  return [own,
-    { name: t`Left cognate`, mechanism: pair.left, metrics: {}, note: t`It traces the same curve; its input turns with the design's coupler.` },
-    { name: t`Right cognate`, mechanism: pair.right, metrics: {}, note: t`It traces the same curve; its input turns with the design's input.` }];
+  return [
+    own,
+    {
+      name: t`Left cognate`,
+      mechanism: pair.left,
+      metrics: {},
+      note: t`It traces the same curve; its input turns with the design's coupler.`,
+    },
+    {
+      name: t`Right cognate`,
+      mechanism: pair.right,
+      metrics: {},
+      note: t`It traces the same curve; its input turns with the design's input.`,
+    },
+  ];
 }
 
 /** @param {any} one a cognate as measured */
@@ -45,15 +71,27 @@ function told(one) {
 /** @param {Choice[]} choices @param {(choice: Choice) => void} choose */
 export function picker(choices, choose) {
   // Of the design the service tells, of the others the page.
-  const notes = choices.map((one, k) => (k ? el("span", {}, one.note) : el("span", { lang: foreign(one.note) }, translated(one.note))));
+  const notes = choices.map((one, k) =>
+    k ? el("span", {}, one.note) : el("span", { lang: foreign(one.note) }, translated(one.note)),
+  );
   const note = el("span", { class: "note" }, notes[0]);
-  return el("fieldset", { id: "cognates", class: "row choice" }, el("legend", {}, t`The same curve by`),
+  return el(
+    "fieldset",
+    { id: "cognates", class: "row choice" },
+    el("legend", {}, t`The same curve by`),
     ...choices.map((one, k) => {
-      const box = el("input", { type: "radio", name: "cognate", id: `cognate-${k}`, onchange: () => {
-        note.replaceChildren(notes[k]);
-        choose(one);
-      } });
+      const box = el("input", {
+        type: "radio",
+        name: "cognate",
+        id: `cognate-${k}`,
+        onchange: () => {
+          note.replaceChildren(notes[k]);
+          choose(one);
+        },
+      });
       box.checked = k === 0;
       return el("label", { class: "flag", for: `cognate-${k}` }, box, one.name);
-    }), note);
+    }),
+    note,
+  );
 }

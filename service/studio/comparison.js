@@ -50,7 +50,8 @@ export class Comparison {
     /** What goes with the clock of the chosen design. @type {((share: number) => void) | null} */
     this.follow = null;
     this.begin().catch((error) => {
-      if (!this.gone.signal.aborted) desk.other.replaceChildren(el("div", { class: "said" }, el("p", { class: "error" }, error.message)));
+      if (!this.gone.signal.aborted)
+        desk.other.replaceChildren(el("div", { class: "said" }, el("p", { class: "error" }, error.message)));
     });
   }
 
@@ -96,7 +97,8 @@ export class Comparison {
     linkage.node.setAttribute("class", "overlaid");
     const name = telling(skeleton);
     const track = motion.joints[name];
-    if (drawn(skeleton).includes(name)) linkage.node.prepend(svg("path", { class: "curve other", d: mover.view.path(points(track)) }));
+    if (drawn(skeleton).includes(name))
+      linkage.node.prepend(svg("path", { class: "curve other", d: mover.view.path(points(track)) }));
     mover.picture.append(linkage.node);
     const last = motion.input_angle.length - 1;
     this.follow = (share) => linkage.show(jointsAt(motion, share * last));
@@ -108,7 +110,9 @@ export class Comparison {
     const { other } = this.desk;
     other.hidden = !is;
     other.parentElement?.classList.toggle("split", is);
-    other.replaceChildren(...(is ? [el("div", { class: "said" }, el("p", { class: "note" }, t`The motion is being computed …`))] : []));
+    other.replaceChildren(
+      ...(is ? [el("div", { class: "said" }, el("p", { class: "note" }, t`The motion is being computed …`))] : []),
+    );
   }
 
   stop() {
@@ -127,26 +131,58 @@ function points({ x, y }) {
   return x.map((one, k) => (one === null ? [NaN, NaN] : [one, Number(y[k])]));
 }
 
-/** The numbers of two designs beside each other; those that differ are marked. @param {any[]} designs @param {[number, number]} which @param {any} problem */
+/**
+ * The numbers of two designs beside each other; those that differ are marked.
+ * @param {any[]} designs
+ * @param {[number, number]} which
+ * @param {any} problem
+ */
 export function sideBySide(designs, which, problem) {
   const [one, other] = which.map((n) => designs[n]);
-  const told = [one, other].map((design) => new Map(figures(design).map(([name, value]) =>
-    [name, figure(name, value, problem, design.metrics?.size)])));
+  const told = [one, other].map(
+    (design) =>
+      new Map(figures(design).map(([name, value]) => [name, figure(name, value, problem, design.metrics?.size)])),
+  );
   const sizes = [one, other].map((design) => new Map(dimensionRows(design, problem)));
   const names = (/** @type {Map<string, any>[]} */ maps) => [...new Set(maps.flatMap((map) => [...map.keys()]))];
-  const rows = (/** @type {Map<string, {text: string, title: string | null}>[]} */ maps) => names(maps).map((name) => {
-    const [a, b] = maps.map((map) => map.get(name) ?? { text: "–", title: null });
-    const differs = !alike(a, b);
-    // As many digits as it takes to tell the two apart.
-    const close = differs && a.text === b.text;
-    return el("tr", { class: differs ? "differs" : null },
-      el("th", { scope: "row" }, words(name), differs && el("span", { class: "hidden" }, ", ", t`differs`)),
-      ...[a, b].map((cell) => el("td", { title: cell.title }, close ? cell.title : cell.text)));
-  });
-  return el("div", { class: "side-by-side" }, el("table", { class: "figures" },
-    el("thead", {}, el("tr", {}, el("th", { scope: "col" }, t`Quantities`), ...which.map((n) => el("th", { scope: "col" }, t`Design ${n + 1}`)))),
-    el("tbody", {}, ...rows(told)),
-    el("tbody", {}, el("tr", {}, el("th", { scope: "rowgroup", colspan: 3, class: "part" }, t`Dimensions`)), ...rows(sizes))));
+  const rows = (/** @type {Map<string, {text: string, title: string | null}>[]} */ maps) =>
+    names(maps).map((name) => {
+      const [a, b] = maps.map((map) => map.get(name) ?? { text: "–", title: null });
+      const differs = !alike(a, b);
+      // As many digits as it takes to tell the two apart.
+      const close = differs && a.text === b.text;
+      return el(
+        "tr",
+        { class: differs ? "differs" : null },
+        el("th", { scope: "row" }, words(name), differs && el("span", { class: "hidden" }, ", ", t`differs`)),
+        ...[a, b].map((cell) => el("td", { title: cell.title }, close ? cell.title : cell.text)),
+      );
+    });
+  return el(
+    "div",
+    { class: "side-by-side" },
+    el(
+      "table",
+      { class: "figures" },
+      el(
+        "thead",
+        {},
+        el(
+          "tr",
+          {},
+          el("th", { scope: "col" }, t`Quantities`),
+          ...which.map((n) => el("th", { scope: "col" }, t`Design ${n + 1}`)),
+        ),
+      ),
+      el("tbody", {}, ...rows(told)),
+      el(
+        "tbody",
+        {},
+        el("tr", {}, el("th", { scope: "rowgroup", colspan: 3, class: "part" }, t`Dimensions`)),
+        ...rows(sizes),
+      ),
+    ),
+  );
 }
 
 /** @typedef {{text: string, title: string | null}} Cell */
@@ -155,5 +191,8 @@ export function sideBySide(designs, which, problem) {
 function alike(one, other) {
   if (one.title === null || other.title === null || one.text === "exact") return one.text === other.text;
   const [a, b] = [one.title, other.title].map((text) => text.split(", ").map(parseFloat));
-  return a.length === b.length && a.every((value, k) => Math.abs(value - b[k]) <= ROUNDING * Math.max(Math.abs(value), Math.abs(b[k])));
+  return (
+    a.length === b.length &&
+    a.every((value, k) => Math.abs(value - b[k]) <= ROUNDING * Math.max(Math.abs(value), Math.abs(b[k])))
+  );
 }

@@ -6,33 +6,47 @@ import { t, term } from "./messages.js";
 /** @param {string[]} choices @param {any} value @param {boolean} nullable @param {(value: any) => void} set */
 export function choice(choices, value, nullable, set) {
   const names = nullable ? ["", ...choices] : choices;
-  const box = el("select", { onchange: () => set(box.value === "" ? undefined : box.value) },
-    ...names.map((one) => el("option", { value: one }, one === "" ? "–" : term(String(one)))));
+  const box = el(
+    "select",
+    { onchange: () => set(box.value === "" ? undefined : box.value) },
+    ...names.map((one) => el("option", { value: one }, one === "" ? "–" : term(String(one)))),
+  );
   box.value = value ?? names[0];
   return box;
 }
 
 /** @param {any} value @param {any} fallback @param {(value: any) => void} set */
 export function numberBox(value, fallback, set) {
-  const box = el("input", { type: "number", step: "any", inputmode: "decimal",
+  const box = el("input", {
+    type: "number",
+    step: "any",
+    inputmode: "decimal",
     placeholder: typeof fallback === "number" ? fallback : "",
-    oninput: () => set(box.value === "" ? undefined : box.valueAsNumber) });
+    oninput: () => set(box.value === "" ? undefined : box.valueAsNumber),
+  });
   if (typeof value === "number") box.value = value;
   return box;
 }
 
 /** @param {any} value @param {any} fallback @param {(value: any) => void} set @param {(text: string) => any} read */
 export function textBox(value, fallback, set, read) {
-  const written = (/** @type {any} */ one) => Array.isArray(one) ? one.map((part) => part ?? "open").join(", ") : String(one ?? "");
-  const box = el("input", { type: "text", spellcheck: "false", placeholder: written(fallback),
-    oninput: () => set(box.value.trim() === "" ? undefined : read(box.value.trim())) });
+  const written = (/** @type {any} */ one) =>
+    Array.isArray(one) ? one.map((part) => part ?? "open").join(", ") : String(one ?? "");
+  const box = el("input", {
+    type: "text",
+    spellcheck: "false",
+    placeholder: written(fallback),
+    oninput: () => set(box.value.trim() === "" ? undefined : read(box.value.trim())),
+  });
   if (value !== undefined && value !== null) box.value = written(value);
   return box;
 }
 
 /** Points as text, one to a line. @param {any} points */
 export function lines(points) {
-  return Array.isArray(points) ? points.map((point) => (Array.isArray(point) ? point.join(", ") : String(point))).join("\n") : "";
+  return Array.isArray(points)
+    ? points.map((point) => (Array.isArray(point) ? point.join(", ") : String(point))).join("\n")
+    : "";
 }
 
 /**
@@ -40,10 +54,27 @@ export function lines(points) {
  * @param {any} value @param {(value: any) => void} set
  */
 export function pointsBox(value, set) {
-  const box = el("textarea", { rows: 4, spellcheck: "false", placeholder: "0, 0\n100, 0\n100, 50", oninput: () => {
-    const points = box.value.split("\n").map((/** @type {string} */ line) => line.trim()).filter(Boolean);
-    set(points.length ? points.map((/** @type {string} */ line) => line.split(/[,;\s]+/).filter(Boolean).map(plain)) : undefined);
-  } });
+  const box = el("textarea", {
+    rows: 4,
+    spellcheck: "false",
+    placeholder: "0, 0\n100, 0\n100, 50",
+    oninput: () => {
+      const points = box.value
+        .split("\n")
+        .map((/** @type {string} */ line) => line.trim())
+        .filter(Boolean);
+      set(
+        points.length
+          ? points.map((/** @type {string} */ line) =>
+              line
+                .split(/[,;\s]+/)
+                .filter(Boolean)
+                .map(plain),
+            )
+          : undefined,
+      );
+    },
+  });
   box.value = lines(value);
   return box;
 }
@@ -53,15 +84,20 @@ export function pointsBox(value, set) {
  * @param {any} value @param {(value: any) => void} set
  */
 export function jsonBox(value, set) {
-  const box = el("textarea", { rows: 8, spellcheck: "false", placeholder: "{ }", oninput: () => {
-    const text = box.value.trim();
-    try {
-      set(text === "" ? undefined : JSON.parse(text));
-      box.setCustomValidity("");
-    } catch {
-      box.setCustomValidity(t`This is no JSON yet.`);
-    }
-  } });
+  const box = el("textarea", {
+    rows: 8,
+    spellcheck: "false",
+    placeholder: "{ }",
+    oninput: () => {
+      const text = box.value.trim();
+      try {
+        set(text === "" ? undefined : JSON.parse(text));
+        box.setCustomValidity("");
+      } catch {
+        box.setCustomValidity(t`This is no JSON yet.`);
+      }
+    },
+  });
   if (value !== undefined && value !== null) box.value = JSON.stringify(value, null, 1);
   return box;
 }
@@ -76,29 +112,55 @@ let ids = 0;
 
 /**
  * Some of several words, in the order in which they are listed.
- * @param {string} name @param {string} note @param {string} path @param {string[]} all @param {string[]} value @param {(value: any) => void} set
+ * @param {string} name
+ * @param {string} note
+ * @param {string} path
+ * @param {string[]} all
+ * @param {string[]} value
+ * @param {(value: any) => void} set
  */
 export function choices(name, note, path, all, value, set) {
   const boxes = all.map((one) => {
-    const box = el("input", { type: "checkbox", id: `c${++ids}`, onchange: () => {
-      const chosen = all.filter((_, k) => boxes[k].checked);
-      set(chosen);
-    } });
+    const box = el("input", {
+      type: "checkbox",
+      id: `c${++ids}`,
+      onchange: () => {
+        const chosen = all.filter((_, k) => boxes[k].checked);
+        set(chosen);
+      },
+    });
     box.checked = value.includes(one);
     return box;
   });
-  return el("fieldset", { class: "field", "data-path": path, tabindex: -1 }, el("legend", {}, words(name)),
+  return el(
+    "fieldset",
+    { class: "field", "data-path": path, tabindex: -1 },
+    el("legend", {}, words(name)),
     ...boxes.map((box, k) => el("label", { class: "flag", for: box.id }, box, term(all[k]))),
-    el("p", { class: "error" }), note && el("p", { class: "note" }, note));
+    el("p", { class: "error" }),
+    note && el("p", { class: "note" }, note),
+  );
 }
 
-/** Tooth numbers that there are, some of them several times: `20, 24 × 3, 30`. @param {any} value @param {(value: any) => void} set */
+/**
+ * Tooth numbers that there are, some of them several times: `20, 24 × 3, 30`.
+ * @param {any} value
+ * @param {(value: any) => void} set
+ */
 export function stockBox(value, set) {
-  const written = (/** @type {any} */ one) => (typeof one === "object" && one !== null ? `${one.teeth} × ${one.count ?? 1}` : String(one));
-  const box = el("input", { type: "text", spellcheck: "false", oninput: () => {
-    const parts = box.value.split(/[,;\n\t]+/).map((/** @type {string} */ part) => part.trim()).filter(Boolean);
-    set(parts.length ? parts.map(stocked) : undefined);
-  } });
+  const written = (/** @type {any} */ one) =>
+    typeof one === "object" && one !== null ? `${one.teeth} × ${one.count ?? 1}` : String(one);
+  const box = el("input", {
+    type: "text",
+    spellcheck: "false",
+    oninput: () => {
+      const parts = box.value
+        .split(/[,;\n\t]+/)
+        .map((/** @type {string} */ part) => part.trim())
+        .filter(Boolean);
+      set(parts.length ? parts.map(stocked) : undefined);
+    },
+  });
   if (Array.isArray(value)) box.value = value.map(written).join(", ");
   return box;
 }

@@ -3,7 +3,11 @@
 import * as api from "./api.js";
 import { grounded } from "./linkage.js";
 
-/** Input angle of the configuration in which a skeleton stands, degrees; null where a slide drives. @param {any} skeleton @returns {number | null} */
+/**
+ * Input angle of the configuration in which a skeleton stands, degrees; null where a slide drives.
+ * @param {any} skeleton
+ * @returns {number | null}
+ */
 export function stands(skeleton) {
   const link = skeleton.links.find((/** @type {any} */ one) => one.name === skeleton.input_link);
   const [one, other] = link?.joints.map((/** @type {string} */ name) => skeleton.joints[name]) ?? [];
@@ -26,17 +30,39 @@ export async function overTheCycle(mechanism, steps, signal) {
     return { motion, circuits: motion };
   }
   const circuits = await api.analysis({ mechanism, motion: { at }, include: ["branches"] }, signal);
-  const here = circuits.circuits.flatMap((/** @type {any} */ one) => one.branches).find((/** @type {any} */ one) => one.reference);
+  const here = circuits.circuits
+    .flatMap((/** @type {any} */ one) => one.branches)
+    .find((/** @type {any} */ one) => one.reference);
   const from = here && !here.full ? at - (at - here.from - 360 * Math.floor((at - here.from) / 360)) : at;
   const to = from + (here ? here.to - here.from : 360);
   return { motion: await api.analysis({ mechanism, motion: { from, to, steps } }, signal), circuits };
 }
 
-/** A mechanism that is stated by its dimensions, with its skeleton as the motion shows it. @param {any} mechanism @param {any} motion */
+/**
+ * A mechanism that is stated by its dimensions, with its skeleton as the motion shows it.
+ * @param {any} mechanism
+ * @param {any} motion
+ */
 export function withSkeleton(mechanism, motion) {
   if (mechanism.skeleton) return mechanism;
   const k = motion.valid.indexOf(true);
-  const joints = Object.fromEntries(Object.entries(motion.joints).map(([name, track]) => [name, [track.x[k], track.y[k]]]));
-  const links = [["ground", "O2", "O4"], ["input", "O2", "A"], ["coupler", "A", "B", ...("P" in joints ? ["P"] : [])], ["output", "O4", "B"]];
-  return { ...mechanism, skeleton: { joints, links: links.map(([name, ...on]) => ({ name, joints: on })), slides: [], gears: [], input_link: "input" } };
+  const joints = Object.fromEntries(
+    Object.entries(motion.joints).map(([name, track]) => [name, [track.x[k], track.y[k]]]),
+  );
+  const links = [
+    ["ground", "O2", "O4"],
+    ["input", "O2", "A"],
+    ["coupler", "A", "B", ...("P" in joints ? ["P"] : [])],
+    ["output", "O4", "B"],
+  ];
+  return {
+    ...mechanism,
+    skeleton: {
+      joints,
+      links: links.map(([name, ...on]) => ({ name, joints: on })),
+      slides: [],
+      gears: [],
+      input_link: "input",
+    },
+  };
 }

@@ -22,7 +22,10 @@ const OF_THE_DESIGN = t`Checks, drawing and files are those of the design: choos
 
 export class Shown {
   /**
-   * @param {import("./desk.js").Desk} desk @param {api.Job} job @param {number} n @param {(problem: any) => void} state begins another statement
+   * @param {import("./desk.js").Desk} desk
+   * @param {api.Job} job
+   * @param {number} n
+   * @param {(problem: any) => void} state begins another statement
    * @param {Moving | null} [before] what stands still on the stage until this design moves there
    */
   constructor(desk, job, n, state, before = null) {
@@ -84,7 +87,16 @@ export class Shown {
   /** The numbers of the design. */
   tabulated() {
     const { design, job } = this;
-    return [el("div", { class: "columns" }, checks(design, job.problem), table(t`Quantities`, figures(design), job.problem), ...made(design), dimensions(design, job.problem))];
+    return [
+      el(
+        "div",
+        { class: "columns" },
+        checks(design, job.problem),
+        table(t`Quantities`, figures(design), job.problem),
+        ...made(design),
+        dimensions(design, job.problem),
+      ),
+    ];
   }
 
   /** Its files, and its drawing. */
@@ -151,33 +163,71 @@ export class Shown {
   }
 
   /**
-   * The motion of a cognate; null where it cannot be driven. Of the design it shares the curve only: it has numbers of its own.
+   * The motion of a cognate; null where it cannot be driven. Of the design it shares the curve only: it has numbers of
+   * its own.
    * @param {import("./cognates.js").Choice} choice @returns {Promise<Film | null>}
    */
   async film(choice) {
     const cycle = await overTheCycle(choice.mechanism, STEPS, this.gone.signal).catch(() => null);
-    return cycle && { ...cycle, choice,
-      design: { mechanism: withSkeleton(choice.mechanism, cycle.motion), metrics: choice.metrics, placement: this.design.placement } };
+    return (
+      cycle && {
+        ...cycle,
+        choice,
+        design: {
+          mechanism: withSkeleton(choice.mechanism, cycle.motion),
+          metrics: choice.metrics,
+          placement: this.design.placement,
+        },
+      }
+    );
   }
 
-  /** Show the design, with its cognates to switch to: all in one frame, so that the curve stays where it is. @param {Film[]} films */
+  /**
+   * Show the design, with its cognates to switch to: all in one frame, so that the curve stays where it is.
+   * @param {Film[]} films
+   */
   offer(films) {
-    const around = films.length < 2 ? [] : films.flatMap(({ motion }) => Object.values(motion.joints).flatMap((/** @type {any} */ track) =>
-      track.x.map((/** @type {number | null} */ x, /** @type {number} */ k) => (x === null ? [NaN, NaN] : [x, track.y[k]]))));
+    const around =
+      films.length < 2
+        ? []
+        : films.flatMap(({ motion }) =>
+            Object.values(motion.joints).flatMap((/** @type {any} */ track) =>
+              track.x.map((/** @type {number | null} */ x, /** @type {number} */ k) =>
+                x === null ? [NaN, NaN] : [x, track.y[k]],
+              ),
+            ),
+          );
     const show = (/** @type {Film} */ film) => {
-      this.again = () => this.show(() => new Mover(this.desk.frame, film.design, film.motion, this.job.problem, film.circuits, [...around, ...this.around]), film === films[0]);
+      this.again = () =>
+        this.show(
+          () =>
+            new Mover(this.desk.frame, film.design, film.motion, this.job.problem, film.circuits, [
+              ...around,
+              ...this.around,
+            ]),
+          film === films[0],
+        );
       this.again();
     };
     show(films[0]);
     if (films.length > 1) {
-      this.desk.before.replaceChildren(picker(films.map((film) => film.choice), (choice) => {
-        const film = films.find((one) => one.choice === choice) ?? films[0];
-        show(film);
-        this.desk.shown = film.design;
-        this.explored(film.design);
-        this.desk.numbers.replaceChildren(...(film === films[0] ? this.tabulated() : cognateNumbers(film, this.job.problem)));
-        this.desk.files.replaceChildren(...(film === films[0] ? this.taken() : [el("p", { class: "note" }, OF_THE_DESIGN)]));
-      }));
+      this.desk.before.replaceChildren(
+        picker(
+          films.map((film) => film.choice),
+          (choice) => {
+            const film = films.find((one) => one.choice === choice) ?? films[0];
+            show(film);
+            this.desk.shown = film.design;
+            this.explored(film.design);
+            this.desk.numbers.replaceChildren(
+              ...(film === films[0] ? this.tabulated() : cognateNumbers(film, this.job.problem)),
+            );
+            this.desk.files.replaceChildren(
+              ...(film === films[0] ? this.taken() : [el("p", { class: "note" }, OF_THE_DESIGN)]),
+            );
+          },
+        ),
+      );
     }
   }
 
@@ -188,20 +238,32 @@ export class Shown {
     const { drawer, stage, exploring, explore } = this.desk;
     this.leaveExplorer();
     this.desk.explored(Boolean(mechanism.skeleton));
-    drawer.on("explore", mechanism.skeleton ? {
-      opened: () => {
-        // Two motions at once are one too many, for the eye and for the display.
-        this.moving?.pause?.();
-        this.leaveExplorer();
-        stage.show("explore");
-        this.explorer = new Explorer(exploring, explore, mechanism, problem, demanded(problem, design), this.state);
-      },
-      closed: () => {
-        this.leaveExplorer();
-        exploring.replaceChildren();
-        if (stage.mode === "explore") stage.show("watch");
-      },
-    } : null);
+    drawer.on(
+      "explore",
+      mechanism.skeleton
+        ? {
+            opened: () => {
+              // Two motions at once are one too many, for the eye and for the display.
+              this.moving?.pause?.();
+              this.leaveExplorer();
+              stage.show("explore");
+              this.explorer = new Explorer(
+                exploring,
+                explore,
+                mechanism,
+                problem,
+                demanded(problem, design),
+                this.state,
+              );
+            },
+            closed: () => {
+              this.leaveExplorer();
+              exploring.replaceChildren();
+              if (stage.mode === "explore") stage.show("watch");
+            },
+          }
+        : null,
+    );
   }
 
   /** The place of a linkage's forces: open where the problem states what it weighs and carries. */
@@ -209,10 +271,19 @@ export class Shown {
     const { design, job, n } = this;
     if (VIEWS[design.mechanism.type] || !design.mechanism.skeleton) return [];
     const inside = el("div");
-    const details = el("details", { id: "forces", open: Boolean(job.problem.dynamics ?? design.dynamics), ontoggle: () => {
-      this.forces?.stop();
-      this.forces = details.open && details.isConnected ? new Forces(inside, job, n, this.mover) : null;
-    } }, el("summary", {}, t`Forces: what it bears, and what drives it`), inside);
+    const details = el(
+      "details",
+      {
+        id: "forces",
+        open: Boolean(job.problem.dynamics ?? design.dynamics),
+        ontoggle: () => {
+          this.forces?.stop();
+          this.forces = details.open && details.isConnected ? new Forces(inside, job, n, this.mover) : null;
+        },
+      },
+      el("summary", {}, t`Forces: what it bears, and what drives it`),
+      inside,
+    );
     return [details];
   }
 
@@ -220,23 +291,34 @@ export class Shown {
   assembled() {
     const { drawer, stage, built, assembly } = this.desk;
     const there = api.hasParts(this.design.mechanism);
-    drawer.on("assembly", there ? {
-      opened: () => {
-        this.assembly?.stop();
-        stage.show("watch");
-        built.hidden = false;
-        built.parentElement?.classList.add("split");
-        this.assembly = new AssemblyView(assembly, this.job, this.n, () => (this.forced.hidden ? null : this.moving), built);
-      },
-      closed: () => {
-        this.assembly?.stop();
-        this.assembly = null;
-        built.hidden = true;
-        built.parentElement?.classList.remove("split");
-        built.replaceChildren();
-        assembly.replaceChildren();
-      },
-    } : null);
+    drawer.on(
+      "assembly",
+      there
+        ? {
+            opened: () => {
+              this.assembly?.stop();
+              stage.show("watch");
+              built.hidden = false;
+              built.parentElement?.classList.add("split");
+              this.assembly = new AssemblyView(
+                assembly,
+                this.job,
+                this.n,
+                () => (this.forced.hidden ? null : this.moving),
+                built,
+              );
+            },
+            closed: () => {
+              this.assembly?.stop();
+              this.assembly = null;
+              built.hidden = true;
+              built.parentElement?.classList.remove("split");
+              built.replaceChildren();
+              assembly.replaceChildren();
+            },
+          }
+        : null,
+    );
     drawer.offer("assembly", there);
   }
 
@@ -249,19 +331,26 @@ export class Shown {
       curves.hidden = !is;
       curves.parentElement?.classList.toggle("split", is);
     };
-    drawer.on("curves", there ? {
-      opened: () => {
-        split(true);
-        this.curves = new Burmester(curves, job, job.result.designs[n], (solved) => this.present(solved, 0, t`On these pivots`));
-      },
-      closed: () => {
-        split(false);
-        this.curves?.stop();
-        this.curves = null;
-        curves.replaceChildren();
-        if (this.job !== job && !this.ended) this.present(job, n, t`Design ${n + 1}`);
-      },
-    } : null);
+    drawer.on(
+      "curves",
+      there
+        ? {
+            opened: () => {
+              split(true);
+              this.curves = new Burmester(curves, job, job.result.designs[n], (solved) =>
+                this.present(solved, 0, t`On these pivots`),
+              );
+            },
+            closed: () => {
+              split(false);
+              this.curves?.stop();
+              this.curves = null;
+              curves.replaceChildren();
+              if (this.job !== job && !this.ended) this.present(job, n, t`Design ${n + 1}`);
+            },
+          }
+        : null,
+    );
     drawer.offer("curves", there);
   }
 
@@ -299,6 +388,16 @@ function cognateNumbers({ choice, design }, problem) {
   const measured = figures(design);
   return [
     el("p", { class: "note" }, OF_THE_DESIGN),
-    el("div", { class: "columns" }, measured.length > 0 && table(t`Quantities of the ${`${choice.name.charAt(0).toLowerCase()}${choice.name.slice(1)}`}`, measured, problem), dimensions(design, problem)),
+    el(
+      "div",
+      { class: "columns" },
+      measured.length > 0 &&
+        table(
+          t`Quantities of the ${`${choice.name.charAt(0).toLowerCase()}${choice.name.slice(1)}`}`,
+          measured,
+          problem,
+        ),
+      dimensions(design, problem),
+    ),
   ];
 }

@@ -23,11 +23,22 @@ export class Desk {
     this.other = byId("other");
     this.choosing = byId("choosing");
     this.assembly = byId("assembly");
-    for (const [name, text] of [["task", t`Task`], ["answers", t`Answers`]]) {
+    for (const [name, text] of [
+      ["task", t`Task`],
+      ["answers", t`Answers`],
+    ]) {
       this.drawer.add(name, text, byId(name === "task" ? "statement" : "answers"), true);
     }
-    const tabs = { numbers: t`Numbers`, plots: t`Plots`, explore: t`Explore`, compare: t`Compare`, curves: t`Curves`,
-      assembly: t`Assembly`, files: t`Files`, jobs: t`Jobs` };
+    const tabs = {
+      numbers: t`Numbers`,
+      plots: t`Plots`,
+      explore: t`Explore`,
+      compare: t`Compare`,
+      curves: t`Curves`,
+      assembly: t`Assembly`,
+      files: t`Files`,
+      jobs: t`Jobs`,
+    };
     for (const [name, text] of Object.entries(tabs)) this.drawer.add(name, text, byId(`pane-${name}`));
     for (const name of ["compare", "curves", "assembly"]) this.drawer.offer(name, false);
   }
@@ -43,8 +54,11 @@ export class Desk {
     this.frame.say();
     this.before.replaceChildren();
     this.forced.replaceChildren();
-    for (const [place, text] of /** @type {[HTMLElement, string][]} */ ([[this.numbers, t`The numbers of a design stand here when there is one.`],
-      [this.frame.plots, t`The plots of a design stand here when there is one.`], [this.files, t`The files of a design stand here when there is one.`]])) {
+    for (const [place, text] of /** @type {[HTMLElement, string][]} */ ([
+      [this.numbers, t`The numbers of a design stand here when there is one.`],
+      [this.frame.plots, t`The plots of a design stand here when there is one.`],
+      [this.files, t`The files of a design stand here when there is one.`],
+    ])) {
       place.replaceChildren(el("p", { class: "note" }, text));
     }
     this.explored(false);

@@ -70,7 +70,8 @@ function called(one) {
 }
 
 /**
- * Make anew what stands in some places. What had the focus in one of them has it again, by its id or its name; where it is
+ * Make anew what stands in some places. What had the focus in one of them has it again, by its id or its name; where it
+ * is
  * gone, the place itself has it: whoever goes by keys keeps the place.
  * @param {HTMLElement[]} places
  * @param {() => void} make
@@ -106,5 +107,6 @@ export function shown(value) {
   const digits = Number(value.toPrecision(5));
   if (digits === 0 || (Math.abs(digits) >= 1e-4 && Math.abs(digits) < 1e7)) return number(digits).replaceAll("-", "−");
   const [factor, power] = digits.toExponential().split("e");
-  return `${number(factor).replace("-", "−")}·10${[...power.replace("+", "")].map((one) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(one)]).join("")}`;
+  const raised = [...power.replace("+", "")].map((one) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(one)]);
+  return `${number(factor).replace("-", "−")}·10${raised.join("")}`;
 }

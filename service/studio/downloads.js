@@ -6,33 +6,45 @@ import { t } from "./messages.js";
 
 /** @type {Record<string, [string, string]>} */
 const SIMULATIONS = {
-  "mjcf": ["MuJoCo", t`A model of MuJoCo: loops closed, the input driven`],
-  "urdf": ["URDF", t`A tree of links and joints for robotics programs, its loops beside it`],
-  "mo": ["Modelica", t`A model of Modelica's MultiBody library`],
+  mjcf: ["MuJoCo", t`A model of MuJoCo: loops closed, the input driven`],
+  urdf: ["URDF", t`A tree of links and joints for robotics programs, its loops beside it`],
+  mo: ["Modelica", t`A model of Modelica's MultiBody library`],
   "sim.py": [t`Simulation`, t`A Python script that runs the design in MuJoCo and compares it with the analysis`],
 };
 
 /** @param {api.Job} job @param {number} n @param {HTMLElement} drawing where the labelled drawing stands */
 export function downloads(job, n, drawing) {
-  const place = el("div", { class: "row", id: "downloads", role: "group", "aria-label": t`Files to take home` }, el("span", {}, t`Take home`));
+  const place = el(
+    "div",
+    { class: "row", id: "downloads", role: "group", "aria-label": t`Files to take home` },
+    el("span", {}, t`Take home`),
+  );
   const fault = el("span", { class: "error", role: "alert" });
   const button = (/** @type {string} */ title, /** @type {string} */ name, /** @type {() => Promise<string>} */ make) =>
-    el("button", { type: "button", class: "small", onclick: async (/** @type {any} */ event) => {
-      const pressed = event.currentTarget;
-      pressed.disabled = true;
-      fault.replaceChildren();
-      try {
-        const done = await make();
-        if (done) {
-          saved(done, name);
-          place.dataset.taken = title;
-        }
-      } catch (error) {
-        const reasons = error instanceof api.Refused ? error.errors.map((one) => one.detail) : [];
-        fault.replaceChildren(reasons.join(" ") || /** @type {Error} */ (error).message);
-      }
-      pressed.disabled = false;
-    } }, title);
+    el(
+      "button",
+      {
+        type: "button",
+        class: "small",
+        onclick: async (/** @type {any} */ event) => {
+          const pressed = event.currentTarget;
+          pressed.disabled = true;
+          fault.replaceChildren();
+          try {
+            const done = await make();
+            if (done) {
+              saved(done, name);
+              place.dataset.taken = title;
+            }
+          } catch (error) {
+            const reasons = error instanceof api.Refused ? error.errors.map((one) => one.detail) : [];
+            fault.replaceChildren(reasons.join(" ") || /** @type {Error} */ (error).message);
+          }
+          pressed.disabled = false;
+        },
+      },
+      title,
+    );
   place.append(
     ...api.files(job.kind, job.result.designs[n].mechanism.type).map((form) => {
       const [title, told] = SIMULATIONS[form] ?? [form.toUpperCase(), ""];
@@ -54,7 +66,8 @@ export function downloads(job, n, drawing) {
     button(t`Report`, `${job.kind}.html`, () => api.report(job.id)),
     // A link cannot send a key.
     api.key() ? "" : el("a", { href: api.reportAt(job.id), target: "_blank", rel: "noopener" }, t`Open the report`),
-    fault);
+    fault,
+  );
   return place;
 }
 
@@ -66,7 +79,9 @@ export function downloads(job, n, drawing) {
 function made(job, n, button) {
   const cut = button(t`Parts`, `${job.kind}-${n + 1}-parts.zip`, () => api.parts(job.id, n, { process: "laser" }));
   cut.title = t`Plates to be cut, with what joins them, a drawing of the assembly and a bill`;
-  const printed = button(t`Printed parts`, `${job.kind}-${n + 1}-printed.zip`, () => api.parts(job.id, n, { process: "print" }));
+  const printed = button(t`Printed parts`, `${job.kind}-${n + 1}-printed.zip`, () =>
+    api.parts(job.id, n, { process: "print" }),
+  );
   printed.title = t`STL and 3MF files of all parts, and their assembly`;
   if (!api.makesSolids()) {
     printed.setAttribute("disabled", "");

@@ -1,4 +1,7 @@
-/** Statements that have been edited: the last one of each kind, and the steps that led to the last of all. The browser keeps them. */
+/**
+ * Statements that have been edited: the last one of each kind, and the steps that led to the last of all. The browser
+ * keeps them.
+ */
 
 import { lasting } from "./storage.js";
 
@@ -25,7 +28,8 @@ export function lastKind() {
 /** The steps that led to it. @returns {Steps} */
 export function lastSteps() {
   const { past, future } = read(NAME) ?? {};
-  const texts = (/** @type {any} */ listed) => (Array.isArray(listed) ? listed.filter((one) => typeof one === "string") : []);
+  const texts = (/** @type {any} */ listed) =>
+    Array.isArray(listed) ? listed.filter((one) => typeof one === "string") : [];
   return { past: texts(past), future: texts(future) };
 }
 

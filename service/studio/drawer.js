@@ -40,8 +40,18 @@ export class Drawer {
    * @param {boolean} [sheet] whether it is a phone's only
    */
   add(name, text, pane, sheet = false) {
-    const tab = el("button", { type: "button", role: "tab", id: `tab-${name}`, class: sheet ? "tab sheet" : "tab",
-      "aria-controls": pane.id, onclick: () => this.press(name) }, text);
+    const tab = el(
+      "button",
+      {
+        type: "button",
+        role: "tab",
+        id: `tab-${name}`,
+        class: sheet ? "tab sheet" : "tab",
+        "aria-controls": pane.id,
+        onclick: () => this.press(name),
+      },
+      text,
+    );
     if (!sheet) {
       pane.setAttribute("role", "tabpanel");
       pane.setAttribute("aria-labelledby", tab.id);

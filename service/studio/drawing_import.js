@@ -16,13 +16,21 @@ const DIGITS = 9;
 
 export class DrawingImport {
   /**
-   * @param {any} problem changed in place @param {(path: string | undefined) => void} placed the area that is chosen then
+   * @param {any} problem changed in place
+   * @param {(path: string | undefined) => void} placed the area that is chosen then
    */
   constructor(problem, placed) {
     this.problem = problem;
     this.placed = placed;
-    this.file = el("input", { type: "file", id: "drawing-file", class: "hidden", accept: ".svg,.dxf,image/svg+xml,image/vnd.dxf",
-      "aria-label": t`Drawing, SVG or DXF`, tabindex: -1, onchange: () => this.read() });
+    this.file = el("input", {
+      type: "file",
+      id: "drawing-file",
+      class: "hidden",
+      accept: ".svg,.dxf,image/svg+xml,image/vnd.dxf",
+      "aria-label": t`Drawing, SVG or DXF`,
+      tabindex: -1,
+      onchange: () => this.read(),
+    });
     this.button = el("button", { type: "button", class: "small", onclick: () => this.file.click() }, t`Import drawing`);
     this.said = el("p", { class: "note", role: "status" });
     this.list = el("div", {});
@@ -41,7 +49,10 @@ export class DrawingImport {
     try {
       this.show(file.name, await api.outlines(file, this.problem.length_unit ?? "mm"));
     } catch (error) {
-      const why = error instanceof api.Refused ? error.errors.map((one) => el("li", {}, `${one.path.slice(1)}: ${one.detail}`)) : [];
+      const why =
+        error instanceof api.Refused
+          ? error.errors.map((one) => el("li", {}, `${one.path.slice(1)}: ${one.detail}`))
+          : [];
       this.said.textContent = `${file.name}: ${error instanceof Error ? error.message : error}`;
       this.list.replaceChildren(...(why.length ? [el("ul", { class: "reasons" }, ...why)] : []));
     } finally {
@@ -54,54 +65,114 @@ export class DrawingImport {
   /** The outlines, each with the choice of its use. @param {string} name @param {api.Outlines} found */
   show(name, found) {
     const unit = this.problem.length_unit ?? "mm";
-    const scale = el("input", { type: "number", id: "drawing-scale", step: "any", min: 0, value: Number(found.scale.toPrecision(DIGITS)), oninput: () => told() });
+    const scale = el("input", {
+      type: "number",
+      id: "drawing-scale",
+      step: "any",
+      min: 0,
+      value: Number(found.scale.toPrecision(DIGITS)),
+      oninput: () => told(),
+    });
     const factor = () => (scale.valueAsNumber > 0 ? scale.valueAsNumber / found.scale : NaN);
     const rows = found.outlines.map((one, k) => this.row(one, k));
-    const place = el("button", { type: "button", class: "small", id: "drawing-place", onclick: () => this.place(name, rows, factor()) }, t`Place`);
+    const place = el(
+      "button",
+      { type: "button", class: "small", id: "drawing-place", onclick: () => this.place(name, rows, factor()) },
+      t`Place`,
+    );
     const told = () => {
       for (const row of rows) row.told(factor(), unit);
       place.disabled = !Number.isFinite(factor()) || rows.every((row) => !row.use.value);
     };
-    const all = el("select", { id: "drawing-all", onchange: () => {
-      for (const { use } of rows) if ([...use.options].some((/** @type {any} */ one) => one.value === all.value)) use.value = all.value;
-      told();
-    } }, ...this.options(rolesOf(this.problem)));
+    const all = el(
+      "select",
+      {
+        id: "drawing-all",
+        onchange: () => {
+          for (const { use } of rows)
+            if ([...use.options].some((/** @type {any} */ one) => one.value === all.value)) use.value = all.value;
+          told();
+        },
+      },
+      ...this.options(rolesOf(this.problem)),
+    );
     for (const { use } of rows) use.addEventListener("change", told);
-    const states = found.millimetres_per_unit === null ? t`the drawing states no unit, and its numbers are taken as ${unit}`
-      : t`a unit of the drawing is ${shown(found.millimetres_per_unit)} mm`;
-    this.said.textContent = `${name}: ${found.outlines.length === 1 ? t`1 closed outline` : t`${found.outlines.length} closed outlines`}; ${states}. ${t`Curves are polygons within ${shown(found.tolerance)} ${unit}.`}`;
+    const states =
+      found.millimetres_per_unit === null
+        ? t`the drawing states no unit, and its numbers are taken as ${unit}`
+        : t`a unit of the drawing is ${shown(found.millimetres_per_unit)} mm`;
+    const counted = found.outlines.length === 1 ? t`1 closed outline` : t`${found.outlines.length} closed outlines`;
+    const rounded = t`Curves are polygons within ${shown(found.tolerance)} ${unit}.`;
+    this.said.textContent = `${name}: ${counted}; ${states}. ${rounded}`;
     this.list.replaceChildren(
-      el("div", { class: "row" }, el("label", { for: "drawing-scale" }, t`Scale (${unit} in a unit of the drawing)`), scale,
-        rows.length > 1 && el("label", { for: "drawing-all" }, t`All as`), rows.length > 1 && all),
+      el(
+        "div",
+        { class: "row" },
+        el("label", { for: "drawing-scale" }, t`Scale (${unit} in a unit of the drawing)`),
+        scale,
+        rows.length > 1 && el("label", { for: "drawing-all" }, t`All as`),
+        rows.length > 1 && all,
+      ),
       el("ul", { class: "drawn", "aria-label": t`Outlines in ${name}` }, ...rows.map((row) => row.node)),
-      found.left_out_count > 0 && el("details", {}, el("summary", {}, t`${found.left_out_count} left out`),
-        el("ul", { class: "reasons" }, ...found.left_out.map((one) => el("li", {}, `${called(one)}: ${one.reason}`)))) || "",
-      el("div", { class: "row" }, place, el("button", { type: "button", class: "small", onclick: () => this.close("") }, t`Close`)));
+      (found.left_out_count > 0 &&
+        el(
+          "details",
+          {},
+          el("summary", {}, t`${found.left_out_count} left out`),
+          el("ul", { class: "reasons" }, ...found.left_out.map((one) => el("li", {}, `${called(one)}: ${one.reason}`))),
+        )) ||
+        "",
+      el(
+        "div",
+        { class: "row" },
+        place,
+        el("button", { type: "button", class: "small", onclick: () => this.close("") }, t`Close`),
+      ),
+    );
     told();
   }
 
-  /** One outline: how it looks, what it is called, how large it is, and what it becomes. @param {Drawn} one @param {number} k */
+  /**
+   * One outline: how it looks, what it is called, how large it is, and what it becomes.
+   * @param {Drawn} one
+   * @param {number} k
+   */
   row(one, k) {
     const corners = one.polygon ?? [];
     const points = one.circle ? around(one.circle) : corners;
     const view = new View(points, 46, 34, 3);
     const size = el("p", { class: "note" });
     const id = `drawn${k}`;
-    const fitting = rolesOf(this.problem).filter((role) => role.name === "box" || role.tools.includes(one.circle ? "circle" : "polygon"));
+    const fitting = rolesOf(this.problem).filter(
+      (role) => role.name === "box" || role.tools.includes(one.circle ? "circle" : "polygon"),
+    );
     const use = el("select", { id }, ...this.options(fitting));
-    const node = el("li", {}, svg("svg", { viewBox: "0 0 46 34", width: 46, height: 34, "aria-hidden": "true" },
-      svg("path", { class: "area", d: outline(view, { circle: one.circle, corners }) })),
-    el("div", {}, el("label", { for: id }, called(one)), size), use);
+    const node = el(
+      "li",
+      {},
+      svg(
+        "svg",
+        { viewBox: "0 0 46 34", width: 46, height: 34, "aria-hidden": "true" },
+        svg("path", { class: "area", d: outline(view, { circle: one.circle, corners }) }),
+      ),
+      el("div", {}, el("label", { for: id }, called(one)), size),
+      use,
+    );
     const told = (/** @type {number} */ factor, /** @type {string} */ unit) => {
       const [width, height] = [0, 1].map((axis) => factor * spread(points, axis));
-      size.textContent = one.circle ? `⌀ ${shown(width)} ${unit}` : `${shown(width)} × ${shown(height)} ${unit}, ${t`${corners.length} corners`}`;
+      size.textContent = one.circle
+        ? `⌀ ${shown(width)} ${unit}`
+        : `${shown(width)} × ${shown(height)} ${unit}, ${t`${corners.length} corners`}`;
     };
     return { one, node, use, told };
   }
 
   /** @param {Role[]} roles */
   options(roles) {
-    return [el("option", { value: "" }, t`not placed`), ...roles.map((role) => el("option", { value: role.name }, role.text))];
+    return [
+      el("option", { value: "" }, t`not placed`),
+      ...roles.map((role) => el("option", { value: role.name }, role.text)),
+    ];
   }
 
   /** @param {string} name @param {{one: Drawn, use: any}[]} rows @param {number} factor */
@@ -114,13 +185,20 @@ export class DrawingImport {
       const role = rolesOf(problem).find((each) => each.name === use.value);
       if (!role) continue;
       count += 1;
-      const circle = one.circle && { center: scaled(one.circle.center, factor), radius: rounded(one.circle.radius * factor) };
-      const corners = (circle && role.name === "box" ? around(circle) : one.polygon ?? []).map((point) => (circle ? point : scaled(point, factor)));
+      const circle = one.circle && {
+        center: scaled(one.circle.center, factor),
+        radius: rounded(one.circle.radius * factor),
+      };
+      const corners = (circle && role.name === "box" ? around(circle) : (one.polygon ?? [])).map((point) =>
+        circle ? point : scaled(point, factor),
+      );
       path = stateArea(problem, role, circle && role.name !== "box" ? { circle } : { polygon: corners });
     }
     this.last = { before, after: stated(problem.space) };
     this.close(`${count === 1 ? t`1 area placed from ${name}.` : t`${count} areas placed from ${name}.`} `);
-    this.said.append(el("button", { type: "button", class: "small", id: "drawing-undo", onclick: () => this.undo() }, t`Undo`));
+    this.said.append(
+      el("button", { type: "button", class: "small", id: "drawing-undo", onclick: () => this.undo() }, t`Undo`),
+    );
     this.placed(path);
   }
 
@@ -149,9 +227,17 @@ export class DrawingImport {
 
 /** A room as text, without the empty groups in which the form has room for fields. @param {any} space */
 function stated(space) {
-  const empty = (/** @type {any} */ value) => typeof value === "object" && value !== null && !Array.isArray(value) && !Object.keys(value).length;
-  return JSON.stringify(space ?? null, (_, value) => (value && !Array.isArray(value) && typeof value === "object"
-    ? Object.fromEntries(Object.entries(value).filter(([, inner]) => inner !== null && !empty(inner)).sort()) : value));
+  const empty = (/** @type {any} */ value) =>
+    typeof value === "object" && value !== null && !Array.isArray(value) && !Object.keys(value).length;
+  return JSON.stringify(space ?? null, (_, value) =>
+    value && !Array.isArray(value) && typeof value === "object"
+      ? Object.fromEntries(
+          Object.entries(value)
+            .filter(([, inner]) => inner !== null && !empty(inner))
+            .sort(),
+        )
+      : value,
+  );
 }
 
 /** @param {{element: string, id: string | null, name: string | null, layer: string | null}} one */
@@ -162,7 +248,12 @@ export function called({ element, id, name, layer }) {
 
 /** Corners of the square around a circle. @param {{center: Point, radius: number}} circle @returns {Point[]} */
 function around({ center: [x, y], radius }) {
-  return [[x - radius, y - radius], [x + radius, y - radius], [x + radius, y + radius], [x - radius, y + radius]];
+  return [
+    [x - radius, y - radius],
+    [x + radius, y - radius],
+    [x + radius, y + radius],
+    [x - radius, y + radius],
+  ];
 }
 
 /** @param {Point[]} points @param {number} axis */

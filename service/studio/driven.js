@@ -7,10 +7,17 @@ import { t } from "./messages.js";
 
 /** @typedef {[number, number]} Point */
 
-/** The curve of the point that tells a linkage, over a motion; NaN where it is not reached. @param {any} answer @param {any} skeleton @returns {Point[]} */
+/**
+ * The curve of the point that tells a linkage, over a motion; NaN where it is not reached.
+ * @param {any} answer
+ * @param {any} skeleton
+ * @returns {Point[]}
+ */
 export function curveOf(answer, skeleton) {
   const { x, y } = answer.joints[telling(skeleton)];
-  return x.map((/** @type {number | null} */ one, /** @type {number} */ k) => (one === null ? [NaN, NaN] : [one, y[k]]));
+  return x.map((/** @type {number | null} */ one, /** @type {number} */ k) =>
+    one === null ? [NaN, NaN] : [one, y[k]],
+  );
 }
 
 /**
@@ -23,22 +30,39 @@ export function curveOf(answer, skeleton) {
  */
 
 /**
- * @param {any} answer of the analysis over a turn of its input @param {any} skeleton @param {{x: number, y: number}[]} targets
+ * @param {any} answer of the analysis over a turn of its input
+ * @param {any} skeleton
+ * @param {{x: number, y: number}[]} targets
  * @returns {Driven}
  */
 export function driven(answer, skeleton, targets) {
   const curve = curveOf(answer, skeleton);
   const angles = answer.transmission_angle.filter((/** @type {number | null} */ one) => one !== null);
   const least = angles.length ? Math.min(...angles) : null;
-  const missed = "P" in skeleton.joints ? targets.map((target) =>
-    curve.reduce((nearest, [px, py]) => (px === px ? Math.min(nearest, Math.hypot(px - target.x, py - target.y)) : nearest), Infinity)) : [];
+  const missed =
+    "P" in skeleton.joints
+      ? targets.map((target) =>
+          curve.reduce(
+            (nearest, [px, py]) => (px === px ? Math.min(nearest, Math.hypot(px - target.x, py - target.y)) : nearest),
+            Infinity,
+          ),
+        )
+      : [];
   const turns = answer.valid.every(Boolean);
   const { grashof } = answer.classification;
-  return { turns, least, grashof, missed, facts: {
-    ...(grashof ? { [t`Grashof`]: words(grashof) } : {}),
-    [t`Input turns through`]: turns ? t`yes` : t`no`,
-    [t`Least transmission angle`]: degrees(least),
-    ...(missed.length ? { [t`Farthest target from the curve`]: shown(Number(Math.max(...missed).toPrecision(3))) } : {}),
-    [t`Circuits`]: shown(answer.circuits.length),
-  } };
+  return {
+    turns,
+    least,
+    grashof,
+    missed,
+    facts: {
+      ...(grashof ? { [t`Grashof`]: words(grashof) } : {}),
+      [t`Input turns through`]: turns ? t`yes` : t`no`,
+      [t`Least transmission angle`]: degrees(least),
+      ...(missed.length
+        ? { [t`Farthest target from the curve`]: shown(Number(Math.max(...missed).toPrecision(3))) }
+        : {}),
+      [t`Circuits`]: shown(answer.circuits.length),
+    },
+  };
 }

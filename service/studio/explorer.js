@@ -19,7 +19,11 @@ const STEPS = 180;
 
 export class Explorer {
   /**
-   * @param {HTMLElement} board of the stage @param {HTMLElement} place what is told of it @param {any} mechanism with its skeleton @param {any} problem @param {any[]} targets as demanded
+   * @param {HTMLElement} board of the stage
+   * @param {HTMLElement} place what is told of it
+   * @param {any} mechanism with its skeleton
+   * @param {any} problem
+   * @param {any[]} targets as demanded
    * @param {(problem: any) => void} state called to begin a statement
    */
   constructor(board, place, mechanism, problem, targets, state) {
@@ -41,22 +45,45 @@ export class Explorer {
     this.curve = svg("path", { class: "curve" });
     this.linkage = new Linkage(this.view, this.skeleton, { names: false });
     this.ghost = new Linkage(this.view, this.skeleton, { names: false, faint: true });
-    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas drag", role: "group", "aria-label": t`The linkage, its pins to be dragged` },
-      svg("rect", { class: "paper", width, height }), this.curve,
+    this.picture = svg(
+      "svg",
+      {
+        viewBox: `0 0 ${width} ${height}`,
+        class: "canvas drag",
+        role: "group",
+        "aria-label": t`The linkage, its pins to be dragged`,
+      },
+      svg("rect", { class: "paper", width, height }),
+      this.curve,
       ...targets.map((one) => {
         const [u, v] = this.view.at(one.x, one.y);
         return svg("g", { class: "goal" }, svg("circle", { cx: u, cy: v, r: 5 }));
       }),
-      this.ghost.node, this.linkage.node);
+      this.ghost.node,
+      this.linkage.node,
+    );
     this.handles = drawn(this.skeleton).map((name) => this.handle(name));
     this.picture.append(...this.handles.map(({ grip }) => grip.node));
-    this.player = new Player({ count: STEPS + 1, closed: true, name: "explore-", label: t`Input`, reading: (at) => this.reading(at), show: (at) => this.move(at) });
+    this.player = new Player({
+      count: STEPS + 1,
+      closed: true,
+      name: "explore-",
+      label: t`Input`,
+      reading: (at) => this.reading(at),
+      show: (at) => this.move(at),
+    });
     this.facts = el("dl", { class: "facts", "aria-live": "polite" });
     this.checks = el("ul", { class: "checks" });
     this.buttons = el("p", { class: "row" });
     place.replaceChildren(
-      el("p", { class: "note" }, t`Drag a pin, or move it with the arrow keys: curve, motion and figures are those of the linkage as it is then.`),
-      el("div", { class: "columns" }, this.facts, this.checks), this.buttons);
+      el(
+        "p",
+        { class: "note" },
+        t`Drag a pin, or move it with the arrow keys: curve, motion and figures are those of the linkage as it is then.`,
+      ),
+      el("div", { class: "columns" }, this.facts, this.checks),
+      this.buttons,
+    );
     board.replaceChildren(el("div", { class: "stage" }, this.picture, new Zoom(this.picture).buttons), this.player.row);
     this.draw();
     this.ask().then(() => this.motion && this.player.begin());
@@ -124,7 +151,9 @@ export class Explorer {
       const from = stands(this.skeleton);
       const motion = from === null ? {} : { motion: { from, to: from + 360, steps: STEPS } };
       try {
-        this.tell(await api.analysis({ mechanism: { type: this.type, skeleton: this.skeleton }, ...motion }, this.gone.signal));
+        this.tell(
+          await api.analysis({ mechanism: { type: this.type, skeleton: this.skeleton }, ...motion }, this.gone.signal),
+        );
       } catch (error) {
         if (this.gone.signal.aborted) return;
         this.motion = null;
@@ -132,7 +161,10 @@ export class Explorer {
         this.ghost.node.setAttribute("hidden", "");
         const refused = /** @type {api.Refused} */ (error);
         for (const one of [this.facts, this.checks, this.buttons]) delete one.dataset.said;
-        this.facts.replaceChildren(el("dt", {}, t`Refused`), el("dd", {}, refused.errors?.[0]?.detail ?? refused.message));
+        this.facts.replaceChildren(
+          el("dt", {}, t`Refused`),
+          el("dd", {}, refused.errors?.[0]?.detail ?? refused.message),
+        );
         this.checks.replaceChildren();
         this.buttons.replaceChildren();
       }
@@ -149,26 +181,68 @@ export class Explorer {
     renewed(this.facts, Object.entries(facts), ([name, value]) => [el("dt", {}, name), el("dd", {}, value)]);
     this.judge(turns, least, grashof, missed);
     const offered = () => beginnings(this.problem, this.skeleton, this.motion, this.targets);
-    renewed(this.buttons, offered().map(({ text }) => text), (text) => [el("button", { type: "button", class: "small",
-      onclick: () => offered().filter((one) => one.text === text).forEach(({ statement }) => this.state(statement())) }, text)]);
+    renewed(
+      this.buttons,
+      offered().map(({ text }) => text),
+      (text) => [
+        el(
+          "button",
+          {
+            type: "button",
+            class: "small",
+            onclick: () =>
+              offered()
+                .filter((one) => one.text === text)
+                .forEach(({ statement }) => this.state(statement())),
+          },
+          text,
+        ),
+      ],
+    );
     this.move(this.player.at);
   }
 
-  /** The checks of the problem, as far as they can be told at once. @param {boolean} turns @param {number | null} least @param {string | null} grashof @param {number[]} missed */
+  /**
+   * The checks of the problem, as far as they can be told at once.
+   * @param {boolean} turns
+   * @param {number | null} least
+   * @param {string | null} grashof
+   * @param {number[]} missed
+   */
   judge(turns, least, grashof, missed) {
     const wanted = this.problem.constraints ?? {};
-    const size = Math.max(...Object.values(this.joints).map(([x, y]) => Math.hypot(x - this.joints.O2?.[0], y - this.joints.O2?.[1])));
+    const size = Math.max(
+      ...Object.values(this.joints).map(([x, y]) => Math.hypot(x - this.joints.O2?.[0], y - this.joints.O2?.[1])),
+    );
     /** @type {[string, boolean][]} */
     const checks = [];
     // The curve is known at so many places only: nearer than their distance nothing can be told.
-    if (missed.length) checks.push([t`Passes the targets within ${shown(Number((0.01 * size).toPrecision(2)))}`, Math.max(...missed) <= 0.01 * size]);
+    if (missed.length)
+      checks.push([
+        t`Passes the targets within ${shown(Number((0.01 * size).toPrecision(2)))}`,
+        Math.max(...missed) <= 0.01 * size,
+      ]);
     if (wanted.full_rotation) checks.push([t`Full rotation`, turns]);
-    if (wanted.min_transmission_angle) checks.push([t`Transmission angle of ${shown(wanted.min_transmission_angle)}° in the whole motion`, least !== null && least >= wanted.min_transmission_angle]);
+    if (wanted.min_transmission_angle)
+      checks.push([
+        t`Transmission angle of ${shown(wanted.min_transmission_angle)}° in the whole motion`,
+        least !== null && least >= wanted.min_transmission_angle,
+      ]);
     if (wanted.grashof && wanted.grashof !== "any" && grashof) {
-      checks.push([words(wanted.grashof), wanted.grashof === "non_grashof" ? grashof === "rocker_rocker" : grashof === wanted.grashof]);
+      checks.push([
+        words(wanted.grashof),
+        wanted.grashof === "non_grashof" ? grashof === "rocker_rocker" : grashof === wanted.grashof,
+      ]);
     }
-    renewed(this.checks, checks, ([name, passed]) => [el("li", { class: passed ? "good" : "bad" },
-      el("span", {}, passed ? "✓ " : "✗ "), name, el("span", { class: "hidden" }, " ", passed ? t`passed` : t`failed`))]);
+    renewed(this.checks, checks, ([name, passed]) => [
+      el(
+        "li",
+        { class: passed ? "good" : "bad" },
+        el("span", {}, passed ? "✓ " : "✗ "),
+        name,
+        el("span", { class: "hidden" }, " ", passed ? t`passed` : t`failed`),
+      ),
+    ]);
   }
 
   /** @param {number} at */
@@ -176,10 +250,14 @@ export class Explorer {
     const { motion } = this;
     this.ghost.node.toggleAttribute("hidden", !motion);
     if (!motion) return;
-    this.ghost.show(Object.fromEntries(Object.entries(motion.joints).map(([name, track]) => {
-      const x = between(/** @type {any} */ (track).x, at);
-      return [name, x === null ? null : [x, Number(between(/** @type {any} */ (track).y, at))]];
-    })));
+    this.ghost.show(
+      Object.fromEntries(
+        Object.entries(motion.joints).map(([name, track]) => {
+          const x = between(/** @type {any} */ (track).x, at);
+          return [name, x === null ? null : [x, Number(between(/** @type {any} */ (track).y, at))]];
+        }),
+      ),
+    );
   }
 
   /** @param {number} at */
@@ -205,7 +283,11 @@ function renewed(place, said, make) {
   place.replaceChildren(...said.flatMap(make));
 }
 
-/** Of each slide the joint of its own link that its line passes, if there is one. @param {any} skeleton @returns {(string | null)[]} */
+/**
+ * Of each slide the joint of its own link that its line passes, if there is one.
+ * @param {any} skeleton
+ * @returns {(string | null)[]}
+ */
 function anchors(skeleton) {
   const places = /** @type {Point[]} */ (Object.values(skeleton.joints));
   const size = Math.max(...places.map(([x, y]) => Math.hypot(x - places[0][0], y - places[0][1])));
@@ -213,9 +295,11 @@ function anchors(skeleton) {
     if (slide.link === "ground") return null;
     const on = skeleton.links.find((/** @type {any} */ link) => link.name === slide.link)?.joints ?? [];
     const angle = (slide.angle * Math.PI) / 180;
-    return on.find((/** @type {string} */ name) => {
-      const [dx, dy] = [skeleton.joints[name][0] - slide.point[0], skeleton.joints[name][1] - slide.point[1]];
-      return name !== slide.joint && Math.abs(dy * Math.cos(angle) - dx * Math.sin(angle)) < 1e-9 * size;
-    }) ?? null;
+    return (
+      on.find((/** @type {string} */ name) => {
+        const [dx, dy] = [skeleton.joints[name][0] - slide.point[0], skeleton.joints[name][1] - slide.point[1]];
+        return name !== slide.joint && Math.abs(dy * Math.cos(angle) - dx * Math.sin(angle)) < 1e-9 * size;
+      }) ?? null
+    );
   });
 }

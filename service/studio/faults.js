@@ -35,33 +35,50 @@ export function tell(form, list, refusal) {
     const [row, name] = fault.path.split("/").slice(-2);
     const cell = place.control.parentElement?.matches("td") && /^\d+$/.test(row);
     const where = cell ? `${t`Row ${Number(row) + 1}, ${term(name)}`}: ` : rest ? `${rest}: ` : "";
-    const said = el("span", { id: `fault${++said_ids}` }, where, el("span", { lang: foreign(fault.detail) }, `${fault.detail} `));
+    const said = el(
+      "span",
+      { id: `fault${++said_ids}` },
+      where,
+      el("span", { lang: foreign(fault.detail) }, `${fault.detail} `),
+    );
     place.slot?.append(said);
     if (cell) {
       place.control.setAttribute("aria-describedby", said.id);
       place.control.title = fault.detail;
     }
-    for (let above = place.control.closest("details"); above; above = above.parentElement?.closest("details") ?? null) above.open = true;
+    for (let above = place.control.closest("details"); above; above = above.parentElement?.closest("details") ?? null)
+      above.open = true;
     first ??= place.control;
   }
-  list.append(el("p", { class: "error", lang: foreign(refusal.message) }, refusal.message),
-    ...(lost.length ? [el("ul", {}, ...lost.map((fault) => el("li", {}, `${fault.path || t`the statement`}: ${fault.detail}`)))] : []));
+  list.append(
+    el("p", { class: "error", lang: foreign(refusal.message) }, refusal.message),
+    ...(lost.length
+      ? [el("ul", {}, ...lost.map((fault) => el("li", {}, `${fault.path || t`the statement`}: ${fault.detail}`)))]
+      : []),
+  );
   first?.focus();
   first?.scrollIntoView({ block: "nearest" });
 }
 
-/** The control at a JSON pointer, or at the nearest place above it. @param {HTMLElement} form @param {string} pointer */
+/**
+ * The control at a JSON pointer, or at the nearest place above it.
+ * @param {HTMLElement} form
+ * @param {string} pointer
+ */
 function nearest(form, pointer) {
   // Groups have their controls only when they are open.
   const parts = pointer.split("/");
   for (let k = 3; k <= parts.length; k++) {
     const above = parts.slice(0, k).join("/");
-    for (const path of [above, `${above}/`]) form.querySelector(`details[data-path="${CSS.escape(path)}"]`)?.dispatchEvent(new Event("reveal"));
+    for (const path of [above, `${above}/`])
+      form.querySelector(`details[data-path="${CSS.escape(path)}"]`)?.dispatchEvent(new Event("reveal"));
   }
   for (let path = pointer; path.split("/").length > 2; path = path.slice(0, path.lastIndexOf("/"))) {
     const found = /** @type {HTMLElement | null} */ (form.querySelector(`[data-path="${CSS.escape(path)}"]`));
     if (!found) continue;
-    const slot = found.matches(".field") ? found.querySelector(":scope > .error") : found.closest(".field")?.querySelector(":scope > .error");
+    const slot = found.matches(".field")
+      ? found.querySelector(":scope > .error")
+      : found.closest(".field")?.querySelector(":scope > .error");
     return { control: found, path, slot };
   }
   return null;

@@ -6,24 +6,49 @@ import { BETWEEN, number, t, term, translated } from "./messages.js";
 import { symbolOf } from "./units.js";
 
 /** What a card shows first of a design's metrics, where the design has it. */
-const FIRST = ["quality", "min_transmission_angle", "rms_residual", "structural_error", "max_error", "ratio_error", "error",
-  "link_ratio", "size", "input_travel", "body_travel_ratio", "body_turn_ratio", "total_teeth", "efficiency", "prime_radius", "max_pressure_angle"];
+const FIRST = [
+  "quality",
+  "min_transmission_angle",
+  "rms_residual",
+  "structural_error",
+  "max_error",
+  "ratio_error",
+  "error",
+  "link_ratio",
+  "size",
+  "input_travel",
+  "body_travel_ratio",
+  "body_turn_ratio",
+  "total_teeth",
+  "efficiency",
+  "prime_radius",
+  "max_pressure_angle",
+];
 
-/** The metrics that are plain numbers or words, the telling ones first. @param {any} design @returns {[string, any][]} */
+/**
+ * The metrics that are plain numbers or words, the telling ones first.
+ * @param {any} design
+ * @returns {[string, any][]}
+ */
 export function figures(design) {
-  const all = Object.entries(design.metrics ?? {}).filter(([, value]) => ["number", "string", "boolean"].includes(typeof value));
+  const all = Object.entries(design.metrics ?? {}).filter(([, value]) =>
+    ["number", "string", "boolean"].includes(typeof value),
+  );
   const rank = (/** @type {string} */ name) => (FIRST.includes(name) ? FIRST.indexOf(name) : FIRST.length);
   return all.sort(([a], [b]) => rank(a) - rank(b));
 }
 
-/** Digits of a number for reading, where it is no dimension that is made; all of them are told where the pointer rests. */
+/**
+ * Digits of a number for reading, where it is no dimension that is made; all of them are told where the pointer rests.
+ */
 const DIGITS = 3;
 
 /** What only misses something by rounding, of its size. */
 const ROUNDING = 1e-9;
 
 /** Names of what measures by how much something is missed. */
-const MISSES = /^(reaches|meets|keeps|reproduces)_|^(dials|ratio)$|(^|_)(residual|error)$|^(rms|max)_distance$|^sum_of_squares$/;
+const MISSES =
+  /^(reaches|meets|keeps|reproduces)_|^(dials|ratio)$|(^|_)(residual|error)$|^(rms|max)_distance$|^sum_of_squares$/;
 
 /** What has no scale of its own, so that it says by itself whether it is rounding alone. */
 const BARE = [undefined, "angle", "percent"];
@@ -36,18 +61,24 @@ export function brief(value) {
 
 /**
  * Whether a number says that nothing is missed, but for the rounding of the computer.
- * @param {string} name @param {any} value @param {string | undefined} dimension @param {number} [size] of the mechanism, where lengths are asked for
+ * @param {string} name
+ * @param {any} value
+ * @param {string | undefined} dimension
+ * @param {number} [size] of the mechanism, where lengths are asked for
  */
 export function exact(name, value, dimension, size = 0) {
   if (typeof value !== "number" || !MISSES.test(name)) return false;
   const whole = ROUNDING * size;
-  const least = BARE.includes(dimension) ? ROUNDING : { length: whole, area: whole * whole }[dimension ?? ""] ?? 0;
+  const least = BARE.includes(dimension) ? ROUNDING : ({ length: whole, area: whole * whole }[dimension ?? ""] ?? 0);
   return least > 0 && Math.abs(value) <= least;
 }
 
 /**
  * A figure of a design: few digits, `exact` where nothing is missed, and all of its digits where the pointer rests.
- * @param {string} name @param {any} value @param {any} problem whose units stand beside it @param {number} [size] of the mechanism
+ * @param {string} name
+ * @param {any} value
+ * @param {any} problem whose units stand beside it
+ * @param {number} [size] of the mechanism
  * @returns {{text: string, title: string | null}}
  */
 export function figure(name, value, problem, size) {
@@ -59,7 +90,13 @@ export function figure(name, value, problem, size) {
 
 /** @param {any} value @param {string} [unit] beside a number */
 export function text(value, unit = "") {
-  return typeof value === "number" ? beside(shown(value), unit) : typeof value === "boolean" ? (value ? t`yes` : t`no`) : words(String(value));
+  return typeof value === "number"
+    ? beside(shown(value), unit)
+    : typeof value === "boolean"
+      ? value
+        ? t`yes`
+        : t`no`
+      : words(String(value));
 }
 
 /** The unit of a number of a design by its name; empty for a pure number. @param {string} name @param {any} problem */
@@ -72,78 +109,157 @@ function beside(number, unit) {
   return `${number}${unit === "" || unit === "°" ? unit : ` ${unit}`}`;
 }
 
-/** A number of a check with the unit of what the check measures. @param {number} value @param {any} check @param {any} problem */
+/**
+ * A number of a check with the unit of what the check measures.
+ * @param {number} value
+ * @param {any} check
+ * @param {any} problem
+ */
 export function amount(value, check, problem) {
   return beside(shown(value), symbolOf(check.dimension, problem));
 }
 
-/** Value and limit of a check; with as many digits as it takes to tell the two apart. @param {any} check @param {any} problem */
+/**
+ * Value and limit of a check; with as many digits as it takes to tell the two apart.
+ * @param {any} check
+ * @param {any} problem
+ */
 function measured(check, problem) {
   const { name, value, passed, dimension } = check;
   const unit = symbolOf(dimension, problem);
   const limit = typeof check.limit === "number" ? check.limit : null;
   const close = !passed || (limit !== null && brief(value) === brief(limit));
-  const told = (/** @type {(value: number) => string} */ as) => `${beside(as(value), unit)}${limit === null ? "" : `, ${t`limit ${beside(as(limit), unit)}`}`}`;
-  return el("span", { class: "note", title: told(number) }, passed && exact(name, value, dimension) ? ` ${t`exact`}` : ` ${told(close ? shown : brief)}`);
+  const told = (/** @type {(value: number) => string} */ as) =>
+    `${beside(as(value), unit)}${limit === null ? "" : `, ${t`limit ${beside(as(limit), unit)}`}`}`;
+  return el(
+    "span",
+    { class: "note", title: told(number) },
+    passed && exact(name, value, dimension) ? ` ${t`exact`}` : ` ${told(close ? shown : brief)}`,
+  );
 }
 
 /** @param {any} design @param {any} problem */
 export function checks(design, problem) {
-  return el("section", {}, el("h4", {}, t`Checks`), el("ul", { class: "checks" },
-    ...(design.verification?.checks ?? []).map((/** @type {any} */ check) => el("li", { class: check.passed ? "good" : "bad" },
-      el("span", {}, check.passed ? "✓ " : "✗ "), words(check.name),
-      typeof check.value === "number" && measured(check, problem),
-      el("span", { class: "hidden" }, " ", check.passed ? t`passed` : t`failed`)))));
+  return el(
+    "section",
+    {},
+    el("h4", {}, t`Checks`),
+    el(
+      "ul",
+      { class: "checks" },
+      ...(design.verification?.checks ?? []).map((/** @type {any} */ check) =>
+        el(
+          "li",
+          { class: check.passed ? "good" : "bad" },
+          el("span", {}, check.passed ? "✓ " : "✗ "),
+          words(check.name),
+          typeof check.value === "number" && measured(check, problem),
+          el("span", { class: "hidden" }, " ", check.passed ? t`passed` : t`failed`),
+        ),
+      ),
+    ),
+  );
 }
 
 /** @param {string} title @param {[string, any][]} rows @param {any} [problem] whose units stand beside the numbers */
 export function table(title, rows, problem = null) {
   const size = rows.find(([name]) => name === "size")?.[1];
-  return rowed(title, rows.map(([name, value]) => [name, figure(name, value, problem, size)]));
+  return rowed(
+    title,
+    rows.map(([name, value]) => [name, figure(name, value, problem, size)]),
+  );
 }
 
 /** @param {string} title @param {[string, {text: string, title: string | null}][]} rows */
 function rowed(title, rows) {
-  return el("section", {}, el("h4", {}, title), el("table", { class: "figures" }, el("tbody", {},
-    ...rows.map(([name, told]) => el("tr", {}, el("th", { scope: "row" }, words(name)), el("td", { title: told.title }, told.text))))));
+  return el(
+    "section",
+    {},
+    el("h4", {}, title),
+    el(
+      "table",
+      { class: "figures" },
+      el(
+        "tbody",
+        {},
+        ...rows.map(([name, told]) =>
+          el("tr", {}, el("th", { scope: "row" }, words(name)), el("td", { title: told.title }, told.text)),
+        ),
+      ),
+    ),
+  );
 }
 
-/** What becomes of a design as a shop makes it: nothing where the problem does not ask. @param {any} design @returns {HTMLElement[]} */
+/**
+ * What becomes of a design as a shop makes it: nothing where the problem does not ask.
+ * @param {any} design
+ * @returns {HTMLElement[]}
+ */
 export function made(design) {
   const told = design.manufacture;
   if (!told) return [];
   const share = design.metrics?.yield;
   const { worst_case: worst, cost } = told;
   /** @type {[string, any][]} */
-  const rows = [[t`yield`, share?.value], [t`yield, at least`, share?.low], [t`yield, at most`, share?.high],
-    [t`worst error`, worst?.max_error], [t`worst angle error, °`, worst?.max_angle_error],
+  const rows = [
+    [t`yield`, share?.value],
+    [t`yield, at least`, share?.low],
+    [t`yield, at most`, share?.high],
+    [t`worst error`, worst?.max_error],
+    [t`worst angle error, °`, worst?.max_angle_error],
     [t`tolerances that matter`, told.matter?.join(", ") || undefined],
-    [t`rounding cost, rms residual`, cost?.rms_residual], [t`rounding cost, error`, cost?.max_error], [t`remark`, translated(told.remark ?? "") || undefined],
-    ...Object.entries(told.dimensions ?? {}).map(([name, value]) => /** @type {[string, any]} */ ([t`made: ${name.split(".").map(term).join(" ")}`, value]))];
-  return [table(t`As it is made`, rows.filter(([, value]) => value !== undefined && value !== null))];
+    [t`rounding cost, rms residual`, cost?.rms_residual],
+    [t`rounding cost, error`, cost?.max_error],
+    [t`remark`, translated(told.remark ?? "") || undefined],
+    ...Object.entries(told.dimensions ?? {}).map(
+      ([name, value]) => /** @type {[string, any]} */ ([t`made: ${name.split(".").map(term).join(" ")}`, value]),
+    ),
+  ];
+  return [
+    table(
+      t`As it is made`,
+      rows.filter(([, value]) => value !== undefined && value !== null),
+    ),
+  ];
 }
 
-/** The dimensions of a mechanism, as they are made, as deep as they go; curves and skeletons are in the JSON. @param {any} design @param {any} problem */
+/**
+ * The dimensions of a mechanism, as they are made, as deep as they go; curves and skeletons are in the JSON.
+ * @param {any} design
+ * @param {any} problem
+ */
 export function dimensions(design, problem) {
   return rowed(t`Dimensions`, dimensionRows(design, problem));
 }
 
-/** Names and values of the dimensions. @param {any} design @param {any} problem @returns {[string, {text: string, title: string | null}][]} */
+/**
+ * Names and values of the dimensions.
+ * @param {any} design
+ * @param {any} problem
+ * @returns {[string, {text: string, title: string | null}][]}
+ */
 export function dimensionRows(design, problem) {
   /** @type {[string, {text: string, title: string | null}][]} */
   const rows = [];
   const row = (/** @type {string} */ name, /** @type {number[]} */ all, /** @type {string} */ unit) =>
-    rows.push([name, { text: beside(all.map(shown).join(BETWEEN), unit), title: beside(all.map(number).join(BETWEEN), unit) }]);
+    rows.push([
+      name,
+      { text: beside(all.map(shown).join(BETWEEN), unit), title: beside(all.map(number).join(BETWEEN), unit) },
+    ]);
   const walk = (/** @type {string} */ name, /** @type {any} */ value, /** @type {string} */ unit) => {
     if (Array.isArray(value)) {
       if (!value.length) return;
       if (value.length <= 4 && value.every((one) => typeof one === "number")) row(name, value, unit);
-      else if (value.length <= 8 && value.every((one) => typeof one === "object")) value.forEach((one, k) => walk(`${name} ${k + 1}`, one, unit));
+      else if (value.length <= 8 && value.every((one) => typeof one === "object"))
+        value.forEach((one, k) => walk(`${name} ${k + 1}`, one, unit));
     } else if (value && typeof value === "object") {
-      for (const [inner, one] of Object.entries(value)) walk(name ? `${name} ${term(inner)}` : term(inner), one, unitFor(inner, problem) || unit);
+      for (const [inner, one] of Object.entries(value))
+        walk(name ? `${name} ${term(inner)}` : term(inner), one, unitFor(inner, problem) || unit);
     } else if (typeof value === "number") row(name, [value], unit);
     else if (value !== null) rows.push([name, { text: text(value), title: null }]);
   };
-  for (const [name, value] of Object.entries(design.mechanism)) if (!["type", "skeleton", "profile", "pitch_curve", "program", "outer_wall"].includes(name)) walk(term(name), value, unitFor(name, problem));
+  for (const [name, value] of Object.entries(design.mechanism))
+    if (!["type", "skeleton", "profile", "pitch_curve", "program", "outer_wall"].includes(name))
+      walk(term(name), value, unitFor(name, problem));
   return rows;
 }

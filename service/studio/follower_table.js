@@ -17,7 +17,8 @@ function rounded(value) {
 
 /**
  * The segments of a motion through points: x is turned into cam angles so that all of it is one turn.
- * @param {Point[]} points @param {number} unit of displacements in their derivatives: 1, or radians in a degree for an arm
+ * @param {Point[]} points
+ * @param {number} unit of displacements in their derivatives: 1, or radians in a degree for an arm
  * @returns {any[]}
  */
 export function segmentsOf(points, unit) {
@@ -25,12 +26,14 @@ export function segmentsOf(points, unit) {
   const span = last[0] - first[0];
   const ordered = span < 0 ? [...points].reverse() : points;
   if (points.length < 4) throw new Error(t`A motion takes four points at least.`);
-  if (ordered.some(([x], k) => k > 0 && !(x > ordered[k - 1][0]))) throw new Error(t`The curve turns back: a motion has one displacement at each angle.`);
+  if (ordered.some(([x], k) => k > 0 && !(x > ordered[k - 1][0])))
+    throw new Error(t`The curve turns back: a motion has one displacement at each angle.`);
   const heights = ordered.map(([, y]) => y);
   const low = Math.min(...heights);
   const travel = Math.max(...heights) - low;
   if (!(travel > 0)) throw new Error(t`The follower never moves.`);
-  if (Math.abs(last[1] - first[1]) > CLOSES * travel) throw new Error(t`The motion must end at the displacement at which it began: a cam goes around.`);
+  if (Math.abs(last[1] - first[1]) > CLOSES * travel)
+    throw new Error(t`The motion must end at the displacement at which it began: a cam goes around.`);
   const angles = ordered.map(([x]) => rounded((TURN * (x - ordered[0][0])) / Math.abs(span)));
   const lifts = heights.slice(0, -1).map((y) => rounded(y - low));
   const widths = lifts.map((_, k) => angles[k + 1] - angles[k]);
@@ -42,7 +45,11 @@ export function segmentsOf(points, unit) {
     const speed = (lifts[next] - lifts[k]) / turns[k] - (turns[k] * (2 * bends[k] + bends[next])) / 6;
     return { angle, s: lifts[k], v: rounded(speed * unit), a: rounded(bends[k] * unit) };
   };
-  return lifts.map((_, k) => ({ motion: "polynomial", angle: rounded(widths[k]), conditions: [state(k, 0), state((k + 1) % count, rounded(widths[k]))] }));
+  return lifts.map((_, k) => ({
+    motion: "polynomial",
+    angle: rounded(widths[k]),
+    conditions: [state(k, 0), state((k + 1) % count, rounded(widths[k]))],
+  }));
 }
 
 /**

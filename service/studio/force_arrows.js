@@ -7,7 +7,10 @@ import { between } from "./player.js";
 
 /** @typedef {[number, number]} Point */
 /** @typedef {(number | null)[]} Series */
-/** @typedef {{joint: string, on: string, from: string, x: Series, y: Series}} Force what acts on a link at a joint, and which side it comes from */
+/**
+ * @typedef {{joint: string, on: string, from: string, x: Series, y: Series}} Force what acts on a link at a joint, and
+ *   which side it comes from
+ */
 
 /** The greatest force is so much of the picture's height. */
 const SHARE = 0.2;
@@ -15,35 +18,64 @@ const SHARE = 0.2;
 /** Length and half the width of a head, pixels; a short arrow has a shorter one. */
 const HEAD = [11, 4.5];
 
-/** Every force in a joint of an answer: of its pin on each of its links, and of the lines of slides. @param {any} answer @param {any} skeleton @param {{joint: string, on: string[], lean: number}[]} slides @returns {Force[]} */
+/**
+ * Every force in a joint of an answer: of its pin on each of its links, and of the lines of slides.
+ * @param {any} answer
+ * @param {any} skeleton
+ * @param {{joint: string, on: string[], lean: number}[]} slides
+ * @returns {Force[]}
+ */
 export function forcesIn(answer, skeleton, slides) {
   const { joints = {}, slides: lines = [] } = answer.dynamics;
-  const pins = Object.entries(joints ?? {}).flatMap(([joint, links]) => Object.entries(/** @type {any} */ (links)).map(([on, { x, y }]) =>
-    ({ joint, on, from: `pin ${joint}`, x, y })));
-  return [...pins, ...(lines ?? []).flatMap((/** @type {any} */ { joint, normal, friction }, /** @type {number} */ k) => {
-    /** @type {Point[]} */
-    const turned = normal.map((/** @type {number | null} */ across, /** @type {number} */ at) => {
-      const along = friction[at];
-      if (across === null || along === null) return [NaN, NaN];
-      const angle = slope(slides[k], Object.fromEntries(slides[k].on.map((name) => [name, [answer.joints[name].x[at], answer.joints[name].y[at]]])));
-      return [along * Math.cos(angle) - across * Math.sin(angle), along * Math.sin(angle) + across * Math.cos(angle)];
-    });
-    const series = (/** @type {number} */ axis, /** @type {number} */ sign) => turned.map((one) => (Number.isFinite(one[axis]) ? sign * one[axis] : null));
-    const line = skeleton.slides[k].link;
-    return [{ joint, on: `pin ${joint}`, from: `line of ${line}`, x: series(0, 1), y: series(1, 1) },
-      { joint, on: line, from: `pin ${joint}`, x: series(0, -1), y: series(1, -1) }];
-  })];
+  const pins = Object.entries(joints ?? {}).flatMap(([joint, links]) =>
+    Object.entries(/** @type {any} */ (links)).map(([on, { x, y }]) => ({ joint, on, from: `pin ${joint}`, x, y })),
+  );
+  return [
+    ...pins,
+    ...(lines ?? []).flatMap((/** @type {any} */ { joint, normal, friction }, /** @type {number} */ k) => {
+      /** @type {Point[]} */
+      const turned = normal.map((/** @type {number | null} */ across, /** @type {number} */ at) => {
+        const along = friction[at];
+        if (across === null || along === null) return [NaN, NaN];
+        const angle = slope(
+          slides[k],
+          Object.fromEntries(
+            slides[k].on.map((name) => [name, [answer.joints[name].x[at], answer.joints[name].y[at]]]),
+          ),
+        );
+        return [along * Math.cos(angle) - across * Math.sin(angle), along * Math.sin(angle) + across * Math.cos(angle)];
+      });
+      const series = (/** @type {number} */ axis, /** @type {number} */ sign) =>
+        turned.map((one) => (Number.isFinite(one[axis]) ? sign * one[axis] : null));
+      const line = skeleton.slides[k].link;
+      return [
+        { joint, on: `pin ${joint}`, from: `line of ${line}`, x: series(0, 1), y: series(1, 1) },
+        { joint, on: line, from: `pin ${joint}`, x: series(0, -1), y: series(1, -1) },
+      ];
+    }),
+  ];
 }
 
-/** One force for each joint, on the moving link that bears most there, and one for each slide, on its pin. @param {Force[]} forces */
+/**
+ * One force for each joint, on the moving link that bears most there, and one for each slide, on its pin.
+ * @param {Force[]} forces
+ */
 function once(forces) {
-  const pinned = forces.filter(({ on }) => on !== "ground" && !on.startsWith("pin ")).sort((one, other) => peakOf(other) - peakOf(one));
-  return [...pinned.filter(({ joint }, k) => pinned.findIndex((other) => other.joint === joint) === k), ...forces.filter(({ on }) => on.startsWith("pin "))];
+  const pinned = forces
+    .filter(({ on }) => on !== "ground" && !on.startsWith("pin "))
+    .sort((one, other) => peakOf(other) - peakOf(one));
+  return [
+    ...pinned.filter(({ joint }, k) => pinned.findIndex((other) => other.joint === joint) === k),
+    ...forces.filter(({ on }) => on.startsWith("pin ")),
+  ];
 }
 
 /** @param {Force} force */
 function peakOf({ x, y }) {
-  return x.reduce((/** @type {number} */ most, one, k) => (one === null ? most : Math.max(most, Math.hypot(one, Number(y[k])))), 0);
+  return x.reduce(
+    (/** @type {number} */ most, one, k) => (one === null ? most : Math.max(most, Math.hypot(one, Number(y[k])))),
+    0,
+  );
 }
 
 /** What a force comes from or acts on, as a person reads it. @param {string} part */
@@ -73,9 +105,14 @@ export class ForceArrows {
     /** @type {import("./linkage.js").Places} */
     this.now = {};
     this.node = svg("g", { class: "forces" }, this.layer, this.legend(unit));
-    this.choice = el("select", { id: "force-on", onchange: () => this.choose(this.choice.value) },
+    this.choice = el(
+      "select",
+      { id: "force-on", onchange: () => this.choose(this.choice.value) },
       el("option", { value: "" }, t`a link of each joint`),
-      ...[...new Set(forces.map(({ on }) => on))].filter((on) => !on.startsWith("pin ")).map((on) => el("option", { value: on }, term(on))));
+      ...[...new Set(forces.map(({ on }) => on))]
+        .filter((on) => !on.startsWith("pin "))
+        .map((on) => el("option", { value: on }, term(on))),
+    );
     this.choose("");
   }
 
@@ -100,7 +137,18 @@ export class ForceArrows {
     const chosen = link ? this.forces.filter(({ on }) => on === link) : once(this.forces);
     this.arrows = chosen.map((force) => {
       const [shaft, head] = [svg("line", { class: "shaft-of-force" }), svg("path", { class: "head-of-force" })];
-      return { force, shaft, head, node: svg("g", { class: "force", "data-joint": force.joint, "data-on": force.on }, svg("title", {}, t`Force of ${called(force.from)} on ${called(force.on)}`), shaft, head) };
+      return {
+        force,
+        shaft,
+        head,
+        node: svg(
+          "g",
+          { class: "force", "data-joint": force.joint, "data-on": force.on },
+          svg("title", {}, t`Force of ${called(force.from)} on ${called(force.on)}`),
+          shaft,
+          head,
+        ),
+      };
     });
     this.layer.replaceChildren(...this.arrows.map(({ node }) => node));
     if (Number.isFinite(this.input)) this.show(this.input, this.now);
@@ -108,14 +156,21 @@ export class ForceArrows {
 
   /** An arrow of a round number, and what it stands for. @param {string} unit */
   legend(unit) {
-    if (!this.peak) return svg("text", { class: "force-scale", x: 12, y: this.view.height - 12 }, t`No joint bears a force.`);
+    if (!this.peak)
+      return svg("text", { class: "force-scale", x: 12, y: this.view.height - 12 }, t`No joint bears a force.`);
     const power = 10 ** Math.floor(Math.log10(this.peak));
     const value = power * ([5, 2, 1].find((one) => one * power <= this.peak) ?? 1);
     const length = this.scale * value;
     const [x, y] = [16 - this.beyond, this.view.height + this.beyond - 16];
     const [shaft, head] = [svg("line", { class: "shaft-of-force" }), svg("path", { class: "head-of-force" })];
     draw(shaft, head, [x, y], [length, 0]);
-    return svg("g", { class: "force-scale", "data-force": value, "data-length": length }, shaft, head, svg("text", { x: x + length + 10, y: y + 4 }, `${shown(value)} ${unit}`.trim()));
+    return svg(
+      "g",
+      { class: "force-scale", "data-force": value, "data-length": length },
+      shaft,
+      head,
+      svg("text", { x: x + length + 10, y: y + 4 }, `${shown(value)} ${unit}`.trim()),
+    );
   }
 
   /** @param {number} input @param {import("./linkage.js").Places} now */
@@ -127,7 +182,8 @@ export class ForceArrows {
       const place = now[force.joint];
       const [x, y] = at === null ? [null, null] : [between(force.x, at), between(force.y, at)];
       node.toggleAttribute("hidden", !place || x === null || y === null);
-      if (place && x !== null && y !== null) draw(shaft, head, this.view.at(...place), [this.scale * x, -this.scale * y]);
+      if (place && x !== null && y !== null)
+        draw(shaft, head, this.view.at(...place), [this.scale * x, -this.scale * y]);
     }
   }
 }
@@ -135,10 +191,12 @@ export class ForceArrows {
 /** @param {SVGElement} shaft @param {SVGElement} head @param {Point} from @param {Point} by pixels */
 function draw(shaft, head, [u, v], [du, dv]) {
   const length = Math.hypot(du, dv);
-  for (const [name, value] of Object.entries({ x1: u, y1: v, x2: u + du, y2: v + dv })) shaft.setAttribute(name, value.toFixed(2));
+  for (const [name, value] of Object.entries({ x1: u, y1: v, x2: u + du, y2: v + dv }))
+    shaft.setAttribute(name, value.toFixed(2));
   if (!(length > 1e-3)) return head.setAttribute("d", "");
   const [long, half] = HEAD.map((one) => one * Math.min(1, length / HEAD[0]));
   const [c, s] = [du / length, dv / length];
-  const corner = (/** @type {number} */ side) => `${(u + du - long * c - side * half * s).toFixed(2)} ${(v + dv - long * s + side * half * c).toFixed(2)}`;
+  const corner = (/** @type {number} */ side) =>
+    `${(u + du - long * c - side * half * s).toFixed(2)} ${(v + dv - long * s + side * half * c).toFixed(2)}`;
   head.setAttribute("d", `M${(u + du).toFixed(2)} ${(v + dv).toFixed(2)}L${corner(1)}L${corner(-1)}Z`);
 }

@@ -31,7 +31,12 @@ const REASONS = {
 /** @typedef {import("./mover.js").Mover} Mover */
 
 export class Forces {
-  /** @param {HTMLElement} place @param {api.Job} job @param {number} n @param {Mover | null} mover the design in motion, where it moves already */
+  /**
+   * @param {HTMLElement} place
+   * @param {api.Job} job
+   * @param {number} n
+   * @param {Mover | null} mover the design in motion, where it moves already
+   */
   constructor(place, job, n, mover) {
     this.job = job;
     this.n = n;
@@ -54,16 +59,26 @@ export class Forces {
     this.outside = el("span", { class: "note" });
     this.pictures = el("div", { class: "borne" });
     // What a design with masses of its own weighs is not for the page to say.
-    this.editor = this.design.dynamics ? null : new LoadEditor(this.design.mechanism.skeleton, job.problem, this.sliding, (block) => this.ask(block));
+    this.editor = this.design.dynamics
+      ? null
+      : new LoadEditor(this.design.mechanism.skeleton, job.problem, this.sliding, (block) => this.ask(block));
     place.replaceChildren(...(this.editor ? [this.editor.node] : []), this.pictures);
     this.editor?.attach(mover);
     const { forces } = this.design;
     // A remark that begins with a field says that the block does not fit the design, and there is nothing to ask for.
-    if (forces?.remark?.startsWith("/")) this.pictures.replaceChildren(el("p", { class: "error" }, t`The design has no forces: ${forces.remark}.`));
+    if (forces?.remark?.startsWith("/"))
+      this.pictures.replaceChildren(el("p", { class: "error" }, t`The design has no forces: ${forces.remark}.`));
     else if (job.problem.dynamics ?? this.design.dynamics) {
       this.pictures.replaceChildren(el("p", { class: "note" }, t`The forces are being computed …`));
       this.ask(null).catch((error) => this.fail(error));
-    } else this.pictures.replaceChildren(el("p", { class: "note" }, t`The problem does not state what the linkage weighs and carries: its forces are not known until that is stated above.`));
+    } else
+      this.pictures.replaceChildren(
+        el(
+          "p",
+          { class: "note" },
+          t`The problem does not state what the linkage weighs and carries: its forces are not known until that is stated above.`,
+        ),
+      );
   }
 
   /** Ask for the forces and show them. @param {any} block null for that of the problem */
@@ -91,13 +106,25 @@ export class Forces {
   put() {
     const { answer, mover } = this;
     if (!answer || !mover) return;
-    this.arrows = new ForceArrows(mover.view, forcesIn(answer, this.design.mechanism.skeleton, mover.linkage.slides), this.unit("force"), answer.joints, (input) => this.placeAt(input));
+    this.arrows = new ForceArrows(
+      mover.view,
+      forcesIn(answer, this.design.mechanism.skeleton, mover.linkage.slides),
+      this.unit("force"),
+      answer.joints,
+      (input) => this.placeAt(input),
+    );
     const { node, beyond } = this.arrows;
-    this.pictures.querySelector(".force-choice")?.replaceChildren(el("label", { for: "force-on" }, "Arrows: forces on"), this.arrows.choice);
-    mover.accompany({ node, beyond, show: (input, now) => {
-      this.arrows?.show(input, now);
-      this.show(input);
-    } });
+    this.pictures
+      .querySelector(".force-choice")
+      ?.replaceChildren(el("label", { for: "force-on" }, "Arrows: forces on"), this.arrows.choice);
+    mover.accompany({
+      node,
+      beyond,
+      show: (input, now) => {
+        this.arrows?.show(input, now);
+        this.show(input);
+      },
+    });
   }
 
   /** The unit of a quantity as the answer has it; empty where its units are the client's. @param {string} dimension */
@@ -118,7 +145,11 @@ export class Forces {
     return this.sliding ? `${rounded} ${this.answer.dynamics.length_unit}` : `${rounded}°`;
   }
 
-  /** The place in the answer's arrays at an input; null outside of them. @param {number} input @returns {number | null} */
+  /**
+   * The place in the answer's arrays at an input; null outside of them.
+   * @param {number} input
+   * @returns {number | null}
+   */
   placeAt(input) {
     const inputs = this.answer.input_angle;
     const last = inputs.length - 1;
@@ -138,13 +169,20 @@ export class Forces {
     this.marks = made;
     this.readings = [];
     const wheres = this.hodographs();
-    const pick = el("select", { id: "hodograph-of", onchange: () => this.trace(wheres[Number(pick.value)]) },
-      ...wheres.map(({ title }, k) => el("option", { value: k }, title)));
+    const pick = el(
+      "select",
+      { id: "hodograph-of", onchange: () => this.trace(wheres[Number(pick.value)]) },
+      ...wheres.map(({ title }, k) => el("option", { value: k }, title)),
+    );
     this.pictures.replaceChildren(
       el("p", { class: "row force-choice" }),
-      this.now(), ...this.remarks(), this.peaks(),
+      this.now(),
+      ...this.remarks(),
+      this.peaks(),
       el("div", { class: "plots force-plots" }, ...made.map(({ figure }) => figure)),
-      el("div", { class: "row" }, el("label", { for: "hodograph-of" }, t`Hodograph of`), pick), this.hodograph);
+      el("div", { class: "row" }, el("label", { for: "hodograph-of" }, t`Hodograph of`), pick),
+      this.hodograph,
+    );
     this.trace(wheres[0]);
   }
 
@@ -164,28 +202,55 @@ export class Forces {
   /** @returns {import("./plots.js").Plotted[]} */
   plotted() {
     const { dynamics } = this.answer;
-    const unknown = dynamics.status.map((/** @type {string} */ one) => !["ok", "stick", "statically_indeterminate"].includes(one));
+    const unknown = dynamics.status.map(
+      (/** @type {string} */ one) => !["ok", "stick", "statically_indeterminate"].includes(one),
+    );
     const [name, unit] = this.driven();
     const titled = (/** @type {string} */ title, /** @type {string} */ of) => (of ? `${title} (${of})` : title);
     const force = this.unit("force");
-    const joints = Object.entries(dynamics.joints ?? {}).map(([joint, links]) => /** @type {[string, Series]} */ ([joint, greatest(Object.values(links))]));
-    const chunks = Array.from({ length: Math.ceil(joints.length / TOGETHER) }, (_, k) => joints.slice(k * TOGETHER, (k + 1) * TOGETHER));
+    const joints = Object.entries(dynamics.joints ?? {}).map(
+      ([joint, links]) => /** @type {[string, Series]} */ ([joint, greatest(Object.values(links))]),
+    );
+    const chunks = Array.from({ length: Math.ceil(joints.length / TOGETHER) }, (_, k) =>
+      joints.slice(k * TOGETHER, (k + 1) * TOGETHER),
+    );
     const { shaking } = dynamics;
     /** @type {import("./plots.js").Plotted[]} */
     const all = [
       { title: titled(name, unit), lines: { "": dynamics.drive ?? [] } },
-      ...chunks.map((some) => ({ title: titled(some.length > 1 ? t`Pin forces` : t`Pin force ${some[0][0]}`, force), lines: Object.fromEntries(some) })),
-      ...(shaking ? [{ title: titled(t`Shaking force`, force), lines: { total: greatest([shaking.force]), x: shaking.force.x, y: shaking.force.y } },
-        { title: titled(t`Shaking moment`, this.unit("torque")), lines: { "": shaking.moment } }] : []),
+      ...chunks.map((some) => ({
+        title: titled(some.length > 1 ? t`Pin forces` : t`Pin force ${some[0][0]}`, force),
+        lines: Object.fromEntries(some),
+      })),
+      ...(shaking
+        ? [
+            {
+              title: titled(t`Shaking force`, force),
+              lines: { total: greatest([shaking.force]), x: shaking.force.x, y: shaking.force.y },
+            },
+            { title: titled(t`Shaking moment`, this.unit("torque")), lines: { "": shaking.moment } },
+          ]
+        : []),
     ];
-    return all.map((one) => ({ ...one, gaps: Object.values(one.lines)[0].map((value, k) => unknown[k] || value === null) }));
+    return all.map((one) => ({
+      ...one,
+      gaps: Object.values(one.lines)[0].map((value, k) => unknown[k] || value === null),
+    }));
   }
 
   /** What there is a hodograph of. @returns {{title: string, x: Series, y: Series}[]} */
   hodographs() {
     const { joints, shaking } = this.answer.dynamics;
-    return [...Object.entries(joints ?? {}).flatMap(([joint, links]) => Object.entries(/** @type {any} */ (links)).map(([on, { x, y }]) => ({ title: t`pin ${joint} on ${term(on)}`, x, y }))),
-      ...(shaking ? [{ title: t`shaking force`, x: shaking.force.x, y: shaking.force.y }] : [])];
+    return [
+      ...Object.entries(joints ?? {}).flatMap(([joint, links]) =>
+        Object.entries(/** @type {any} */ (links)).map(([on, { x, y }]) => ({
+          title: t`pin ${joint} on ${term(on)}`,
+          x,
+          y,
+        })),
+      ),
+      ...(shaking ? [{ title: t`shaking force`, x: shaking.force.x, y: shaking.force.y }] : []),
+    ];
   }
 
   /** @param {{title: string, x: Series, y: Series} | undefined} chosen */
@@ -200,12 +265,28 @@ export class Forces {
   /** Where numbers are missing and why, and what is to be known of all of them. */
   remarks() {
     const { dynamics, input_angle: inputs } = this.answer;
-    const found = [...new Set(/** @type {string[]} */ (dynamics.status))].filter((one) => one !== "ok").flatMap((status) =>
-      runs(dynamics.status.map((/** @type {string} */ one) => one === status)).map(([from, to]) => el("li", {},
-        el("button", { type: "button", class: "small", onclick: () => this.mover?.lead(inputs[from]) },
-          from === to ? this.input(inputs[from]) : t`${this.input(inputs[from])} to ${this.input(inputs[to])}`), ` ${REASONS[status] ?? words(status)}`)));
-    return [...(found.length ? [el("ul", { class: "gaps" }, ...found)] : []),
-      ...dynamics.warnings.map((/** @type {string} */ one) => el("p", { class: "note", lang: foreign(one) }, translated(one)))];
+    const found = [...new Set(/** @type {string[]} */ (dynamics.status))]
+      .filter((one) => one !== "ok")
+      .flatMap((status) =>
+        runs(dynamics.status.map((/** @type {string} */ one) => one === status)).map(([from, to]) =>
+          el(
+            "li",
+            {},
+            el(
+              "button",
+              { type: "button", class: "small", onclick: () => this.mover?.lead(inputs[from]) },
+              from === to ? this.input(inputs[from]) : t`${this.input(inputs[from])} to ${this.input(inputs[to])}`,
+            ),
+            ` ${REASONS[status] ?? words(status)}`,
+          ),
+        ),
+      );
+    return [
+      ...(found.length ? [el("ul", { class: "gaps" }, ...found)] : []),
+      ...dynamics.warnings.map((/** @type {string} */ one) =>
+        el("p", { class: "note", lang: foreign(one) }, translated(one)),
+      ),
+    ];
   }
 
   /** The greatest of everything, with the input at which it stands and the value that it has now. */
@@ -215,21 +296,76 @@ export class Forces {
     const [force, torque] = [this.unit("force"), this.unit("torque")];
     /** @type {[string, number | null, number | null, string, Series | null][]} */
     const rows = [
-      [t`${name}, greatest`, extremes.drive.max, extremes.drive.at, unit, drive ?? null], [t`${name}, least`, extremes.drive.min, extremes.drive.at_min, unit, null],
-      ...Object.entries(extremes.joints).map(([joint, peak]) => /** @type {[string, number | null, number | null, string, Series | null]} */ (
-        [t`Pin force ${joint}`, peak.max, peak.at, force, joints?.[joint] ? greatest(Object.values(joints[joint])) : null])),
-      [t`Shaking force`, extremes.shaking_force.max, extremes.shaking_force.at, force, shaking ? greatest([shaking.force]) : null],
+      [t`${name}, greatest`, extremes.drive.max, extremes.drive.at, unit, drive ?? null],
+      [t`${name}, least`, extremes.drive.min, extremes.drive.at_min, unit, null],
+      ...Object.entries(extremes.joints).map(
+        ([joint, peak]) =>
+          /** @type {[string, number | null, number | null, string, Series | null]} */ ([
+            t`Pin force ${joint}`,
+            peak.max,
+            peak.at,
+            force,
+            joints?.[joint] ? greatest(Object.values(joints[joint])) : null,
+          ]),
+      ),
+      [
+        t`Shaking force`,
+        extremes.shaking_force.max,
+        extremes.shaking_force.at,
+        force,
+        shaking ? greatest([shaking.force]) : null,
+      ],
       [t`Shaking moment`, extremes.shaking_moment.max, extremes.shaking_moment.at, torque, shaking?.moment ?? null],
       [t`Power of the drive`, power.peak, null, this.unit("power"), null],
     ];
-    return el("div", { class: "table" }, el("table", { class: "figures peaks" },
-      el("thead", {}, el("tr", {}, ...[t`Peaks`, t`Value`, t`At the input`, t`Now`].map((head) => el("th", { scope: "col" }, head)))),
-      el("tbody", {}, ...rows.map(([title, value, at, of, series]) => {
-        const box = el("td", { class: "reading" });
-        if (series) this.readings.push({ box, series, unit: of });
-        return el("tr", {}, el("th", { scope: "row" }, title), el("td", {}, value === null ? "–" : `${shown(value)} ${of}`.trim()),
-          el("td", {}, at === null ? "–" : el("button", { type: "button", class: "small", "aria-label": t`${title}: go to ${this.input(at)}`, onclick: () => this.mover?.lead(at) }, this.input(at))), box);
-      }))));
+    return el(
+      "div",
+      { class: "table" },
+      el(
+        "table",
+        { class: "figures peaks" },
+        el(
+          "thead",
+          {},
+          el(
+            "tr",
+            {},
+            ...[t`Peaks`, t`Value`, t`At the input`, t`Now`].map((head) => el("th", { scope: "col" }, head)),
+          ),
+        ),
+        el(
+          "tbody",
+          {},
+          ...rows.map(([title, value, at, of, series]) => {
+            const box = el("td", { class: "reading" });
+            if (series) this.readings.push({ box, series, unit: of });
+            return el(
+              "tr",
+              {},
+              el("th", { scope: "row" }, title),
+              el("td", {}, value === null ? "–" : `${shown(value)} ${of}`.trim()),
+              el(
+                "td",
+                {},
+                at === null
+                  ? "–"
+                  : el(
+                      "button",
+                      {
+                        type: "button",
+                        class: "small",
+                        "aria-label": t`${title}: go to ${this.input(at)}`,
+                        onclick: () => this.mover?.lead(at),
+                      },
+                      this.input(at),
+                    ),
+              ),
+              box,
+            );
+          }),
+        ),
+      ),
+    );
   }
 
   /** @param {number} input */
@@ -242,7 +378,11 @@ export class Forces {
       box.textContent = value === null ? "–" : `${brief(value)} ${unit}`.trim();
     }
     const status = at === null ? "ok" : this.answer.dynamics.status[Math.round(at)];
-    const said = at === null ? t`Forces are known from ${this.input(inputs[0])} to ${this.input(inputs[inputs.length - 1])}, the range that the design was verified along.` : REASONS[status] ?? "";
+    const [first, last] = [inputs[0], inputs[inputs.length - 1]].map((end) => this.input(end));
+    const said =
+      at === null
+        ? t`Forces are known from ${first} to ${last}, the range that the design was verified along.`
+        : (REASONS[status] ?? "");
     if (this.outside.textContent !== said) this.outside.textContent = said;
     if (at !== null) for (const mark of this.marks) mark.show(at);
     this.hodographed?.show(at);
@@ -255,10 +395,16 @@ export class Forces {
   }
 }
 
-/** The greatest magnitude of several forces at each place. @param {{x: Series, y: Series}[]} forces @returns {Series} */
+/**
+ * The greatest magnitude of several forces at each place.
+ * @param {{x: Series, y: Series}[]} forces
+ * @returns {Series}
+ */
 function greatest(forces) {
   return forces[0].x.map((_, k) => {
-    const sizes = forces.map(({ x, y }) => (x[k] === null || y[k] === null ? null : Math.hypot(Number(x[k]), Number(y[k]))));
+    const sizes = forces.map(({ x, y }) =>
+      x[k] === null || y[k] === null ? null : Math.hypot(Number(x[k]), Number(y[k])),
+    );
     return sizes.some((size) => size === null) ? null : Math.max(.../** @type {number[]} */ (sizes));
   });
 }

@@ -10,7 +10,10 @@ const CLOSING = 0.1;
 
 /**
  * Draw from where the pointer went down to where it is let go.
- * @param {PointerEvent} event @param {import("./view.js").View} view @param {SVGSVGElement} picture @param {SVGElement} pen
+ * @param {PointerEvent} event
+ * @param {import("./view.js").View} view
+ * @param {SVGSVGElement} picture
+ * @param {SVGElement} pen
  * @param {(points: Point[], closed: boolean) => void} drawn
  */
 export function stroke(event, view, picture, pen, drawn) {
@@ -22,14 +25,22 @@ export function stroke(event, view, picture, pen, drawn) {
     pen.setAttribute("d", view.path(way));
   };
   picture.addEventListener("pointermove", move);
-  picture.addEventListener("lostpointercapture", () => {
-    picture.removeEventListener("pointermove", move);
-    pen.removeAttribute("d");
-    const closed = meets(way);
-    // Round and back to the first point, which is stated once.
-    const points = closed ? evenly([...way, way[0]], POINTS + 1).slice(0, POINTS) : evenly(way, POINTS);
-    if (points.length >= 3) drawn(points.map(([x, y]) => [view.fine(x), view.fine(y)]), closed);
-  }, { once: true });
+  picture.addEventListener(
+    "lostpointercapture",
+    () => {
+      picture.removeEventListener("pointermove", move);
+      pen.removeAttribute("d");
+      const closed = meets(way);
+      // Round and back to the first point, which is stated once.
+      const points = closed ? evenly([...way, way[0]], POINTS + 1).slice(0, POINTS) : evenly(way, POINTS);
+      if (points.length >= 3)
+        drawn(
+          points.map(([x, y]) => [view.fine(x), view.fine(y)]),
+          closed,
+        );
+    },
+    { once: true },
+  );
 }
 
 /** Whether a way comes back to where it began. @param {Point[]} way */

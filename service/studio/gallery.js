@@ -7,8 +7,14 @@ import { translated } from "./messages.js";
 
 /** In the order of the service. @param {import("./api.js").Kind[]} kinds @returns {Example[]} */
 export function listed(kinds) {
-  return kinds.flatMap(({ kind, schema, example, examples }) => (schema.examples ?? [example]).map(
-    (/** @type {any} */ problem, /** @type {number} */ n) => ({ kind, n, problem, ...examples[n] })));
+  return kinds.flatMap(({ kind, schema, example, examples }) =>
+    (schema.examples ?? [example]).map((/** @type {any} */ problem, /** @type {number} */ n) => ({
+      kind,
+      n,
+      problem,
+      ...examples[n],
+    })),
+  );
 }
 
 export class Gallery {
@@ -23,19 +29,32 @@ export class Gallery {
     const examples = listed(kinds);
     const groups = [...new Set(examples.map((one) => one.group))];
     const order = ORDER.concat(groups.filter((one) => !ORDER.includes(one))).filter((one) => groups.includes(one));
-    this.place.replaceChildren(...order.map((group) => {
-      const cards = examples.filter((one) => one.group === group).map((one) => el("li", {}, this.card(one)));
-      return el("section", {}, el("h3", {}, translated(group)), el("ul", { class: "gallery-cards" }, ...cards));
-    }));
+    this.place.replaceChildren(
+      ...order.map((group) => {
+        const cards = examples.filter((one) => one.group === group).map((one) => el("li", {}, this.card(one)));
+        return el("section", {}, el("h3", {}, translated(group)), el("ul", { class: "gallery-cards" }, ...cards));
+      }),
+    );
   }
 
   /** @param {Example} example */
   card(example) {
     const { kind, n, name, line } = example;
-    return el("button", { type: "button", class: "gallery-card", "data-example": `${kind}-${n}`, onclick: () => {
-      this.dialog.close();
-      this.choose(example);
-    } }, el("span", { class: "gallery-picture" }), el("strong", {}, translated(name)), el("span", { class: "note" }, translated(line)));
+    return el(
+      "button",
+      {
+        type: "button",
+        class: "gallery-card",
+        "data-example": `${kind}-${n}`,
+        onclick: () => {
+          this.dialog.close();
+          this.choose(example);
+        },
+      },
+      el("span", { class: "gallery-picture" }),
+      el("strong", {}, translated(name)),
+      el("span", { class: "note" }, translated(line)),
+    );
   }
 
   open() {
@@ -51,7 +70,11 @@ export class Gallery {
     return new DOMParser().parseFromString(await answer.text(), "image/svg+xml");
   }
 
-  /** The picture of an example; null where it cannot be had. @param {string} key @returns {Promise<SVGElement | null>} */
+  /**
+   * The picture of an example; null where it cannot be had.
+   * @param {string} key
+   * @returns {Promise<SVGElement | null>}
+   */
   async picture(key) {
     this.drawn ??= this.file();
     const drawn = await this.drawn.catch(() => (this.drawn = null));
@@ -75,5 +98,10 @@ export class Gallery {
 
 /** What a person may want, the most wanted first. */
 const ORDER = [
-  "Carry a body", "Draw a curve", "Make an output follow", "Change a speed", "Lift and rest", "Run smoothly",
+  "Carry a body",
+  "Draw a curve",
+  "Make an output follow",
+  "Change a speed",
+  "Lift and rest",
+  "Run smoothly",
 ];

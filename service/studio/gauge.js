@@ -27,7 +27,8 @@ export function degrees(angle) {
 export class Gauge {
   /**
    * @param {string} title @param {(number | null)[]} series over the motion
-   * @param {{limit: number | null | undefined, used?: number | null, atMost?: boolean}} bound which the angle keeps above,
+   * @param {{limit: number | null | undefined, used?: number | null, atMost?: boolean}} bound which the angle keeps
+   *   above,
    *   or below, and its extreme in the range that is used, where that is not the whole motion
    */
   constructor(title, series, { limit, used, atMost = false }) {
@@ -42,19 +43,41 @@ export class Gauge {
     this.now = el("output", { class: "reading" });
     this.limit = limit;
     this.atMost = atMost;
-    const bad = typeof limit === "number" && limit > 0 && limit < 90 && (atMost ? arc(limit, 90, "dial beyond") : arc(0, limit, "dial beyond"));
-    this.node = el("figure", { class: "gauge" },
+    const bad =
+      typeof limit === "number" &&
+      limit > 0 &&
+      limit < 90 &&
+      (atMost ? arc(limit, 90, "dial beyond") : arc(0, limit, "dial beyond"));
+    this.node = el(
+      "figure",
+      { class: "gauge" },
       el("figcaption", {}, title, this.now),
-      svg("svg", { viewBox: `0 0 ${WIDTH} 104`, role: "img",
-        "aria-label": [`${title}: ${told}`, partly && t`between the targets; ${degrees(whole)} in the whole motion`, typeof limit === "number" && t`limit ${degrees(limit)}`].filter(Boolean).join(", ") },
-      arc(0, 90, "dial"), bad, svg("line", { class: "least", x1: x, y1: y, x2: u, y2: v }), this.needle,
-      svg("circle", { class: "pin", r: 3.5, cx: CENTRE[0], cy: CENTRE[1] }),
-      ...[0, 30, 60, 90].map((mark) => {
-        const [tx, ty] = at(mark, RADIUS - 15);
-        return svg("text", { class: "tick", x: tx, y: ty + 3, "text-anchor": "middle" }, mark);
-      }),
-      svg("text", { x: CENTRE[0], y: 101, "text-anchor": "middle" }, told)),
-      partly && el("p", { class: "note" }, t`between the targets; ${degrees(whole)} in the whole motion`));
+      svg(
+        "svg",
+        {
+          viewBox: `0 0 ${WIDTH} 104`,
+          role: "img",
+          "aria-label": [
+            `${title}: ${told}`,
+            partly && t`between the targets; ${degrees(whole)} in the whole motion`,
+            typeof limit === "number" && t`limit ${degrees(limit)}`,
+          ]
+            .filter(Boolean)
+            .join(", "),
+        },
+        arc(0, 90, "dial"),
+        bad,
+        svg("line", { class: "least", x1: x, y1: y, x2: u, y2: v }),
+        this.needle,
+        svg("circle", { class: "pin", r: 3.5, cx: CENTRE[0], cy: CENTRE[1] }),
+        ...[0, 30, 60, 90].map((mark) => {
+          const [tx, ty] = at(mark, RADIUS - 15);
+          return svg("text", { class: "tick", x: tx, y: ty + 3, "text-anchor": "middle" }, mark);
+        }),
+        svg("text", { x: CENTRE[0], y: 101, "text-anchor": "middle" }, told),
+      ),
+      partly && el("p", { class: "note" }, t`between the targets; ${degrees(whole)} in the whole motion`),
+    );
   }
 
   /** @param {number | null} angle */
@@ -64,7 +87,8 @@ export class Gauge {
     if (angle === null) return;
     const [x, y] = at(Math.min(90, Math.max(0, angle)), RADIUS - 4);
     this.needle.setAttribute("d", `M${CENTRE[0]} ${CENTRE[1]}L${x.toFixed(1)} ${y.toFixed(1)}`);
-    const beyond = typeof this.limit === "number" && (this.atMost ? angle > this.limit + 1e-6 : angle < this.limit - 1e-6);
+    const beyond =
+      typeof this.limit === "number" && (this.atMost ? angle > this.limit + 1e-6 : angle < this.limit - 1e-6);
     this.needle.classList.toggle("beyond", beyond);
   }
 }

@@ -17,12 +17,34 @@ export class Gears {
     this.problem = problem;
     this.motion = motion;
     this.gone = new AbortController();
-    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The gears, turning` });
+    this.picture = svg("svg", {
+      viewBox: `0 0 ${width} ${height}`,
+      class: "canvas",
+      role: "img",
+      "aria-label": t`The gears, turning`,
+    });
     this.facts = el("dl", { class: "facts speeds" });
-    this.player = new Player({ count: motion.input_angle.length, closed: true, endless: true, label: t`Input`,
-      reading: (at) => `${shown(Math.round(10 * this.degrees(at)) / 10)}°`, show: (at) => this.show(at) });
-    frame.fill({ picture: this.picture, clock: this.player.row, beside: [this.engaging(), this.facts, el("p", { class: "note" },
-      t`Circles are pitch circles. Each gear turns as fast as the analysis says, one turn of the input in four seconds at speed 1.`)] });
+    this.player = new Player({
+      count: motion.input_angle.length,
+      closed: true,
+      endless: true,
+      label: t`Input`,
+      reading: (at) => `${shown(Math.round(10 * this.degrees(at)) / 10)}°`,
+      show: (at) => this.show(at),
+    });
+    frame.fill({
+      picture: this.picture,
+      clock: this.player.row,
+      beside: [
+        this.engaging(),
+        this.facts,
+        el(
+          "p",
+          { class: "note" },
+          t`Circles are pitch circles. Each gear turns as fast as the analysis says, one turn of the input in four seconds at speed 1.`,
+        ),
+      ],
+    });
     this.view = new View([], width, height);
     this.build();
     this.player.begin();
@@ -31,32 +53,52 @@ export class Gears {
   build() {
     const { mechanism } = this.design;
     const listed = wheels(mechanism, this.motion, this.design, this.problem);
-    const corners = listed.flatMap((wheel) => [0, 1, 2, 3].flatMap((quarter) => {
-      const far = radius(wheel) + (wheel.internal ? 3 : 1) * wheel.module;
-      const [x, y] = place(wheel, wheel.orbit ? (quarter * Math.PI) / 2 / wheel.orbit : 0);
-      return /** @type {[number, number][]} */ ([[x - far, y - far], [x + far, y + far]]);
-    }));
+    const corners = listed.flatMap((wheel) =>
+      [0, 1, 2, 3].flatMap((quarter) => {
+        const far = radius(wheel) + (wheel.internal ? 3 : 1) * wheel.module;
+        const [x, y] = place(wheel, wheel.orbit ? (quarter * Math.PI) / 2 / wheel.orbit : 0);
+        return /** @type {[number, number][]} */ ([
+          [x - far, y - far],
+          [x + far, y + far],
+        ]);
+      }),
+    );
     const [width, height] = this.size;
     const view = new View(corners, width, height, 40);
     // Rings lie behind, and what is not engaged behind those.
     const order = [...listed].sort((one, other) => Number(other.internal ?? false) - Number(one.internal ?? false));
     this.drawings = order.map((wheel) => drawn(view, wheel));
-    const arms = listed.filter((wheel) => wheel.orbit !== undefined && (wheel.centre[0] !== (wheel.axis?.[0] ?? 0) || wheel.centre[1]));
+    const arms = listed.filter(
+      (wheel) => wheel.orbit !== undefined && (wheel.centre[0] !== (wheel.axis?.[0] ?? 0) || wheel.centre[1]),
+    );
     this.arms = arms.map((wheel) => ({ wheel, line: svg("line", { class: "arm" }) }));
     this.view = view;
-    this.picture.replaceChildren(svg("rect", { class: "paper", width, height }),
-      ...this.drawings.map((one) => one.node), ...this.arms.map((one) => one.line));
+    this.picture.replaceChildren(
+      svg("rect", { class: "paper", width, height }),
+      ...this.drawings.map((one) => one.node),
+      ...this.arms.map((one) => one.line),
+    );
     this.facts.replaceChildren(...this.speeds().flatMap(([name, speed]) => [el("dt", {}, name), el("dd", {}, speed)]));
   }
 
   /** @returns {[string, string][]} */
   speeds() {
     const { bodies, shafts, gears } = this.motion;
-    const told = (/** @type {number | null} */ ratio) => (ratio === null ? t`open` : t`${shown(Number(ratio.toPrecision(6)))} × input`);
-    if (bodies) return bodies.map((/** @type {any} */ body) => [words(body.name), body.speed === 0 ? t`held` : told(body.speed)]);
-    if (this.motion.units) return shafts.map((/** @type {any} */ shaft, /** @type {number} */ k) => [k === 0 ? t`Input` : k === shafts.length - 1 ? t`Output` : t`Shaft ${k + 1}`, told(shaft.speed_ratio)]);
-    if (shafts?.[0]?.name) return shafts.map((/** @type {any} */ shaft) => [words(shaft.name), told(shaft.speed_ratio)]);
-    return gears.map((/** @type {any} */ gear) => [t`Stage ${gear.stage} ${term(gear.role)}, ${gear.teeth} teeth`, told(gear.speed_ratio)]);
+    const told = (/** @type {number | null} */ ratio) =>
+      ratio === null ? t`open` : t`${shown(Number(ratio.toPrecision(6)))} × input`;
+    if (bodies)
+      return bodies.map((/** @type {any} */ body) => [words(body.name), body.speed === 0 ? t`held` : told(body.speed)]);
+    if (this.motion.units)
+      return shafts.map((/** @type {any} */ shaft, /** @type {number} */ k) => [
+        k === 0 ? t`Input` : k === shafts.length - 1 ? t`Output` : t`Shaft ${k + 1}`,
+        told(shaft.speed_ratio),
+      ]);
+    if (shafts?.[0]?.name)
+      return shafts.map((/** @type {any} */ shaft) => [words(shaft.name), told(shaft.speed_ratio)]);
+    return gears.map((/** @type {any} */ gear) => [
+      t`Stage ${gear.stage} ${term(gear.role)}, ${gear.teeth} teeth`,
+      told(gear.speed_ratio),
+    ]);
   }
 
   /** Of a gearbox: which gear is engaged. */
@@ -65,18 +107,32 @@ export class Gears {
     const { speeds } = this.motion;
     if (!speeds?.[0]?.engaged) return null;
     const boxed = mechanism.type === "gearbox";
-    const name = (/** @type {any} */ one) => (boxed ? t`pairs ${one.engaged.map((/** @type {number} */ k) => k + 1).join(", ")}`
-      : one.engaged[0] === mechanism.gears.length ? t`reverse` : t`gear ${one.engaged[0] + 1}`);
-    const pick = el("select", { id: "engaged", onchange: () => this.engage(speeds[Number(pick.value)].engaged) },
-      ...speeds.map((/** @type {any} */ one, /** @type {number} */ k) => el("option", { value: k }, t`${name(one)}: ${shown(Number(one.speed_ratio.toPrecision(4)))} × input`)));
-    pick.value = String(speeds.findIndex((/** @type {any} */ one) => String(one.engaged) === String(this.motion.engaged)));
+    const name = (/** @type {any} */ one) =>
+      boxed
+        ? t`pairs ${one.engaged.map((/** @type {number} */ k) => k + 1).join(", ")}`
+        : one.engaged[0] === mechanism.gears.length
+          ? t`reverse`
+          : t`gear ${one.engaged[0] + 1}`;
+    const pick = el(
+      "select",
+      { id: "engaged", onchange: () => this.engage(speeds[Number(pick.value)].engaged) },
+      ...speeds.map((/** @type {any} */ one, /** @type {number} */ k) =>
+        el("option", { value: k }, t`${name(one)}: ${shown(Number(one.speed_ratio.toPrecision(4)))} × input`),
+      ),
+    );
+    pick.value = String(
+      speeds.findIndex((/** @type {any} */ one) => String(one.engaged) === String(this.motion.engaged)),
+    );
     return el("div", { class: "row" }, el("label", { for: "engaged" }, t`Engaged`), pick);
   }
 
   /** @param {number[]} engaged */
   async engage(engaged) {
     const { mechanism } = this.design;
-    const which = mechanism.type === "gearbox" ? { engaged } : { gear: engaged[0] === mechanism.gears.length ? t`reverse` : engaged[0] + 1 };
+    const which =
+      mechanism.type === "gearbox"
+        ? { engaged }
+        : { gear: engaged[0] === mechanism.gears.length ? t`reverse` : engaged[0] + 1 };
     const motion = { from: 0, to: 360, steps: this.motion.input_angle.length - 1 };
     const found = await api.analysis({ mechanism, motion, ...which }, this.gone.signal).catch((error) => {
       if (!this.gone.signal.aborted) this.facts.replaceChildren(el("dt", {}, t`Refused`), el("dd", {}, error.message));
@@ -99,8 +155,12 @@ export class Gears {
     const input = (this.degrees(at) * Math.PI) / 180;
     for (const { turn } of this.drawings ?? []) turn(input);
     for (const { wheel, line } of this.arms ?? []) {
-      const [[u, v], [x, y]] = [this.view.at(...(wheel.axis ?? /** @type {[number, number]} */ ([0, 0]))), this.view.at(...place(wheel, input))];
-      for (const [name, value] of Object.entries({ x1: u, y1: v, x2: x, y2: y })) line.setAttribute(name, value.toFixed(2));
+      const [[u, v], [x, y]] = [
+        this.view.at(...(wheel.axis ?? /** @type {[number, number]} */ ([0, 0]))),
+        this.view.at(...place(wheel, input)),
+      ];
+      for (const [name, value] of Object.entries({ x1: u, y1: v, x2: x, y2: y }))
+        line.setAttribute(name, value.toFixed(2));
     }
   }
 

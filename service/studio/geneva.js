@@ -26,8 +26,12 @@ export class Geneva {
     this.sense = external ? -1 : 1;
     // Half an index of the crank, by the axes' angles.
     const half = external ? 90 - 180 / mechanism.stations : spherical ? 90 : 90 + 180 / mechanism.stations;
-    // As the first roller enters a slot, the crank turning counter-clockwise; that of a sphere is seen along its own axis.
-    this.begin = { wheel: (-this.sense * 180) / mechanism.stations, crank: (external ? 180 : spherical ? 90 : 0) - half };
+    // As the first roller enters a slot, the crank turning counter-clockwise; that of a sphere is seen along its own
+    // axis.
+    this.begin = {
+      wheel: (-this.sense * 180) / mechanism.stations,
+      crank: (external ? 180 : spherical ? 90 : 0) - half,
+    };
     const { disc, rollers, reach, centre } = spherical ? cap(mechanism) : crank(mechanism);
     const wheel = ring(mechanism.profile);
     const outside = mechanism.ring_radius ?? Math.max(...wheel.map(([x, y]) => Math.hypot(x, y)));
@@ -35,35 +39,80 @@ export class Geneva {
     /** Before the crank, where that is not the input. */
     this.link = mechanism.drag_link ?? null;
     this.centre = centre;
-    const wide = this.link ? [[this.link.input_pivot[0] - this.link.input, -this.link.input], [this.link.input_pivot[0] + this.link.input, this.link.input]] : [];
-    const view = new View(/** @type {Point[]} */ ([[-outside, -outside], [outside, outside], [centre - far, -far], [centre + far, far], ...wide]), width, height, 40);
+    const wide = this.link
+      ? [
+          [this.link.input_pivot[0] - this.link.input, -this.link.input],
+          [this.link.input_pivot[0] + this.link.input, this.link.input],
+        ]
+      : [];
+    const view = new View(
+      /** @type {Point[]} */ ([
+        [-outside, -outside],
+        [outside, outside],
+        [centre - far, -far],
+        [centre + far, far],
+        ...wide,
+      ]),
+      width,
+      height,
+      40,
+    );
     this.view = view;
     this.bars = svg("path", { class: "link" });
     this.axes = [view.at(0, 0), view.at(centre, 0)];
     const [[u, v]] = this.axes;
     this.wheel = svg("path", { class: "teeth", d: `${view.path(wheel)}Z` });
-    this.crank = svg("g", {}, svg("path", { class: "teeth", d: `${view.path(disc.map(([x, y]) => /** @type {Point} */ ([x + centre, y])))}Z` }),
+    this.crank = svg(
+      "g",
+      {},
+      svg("path", { class: "teeth", d: `${view.path(disc.map(([x, y]) => /** @type {Point} */ ([x + centre, y])))}Z` }),
       ...rollers.map(([x, y]) => {
         const [across, down] = view.at(x + centre, y);
         return svg("circle", { class: "pin", cx: across, cy: down, r: (view.scale * mechanism.roller_diameter) / 2 });
-      }));
-    const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The Geneva drive, turning` },
+      }),
+    );
+    const picture = svg(
+      "svg",
+      { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The Geneva drive, turning` },
       svg("rect", { class: "paper", width, height }),
-      mechanism.ring_radius && svg("g", { class: "wheel t0" }, svg("circle", { class: "pitch", cx: u, cy: v, r: view.scale * mechanism.ring_radius })),
-      svg("g", { class: "wheel t0" }, this.wheel), svg("g", { class: "wheel t1" }, this.crank),
-      this.link && this.bars, ...this.axes.map(([cx, cy]) => svg("circle", { class: "pin", cx, cy, r: 3.5 })));
+      mechanism.ring_radius &&
+        svg(
+          "g",
+          { class: "wheel t0" },
+          svg("circle", { class: "pitch", cx: u, cy: v, r: view.scale * mechanism.ring_radius }),
+        ),
+      svg("g", { class: "wheel t0" }, this.wheel),
+      svg("g", { class: "wheel t1" }, this.crank),
+      this.link && this.bars,
+      ...this.axes.map(([cx, cy]) => svg("circle", { class: "pin", cx, cy, r: 3.5 })),
+    );
     this.angle = el("dd", {});
     this.state = el("dd", {});
-    this.player = new Player({ count: motion.input_angle.length, closed: true, endless: true, label: t`Crank`,
-      reading: (at) => `${shown(Math.round(10 * this.over(motion.input_angle, at)) / 10)}°`, show: (at) => this.show(at) });
-    this.marks = plots([
-      { title: t`Wheel turned (°)`, lines: { "": motion.angle } },
-      { title: t`Velocity v (rad by rad)`, lines: { "": motion.omega } },
-      { title: t`Acceleration a (rad by rad²)`, lines: { "": motion.alpha } },
-    ], motion.input_angle, (at) => this.player.lead(at));
-    frame.fill({ picture, clock: this.player.row,
-      beside: [el("dl", { class: "facts speeds" }, el("dt", {}, t`Wheel`), this.angle, el("dt", {}, t`Motion`), this.state)],
-      plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))] });
+    this.player = new Player({
+      count: motion.input_angle.length,
+      closed: true,
+      endless: true,
+      label: t`Crank`,
+      reading: (at) => `${shown(Math.round(10 * this.over(motion.input_angle, at)) / 10)}°`,
+      show: (at) => this.show(at),
+    });
+    this.marks = plots(
+      [
+        { title: t`Wheel turned (°)`, lines: { "": motion.angle } },
+        { title: t`Velocity v (rad by rad)`, lines: { "": motion.omega } },
+        { title: t`Acceleration a (rad by rad²)`, lines: { "": motion.alpha } },
+      ],
+      motion.input_angle,
+      (at) => this.player.lead(at),
+    );
+    frame.fill({
+      picture,
+      clock: this.player.row,
+      beside: [
+        el("dl", { class: "facts speeds" }, el("dt", {}, t`Wheel`), this.angle, el("dt", {}, t`Motion`), this.state),
+      ],
+      plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))],
+    });
     this.player.begin();
   }
 
@@ -81,9 +130,18 @@ export class Geneva {
     const within = at - last * Math.floor(at / last);
     const turned = this.over(motion.angle, at);
     const turns = [begin.wheel + sense * turned, begin.crank + this.over(motion.crank, at)];
-    if (this.link) this.bars.setAttribute("d", this.view.path(bars(this.link, this.centre, this.link.entry_angle + this.over(motion.input_angle, at), turns[1])));
+    if (this.link)
+      this.bars.setAttribute(
+        "d",
+        this.view.path(
+          bars(this.link, this.centre, this.link.entry_angle + this.over(motion.input_angle, at), turns[1]),
+        ),
+      );
     [this.wheel, this.crank].forEach((part, k) => {
-      part.setAttribute("transform", `rotate(${(-turns[k]).toFixed(3)} ${this.axes[k][0].toFixed(2)} ${this.axes[k][1].toFixed(2)})`);
+      part.setAttribute(
+        "transform",
+        `rotate(${(-turns[k]).toFixed(3)} ${this.axes[k][0].toFixed(2)} ${this.axes[k][1].toFixed(2)})`,
+      );
     });
     this.angle.textContent = `${shown(Math.round(10 * turned) / 10)}°`;
     this.state.textContent = motion.moves[Math.round(within)] ? t`turns` : t`rests, locked`;
@@ -99,17 +157,33 @@ export class Geneva {
 function crank(mechanism) {
   const { angle, outer_radius: outer, inner_radius: inner } = mechanism.disc;
   const edge = (/** @type {number[]} */ radii) => radii.map((radius, k) => polar(radius, angle[k]));
-  const rollers = Array.from({ length: mechanism.rollers }, (_, k) => polar(mechanism.crank_radius, (360 * k) / mechanism.rollers));
-  const disc = inner.some((/** @type {number} */ radius) => radius > 0) ? [...edge(outer), ...edge(inner).reverse()] : edge(outer);
+  const rollers = Array.from({ length: mechanism.rollers }, (_, k) =>
+    polar(mechanism.crank_radius, (360 * k) / mechanism.rollers),
+  );
+  const disc = inner.some((/** @type {number} */ radius) => radius > 0)
+    ? [...edge(outer), ...edge(inner).reverse()]
+    : edge(outer);
   return { disc, rollers, reach: mechanism.crank_radius, centre: mechanism.center_distance };
 }
 
-/** Input, coupler and output of a drag link. @param {any} link @param {number} centre @param {number} input @param {number} crank degrees @returns {Point[]} */
+/**
+ * Input, coupler and output of a drag link.
+ * @param {any} link
+ * @param {number} centre
+ * @param {number} input
+ * @param {number} crank degrees
+ * @returns {Point[]}
+ */
 function bars(link, centre, input, crank) {
   const [x, y] = link.input_pivot;
   const [u, v] = polar(link.input, input + 180);
   const [s, t] = polar(link.output, crank - link.crank_offset);
-  return [[x, y], [x + u, y + v], [centre + s, t], [centre, 0]];
+  return [
+    [x, y],
+    [x + u, y + v],
+    [centre + s, t],
+    [centre, 0],
+  ];
 }
 
 /** Cap and roller of a spherical drive, seen along the crank's axis, with the roller along x. @param {any} mechanism */

@@ -28,12 +28,18 @@ export function grid(view) {
   for (let k = Math.ceil(west / step); lines.length < 60; k++) {
     const [u] = view.at(k * step, 0);
     if (u > width) break;
-    lines.push(svg("line", { class: "grid", x1: u, x2: u, y1: 0, y2: height }), svg("text", { class: "tick", x: u + 3, y: height - 5 }, shown(Number((k * step).toPrecision(6)))));
+    lines.push(
+      svg("line", { class: "grid", x1: u, x2: u, y1: 0, y2: height }),
+      svg("text", { class: "tick", x: u + 3, y: height - 5 }, shown(Number((k * step).toPrecision(6)))),
+    );
   }
   for (let k = Math.floor(north / step), first = lines.length; lines.length < first + 60; k--) {
     const [, v] = view.at(0, k * step);
     if (v > height) break;
-    lines.push(svg("line", { class: "grid", x1: 0, x2: width, y1: v, y2: v }), svg("text", { class: "tick", x: 4, y: v - 4 }, shown(Number((k * step).toPrecision(6)))));
+    lines.push(
+      svg("line", { class: "grid", x1: 0, x2: width, y1: v, y2: v }),
+      svg("text", { class: "tick", x: 4, y: v - 4 }, shown(Number((k * step).toPrecision(6)))),
+    );
   }
   return lines;
 }

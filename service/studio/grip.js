@@ -1,5 +1,6 @@
 /**
- * What is taken hold of on a picture: led by the pointer or moved by keys, as large as a finger needs it, and named for who
+ * What is taken hold of on a picture: led by the pointer or moved by keys, as large as a finger needs it, and named for
+ * who
  * hears the page.
  */
 
@@ -29,7 +30,15 @@ export class Grip {
    * @param {string} [looks.key] by which it is found again in a picture that is made anew
    * @param {string} [looks.role]
    */
-  constructor({ name = "", beside: [dx, dy] = [10, -9], kind = "target", dot = "dot", radius = 7, key, role = "button" }) {
+  constructor({
+    name = "",
+    beside: [dx, dy] = [10, -9],
+    kind = "target",
+    dot = "dot",
+    radius = 7,
+    key,
+    role = "button",
+  }) {
     this.dot = svg("circle", { class: dot, r: radius });
     this.hit = svg("circle", { class: "hit", r: REACH });
     this.text = name ? svg("text", { dx, dy }, name) : null;
@@ -68,14 +77,22 @@ export function led(node, picture, view, { taken, led: follow, left }) {
     taken?.(view.under(picture, event));
     const gone = new AbortController();
     const { signal } = gone;
-    node.addEventListener("pointermove", (move) => {
-      const now = /** @type {PointerEvent} */ (move);
-      if (now.pointerId === event.pointerId) follow(view.under(picture, now), now);
-    }, { signal });
-    node.addEventListener("lostpointercapture", () => {
-      gone.abort();
-      left?.();
-    }, { signal });
+    node.addEventListener(
+      "pointermove",
+      (move) => {
+        const now = /** @type {PointerEvent} */ (move);
+        if (now.pointerId === event.pointerId) follow(view.under(picture, now), now);
+      },
+      { signal },
+    );
+    node.addEventListener(
+      "lostpointercapture",
+      () => {
+        gone.abort();
+        left?.();
+      },
+      { signal },
+    );
   });
 }
 

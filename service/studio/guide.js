@@ -37,23 +37,50 @@ export class Leader {
     this.text = el("p", { role: "status" });
     this.there = el("button", { type: "button", class: "small", onclick: () => this.go() }, t`Go there`);
     this.on = el("button", { type: "button", class: "small", onclick: () => this.step(this.n + 1) }, t`Skip`);
-    this.note = el("section", { id: "guide", class: "guide", "aria-label": t`Guided task`, hidden: true,
-      onkeydown: (/** @type {KeyboardEvent} */ event) => {
-        if (event.key !== "Escape") return;
-        event.stopPropagation();
-        this.leave();
-      } }, this.count, this.text,
-    el("div", { class: "row" }, this.there, this.on, el("button", { type: "button", class: "small", onclick: () => this.leave() }, t`Leave`)));
+    this.note = el(
+      "section",
+      {
+        id: "guide",
+        class: "guide",
+        "aria-label": t`Guided task`,
+        hidden: true,
+        onkeydown: (/** @type {KeyboardEvent} */ event) => {
+          if (event.key !== "Escape") return;
+          event.stopPropagation();
+          this.leave();
+        },
+      },
+      this.count,
+      this.text,
+      el(
+        "div",
+        { class: "row" },
+        this.there,
+        this.on,
+        el("button", { type: "button", class: "small", onclick: () => this.leave() }, t`Leave`),
+      ),
+    );
     // Before the panels, so that the keys come to it first.
     byId("status").after(this.note);
   }
 
   /** The guided tasks as buttons. @param {() => void} begun */
   list(begun) {
-    return GUIDES.map((guide) => el("button", { type: "button", class: "guide-start", onclick: () => {
-      begun();
-      this.begin(guide);
-    } }, el("strong", {}, guide.name), el("span", { class: "note" }, guide.line)));
+    return GUIDES.map((guide) =>
+      el(
+        "button",
+        {
+          type: "button",
+          class: "guide-start",
+          onclick: () => {
+            begun();
+            this.begin(guide);
+          },
+        },
+        el("strong", {}, guide.name),
+        el("span", { class: "note" }, guide.line),
+      ),
+    );
   }
 
   /** @param {Guide} guide */
@@ -88,9 +115,20 @@ export class Leader {
   /** Go on where the step is done; otherwise stand beside its thing, wherever that is now. */
   look() {
     const step = this.guide?.steps[this.n];
-    if (step?.done({ problem: this.page.problem(), before: this.before, answered: this.page.answered(), chosen: this.chosen })) return this.step(this.n + 1);
-    const thing = step ? [...document.querySelectorAll(step.at)].sort((a, b) => rank(step.at, a) - rank(step.at, b))
-      .find((one) => one.getClientRects().length) ?? null : null;
+    if (
+      step?.done({
+        problem: this.page.problem(),
+        before: this.before,
+        answered: this.page.answered(),
+        chosen: this.chosen,
+      })
+    )
+      return this.step(this.n + 1);
+    const thing = step
+      ? ([...document.querySelectorAll(step.at)]
+          .sort((a, b) => rank(step.at, a) - rank(step.at, b))
+          .find((one) => one.getClientRects().length) ?? null)
+      : null;
     if (thing !== this.thing) {
       this.thing?.classList.remove("guided");
       this.thing = thing;
@@ -111,8 +149,17 @@ export class Leader {
       return;
     }
     const [right, left] = [box.right + GAP + width <= innerWidth, box.left - GAP - width >= 0];
-    const x = right ? box.right + GAP : left ? box.left - GAP - width : Math.min(innerWidth - width - GAP, Math.max(GAP, box.left));
-    const y = right || left ? box.top + (box.height - height) / 2 : box.top - GAP - height >= 0 ? box.top - GAP - height : box.bottom + GAP;
+    const x = right
+      ? box.right + GAP
+      : left
+        ? box.left - GAP - width
+        : Math.min(innerWidth - width - GAP, Math.max(GAP, box.left));
+    const y =
+      right || left
+        ? box.top + (box.height - height) / 2
+        : box.top - GAP - height >= 0
+          ? box.top - GAP - height
+          : box.bottom + GAP;
     this.note.style.left = `${Math.round(x)}px`;
     this.note.style.top = `${Math.round(Math.min(innerHeight - height - GAP, Math.max(GAP, y)))}px`;
   }
@@ -124,7 +171,7 @@ export class Leader {
     if (!["task", "answers"].includes(step.tab)) this.page.desk.drawer.press(step.tab);
     this.look();
     const within = "button:not([disabled]), input, select, [tabindex='0']";
-    const thing = this.thing?.matches(within) ? this.thing : this.thing?.querySelector(within) ?? this.thing;
+    const thing = this.thing?.matches(within) ? this.thing : (this.thing?.querySelector(within) ?? this.thing);
     /** @type {HTMLElement | null} */ (thing)?.focus();
   }
 

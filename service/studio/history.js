@@ -11,14 +11,33 @@ export class History {
   constructor(place, kinds) {
     this.kinds = kinds;
     this.list = el("ul", { class: "jobs" });
-    this.kind = el("select", { id: "job-kind", onchange: () => this.load() }, el("option", { value: "" }, t`All kinds`),
-      ...kinds.map((kind) => el("option", { value: kind.kind }, translated(kind.title))));
-    this.words = el("input", { id: "job-words", type: "search", placeholder: t`label or state`, oninput: () => this.filter() });
+    this.kind = el(
+      "select",
+      { id: "job-kind", onchange: () => this.load() },
+      el("option", { value: "" }, t`All kinds`),
+      ...kinds.map((kind) => el("option", { value: kind.kind }, translated(kind.title))),
+    );
+    this.words = el("input", {
+      id: "job-words",
+      type: "search",
+      placeholder: t`label or state`,
+      oninput: () => this.filter(),
+    });
     this.more = el("button", { type: "button", class: "small", onclick: () => this.page() }, t`Older jobs`);
     /** @type {string | null} */
     this.cursor = null;
-    place.replaceChildren(el("div", { class: "row" }, el("label", { for: "job-kind" }, t`Kind`), this.kind,
-      el("label", { for: "job-words" }, t`Search`), this.words), this.list, this.more);
+    place.replaceChildren(
+      el(
+        "div",
+        { class: "row" },
+        el("label", { for: "job-kind" }, t`Kind`),
+        this.kind,
+        el("label", { for: "job-words" }, t`Search`),
+        this.words,
+      ),
+      this.list,
+      this.more,
+    );
   }
 
   /** Read the newest jobs. */
@@ -44,14 +63,26 @@ export class History {
     const title = translated(this.kinds.find((kind) => kind.kind === job.kind)?.title ?? job.kind);
     const state = term(job.status);
     const name = job.label || title;
-    const item = el("li", {},
+    const item = el(
+      "li",
+      {},
       el("a", { href: `#job=${job.id}` }, name),
       el("span", { class: `state ${job.status}` }, state),
       el("span", { class: "note" }, `${job.label ? `${title}, ` : ""}${TIME.format(new Date(job.created_at))}`),
-      el("button", { type: "button", class: "small", "aria-label": ["queued", "running"].includes(job.status) ? t`Cancel ${name}` : t`Remove ${name}`, onclick: async () => {
-        await api.remove(job.id).catch(() => undefined);
-        await this.load();
-      } }, "×"));
+      el(
+        "button",
+        {
+          type: "button",
+          class: "small",
+          "aria-label": ["queued", "running"].includes(job.status) ? t`Cancel ${name}` : t`Remove ${name}`,
+          onclick: async () => {
+            await api.remove(job.id).catch(() => undefined);
+            await this.load();
+          },
+        },
+        "×",
+      ),
+    );
     item.dataset.words = `${name} ${title} ${job.kind} ${state} ${job.id}`.toLowerCase();
     return item;
   }
@@ -59,6 +90,7 @@ export class History {
   /** Show the lines that have all the words looked for. */
   filter() {
     const sought = this.words.value.toLowerCase().split(/\s+/);
-    for (const line of this.list.children) line.hidden = !sought.every((/** @type {string} */ word) => (line.dataset.words ?? "").includes(word));
+    for (const line of this.list.children)
+      line.hidden = !sought.every((/** @type {string} */ word) => (line.dataset.words ?? "").includes(word));
   }
 }

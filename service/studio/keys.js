@@ -29,8 +29,11 @@ export class Keys {
     this.letters = letters;
     const cap = (/** @type {string} */ one) => (one === t`or` ? ` ${one} ` : el("kbd", {}, one));
     const caps = (/** @type {string} */ shown) => shown.split(" ").map(cap);
-    byId("keys-list").replaceChildren(...bindings.filter(({ shown }) => shown).map(({ shown, text }) =>
-      el("div", {}, el("dt", {}, ...caps(shown)), el("dd", {}, text))));
+    byId("keys-list").replaceChildren(
+      ...bindings
+        .filter(({ shown }) => shown)
+        .map(({ shown, text }) => el("div", {}, el("dt", {}, ...caps(shown)), el("dd", {}, text))),
+    );
     document.addEventListener("keydown", (event) => this.pressed(event));
   }
 

@@ -8,7 +8,11 @@ import { t } from "./messages.js";
 const TOLD_MS = 5000;
 
 export class Link {
-  /** @param {HTMLElement} button @param {HTMLElement} place for what is said @param {() => import("./address.js").Sent} sent what is to be sent */
+  /**
+   * @param {HTMLElement} button
+   * @param {HTMLElement} place for what is said
+   * @param {() => import("./address.js").Sent} sent what is to be sent
+   */
   constructor(button, place, sent) {
     this.place = place;
     this.sent = sent;
@@ -26,7 +30,12 @@ export class Link {
       this.telling = setTimeout(() => this.tell(), TOLD_MS);
     } catch {
       // Only pages of this machine and those by HTTPS may write there.
-      const text = el("input", { readonly: true, value: address, "aria-label": t`The link`, onblur: () => this.tell() });
+      const text = el("input", {
+        readonly: true,
+        value: address,
+        "aria-label": t`The link`,
+        onblur: () => this.tell(),
+      });
       this.tell(t`Copy this link. It holds ${held}, and opens on any service.`, text);
       text.select();
     }

@@ -11,33 +11,60 @@ export function grounded(skeleton) {
   return skeleton.links.find((/** @type {any} */ link) => link.name === "ground")?.joints ?? [];
 }
 
-/** Joints worth a drawing: a coupler point that nobody asked for lies on another joint. @param {any} skeleton @returns {string[]} */
+/**
+ * Joints worth a drawing: a coupler point that nobody asked for lies on another joint.
+ * @param {any} skeleton
+ * @returns {string[]}
+ */
 export function drawn(skeleton) {
   const [px, py] = skeleton.joints.P ?? [NaN, NaN];
   const doubled = Object.entries(skeleton.joints).some(([name, [x, y]]) => name !== "P" && x === px && y === py);
   return Object.keys(skeleton.joints).filter((name) => name !== "P" || !doubled);
 }
 
-/** Where the line of a slide points, radians, from the joints of its link. @param {{on: string[], lean: number}} slide @param {Places} places */
+/**
+ * Where the line of a slide points, radians, from the joints of its link.
+ * @param {{on: string[], lean: number}} slide
+ * @param {Places} places
+ */
 export function slope({ on, lean }, places) {
   const [a, b] = on.map((name) => places[name]);
   return a && b ? lean + Math.atan2(b[1] - a[1], b[0] - a[0]) : lean;
 }
 
 export class Linkage {
-  /** @param {View} view @param {any} skeleton @param {{names?: boolean, faint?: boolean, classes?: Record<string, string>}} [manner] classes of links by their names */
+  /**
+   * @param {View} view
+   * @param {any} skeleton
+   * @param {{names?: boolean, faint?: boolean, classes?: Record<string, string>}} [manner] classes of links by their
+   *   names
+   */
   constructor(view, skeleton, { names = true, faint = false, classes = {} } = {}) {
     this.view = view;
-    this.links = skeleton.links.filter((/** @type {any} */ link) => link.name !== "ground").map((/** @type {any} */ link) =>
-      ({ joints: link.joints, path: svg("path", { class: `link ${link.name === skeleton.input_link ? "input" : ""} ${classes[link.name] ?? ""}` }) }));
+    this.links = skeleton.links
+      .filter((/** @type {any} */ link) => link.name !== "ground")
+      .map((/** @type {any} */ link) => ({
+        joints: link.joints,
+        path: svg("path", {
+          class: `link ${link.name === skeleton.input_link ? "input" : ""} ${classes[link.name] ?? ""}`,
+        }),
+      }));
     this.slides = (skeleton.slides ?? []).map((/** @type {any} */ slide) => this.slide(skeleton, slide));
-    this.pins = drawn(skeleton).map((name) => ({ name,
+    this.pins = drawn(skeleton).map((name) => ({
+      name,
       dot: svg("circle", { class: name === "P" ? "point" : "pin", r: name === "P" ? 5 : 4 }),
-      text: names && svg("text", { dx: 8, dy: -7 }, name) }));
+      text: names && svg("text", { dx: 8, dy: -7 }, name),
+    }));
     const still = grounded(skeleton).map((name) => this.pivot(skeleton.joints[name]));
-    this.node = svg("g", { class: faint ? "faint" : "live" }, ...this.slides.map((/** @type {any} */ one) => one.rail),
-      ...still, ...this.links.map((/** @type {any} */ one) => one.path),
-      ...this.slides.map((/** @type {any} */ one) => one.block), ...this.pins.flatMap((/** @type {any} */ one) => [one.dot, one.text]));
+    this.node = svg(
+      "g",
+      { class: faint ? "faint" : "live" },
+      ...this.slides.map((/** @type {any} */ one) => one.rail),
+      ...still,
+      ...this.links.map((/** @type {any} */ one) => one.path),
+      ...this.slides.map((/** @type {any} */ one) => one.block),
+      ...this.pins.flatMap((/** @type {any} */ one) => [one.dot, one.text]),
+    );
   }
 
   /** @param {Point | undefined} at */
@@ -47,7 +74,11 @@ export class Linkage {
     return svg("path", { class: "ground", d: `M${u} ${v}l-9 15h18Z` });
   }
 
-  /** A block on its line; a line of a moving link is known by two joints of it. @param {any} skeleton @param {any} slide */
+  /**
+   * A block on its line; a line of a moving link is known by two joints of it.
+   * @param {any} skeleton
+   * @param {any} slide
+   */
   slide(skeleton, slide) {
     const angle = (slide.angle * Math.PI) / 180;
     const link = skeleton.links.find((/** @type {any} */ one) => one.name === slide.link);
@@ -75,8 +106,12 @@ export class Linkage {
       const angle = a && !b ? Math.atan2(at[1] - a[1], at[0] - a[0]) : slope({ on, lean }, places);
       const [u, v] = this.view.at(...at);
       const [c, s] = [900 * Math.cos(angle), -900 * Math.sin(angle)];
-      for (const [name, value] of Object.entries({ x1: u - c, y1: v - s, x2: u + c, y2: v + s })) rail.setAttribute(name, String(value));
-      block.setAttribute("transform", `translate(${u.toFixed(1)} ${v.toFixed(1)}) rotate(${((-angle * 180) / Math.PI).toFixed(1)})`);
+      for (const [name, value] of Object.entries({ x1: u - c, y1: v - s, x2: u + c, y2: v + s }))
+        rail.setAttribute(name, String(value));
+      block.setAttribute(
+        "transform",
+        `translate(${u.toFixed(1)} ${v.toFixed(1)}) rotate(${((-angle * 180) / Math.PI).toFixed(1)})`,
+      );
     }
     for (const { name, dot, text } of this.pins) {
       const point = places[name];

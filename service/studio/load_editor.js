@@ -1,4 +1,7 @@
-/** Stating what a linkage design weighs and carries: material, masses, loads, gravity and speed, placed on the drawing or by lists. */
+/**
+ * Stating what a linkage design weighs and carries: material, masses, loads, gravity and speed, placed on the drawing
+ * or by lists.
+ */
 
 import { Refused } from "./api.js";
 import { choice, numberBox } from "./controls.js";
@@ -29,7 +32,11 @@ export class LoadEditor {
     this.ask = show;
     /** @type {any} */
     this.block = structuredClone(problem.dynamics ?? { gravity: { magnitude: 9.80665, angle: 270 } });
-    this.problem = { kind: problem.kind, length_unit: problem.length_unit, dynamics: { units: this.block.units ?? "si" } };
+    this.problem = {
+      kind: problem.kind,
+      length_unit: problem.length_unit,
+      dynamics: { units: this.block.units ?? "si" },
+    };
     /** @type {Mover | null} */
     this.mover = null;
     /** The row whose joint the next click on the drawing chooses. @type {Placed | null} */
@@ -40,22 +47,50 @@ export class LoadEditor {
     this.hint = el("p", { class: "note", role: "status" });
     this.faults = el("div", { role: "alert" });
     this.button = el("button", { type: "submit", class: "main" }, t`Show the forces`);
-    const kept = Object.entries(this.block).filter(([name, value]) => !EDITED.includes(name) && Object.keys(value ?? {}).length).map(([name]) => name);
-    this.form = el("form", { novalidate: true, "aria-label": t`Masses and loads`, onsubmit: (/** @type {Event} */ event) => {
-      event.preventDefault();
-      this.submit();
-    }, onkeydown: (/** @type {KeyboardEvent} */ event) => {
-      if (event.key === "Escape") this.place(null);
-    } },
-    el("div", { class: "fields" }, this.speed(), ...this.gravity(), this.material()), this.rows,
-    el("div", { class: "row" }, ...[["point mass", () => this.masses.push({ joint: this.joints[0] })],
-      ["force", () => this.loads.push({ joint: this.joints[0], force: { constant: [0, 0] } })],
-      ["torque", () => this.loads.push({ link: this.links[0], torque: { constant: 0 } })]].map(([name, add]) =>
-      el("button", { type: "button", class: "small", onclick: () => this.add(/** @type {() => void} */ (add), String(name)) }, t`Add a ${term(String(name))}`))),
-    this.hint, kept.length > 0 && el("p", { class: "note" }, t`Kept as the problem states it: ${kept.map(term).join(", ")}.`),
-    this.faults, el("div", { class: "row" }, this.button));
-    this.node = el("details", { class: "load-editor", open: !problem.dynamics, ontoggle: () => this.node.open || this.place(null) },
-      el("summary", {}, t`State masses and loads`), this.form);
+    const kept = Object.entries(this.block)
+      .filter(([name, value]) => !EDITED.includes(name) && Object.keys(value ?? {}).length)
+      .map(([name]) => name);
+    this.form = el(
+      "form",
+      {
+        novalidate: true,
+        "aria-label": t`Masses and loads`,
+        onsubmit: (/** @type {Event} */ event) => {
+          event.preventDefault();
+          this.submit();
+        },
+        onkeydown: (/** @type {KeyboardEvent} */ event) => {
+          if (event.key === "Escape") this.place(null);
+        },
+      },
+      el("div", { class: "fields" }, this.speed(), ...this.gravity(), this.material()),
+      this.rows,
+      el(
+        "div",
+        { class: "row" },
+        ...[
+          ["point mass", () => this.masses.push({ joint: this.joints[0] })],
+          ["force", () => this.loads.push({ joint: this.joints[0], force: { constant: [0, 0] } })],
+          ["torque", () => this.loads.push({ link: this.links[0], torque: { constant: 0 } })],
+        ].map(([name, add]) =>
+          el(
+            "button",
+            { type: "button", class: "small", onclick: () => this.add(/** @type {() => void} */ (add), String(name)) },
+            t`Add a ${term(String(name))}`,
+          ),
+        ),
+      ),
+      this.hint,
+      kept.length > 0 && el("p", { class: "note" }, t`Kept as the problem states it: ${kept.map(term).join(", ")}.`),
+      this.faults,
+      el("div", { class: "row" }, this.button),
+    );
+    this.node = el(
+      "details",
+      { class: "load-editor", open: !problem.dynamics, ontoggle: () => this.node.open || this.place(null) },
+      el("summary", {}, t`State masses and loads`),
+      this.form,
+    );
     this.click = (/** @type {PointerEvent} */ event) => this.choose(event);
     this.list();
   }
@@ -66,7 +101,9 @@ export class LoadEditor {
 
   /** @returns {string[]} */
   get links() {
-    return this.skeleton.links.map((/** @type {any} */ link) => link.name).filter((/** @type {string} */ name) => name !== "ground");
+    return this.skeleton.links
+      .map((/** @type {any} */ link) => link.name)
+      .filter((/** @type {string} */ name) => name !== "ground");
   }
 
   /** @returns {any[]} */
@@ -81,13 +118,25 @@ export class LoadEditor {
 
   /**
    * A number with its name, unit and place for what is wrong with it.
-   * @param {string} path @param {string} name @param {string} unit @param {any} value @param {(value: any) => void} set @param {string} [note]
+   * @param {string} path
+   * @param {string} name
+   * @param {string} unit
+   * @param {any} value
+   * @param {(value: any) => void} set
+   * @param {string} [note]
    */
   number(path, name, unit, value, set, note) {
     const box = numberBox(value, undefined, set);
     box.id = `load${++ids}`;
     box.setAttribute("data-path", path);
-    return el("div", { class: "field" }, el("label", { for: box.id }, name, unit && el("span", { class: "unit" }, ` (${unit})`)), box, el("p", { class: "error" }), note && el("p", { class: "note" }, note));
+    return el(
+      "div",
+      { class: "field" },
+      el("label", { for: box.id }, name, unit && el("span", { class: "unit" }, ` (${unit})`)),
+      box,
+      el("p", { class: "error" }),
+      note && el("p", { class: "note" }, note),
+    );
   }
 
   /** @param {string} dimension */
@@ -98,28 +147,60 @@ export class LoadEditor {
   speed() {
     const name = this.sliding ? "speed" : "speed_rpm";
     const unit = this.sliding ? `${this.unit("length")}/s` : this.unit("rotational speed");
-    return this.number(`/dynamics/${name}`, t`Speed of the input`, unit, this.block[name], (value) => put(this.block, name, value), t`0 is statics.`);
+    return this.number(
+      `/dynamics/${name}`,
+      t`Speed of the input`,
+      unit,
+      this.block[name],
+      (value) => put(this.block, name, value),
+      t`0 is statics.`,
+    );
   }
 
   gravity() {
-    const pull = { magnitude: undefined, angle: undefined, ...(this.block.gravity && { magnitude: 9.80665, angle: 270, ...this.block.gravity }) };
+    const pull = {
+      magnitude: undefined,
+      angle: undefined,
+      ...(this.block.gravity && { magnitude: 9.80665, angle: 270, ...this.block.gravity }),
+    };
     const set = (/** @type {"magnitude" | "angle"} */ name) => (/** @type {any} */ value) => {
       pull[name] = value;
       if (pull.magnitude === undefined) delete this.block.gravity;
       else this.block.gravity = pull.angle === undefined ? { magnitude: pull.magnitude } : { ...pull };
     };
-    return [this.number("/dynamics/gravity/magnitude", t`Gravity`, this.unit("gravity"), pull.magnitude, set("magnitude"), t`Empty: none.`),
-      this.number("/dynamics/gravity/angle", t`Gravity pulls towards`, "°", pull.angle, set("angle"))];
+    return [
+      this.number(
+        "/dynamics/gravity/magnitude",
+        t`Gravity`,
+        this.unit("gravity"),
+        pull.magnitude,
+        set("magnitude"),
+        t`Empty: none.`,
+      ),
+      this.number("/dynamics/gravity/angle", t`Gravity pulls towards`, "°", pull.angle, set("angle")),
+    ];
   }
 
   material() {
     const { block } = this;
-    const field = (/** @type {string} */ name, /** @type {string} */ dimension) => this.number(`/dynamics/links/${name}`, words(name), this.unit(dimension), block.links?.[name], (value) => {
-      put((block.links ??= {}), name, value);
-      if (!Object.keys(block.links).length) delete block.links;
-    });
-    return el("fieldset", { class: "field member", "data-path": "/dynamics/links", tabindex: -1 }, el("legend", {}, t`Material of all links`),
-      el("div", { class: "fields" }, field("density", "density"), field("thickness", "length"), field("width", "length")), el("p", { class: "error" }));
+    const field = (/** @type {string} */ name, /** @type {string} */ dimension) =>
+      this.number(`/dynamics/links/${name}`, words(name), this.unit(dimension), block.links?.[name], (value) => {
+        put((block.links ??= {}), name, value);
+        if (!Object.keys(block.links).length) delete block.links;
+      });
+    return el(
+      "fieldset",
+      { class: "field member", "data-path": "/dynamics/links", tabindex: -1 },
+      el("legend", {}, t`Material of all links`),
+      el(
+        "div",
+        { class: "fields" },
+        field("density", "density"),
+        field("thickness", "length"),
+        field("width", "length"),
+      ),
+      el("p", { class: "error" }),
+    );
   }
 
   /** @param {() => void} make @param {string} name */
@@ -136,30 +217,80 @@ export class LoadEditor {
   list() {
     this.place(null);
     this.rows.replaceChildren(
-      ...this.masses.map((mass, k) => this.row(this.masses, k, `/dynamics/point_masses/${k}`, "point mass", this.at(mass, `/dynamics/point_masses/${k}/joint`),
-        this.number(`/dynamics/point_masses/${k}/mass`, t`Mass`, this.unit("mass"), mass.mass, (value) => put(mass, "mass", value)))),
+      ...this.masses.map((mass, k) =>
+        this.row(
+          this.masses,
+          k,
+          `/dynamics/point_masses/${k}`,
+          "point mass",
+          this.at(mass, `/dynamics/point_masses/${k}/joint`),
+          this.number(`/dynamics/point_masses/${k}/mass`, t`Mass`, this.unit("mass"), mass.mass, (value) =>
+            put(mass, "mass", value),
+          ),
+        ),
+      ),
       ...this.loads.map((load, k) => {
         const path = `/dynamics/loads/${k}`;
         if (load.joint !== undefined && load.force?.constant) {
-          const axis = (/** @type {number} */ n) => this.number(`${path}/force/constant/${n}`, t`Force ${"xy"[n]}`, this.unit("force"), load.force.constant[n], (value) => (load.force.constant[n] = value ?? null));
+          const axis = (/** @type {number} */ n) =>
+            this.number(
+              `${path}/force/constant/${n}`,
+              t`Force ${"xy"[n]}`,
+              this.unit("force"),
+              load.force.constant[n],
+              (value) => (load.force.constant[n] = value ?? null),
+            );
           return this.row(this.loads, k, path, "force", this.at(load, `${path}/joint`), axis(0), axis(1));
         }
         if (load.link !== undefined && load.torque && "constant" in load.torque) {
-          return this.row(this.loads, k, path, "torque", this.named(this.links, load, "link", `${path}/link`),
-            this.number(`${path}/torque/constant`, t`Torque`, this.unit("torque"), load.torque.constant, (value) => (load.torque.constant = value ?? null)));
+          return this.row(
+            this.loads,
+            k,
+            path,
+            "torque",
+            this.named(this.links, load, "link", `${path}/link`),
+            this.number(
+              `${path}/torque/constant`,
+              t`Torque`,
+              this.unit("torque"),
+              load.torque.constant,
+              (value) => (load.torque.constant = value ?? null),
+            ),
+          );
         }
-        return this.row(this.loads, k, path, "load", el("p", { class: "note" }, t`On ${load.joint ?? load.link}, kept as it is stated.`));
-      }));
+        return this.row(
+          this.loads,
+          k,
+          path,
+          "load",
+          el("p", { class: "note" }, t`On ${load.joint ?? load.link}, kept as it is stated.`),
+        );
+      }),
+    );
   }
 
   /** @param {any[]} all @param {number} k @param {string} path @param {string} sort @param {...HTMLElement} controls */
   row(all, k, path, sort, ...controls) {
-    return el("fieldset", { class: "field member", "data-path": path, "data-sort": sort, tabindex: -1 }, el("legend", {}, words(sort)),
-      el("div", { class: "fields" }, ...controls), el("p", { class: "error" }),
-      el("button", { type: "button", class: "small", "aria-label": t`Remove ${`${term(sort)} ${k + 1}`}`, onclick: () => {
-        all.splice(k, 1);
-        this.list();
-      } }, t`Remove`));
+    return el(
+      "fieldset",
+      { class: "field member", "data-path": path, "data-sort": sort, tabindex: -1 },
+      el("legend", {}, words(sort)),
+      el("div", { class: "fields" }, ...controls),
+      el("p", { class: "error" }),
+      el(
+        "button",
+        {
+          type: "button",
+          class: "small",
+          "aria-label": t`Remove ${`${term(sort)} ${k + 1}`}`,
+          onclick: () => {
+            all.splice(k, 1);
+            this.list();
+          },
+        },
+        t`Remove`,
+      ),
+    );
   }
 
   /** @param {string[]} names @param {any} row @param {string} key @param {string} path */
@@ -170,11 +301,24 @@ export class LoadEditor {
     return el("div", { class: "field" }, el("label", { for: box.id }, words(key)), box, el("p", { class: "error" }));
   }
 
-  /** The joint of a mass or force: from the list, or by a click on the drawing. @param {any} row @param {string} path */
+  /**
+   * The joint of a mass or force: from the list, or by a click on the drawing.
+   * @param {any} row
+   * @param {string} path
+   */
   at(row, path) {
     const field = this.named(this.joints, row, "joint", path);
-    const button = el("button", { type: "button", class: "small", "aria-pressed": "false", onclick: () =>
-      this.place(this.placing?.button === button ? null : { select: field.querySelector("select"), button }) }, t`Choose on the drawing`);
+    const button = el(
+      "button",
+      {
+        type: "button",
+        class: "small",
+        "aria-pressed": "false",
+        onclick: () =>
+          this.place(this.placing?.button === button ? null : { select: field.querySelector("select"), button }),
+      },
+      t`Choose on the drawing`,
+    );
     field.append(button);
     return field;
   }
@@ -186,7 +330,9 @@ export class LoadEditor {
     placed?.button.setAttribute("aria-pressed", "true");
     this.mover?.picture.classList.toggle("placing", Boolean(placed));
     if (placed) this.mover?.pause();
-    this.hint.textContent = placed ? t`Click a joint in the drawing above, or choose it from the list. Escape leaves the drawing.` : "";
+    this.hint.textContent = placed
+      ? t`Click a joint in the drawing above, or choose it from the list. Escape leaves the drawing.`
+      : "";
   }
 
   /** @param {PointerEvent} event */
@@ -194,7 +340,10 @@ export class LoadEditor {
     const { mover, placing } = this;
     if (!mover || !placing) return;
     const [x, y] = mover.view.under(mover.picture, event);
-    const away = mover.linkage.pins.map((one) => [one.name, Math.hypot(...mover.view.at(x, y).map((value, axis) => value - Number(one.dot.getAttribute(["cx", "cy"][axis]))))]);
+    const away = mover.linkage.pins.map((one) => [
+      one.name,
+      Math.hypot(...mover.view.at(x, y).map((value, axis) => value - Number(one.dot.getAttribute(["cx", "cy"][axis])))),
+    ]);
     const [name, distance] = away.sort(([, one], [, other]) => Number(one) - Number(other))[0];
     if (!(Number(distance) < NEAR)) return;
     placing.select.value = String(name);
@@ -230,9 +379,13 @@ export class LoadEditor {
     if (error instanceof Refused && error.errors.length) {
       // That a speed is missing is said of the block as a whole.
       const speed = `/dynamics/${this.sliding ? "speed" : "speed_rpm"}`;
-      faults.tell(this.form, this.faults, { message: error.message, errors: error.errors.map(({ path, detail }) => ({ path: path === "/dynamics" ? speed : path, detail })) });
+      faults.tell(this.form, this.faults, {
+        message: error.message,
+        errors: error.errors.map(({ path, detail }) => ({ path: path === "/dynamics" ? speed : path, detail })),
+      });
     } else if (error.name !== "AbortError") this.faults.replaceChildren(el("p", { class: "error" }, error.message));
-    if (this.answered) this.faults.append(el("p", { class: "note" }, t`The forces below are those of what was stated before.`));
+    if (this.answered)
+      this.faults.append(el("p", { class: "note" }, t`The forces below are those of what was stated before.`));
   }
 }
 

@@ -21,34 +21,65 @@ const MORE = /^(quality|yield|min_.*|.*efficiency|.*_share|locking_angle|transmi
 
 /** @param {any[]} designs @param {any} problem @returns {Quantity[]} the telling ones first */
 export function quantities(designs, problem) {
-  const names = [...new Set(designs.flatMap((design) => figures(design).filter(([, value]) => typeof value === "number").map(([name]) => name)))];
+  const names = [
+    ...new Set(
+      designs.flatMap((design) =>
+        figures(design)
+          .filter(([, value]) => typeof value === "number")
+          .map(([name]) => name),
+      ),
+    ),
+  ];
   const sizes = designs.map((design) => design.metrics?.size);
-  const found = names.map((name) => made(name, words(name), unitFor(name, problem), designs.map((design, n) =>
-    plain(name, design.metrics?.[name], api.measures(problem.kind)[name], sizes[n]))));
+  const found = names.map((name) =>
+    made(
+      name,
+      words(name),
+      unitFor(name, problem),
+      designs.map((design, n) => plain(name, design.metrics?.[name], api.measures(problem.kind)[name], sizes[n])),
+    ),
+  );
   for (const check of checksOf(designs)) {
     const values = designs.map((design, n) => {
       const one = (design.verification?.checks ?? []).find((/** @type {any} */ other) => other.name === check.name);
       return plain(check.name, one?.value, check.dimension, sizes[n]);
     });
     const told = found.some((one) => one.values.every((value, n) => value === values[n]));
-    if (!told && differ(values)) found.push(made(`check:${check.name}`, t`Check: ${term(check.name)}`, symbolOf(check.dimension, problem), values));
+    if (!told && differ(values))
+      found.push(
+        made(`check:${check.name}`, t`Check: ${term(check.name)}`, symbolOf(check.dimension, problem), values),
+      );
   }
   // What all have alike is no choice.
   return [...found.filter((one) => differ(one.values)), ...found.filter((one) => !differ(one.values))];
 }
 
-/** @param {string} name @param {string} text @param {string} unit @param {(number | null)[]} values @returns {Quantity} */
+/**
+ * @param {string} name
+ * @param {string} text
+ * @param {string} unit
+ * @param {(number | null)[]} values
+ * @returns {Quantity}
+ */
 function made(name, text, unit, values) {
   return { name, text, unit, values, more: MORE.test(name.replace("check:", "")) };
 }
 
 /** Every check with a number, once. @param {any[]} designs @returns {any[]} */
 function checksOf(designs) {
-  const all = designs.flatMap((design) => design.verification?.checks ?? []).filter((/** @type {any} */ one) => typeof one.value === "number");
+  const all = designs
+    .flatMap((design) => design.verification?.checks ?? [])
+    .filter((/** @type {any} */ one) => typeof one.value === "number");
   return all.filter((one, k) => all.findIndex((other) => other.name === one.name) === k);
 }
 
-/** @param {string} name @param {any} value @param {string | undefined} dimension @param {number | undefined} size @returns {number | null} */
+/**
+ * @param {string} name
+ * @param {any} value
+ * @param {string | undefined} dimension
+ * @param {number | undefined} size
+ * @returns {number | null}
+ */
 function plain(name, value, dimension, size) {
   if (typeof value !== "number" || !Number.isFinite(value)) return null;
   return exact(name, value, dimension, size) ? 0 : value;

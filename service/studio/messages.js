@@ -1,7 +1,8 @@
 /**
  * The language of the page: its texts, by what they are in English, and the numbers in them.
  *
- * The sources say what they say in English. The tag t looks a text of the page up among the messages of the chosen language,
+ * The sources say what they say in English. The tag t looks a text of the page up among the messages of the chosen
+ * language,
  * and translated a text of the service; what is not found there stays English. English itself has no messages and waits
  * for none.
  */
@@ -17,11 +18,18 @@ const KEPT = "mechsynth.language";
 /** What the person reads of an element that is no text of its own. */
 const READ = ["aria-label", "title", "placeholder", "content"];
 
-/** The languages that the page has: the head of the page lists them. @type {Record<string, {name: string, messages: string}>} */
+/**
+ * The languages that the page has: the head of the page lists them.
+ * @type {Record<string, {name: string, messages: string}>}
+ */
 export const languages = {
   [SOURCE]: { name: "English", messages: "" },
-  ...Object.fromEntries([.../** @type {NodeListOf<HTMLLinkElement>} */ (document.querySelectorAll("link[hreflang]"))]
-    .map((link) => [link.hreflang, { name: link.title, messages: link.href }])),
+  ...Object.fromEntries(
+    [.../** @type {NodeListOf<HTMLLinkElement>} */ (document.querySelectorAll("link[hreflang]"))].map((link) => [
+      link.hreflang,
+      { name: link.title, messages: link.href },
+    ]),
+  ),
 };
 
 /** The language that the page speaks. */
@@ -51,7 +59,11 @@ export function choose(code) {
   location.reload();
 }
 
-/** Where they do not come, the page speaks English. @param {string} address @returns {Promise<Record<string, string>>} */
+/**
+ * Where they do not come, the page speaks English.
+ * @param {string} address
+ * @returns {Promise<Record<string, string>>}
+ */
 async function fetched(address) {
   try {
     return await (await fetch(address)).json();
@@ -66,7 +78,10 @@ async function fetched(address) {
  */
 export function t(parts, ...values) {
   const key = parts.reduce((text, part, k) => `${text}{${k - 1}}${part}`);
-  return filled(messages[key] ?? key, values.map((one) => (typeof one === "number" ? number(one) : String(one))));
+  return filled(
+    messages[key] ?? key,
+    values.map((one) => (typeof one === "number" ? number(one) : String(one))),
+  );
 }
 
 /** @param {string} message @param {string[]} values */
@@ -74,7 +89,10 @@ function filled(message, values) {
   return values.length ? message.replace(/\{(\d+)\}/g, (place, k) => values[Number(k)] ?? place) : message;
 }
 
-/** A text of the service in the language of the page. It may have numbers in it: `72 starts` is found as `{0} starts`. @param {string} text */
+/**
+ * A text of the service in the language of the page. It may have numbers in it: `72 starts` is found as `{0} starts`.
+ * @param {string} text
+ */
 export function translated(text) {
   if (language === SOURCE || text in messages) return messages[text] ?? text;
   /** @type {string[]} */
@@ -112,7 +130,8 @@ export function translatePage() {
   while (walker.nextNode()) {
     const node = walker.currentNode;
     if (node instanceof Element) {
-      for (const name of READ) if (node.hasAttribute(name)) node.setAttribute(name, read(String(node.getAttribute(name))));
+      for (const name of READ)
+        if (node.hasAttribute(name)) node.setAttribute(name, read(String(node.getAttribute(name))));
     } else if (node.textContent) node.textContent = read(node.textContent);
   }
 }

@@ -46,22 +46,48 @@ export class Mover {
     this.targets = demanded(problem, design);
     const name = telling(this.skeleton);
     this.room = new RoomView(problem, design.mechanism);
-    const points = [...around, ...this.room.extent, ...Object.keys(motion.joints).flatMap((joint) => this.track(joint)), ...this.targets.map((one) => /** @type {Point} */ ([one.x, one.y])),
-      ...others(circuits).flatMap((branch) => track(branch, name))];
+    const points = [
+      ...around,
+      ...this.room.extent,
+      ...Object.keys(motion.joints).flatMap((joint) => this.track(joint)),
+      ...this.targets.map((one) => /** @type {Point} */ ([one.x, one.y])),
+      ...others(circuits).flatMap((branch) => track(branch, name)),
+    ];
     this.view = new View(points, ...this.size, 44);
     const planes = design.layout?.planes ?? {};
-    this.linkage = new Linkage(this.view, this.skeleton, { classes: Object.fromEntries(Object.entries(planes).map(([name, plane]) => [name, planeClass(Number(plane))])) });
+    this.linkage = new Linkage(this.view, this.skeleton, {
+      classes: Object.fromEntries(Object.entries(planes).map(([name, plane]) => [name, planeClass(Number(plane))])),
+    });
     this.circuits = new Circuits(this.view, this.skeleton, circuits);
     const closed = returns(motion, this.count);
-    this.player = new Player({ count: this.count, closed, label: t`Input`,
-      reading: (at) => this.reading(at), show: (at) => this.show(at) });
-    const range = rangeOf(motion, this.room.cycle ? null : design.metrics?.used_range ?? design.metrics?.used_stroke, closed);
-    this.sweep = new Sweep(this.view, this.skeleton, this.room, (at) => jointsAt(motion, at), range, () => this.player.keep(this.sweep.on ? range : null));
+    this.player = new Player({
+      count: this.count,
+      closed,
+      label: t`Input`,
+      reading: (at) => this.reading(at),
+      show: (at) => this.show(at),
+    });
+    const range = rangeOf(
+      motion,
+      this.room.cycle ? null : (design.metrics?.used_range ?? design.metrics?.used_stroke),
+      closed,
+    );
+    this.sweep = new Sweep(
+      this.view,
+      this.skeleton,
+      this.room,
+      (at) => jointsAt(motion, at),
+      range,
+      () => this.player.keep(this.sweep.on ? range : null),
+    );
     this.closed = closed;
     this.planes = layered ? new Planes(this.view, design, problem, (input) => this.lead(input)) : null;
     this.gauge = motion.transmission_angle?.some((/** @type {any} */ one) => one !== null)
       ? new Gauge(t`Transmission angle`, motion.transmission_angle, {
-        limit: problem.constraints?.min_transmission_angle, used: partly(design) ? design.metrics.min_transmission_angle : null }) : null;
+          limit: problem.constraints?.min_transmission_angle,
+          used: partly(design) ? design.metrics.min_transmission_angle : null,
+        })
+      : null;
     /** @type {{figure: HTMLElement, show: (at: number) => void}[]} */
     this.marks = [];
     /** @type {Companion | null} */
@@ -84,26 +110,53 @@ export class Mover {
     const [width, height] = this.size;
     const still = grounded(skeleton);
     const moving = drawn(skeleton).filter((name) => !still.includes(name));
-    this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The linkage in motion` },
-      svg("rect", { class: "paper", width, height }), this.sweep.node, this.room.draw(view), this.circuits.node,
+    this.picture = svg(
+      "svg",
+      { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The linkage in motion` },
+      svg("rect", { class: "paper", width, height }),
+      this.sweep.node,
+      this.room.draw(view),
+      this.circuits.node,
       ...moving.map((name) => svg("path", { class: name === "P" ? "curve" : "trail", d: view.path(this.track(name)) })),
-      ...this.toggles(), ...this.targets.map((one, k) => this.target(one, k)), this.linkage.node);
+      ...this.toggles(),
+      ...this.targets.map((one, k) => this.target(one, k)),
+      this.linkage.node,
+    );
     this.drags(still);
     const ruler = new Ruler(this.picture, view, problem.length_unit ?? "mm", () => this.places());
     const force = plots(judged(this.motion, design, problem), this.motion.input_angle, (at) => this.player.lead(at));
     const box = el("div", { class: "plots" });
     const choices = parts(this.motion, skeleton);
     const choose = (/** @type {string} */ part) => {
-      this.marks = [...force, ...plots(moved(this.motion, part), this.motion.input_angle, (at) => this.player.lead(at))];
+      this.marks = [
+        ...force,
+        ...plots(moved(this.motion, part), this.motion.input_angle, (at) => this.player.lead(at)),
+      ];
       box.replaceChildren(...this.marks.map((mark) => mark.figure));
       for (const mark of this.marks) mark.show(this.player.at);
     };
-    const pick = el("select", { id: "part", onchange: () => choose(pick.value) },
-      ...choices.map((part) => el("option", { value: part }, partName(part))));
-    this.frame.fill({ picture: this.picture, tools: [ruler.button], clock: this.player.row, below: [this.planes?.node],
+    const pick = el(
+      "select",
+      { id: "part", onchange: () => choose(pick.value) },
+      ...choices.map((part) => el("option", { value: part }, partName(part))),
+    );
+    this.frame.fill({
+      picture: this.picture,
+      tools: [ruler.button],
+      clock: this.player.row,
+      below: [this.planes?.node],
       beside: [this.gauge?.node, this.sweep.control, this.circuits.control, ...this.room.legend],
-      plots: [el("div", { class: "row" }, el("label", { for: "part" }, t`Plots of`), pick,
-        el("span", { class: "note" }, t`Rates are by the radian of the input; click in a plot to go there.`)), box] });
+      plots: [
+        el(
+          "div",
+          { class: "row" },
+          el("label", { for: "part" }, t`Plots of`),
+          pick,
+          el("span", { class: "note" }, t`Rates are by the radian of the input; click in a plot to go there.`),
+        ),
+        box,
+      ],
+    });
     if (choices.length) choose(choices[0]);
   }
 
@@ -119,7 +172,10 @@ export class Mover {
     pin.dot.before(this.hold.hit);
     const { x, y } = this.motion.joints[pin.name];
     for (const grip of [pin.dot, this.hold.hit]) {
-      led(grip, this.picture, this.view, { taken: () => this.player.stop(), led: (at) => this.player.lead(nearest(x, y, at, this.player.at)) });
+      led(grip, this.picture, this.view, {
+        taken: () => this.player.stop(),
+        led: (at) => this.player.lead(nearest(x, y, at, this.player.at)),
+      });
     }
   }
 
@@ -128,27 +184,46 @@ export class Mover {
     const { motion, skeleton, view } = this;
     const ends = this.endings().map((k) => {
       const ghost = new Linkage(view, skeleton, { names: false, faint: true });
-      ghost.show(Object.fromEntries(Object.keys(motion.joints).map((name) => [name, motion.joints[name].x[k] === null ? null : this.track(name)[k]])));
+      ghost.show(
+        Object.fromEntries(
+          Object.keys(motion.joints).map((name) => [
+            name,
+            motion.joints[name].x[k] === null ? null : this.track(name)[k],
+          ]),
+        ),
+      );
       ghost.node.setAttribute("class", "faint toggle");
       return ghost.node;
     });
     const still = grounded(skeleton);
     const link = skeleton.links.find((/** @type {any} */ one) => one.name === skeleton.input_link);
-    const [pivot, pin] = [link?.joints.find((/** @type {string} */ one) => still.includes(one)), inputPin(skeleton, still)];
+    const [pivot, pin] = [
+      link?.joints.find((/** @type {string} */ one) => still.includes(one)),
+      inputPin(skeleton, still),
+    ];
     if (!pivot || !pin || !link) return ends;
     const [[ox, oy], [ax, ay]] = [skeleton.joints[pivot], skeleton.joints[pin]];
     const crank = Math.hypot(ax - ox, ay - oy);
-    return [...ends, ...motion.toggles.map((/** @type {number} */ degrees) => {
-      const angle = (degrees * Math.PI) / 180;
-      const [u, v] = view.at(ox + crank * Math.cos(angle), oy + crank * Math.sin(angle));
-      return svg("g", { class: "stop" }, svg("title", {}, t`Toggle at ${shown(Math.round(10 * degrees) / 10)}°`),
-        svg("path", { d: `M${u - 5} ${v - 5}l10 10m0 -10l-10 10` }));
-    })];
+    return [
+      ...ends,
+      ...motion.toggles.map((/** @type {number} */ degrees) => {
+        const angle = (degrees * Math.PI) / 180;
+        const [u, v] = view.at(ox + crank * Math.cos(angle), oy + crank * Math.sin(angle));
+        return svg(
+          "g",
+          { class: "stop" },
+          svg("title", {}, t`Toggle at ${shown(Math.round(10 * degrees) / 10)}°`),
+          svg("path", { d: `M${u - 5} ${v - 5}l10 10m0 -10l-10 10` }),
+        );
+      }),
+    ];
   }
 
   /** Samples at which the motion ends at a toggle. @returns {number[]} */
   endings() {
-    const here = this.motion.circuits.flatMap((/** @type {any} */ one) => one.branches).find((/** @type {any} */ one) => one.reference);
+    const here = this.motion.circuits
+      .flatMap((/** @type {any} */ one) => one.branches)
+      .find((/** @type {any} */ one) => one.reference);
     return here && !here.full ? [0, this.count - 1] : [];
   }
 
@@ -156,9 +231,14 @@ export class Mover {
   target(one, k) {
     const [u, v] = this.view.at(one.x, one.y);
     const angle = ((one.angle ?? 0) * Math.PI) / 180;
-    return svg("g", { class: "goal" }, svg("circle", { cx: u, cy: v, r: 5 }),
-      one.angle !== undefined && svg("line", { x1: u, y1: v, x2: u + 26 * Math.cos(angle), y2: v - 26 * Math.sin(angle) }),
-      this.targets.length <= 12 && svg("text", { x: u, y: v, dx: 8, dy: 15 }, k + 1));
+    return svg(
+      "g",
+      { class: "goal" },
+      svg("circle", { cx: u, cy: v, r: 5 }),
+      one.angle !== undefined &&
+        svg("line", { x1: u, y1: v, x2: u + 26 * Math.cos(angle), y2: v - 26 * Math.sin(angle) }),
+      this.targets.length <= 12 && svg("text", { x: u, y: v, dx: 8, dy: 15 }, k + 1),
+    );
   }
 
   /** Where all joints are now. @returns {Point[]} */
@@ -189,7 +269,10 @@ export class Mover {
     this.player.lead(within(placeOf(this.motion.input_angle, input, this.closed), this.count - 1));
   }
 
-  /** Draw something into the picture that goes with the motion, or nothing any more. @param {Companion | null} companion */
+  /**
+   * Draw something into the picture that goes with the motion, or nothing any more.
+   * @param {Companion | null} companion
+   */
   accompany(companion) {
     this.companion?.node.remove();
     this.companion = companion;
@@ -218,41 +301,67 @@ export class Mover {
   }
 }
 
-/** The pin by which the input is led: of the crank, or of the slide that drives. @param {any} skeleton @param {string[]} still @returns {string | undefined} */
+/**
+ * The pin by which the input is led: of the crank, or of the slide that drives.
+ * @param {any} skeleton
+ * @param {string[]} still
+ * @returns {string | undefined}
+ */
 function inputPin(skeleton, still) {
   const link = skeleton.links.find((/** @type {any} */ one) => one.name === skeleton.input_link);
   return link ? link.joints.find((/** @type {string} */ one) => !still.includes(one)) : skeleton.input_link;
 }
 
-/** The demanded positions or points, where a design that was placed freely has them. @param {any} problem @param {any} design @returns {Target[]} */
+/**
+ * The demanded positions or points, where a design that was placed freely has them.
+ * @param {any} problem
+ * @param {any} design
+ * @returns {Target[]}
+ */
 export function demanded(problem, design) {
-  const listed = (problem.positions ?? problem.points ?? []).filter((/** @type {any} */ one) => Number.isFinite(one?.x));
+  const listed = (problem.positions ?? problem.points ?? []).filter((/** @type {any} */ one) =>
+    Number.isFinite(one?.x),
+  );
   const placed = design?.placement;
   if (!placed) return listed;
   const turn = (placed.rotation * Math.PI) / 180;
   const [c, s] = [placed.size * Math.cos(turn), placed.size * Math.sin(turn)];
-  return listed.map((/** @type {Target} */ { x, y }) => ({ x: c * x - s * y + placed.shift[0], y: s * x + c * y + placed.shift[1] }));
+  return listed.map((/** @type {Target} */ { x, y }) => ({
+    x: c * x - s * y + placed.shift[0],
+    y: s * x + c * y + placed.shift[1],
+  }));
 }
 
 /**
- * Whether a limit was measured over a part of the motion: between the targets of a design, or over what its cognate uses.
+ * Whether a limit was measured over a part of the motion: between the targets of a design, or over what its cognate
+ * uses.
  * @param {any} design
  */
 function partly(design) {
-  return Number.isFinite(design.metrics?.min_transmission_angle) && (design.targets === undefined || design.targets.length > 1);
+  return (
+    Number.isFinite(design.metrics?.min_transmission_angle) &&
+    (design.targets === undefined || design.targets.length > 1)
+  );
 }
 
 /** Whether the last configuration is the first again. @param {any} motion @param {number} count */
 function returns(motion, count) {
   const tracks = Object.values(/** @type {Record<string, Track>} */ (motion.joints));
-  const spread = Math.max(...tracks.map((track) => Math.max(...track.x.map(Number)) - Math.min(...track.x.map(Number))));
+  const spread = Math.max(
+    ...tracks.map((track) => Math.max(...track.x.map(Number)) - Math.min(...track.x.map(Number))),
+  );
   const last = count - 1;
-  return tracks.every(({ x, y }) => x[0] !== null && x[last] !== null
-    && Math.hypot(Number(x[0]) - Number(x[last]), Number(y[0]) - Number(y[last])) < 1e-6 * Math.max(spread, 1e-300));
+  return tracks.every(
+    ({ x, y }) =>
+      x[0] !== null &&
+      x[last] !== null &&
+      Math.hypot(Number(x[0]) - Number(x[last]), Number(y[0]) - Number(y[last])) < 1e-6 * Math.max(spread, 1e-300),
+  );
 }
 
 /**
- * The sample of a track that is nearest to a point; of equally near ones, as where a crank turns twice, the one at hand.
+ * The sample of a track that is nearest to a point; of equally near ones, as where a crank turns twice, the one at
+ * hand.
  * @param {(number | null)[]} x @param {(number | null)[]} y @param {Point} point @param {number} at
  */
 function nearest(x, y, point, at) {

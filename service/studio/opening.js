@@ -20,8 +20,10 @@ export class Opening {
   /** Show it, unless something else is shown by then. */
   async show() {
     const { desk, gone } = this;
-    const answer = await fetch(/** @type {HTMLLinkElement} */ (byId("opening")).href, { signal: gone.signal })
-      .then((one) => (one.ok ? one.json() : null), () => null);
+    const answer = await fetch(/** @type {HTMLLinkElement} */ (byId("opening")).href, { signal: gone.signal }).then(
+      (one) => (one.ok ? one.json() : null),
+      () => null,
+    );
     if (!answer || gone.signal.aborted) return;
     const { problem, design, motion, circuits, found, summary } = answer;
     desk.stage.offer(true, t`Example: ${translated(this.name)}`);
@@ -29,9 +31,18 @@ export class Opening {
     desk.shown = design;
     this.moving = new Mover(desk.frame, design, motion, problem, circuits);
     desk.title.replaceChildren(t`Example: ${`${translated(this.name)}, ${term(design.mechanism.type)}`}`);
-    this.tabulate = () => desk.numbers.replaceChildren(el("p", { class: "note" }, t`The best of ${found}.`, " ", el("span", { lang: foreign(summary) }, translated(summary))),
-      el("p", { class: "note" }, t`Solve it to have all of them, with drawings and files; or state something else.`),
-      el("div", { class: "columns" }, checks(design, problem), table(t`Quantities`, figures(design), problem)));
+    this.tabulate = () =>
+      desk.numbers.replaceChildren(
+        el(
+          "p",
+          { class: "note" },
+          t`The best of ${found}.`,
+          " ",
+          el("span", { lang: foreign(summary) }, translated(summary)),
+        ),
+        el("p", { class: "note" }, t`Solve it to have all of them, with drawings and files; or state something else.`),
+        el("div", { class: "columns" }, checks(design, problem), table(t`Quantities`, figures(design), problem)),
+      );
     this.tabulate();
   }
 

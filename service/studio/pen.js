@@ -19,7 +19,10 @@ const SHARE = 0.3;
 
 export class Pen {
   /**
-   * @param {SVGSVGElement} picture @param {import("./view.js").View} view @param {string} role @param {import("./room.js").Tool} tool
+   * @param {SVGSVGElement} picture
+   * @param {import("./view.js").View} view
+   * @param {string} role
+   * @param {import("./room.js").Tool} tool
    * @param {{done: (zone: Zone) => void, left: () => void, tell: (text: string) => void}} on
    */
   constructor(picture, view, role, tool, on) {
@@ -41,7 +44,8 @@ export class Pen {
 
   listen() {
     const { signal } = this.gone;
-    const on = (/** @type {string} */ name, /** @type {(event: any) => void} */ act) => this.sheet.addEventListener(name, act, { signal });
+    const on = (/** @type {string} */ name, /** @type {(event: any) => void} */ act) =>
+      this.sheet.addEventListener(name, act, { signal });
     on("pointerdown", (event) => {
       event.stopPropagation();
       this.sheet.setPointerCapture(event.pointerId);
@@ -72,7 +76,8 @@ export class Pen {
     const { corners } = this;
     if (corners.length >= 3 && this.far(at, corners[0]) < near) return this.finish();
     // The second click of a double one ends the polygon too.
-    if (corners.length && this.far(at, corners[corners.length - 1]) < CLICK) return corners.length >= 3 ? this.finish() : undefined;
+    if (corners.length && this.far(at, corners[corners.length - 1]) < CLICK)
+      return corners.length >= 3 ? this.finish() : undefined;
     corners.push(at);
     this.show(at);
     this.hint();
@@ -101,8 +106,18 @@ export class Pen {
     const { view } = this;
     const [x, y] = view.middle.map((one) => view.rounded(one));
     const half = view.rounded((0.5 * SHARE * view.height) / view.scale);
-    this.on.done(this.tool === "circle" ? { circle: { center: [x, y], radius: half } }
-      : { polygon: [[x - half, y - half], [x + half, y - half], [x + half, y + half], [x - half, y + half]] });
+    this.on.done(
+      this.tool === "circle"
+        ? { circle: { center: [x, y], radius: half } }
+        : {
+            polygon: [
+              [x - half, y - half],
+              [x + half, y - half],
+              [x + half, y + half],
+              [x - half, y + half],
+            ],
+          },
+    );
   }
 
   /** @param {Point} [last] */
@@ -115,7 +130,12 @@ export class Pen {
     else this.show(null);
   }
 
-  /** The rectangle or circle between two points; null where it is none. @param {Point} from @param {Point} to @returns {Zone | null} */
+  /**
+   * The rectangle or circle between two points; null where it is none.
+   * @param {Point} from
+   * @param {Point} to
+   * @returns {Zone | null}
+   */
   spanned(from, to) {
     const [width, height] = [Math.abs(to[0] - from[0]), Math.abs(to[1] - from[1])];
     if (this.tool === "circle") {
@@ -125,21 +145,39 @@ export class Pen {
     if (Math.min(width, height) * this.view.scale < CLICK) return null;
     const [left, low] = [Math.min(from[0], to[0]), Math.min(from[1], to[1])];
     const [right, high] = [Math.max(from[0], to[0]), Math.max(from[1], to[1])];
-    return { polygon: [[left, low], [right, low], [right, high], [left, high]] };
+    return {
+      polygon: [
+        [left, low],
+        [right, low],
+        [right, high],
+        [left, high],
+      ],
+    };
   }
 
   /** What is drawn so far, up to where the pointer is. @param {Point | null} at */
   show(at) {
     const { view, corners } = this;
     const zone = at && corners.length && this.tool !== "polygon" ? this.spanned(corners[0], at) : null;
-    const line = this.tool === "polygon" ? [...corners, ...(at ? [at] : [])] : zone?.polygon ?? [];
+    const line = this.tool === "polygon" ? [...corners, ...(at ? [at] : [])] : (zone?.polygon ?? []);
     const circle = zone?.circle ?? null;
-    this.shape.setAttribute("d", circle || (zone && line.length) ? outline(view, { circle, corners: line })
-      : corners.length && line.length > 1 ? view.path(line) : "");
-    this.dots.setAttribute("d", (this.tool === "polygon" ? corners : []).map((corner) => {
-      const [u, v] = view.at(...corner);
-      return `M${u - 4} ${v}a4 4 0 1 0 8 0a4 4 0 1 0 -8 0Z`;
-    }).join(""));
+    this.shape.setAttribute(
+      "d",
+      circle || (zone && line.length)
+        ? outline(view, { circle, corners: line })
+        : corners.length && line.length > 1
+          ? view.path(line)
+          : "",
+    );
+    this.dots.setAttribute(
+      "d",
+      (this.tool === "polygon" ? corners : [])
+        .map((corner) => {
+          const [u, v] = view.at(...corner);
+          return `M${u - 4} ${v}a4 4 0 1 0 8 0a4 4 0 1 0 -8 0Z`;
+        })
+        .join(""),
+    );
     if (circle) this.on.tell(t`Radius ${circle.radius}`);
     else if (zone) this.on.tell(`${view.rounded(line[2][0] - line[0][0])} × ${view.rounded(line[2][1] - line[0][1])}`);
     else if (at && corners.length) this.on.tell(`x ${at[0]}, y ${at[1]}. ${this.how()}`);
@@ -153,7 +191,8 @@ export class Pen {
     if (this.tool === "rectangle") return t`Drag from corner to corner. Enter puts one into the middle, Escape ends.`;
     if (this.tool === "circle") return t`Drag from the centre outward. Enter puts one into the middle, Escape ends.`;
     if (!this.corners.length) return t`Click its corners. Enter puts one into the middle, Escape ends.`;
-    return this.corners.length < 3 ? t`Click the next corner. Backspace takes one back, Escape ends.`
+    return this.corners.length < 3
+      ? t`Click the next corner. Backspace takes one back, Escape ends.`
       : t`Click the first corner, or press Enter, to close it. Backspace takes one back.`;
   }
 

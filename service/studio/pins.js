@@ -11,12 +11,22 @@ function all() {
   return Array.isArray(kept) ? kept : [];
 }
 
-/** Indices of the designs of a job that are pinned, in the order in which they were. @param {string} job @returns {number[]} */
+/**
+ * Indices of the designs of a job that are pinned, in the order in which they were.
+ * @param {string} job
+ * @returns {number[]}
+ */
 export function pinned(job) {
   return all().find(([id]) => id === job)?.[1] ?? [];
 }
 
-/** Pin a design, or take its pin away. @param {string} job @param {number} n @param {boolean} is @returns {number[]} all that are pinned then */
+/**
+ * Pin a design, or take its pin away.
+ * @param {string} job
+ * @param {number} n
+ * @param {boolean} is
+ * @returns {number[]} all that are pinned then
+ */
 export function pin(job, n, is) {
   const others = pinned(job).filter((one) => one !== n);
   const now = is ? [...others, n] : others;

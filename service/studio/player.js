@@ -32,8 +32,23 @@ export class Player {
     this.last = moved.count - 1;
     /** Told the share of the way whenever it changes. @type {Set<(share: number) => void>} */
     this.followers = new Set();
-    this.button = el("button", { type: "button", id: `${moved.name ?? ""}play`, class: "small", onclick: () => (this.playing ? this.stop() : this.play()) }, t`Play`);
-    this.slider = el("input", { type: "range", id: scrub, min: 0, max: this.last, step: "any", value: 0,
+    this.button = el(
+      "button",
+      {
+        type: "button",
+        id: `${moved.name ?? ""}play`,
+        class: "small",
+        onclick: () => (this.playing ? this.stop() : this.play()),
+      },
+      t`Play`,
+    );
+    this.slider = el("input", {
+      type: "range",
+      id: scrub,
+      min: 0,
+      max: this.last,
+      step: "any",
+      value: 0,
       oninput: () => this.lead(this.slider.valueAsNumber),
       onkeydown: (/** @type {KeyboardEvent} */ event) => {
         const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageUp: 10, PageDown: -10 }[event.key];
@@ -42,13 +57,25 @@ export class Player {
         if (to === undefined) return;
         event.preventDefault();
         this.lead(to);
-      } });
-    const speed = el("select", { id: speeds, onchange: () => (this.rate = Number(speed.value)) },
-      ...[0.25, 0.5, 1, 2, 4].map((rate) => el("option", { value: rate }, `${rate} ×`)));
+      },
+    });
+    const speed = el(
+      "select",
+      { id: speeds, onchange: () => (this.rate = Number(speed.value)) },
+      ...[0.25, 0.5, 1, 2, 4].map((rate) => el("option", { value: rate }, `${rate} ×`)),
+    );
     speed.value = "1";
     this.reading = el("output", { for: scrub, class: "reading" });
-    this.row = el("div", { class: "row player" }, this.button, el("label", { for: scrub }, moved.label), this.slider, this.reading,
-      el("label", { for: speeds }, t`Speed`), speed);
+    this.row = el(
+      "div",
+      { class: "row player" },
+      this.button,
+      el("label", { for: scrub }, moved.label),
+      this.slider,
+      this.reading,
+      el("label", { for: speeds }, t`Speed`),
+      speed,
+    );
   }
 
   /** Begin: at the first place, and moving unless the system asks for little motion. */
@@ -64,7 +91,10 @@ export class Player {
     this.seek(Math.min(this.last, Math.max(0, at)));
   }
 
-  /** Keep to a part of the motion, and play it: where the motion comes back, the part may lie beyond its ends. @param {[number, number] | null} range */
+  /**
+   * Keep to a part of the motion, and play it: where the motion comes back, the part may lie beyond its ends.
+   * @param {[number, number] | null} range
+   */
   keep(range) {
     this.range = range;
     if (range) this.begin();

@@ -6,19 +6,38 @@ import { t } from "./messages.js";
 const SCALE = 4;
 
 /** What a picture has of the styles of the page. */
-const STYLES = ["fill", "stroke", "stroke-width", "stroke-dasharray", "opacity", "font-size", "font-family", "text-anchor"];
+const STYLES = [
+  "fill",
+  "stroke",
+  "stroke-width",
+  "stroke-dasharray",
+  "opacity",
+  "font-size",
+  "font-family",
+  "text-anchor",
+];
 
 /**
  * All numbers of a plot, as something that a download can refer to; whoever gets it revokes it.
- * @param {string} title @param {Record<string, (number | null)[]>} lines @param {number[] | undefined} input @param {string} unit of the input
+ * @param {string} title
+ * @param {Record<string, (number | null)[]>} lines
+ * @param {number[] | undefined} input
+ * @param {string} unit of the input
  */
 export function comma(title, lines, input, unit) {
   const quoted = (/** @type {string} */ text) => `"${text.replaceAll('"', '""')}"`;
   const names = Object.keys(lines);
-  const heads = [input ? t`Input (${unit})` : t`Sample`, ...names.map((name) => (names.length > 1 ? `${title}: ${name}` : title))];
+  const heads = [
+    input ? t`Input (${unit})` : t`Sample`,
+    ...names.map((name) => (names.length > 1 ? `${title}: ${name}` : title)),
+  ];
   const count = Object.values(lines)[0].length;
-  const rows = Array.from({ length: count }, (_, k) => [input ? input[k] : k, ...Object.values(lines).map((series) => series[k] ?? "")].join(","));
-  return URL.createObjectURL(new Blob([`${[heads.map(quoted).join(","), ...rows].join("\r\n")}\r\n`], { type: "text/csv" }));
+  const rows = Array.from({ length: count }, (_, k) =>
+    [input ? input[k] : k, ...Object.values(lines).map((series) => series[k] ?? "")].join(","),
+  );
+  return URL.createObjectURL(
+    new Blob([`${[heads.map(quoted).join(","), ...rows].join("\r\n")}\r\n`], { type: "text/csv" }),
+  );
 }
 
 /**

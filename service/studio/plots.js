@@ -48,7 +48,8 @@ const FEWEST = 8;
  * @returns {{figure: HTMLElement, show: (at: number) => void}[]}
  */
 export function plots(wanted, input, lead, unit = "°") {
-  return wanted.filter(({ lines }) => Object.values(lines).some((series) => series.some(Number.isFinite)))
+  return wanted
+    .filter(({ lines }) => Object.values(lines).some((series) => series.some(Number.isFinite)))
     .map((one) => plot(one, input, lead, unit));
 }
 
@@ -75,8 +76,10 @@ function plot(plotted, input, lead, unit, { whole = false, range: looked } = {})
   const range = steady ? Math.max(1, Math.abs(high)) : high - low;
   const ticks = steady ? [low] : [low, high];
   [low, high] = [low - 0.05 * range, high + 0.05 * range];
-  const x = (/** @type {number} */ k) => EDGE.left + ((WIDTH - EDGE.left - EDGE.right) * (Math.min(end, Math.max(start, k)) - start)) / (end - start);
-  const y = (/** @type {number} */ value) => EDGE.top + ((HEIGHT - EDGE.top - EDGE.bottom) * (high - Math.min(high, Math.max(low, value)))) / (high - low);
+  const x = (/** @type {number} */ k) =>
+    EDGE.left + ((WIDTH - EDGE.left - EDGE.right) * (Math.min(end, Math.max(start, k)) - start)) / (end - start);
+  const y = (/** @type {number} */ value) =>
+    EDGE.top + ((HEIGHT - EDGE.top - EDGE.bottom) * (high - Math.min(high, Math.max(low, value)))) / (high - low);
   const data = (/** @type {Series} */ series) => {
     let path = "";
     let pen = "M";
@@ -96,19 +99,59 @@ function plot(plotted, input, lead, unit, { whole = false, range: looked } = {})
   let pointed = null;
   const reading = el("span", { class: "reading" });
   const names = Object.keys(lines);
-  const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": t`${title}: from ${shown(extremes[0])} to ${shown(extremes[1])}` },
+  const picture = svg(
+    "svg",
+    {
+      viewBox: `0 0 ${WIDTH} ${HEIGHT}`,
+      role: "img",
+      "aria-label": t`${title}: from ${shown(extremes[0])} to ${shown(extremes[1])}`,
+    },
     svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
-    ...runs(used ?? []).map(([from, to]) => svg("rect", { class: "used", x: x(from), y: EDGE.top, width: x(to) - x(from), height: HEIGHT - EDGE.top - EDGE.bottom })),
-    ...runs(gaps ?? []).map(([from, to]) => svg("rect", { class: "gap", x: x(from) - 1, y: EDGE.top, width: x(to) - x(from) + 2, height: HEIGHT - EDGE.top - EDGE.bottom })),
+    ...runs(used ?? []).map(([from, to]) =>
+      svg("rect", {
+        class: "used",
+        x: x(from),
+        y: EDGE.top,
+        width: x(to) - x(from),
+        height: HEIGHT - EDGE.top - EDGE.bottom,
+      }),
+    ),
+    ...runs(gaps ?? []).map(([from, to]) =>
+      svg("rect", {
+        class: "gap",
+        x: x(from) - 1,
+        y: EDGE.top,
+        width: x(to) - x(from) + 2,
+        height: HEIGHT - EDGE.top - EDGE.bottom,
+      }),
+    ),
     low < 0 && high > 0 && svg("line", { class: "zero", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(0), y2: y(0) }),
-    ...ticks.map((value) => svg("g", {},
-      svg("line", { class: "grid", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(value), y2: y(value) }),
-      svg("text", { class: "tick", x: EDGE.left - 5, y: y(value) + 4, "text-anchor": "end" }, brief(value, 1e-6 * range)))),
-    typeof limit === "number" && svg("line", { class: "limit", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(limit), y2: y(limit) }),
+    ...ticks.map((value) =>
+      svg(
+        "g",
+        {},
+        svg("line", { class: "grid", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(value), y2: y(value) }),
+        svg(
+          "text",
+          { class: "tick", x: EDGE.left - 5, y: y(value) + 4, "text-anchor": "end" },
+          brief(value, 1e-6 * range),
+        ),
+      ),
+    ),
+    typeof limit === "number" &&
+      svg("line", { class: "limit", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(limit), y2: y(limit) }),
     input && svg("text", { class: "tick", x: EDGE.left, y: HEIGHT - 5 }, `${Math.round(input[start])}${unit}`),
-    input && svg("text", { class: "tick", x: WIDTH - EDGE.right, y: HEIGHT - 5, "text-anchor": "end" }, `${Math.round(input[end])}${unit}`),
+    input &&
+      svg(
+        "text",
+        { class: "tick", x: WIDTH - EDGE.right, y: HEIGHT - 5, "text-anchor": "end" },
+        `${Math.round(input[end])}${unit}`,
+      ),
     ...all.map((series, k) => svg("path", { class: `series s${k}`, d: data(series) })),
-    ...all.flatMap((series) => peaks(series, telling).map(([k, value]) => beyond(x(k), y(value), value > telling[1]))), mark, cursor);
+    ...all.flatMap((series) => peaks(series, telling).map(([k, value]) => beyond(x(k), y(value), value > telling[1]))),
+    mark,
+    cursor,
+  );
   const under = (/** @type {PointerEvent} */ event) => {
     const box = picture.getBoundingClientRect();
     const u = ((event.clientX - box.left) / box.width) * WIDTH;
@@ -132,10 +175,21 @@ function plot(plotted, input, lead, unit, { whole = false, range: looked } = {})
     picture.setPointerCapture(event.pointerId);
     follow(event);
     picture.addEventListener("pointermove", follow);
-    picture.addEventListener("lostpointercapture", () => picture.removeEventListener("pointermove", follow), { once: true });
+    picture.addEventListener("lostpointercapture", () => picture.removeEventListener("pointermove", follow), {
+      once: true,
+    });
   });
-  const caption = el("figcaption", {}, el("span", {}, title,
-    ...(names.length > 1 ? names.flatMap((name, k) => [" ", el("span", { class: `key s${k}` }, name)]) : [])), reading);
+  const caption = el(
+    "figcaption",
+    {},
+    el(
+      "span",
+      {},
+      title,
+      ...(names.length > 1 ? names.flatMap((name, k) => [" ", el("span", { class: `key s${k}` }, name)]) : []),
+    ),
+    reading,
+  );
   let at = 0;
   /** @type {((at: number) => void) | null} the plot in its other range, which has taken the place of this one */
   let other = null;
@@ -154,20 +208,53 @@ function plot(plotted, input, lead, unit, { whole = false, range: looked } = {})
     const from = Math.min(samples - wide, Math.max(0, Math.round(at - wide / 2)));
     look({ range: [from, from + wide] });
   };
-  const small = (/** @type {string} */ text, /** @type {string} */ label, /** @type {() => void} */ act, disabled = false) =>
-    el("button", { type: "button", class: "small", "aria-label": `${label}: ${title}`, title: label, disabled, onclick: act }, text);
-  const name = title.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-|-$/g, "");
-  const more = el("details", { class: "plot-more" }, el("summary", { "aria-label": t`More of: ${title}`, title: t`Look nearer, take it home` }, "⋯"),
-    el("div", { class: "row" }, small("−", t`Farther`, () => nearer(1 / NEARER), end - start >= samples),
+  const small = (
+    /** @type {string} */ text,
+    /** @type {string} */ label,
+    /** @type {() => void} */ act,
+    disabled = false,
+  ) =>
+    el(
+      "button",
+      { type: "button", class: "small", "aria-label": `${label}: ${title}`, title: label, disabled, onclick: act },
+      text,
+    );
+  const name = title
+    .toLowerCase()
+    .replace(/[^\p{L}\p{N}]+/gu, "-")
+    .replace(/^-|-$/g, "");
+  const more = el(
+    "details",
+    { class: "plot-more" },
+    el("summary", { "aria-label": t`More of: ${title}`, title: t`Look nearer, take it home` }, "⋯"),
+    el(
+      "div",
+      { class: "row" },
+      small("−", t`Farther`, () => nearer(1 / NEARER), end - start >= samples),
       small("+", t`Nearer to where the motion stands`, () => nearer(NEARER), end - start <= FEWEST),
       small("CSV", t`Take the numbers home as CSV`, () => saved(comma(title, lines, input, unit), `${name}.csv`)),
-      small(t`Picture`, t`Take the picture home`, async () => saved(await pictured(picture, title), `${name}.png`))));
-  const button = (cut.length > 0 || whole) && el("button", { type: "button", class: "small cut", onclick: () => look({ whole: !whole }) },
-    whole ? t`Cut the peaks` : cut.length > 1 ? t`Peaks ${cut.map((one) => brief(one)).join(` ${t`and`} `)} cut; show all` : t`Peak ${brief(cut[0])} cut; show all`);
+      small(t`Picture`, t`Take the picture home`, async () => saved(await pictured(picture, title), `${name}.png`)),
+    ),
+  );
+  const button =
+    (cut.length > 0 || whole) &&
+    el(
+      "button",
+      { type: "button", class: "small cut", onclick: () => look({ whole: !whole }) },
+      whole
+        ? t`Cut the peaks`
+        : cut.length > 1
+          ? t`Peaks ${cut.map((one) => brief(one)).join(` ${t`and`} `)} cut; show all`
+          : t`Peak ${brief(cut[0])} cut; show all`,
+    );
   const figure = el("figure", { class: "plot" }, caption, picture, button, more);
   const read = (/** @type {number} */ k) => {
     const place = input && pointed !== null ? `${shown(Math.round(10 * input[Math.round(k)]) / 10)}${unit}: ` : "";
-    reading.textContent = place + Object.values(lines).map((series) => brief(series[Math.round(k)], noise)).join(BETWEEN);
+    reading.textContent =
+      place +
+      Object.values(lines)
+        .map((series) => brief(series[Math.round(k)], noise))
+        .join(BETWEEN);
   };
   const show = (/** @type {number} */ now) => {
     at = now;
@@ -180,7 +267,12 @@ function plot(plotted, input, lead, unit, { whole = false, range: looked } = {})
   return { figure, show };
 }
 
-/** The places at which a line leaves the range, and how far it goes there. @param {Series} series @param {number[]} range @returns {[number, number][]} */
+/**
+ * The places at which a line leaves the range, and how far it goes there.
+ * @param {Series} series
+ * @param {number[]} range
+ * @returns {[number, number][]}
+ */
 function peaks(series, [low, high]) {
   const out = series.map((one) => one !== null && Number.isFinite(one) && (one < low || one > high));
   return runs(out).map(([from, to]) => {
@@ -196,7 +288,11 @@ function beyond(u, v, up) {
   return svg("path", { class: "beyond-mark", d: `M${u - 4} ${v}h8l-4 ${-way}Z` });
 }
 
-/** The range worth seeing: towards a toggle rates grow beyond all bounds, and would flatten what is between. @param {number[]} known @param {number[]} extremes */
+/**
+ * The range worth seeing: towards a toggle rates grow beyond all bounds, and would flatten what is between.
+ * @param {number[]} known
+ * @param {number[]} extremes
+ */
 function middle(known, extremes) {
   const order = [...known].sort((one, other) => one - other);
   const [least, most] = [order[Math.floor(0.1 * (order.length - 1))], order[Math.ceil(0.9 * (order.length - 1))]];

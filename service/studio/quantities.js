@@ -6,11 +6,20 @@ import { t, term } from "./messages.js";
 /** @typedef {import("./plots.js").Plotted} Plotted */
 /** @typedef {(number | null)[]} Series */
 
-/** Parts whose motion can be plotted, the telling ones first. @param {any} motion @param {any} skeleton @returns {string[]} */
+/**
+ * Parts whose motion can be plotted, the telling ones first.
+ * @param {any} motion
+ * @param {any} skeleton
+ * @returns {string[]}
+ */
 export function parts(motion, skeleton) {
   const still = grounded(skeleton);
-  const joints = drawn(skeleton).filter((name) => !still.includes(name)).map((name) => `point ${name}`);
-  const links = Object.keys(motion.links ?? {}).filter((name) => name !== skeleton.input_link && name !== "ground").map((name) => `link ${name}`);
+  const joints = drawn(skeleton)
+    .filter((name) => !still.includes(name))
+    .map((name) => `point ${name}`);
+  const links = Object.keys(motion.links ?? {})
+    .filter((name) => name !== skeleton.input_link && name !== "ground")
+    .map((name) => `link ${name}`);
   const slides = Object.keys(motion.slides ?? {}).map((name) => `slide ${name}`);
   const first = (/** @type {string} */ part) => part === "point P";
   return [...joints.filter(first), ...slides, ...links.reverse(), ...joints.filter((part) => !first(part))];
@@ -23,7 +32,12 @@ export function partName(part) {
   return kind === "link" ? t`Link ${term(name)}` : kind === "slide" ? t`Slide ${name}` : t`Point ${name}`;
 }
 
-/** Position, velocity and acceleration of a part, by the radian (or length unit) of the input. @param {any} motion @param {string} part @returns {Plotted[]} */
+/**
+ * Position, velocity and acceleration of a part, by the radian (or length unit) of the input.
+ * @param {any} motion
+ * @param {string} part
+ * @returns {Plotted[]}
+ */
 export function moved(motion, part) {
   const [kind, ...rest] = part.split(" ");
   const name = rest.join(" ");
@@ -54,23 +68,44 @@ export function moved(motion, part) {
   ];
 }
 
-/** What a linkage must do well: transmit force, and keep to its function. @param {any} motion @param {any} design @param {any} problem @returns {Plotted[]} */
+/**
+ * What a linkage must do well: transmit force, and keep to its function.
+ * @param {any} motion
+ * @param {any} design
+ * @param {any} problem
+ * @returns {Plotted[]}
+ */
 export function judged(motion, design, problem) {
   /** @type {Plotted[]} */
   const found = [];
   const error = errorCurve(design);
   if (error) found.push({ title: error.title, lines: { "": along(error.at, error.values, motion.input_angle) } });
   const used = usedRange(design, motion.input_angle);
-  found.push({ title: t`Transmission angle (°)`, lines: { "": motion.transmission_angle ?? [] }, limit: problem.constraints?.min_transmission_angle, least: 90, used });
+  found.push({
+    title: t`Transmission angle (°)`,
+    lines: { "": motion.transmission_angle ?? [] },
+    limit: problem.constraints?.min_transmission_angle,
+    least: 90,
+    used,
+  });
   return found;
 }
 
-/** Where the input stands at a target: an angle, or the place of an input that slides. @param {any} target @returns {number} */
+/**
+ * Where the input stands at a target: an angle, or the place of an input that slides.
+ * @param {any} target
+ * @returns {number}
+ */
 function inputOf(target) {
   return target.input_angle ?? target.input_place;
 }
 
-/** Which samples lie between the first target and the last: the range that limits are for. @param {any} design @param {number[]} inputs @returns {boolean[] | undefined} */
+/**
+ * Which samples lie between the first target and the last: the range that limits are for.
+ * @param {any} design
+ * @param {number[]} inputs
+ * @returns {boolean[] | undefined}
+ */
 function usedRange(design, inputs) {
   const at = (design.targets ?? []).map(inputOf);
   if (at.length < 2 || !at.every(Number.isFinite)) return undefined;
@@ -79,15 +114,30 @@ function usedRange(design, inputs) {
   return high - low >= 360 ? undefined : inputs.map((input) => past(input) <= high - low);
 }
 
-/** Structural error as the answer has it. @param {any} design @returns {{title: string, at: number[], values: number[]} | null} */
+/**
+ * Structural error as the answer has it.
+ * @param {any} design
+ * @returns {{title: string, at: number[], values: number[]} | null}
+ */
 function errorCurve(design) {
   const structural = design.structural_error;
   if (structural?.curve) {
-    return { title: t`Structural error (${structural.unit === "degrees" ? "°" : t`length`})`, at: structural.curve.input_angle, values: structural.curve.error };
+    return {
+      title: t`Structural error (${structural.unit === "degrees" ? "°" : t`length`})`,
+      at: structural.curve.input_angle,
+      values: structural.curve.error,
+    };
   }
   const targets = design.targets ?? [];
-  if (targets.length > 2 && targets.every((/** @type {any} */ one) => Number.isFinite(one.error) && Number.isFinite(inputOf(one)))) {
-    return { title: t`Steering error (°)`, at: targets.map(inputOf), values: targets.map((/** @type {any} */ one) => one.error) };
+  if (
+    targets.length > 2 &&
+    targets.every((/** @type {any} */ one) => Number.isFinite(one.error) && Number.isFinite(inputOf(one)))
+  ) {
+    return {
+      title: t`Steering error (°)`,
+      at: targets.map(inputOf),
+      values: targets.map((/** @type {any} */ one) => one.error),
+    };
   }
   return null;
 }

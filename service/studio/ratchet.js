@@ -14,7 +14,9 @@ export class Ratchet {
     const [width, height] = frame.size();
     const { mechanism } = design;
     this.motion = motion;
-    const teeth = /** @type {Point[]} */ (mechanism.profile.x.map((/** @type {number} */ x, /** @type {number} */ k) => [x, mechanism.profile.y[k]]));
+    const teeth = /** @type {Point[]} */ (
+      mechanism.profile.x.map((/** @type {number} */ x, /** @type {number} */ k) => [x, mechanism.profile.y[k]])
+    );
     const radius = mechanism.wheel_radius;
     const pivots = mechanism.pawls.map((/** @type {any} */ pawl) => pawl.pivot);
     const view = new View([[-radius, -radius], [radius, radius], ...pivots], width, height, 40);
@@ -22,29 +24,65 @@ export class Ratchet {
     this.wheel = svg("path", { class: "teeth", d: `${view.path(teeth)}Z` });
     this.pawls = mechanism.pawls.map((/** @type {any} */ pawl) => {
       const [u, v] = view.at(pawl.pivot[0], pawl.pivot[1]);
-      return { at: [u, v], bar: svg("path", { class: "link", d: view.path([pawl.pivot, over(pawl, mechanism.tooth_height), pawl.nose]) }) };
+      return {
+        at: [u, v],
+        bar: svg("path", { class: "link", d: view.path([pawl.pivot, over(pawl, mechanism.tooth_height), pawl.nose]) }),
+      };
     });
-    const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The ratchet, turning` },
-      svg("rect", { class: "paper", width, height }), svg("g", { class: "wheel t0" }, this.wheel),
+    const picture = svg(
+      "svg",
+      { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The ratchet, turning` },
+      svg("rect", { class: "paper", width, height }),
+      svg("g", { class: "wheel t0" }, this.wheel),
       ...this.pawls.map((/** @type {any} */ pawl) => pawl.bar),
-      ...[this.axis, ...this.pawls.map((/** @type {any} */ pawl) => pawl.at)].map(([cx, cy]) => svg("circle", { class: "pin", cx, cy, r: 3.5 })));
-    this.player = new Player({ count: motion.input_angle.length, closed: true, label: t`Wheel`,
-      reading: (at) => `${shown(Math.round(10 * Number(between(motion.input_angle, at))) / 10)}°`, show: (at) => this.show(at) });
-    this.marks = plots([{ title: t`Lift of pawls (°)`, lines: Object.fromEntries(motion.pawls.map((/** @type {any} */ pawl, /** @type {number} */ k) => [motion.pawls.length > 1 ? `${k + 1}` : "", pawl.lift])) }],
-      motion.input_angle, (at) => this.player.lead(at));
-    frame.fill({ picture, clock: this.player.row,
+      ...[this.axis, ...this.pawls.map((/** @type {any} */ pawl) => pawl.at)].map(([cx, cy]) =>
+        svg("circle", { class: "pin", cx, cy, r: 3.5 }),
+      ),
+    );
+    this.player = new Player({
+      count: motion.input_angle.length,
+      closed: true,
+      label: t`Wheel`,
+      reading: (at) => `${shown(Math.round(10 * Number(between(motion.input_angle, at))) / 10)}°`,
+      show: (at) => this.show(at),
+    });
+    this.marks = plots(
+      [
+        {
+          title: t`Lift of pawls (°)`,
+          lines: Object.fromEntries(
+            motion.pawls.map((/** @type {any} */ pawl, /** @type {number} */ k) => [
+              motion.pawls.length > 1 ? `${k + 1}` : "",
+              pawl.lift,
+            ]),
+          ),
+        },
+      ],
+      motion.input_angle,
+      (at) => this.player.lead(at),
+    );
+    frame.fill({
+      picture,
+      clock: this.player.row,
       beside: [el("p", { class: "note" }, t`The wheel turns on; turning back it is held at the next stop.`)],
-      plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))] });
+      plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))],
+    });
     this.player.begin();
   }
 
   /** @param {number} at */
   show(at) {
     const [u, v] = this.axis;
-    this.wheel.setAttribute("transform", `rotate(${(-Number(between(this.motion.input_angle, at))).toFixed(3)} ${u.toFixed(2)} ${v.toFixed(2)})`);
+    this.wheel.setAttribute(
+      "transform",
+      `rotate(${(-Number(between(this.motion.input_angle, at))).toFixed(3)} ${u.toFixed(2)} ${v.toFixed(2)})`,
+    );
     this.pawls.forEach((/** @type {any} */ pawl, /** @type {number} */ k) => {
       const lift = Number(between(this.motion.pawls[k].lift, at));
-      pawl.bar.setAttribute("transform", `rotate(${lift.toFixed(3)} ${pawl.at[0].toFixed(2)} ${pawl.at[1].toFixed(2)})`);
+      pawl.bar.setAttribute(
+        "transform",
+        `rotate(${lift.toFixed(3)} ${pawl.at[0].toFixed(2)} ${pawl.at[1].toFixed(2)})`,
+      );
     });
     for (const mark of this.marks) mark.show(at);
   }

@@ -1,4 +1,6 @@
-/** The room of a linkage, `space` of a statement: zones, box, outline of the body and obstacles as areas of the plane. */
+/**
+ * The room of a linkage, `space` of a statement: zones, box, outline of the body and obstacles as areas of the plane.
+ */
 
 import { t } from "./messages.js";
 
@@ -18,13 +20,43 @@ import { t } from "./messages.js";
 
 /** @type {Role[]} */
 export const ROLES = [
-  { name: "o2", text: t`Zone for O2 (fixed pivot, input)`, mark: "O2", field: ["fixed_pivots", "input"], tools: ["polygon", "rectangle", "circle"] },
-  { name: "o4", text: t`Zone for O4 (fixed pivot, output)`, mark: "O4", field: ["fixed_pivots", "output"], tools: ["polygon", "rectangle", "circle"] },
-  { name: "a", text: t`Zone for A (moving pivot, input)`, mark: "A", field: ["moving_pivots", "input"], tools: ["polygon", "rectangle", "circle"] },
-  { name: "b", text: t`Zone for B (moving pivot, output)`, mark: "B", field: ["moving_pivots", "output"], tools: ["polygon", "rectangle", "circle"] },
+  {
+    name: "o2",
+    text: t`Zone for O2 (fixed pivot, input)`,
+    mark: "O2",
+    field: ["fixed_pivots", "input"],
+    tools: ["polygon", "rectangle", "circle"],
+  },
+  {
+    name: "o4",
+    text: t`Zone for O4 (fixed pivot, output)`,
+    mark: "O4",
+    field: ["fixed_pivots", "output"],
+    tools: ["polygon", "rectangle", "circle"],
+  },
+  {
+    name: "a",
+    text: t`Zone for A (moving pivot, input)`,
+    mark: "A",
+    field: ["moving_pivots", "input"],
+    tools: ["polygon", "rectangle", "circle"],
+  },
+  {
+    name: "b",
+    text: t`Zone for B (moving pivot, output)`,
+    mark: "B",
+    field: ["moving_pivots", "output"],
+    tools: ["polygon", "rectangle", "circle"],
+  },
   { name: "obstacle", text: t`Obstacle`, mark: "", field: ["obstacles"], tools: ["polygon", "rectangle", "circle"] },
   { name: "box", text: t`Box around everything`, mark: "box", field: ["box"], tools: ["rectangle"] },
-  { name: "body", text: t`Outline of the body`, mark: "body", field: ["body", "outline"], tools: ["polygon", "rectangle"] },
+  {
+    name: "body",
+    text: t`Outline of the body`,
+    mark: "body",
+    field: ["body", "outline"],
+    tools: ["polygon", "rectangle"],
+  },
 ];
 
 /** The roles that areas of a problem can have: only a body that is carried has an outline. @param {any} problem */
@@ -34,7 +66,14 @@ export function rolesOf(problem) {
 
 /** A place of the statement that holds an area: a zone, the corners of an outline, or the two corners of a box. */
 export class Area {
-  /** @param {any} space @param {Role} role @param {string} path JSON pointer @param {any} owner @param {string | number} key of the value in it @param {number} number among those of its role, 0 where it is alone */
+  /**
+   * @param {any} space
+   * @param {Role} role
+   * @param {string} path JSON pointer
+   * @param {any} owner
+   * @param {string | number} key of the value in it
+   * @param {number} number among those of its role, 0 where it is alone
+   */
   constructor(space, role, path, owner, key, number) {
     this.space = space;
     this.role = role;
@@ -58,24 +97,40 @@ export class Area {
   get corners() {
     if (this.role.name === "box") {
       const [[left, low], [right, high]] = this.value;
-      return [[left, low], [right, low], [right, high], [left, high]];
+      return [
+        [left, low],
+        [right, low],
+        [right, high],
+        [left, high],
+      ];
     }
-    return this.role.name === "body" ? this.value : this.value.polygon ?? [];
+    return this.role.name === "body" ? this.value : (this.value.polygon ?? []);
   }
 
   /** Points that a picture of it must show. @returns {Point[]} */
   get extent() {
     const { circle, corners } = this;
     if (!circle) return corners;
-    const { center: [x, y], radius } = circle;
-    return [[x - radius, y - radius], [x + radius, y + radius]];
+    const {
+      center: [x, y],
+      radius,
+    } = circle;
+    return [
+      [x - radius, y - radius],
+      [x + radius, y + radius],
+    ];
   }
 
-  /** Where its name stands: the corner that is farthest up, and of those to the left; of a circle its highest point. @returns {Point} */
+  /**
+   * Where its name stands: the corner that is farthest up, and of those to the left; of a circle its highest point.
+   * @returns {Point}
+   */
   get top() {
     const { circle, corners } = this;
     if (circle) return [circle.center[0], circle.center[1] + circle.radius];
-    return corners.reduce((best, corner) => (corner[1] > best[1] || (corner[1] === best[1] && corner[0] < best[0]) ? corner : best));
+    return corners.reduce((best, corner) =>
+      corner[1] > best[1] || (corner[1] === best[1] && corner[0] < best[0]) ? corner : best,
+    );
   }
 
   /** Whether more corners make sense. */
@@ -115,18 +170,28 @@ export class Area {
 
   /** Take it out of the statement; what is empty then goes too. */
   remove() {
-    const { space, role: { field: [outer, inner] } } = this;
+    const {
+      space,
+      role: {
+        field: [outer, inner],
+      },
+    } = this;
     if (Array.isArray(this.owner) && outer !== "box") {
       this.owner.splice(Number(this.key), 1);
       if (inner && this.owner.length === 1) [space[outer][inner]] = this.owner;
       if (inner && !this.owner.length) delete space[outer][inner];
       if (!inner && !this.owner.length) delete space[outer];
     } else delete this.owner[this.key];
-    if (inner && space[outer] && Object.values(space[outer]).every((one) => one === null || one === undefined)) delete space[outer];
+    if (inner && space[outer] && Object.values(space[outer]).every((one) => one === null || one === undefined))
+      delete space[outer];
   }
 }
 
-/** Whether it is a shape that can be drawn; what is being typed need not be one yet. @param {Role} role @param {any} value */
+/**
+ * Whether it is a shape that can be drawn; what is being typed need not be one yet.
+ * @param {Role} role
+ * @param {any} value
+ */
 function drawable(role, value) {
   const point = (/** @type {any} */ one) => Array.isArray(one) && one.length === 2 && one.every(Number.isFinite);
   if (role.name === "box") return Array.isArray(value) && value.length === 2 && value.every(point);
@@ -142,28 +207,39 @@ export function areas(space) {
   const order = [...drawn, ...ROLES.map(({ name }) => name).filter((name) => !drawn.includes(name))];
   return order.flatMap((name) => {
     const role = /** @type {Role} */ (ROLES.find((one) => one.name === name));
-    const { field: [outer, inner] } = role;
+    const {
+      field: [outer, inner],
+    } = role;
     const owner = inner ? space[outer] : space;
     const key = inner ?? outer;
     const value = owner?.[key];
     const path = `/problem/space/${role.field.join("/")}`;
-    if (!Array.isArray(value) || name === "box" || name === "body") return drawable(role, value) ? [new Area(space, role, path, owner, key, 0)] : [];
-    return value.flatMap((zone, k) => (drawable(role, zone) ? [new Area(space, role, `${path}/${k}`, value, k, k + 1)] : []));
+    if (!Array.isArray(value) || name === "box" || name === "body")
+      return drawable(role, value) ? [new Area(space, role, path, owner, key, 0)] : [];
+    return value.flatMap((zone, k) =>
+      drawable(role, zone) ? [new Area(space, role, `${path}/${k}`, value, k, k + 1)] : [],
+    );
   });
 }
 
 /**
- * State an area: a pivot may have several zones, and there may be several obstacles; a box or an outline takes the place of the one before.
+ * State an area: a pivot may have several zones, and there may be several obstacles; a box or an outline takes the
+ * place of the one before.
  * @param {any} problem changed in place @param {Role} role @param {Zone} zone @returns {string} its JSON pointer
  */
 export function stateArea(problem, role, zone) {
   const space = (problem.space ??= {});
-  const { field: [outer, inner] } = role;
+  const {
+    field: [outer, inner],
+  } = role;
   const path = `/problem/space/${role.field.join("/")}`;
   if (role.name === "box") {
     const xs = zone.polygon?.map(([x]) => x) ?? [];
     const ys = zone.polygon?.map(([, y]) => y) ?? [];
-    space.box = [[Math.min(...xs), Math.min(...ys)], [Math.max(...xs), Math.max(...ys)]];
+    space.box = [
+      [Math.min(...xs), Math.min(...ys)],
+      [Math.max(...xs), Math.max(...ys)],
+    ];
     return path;
   }
   if (role.name === "body") {

@@ -1,4 +1,7 @@
-/** The room on the canvas of a statement: areas are drawn, chosen, moved, shaped and removed, with the pointer and by keys. */
+/**
+ * The room on the canvas of a statement: areas are drawn, chosen, moved, shaped and removed, with the pointer and by
+ * keys.
+ */
 
 import { lines } from "./controls.js";
 import { el, shown, svg, words } from "./dom.js";
@@ -63,38 +66,81 @@ export class RoomEditor {
     const { memory } = this;
     const roles = rolesOf(this.problem);
     const role = () => roles.find((one) => one.name === pick.value) ?? roles[0];
-    const pick = el("select", { id: "room-role", onchange: () => {
-      memory.role = pick.value;
-      this.rest();
-      fit();
-    } }, ...roles.map((one) => el("option", { value: one.name }, one.text)));
+    const pick = el(
+      "select",
+      {
+        id: "room-role",
+        onchange: () => {
+          memory.role = pick.value;
+          this.rest();
+          fit();
+        },
+      },
+      ...roles.map((one) => el("option", { value: one.name }, one.text)),
+    );
     pick.value = roles.some((one) => one.name === memory.role) ? memory.role : roles[0].name;
-    const buttons = TOOLS.map((tool) => el("button", { type: "button", class: "small", "aria-pressed": "false", "data-tool": tool, onclick: () => {
-      const again = memory.pen?.tool === tool;
-      this.rest();
-      if (!again) this.take(role(), tool);
-    } }, words(tool)));
+    const buttons = TOOLS.map((tool) =>
+      el(
+        "button",
+        {
+          type: "button",
+          class: "small",
+          "aria-pressed": "false",
+          "data-tool": tool,
+          onclick: () => {
+            const again = memory.pen?.tool === tool;
+            this.rest();
+            if (!again) this.take(role(), tool);
+          },
+        },
+        words(tool),
+      ),
+    );
     const fit = () => buttons.forEach((button, k) => (button.disabled = !role().tools.includes(TOOLS[k])));
     fit();
-    this.remover = el("button", { type: "button", class: "small", disabled: !this.chosen, onclick: () => {
-      if (this.chosen) this.remove(this.chosen);
-    } }, t`Delete`);
+    this.remover = el(
+      "button",
+      {
+        type: "button",
+        class: "small",
+        disabled: !this.chosen,
+        onclick: () => {
+          if (this.chosen) this.remove(this.chosen);
+        },
+      },
+      t`Delete`,
+    );
     const used = roles.filter((one) => this.areas.some((area) => area.role === one));
-    return el("fieldset", { class: "choice", id: "room-tools" }, el("legend", {}, t`Room`),
-      el("div", { class: "row" }, el("label", { for: "room-role" }, t`Draw`), pick,
-        el("div", { class: "row", role: "group", "aria-label": t`Shape` }, ...buttons), this.remover, this.drawing.button),
-      this.said, this.drawing.node, used.length > 0 && legend(used));
+    return el(
+      "fieldset",
+      { class: "choice", id: "room-tools" },
+      el("legend", {}, t`Room`),
+      el(
+        "div",
+        { class: "row" },
+        el("label", { for: "room-role" }, t`Draw`),
+        pick,
+        el("div", { class: "row", role: "group", "aria-label": t`Shape` }, ...buttons),
+        this.remover,
+        this.drawing.button,
+      ),
+      this.said,
+      this.drawing.node,
+      used.length > 0 && legend(used),
+    );
   }
 
   /** Take the pen. @param {import("./room.js").Role} role @param {Tool} tool */
   take(role, tool) {
     this.memory.pen = new Pen(this.picture, this.view, role.name, tool, {
-      tell: (text) => (this.said.textContent = text), left: () => this.rest(),
+      tell: (text) => (this.said.textContent = text),
+      left: () => this.rest(),
       done: (zone) => {
         this.memory.chosen = stateArea(this.problem, role, zone);
         this.rest();
         this.changed(true);
-      } });
+      },
+    });
     this.tools.querySelector(`[data-tool="${tool}"]`)?.setAttribute("aria-pressed", "true");
     this.picture.classList.add("drawing");
     // What is drawn on must be seen.
@@ -113,8 +159,13 @@ export class RoomEditor {
   /** What can be done now. */
   hint() {
     const { chosen } = this;
-    this.said.textContent = !chosen ? t`Say what is drawn, choose a shape, and draw it in the picture.`
-      : `${chosen.label}: ${[chosen.circle ? t`drag it or its radius` : t`drag it or its corners`, chosen.free && t`double-click a side for another corner`].filter(Boolean).join("; ")}.`;
+    const ways = [
+      chosen?.circle ? t`drag it or its radius` : t`drag it or its corners`,
+      chosen?.free && t`double-click a side for another corner`,
+    ];
+    this.said.textContent = !chosen
+      ? t`Say what is drawn, choose a shape, and draw it in the picture.`
+      : `${chosen.label}: ${ways.filter(Boolean).join("; ")}.`;
   }
 
   /** @param {Area} area */
@@ -138,7 +189,12 @@ export class RoomEditor {
     const chosen = area.path === this.memory.chosen;
     const shape = hatched(area.role.name);
     const mark = svg("text", { class: `area-mark ${area.role.name}` }, area.role.mark);
-    const body = svg("g", { class: `held ${chosen ? "chosen" : ""}`, tabindex: 0, role: "button", "data-grip": area.path }, shape, mark);
+    const body = svg(
+      "g",
+      { class: `held ${chosen ? "chosen" : ""}`, tabindex: 0, role: "button", "data-grip": area.path },
+      shape,
+      mark,
+    );
     const altered = () => {
       show();
       this.tell(area);
@@ -154,14 +210,25 @@ export class RoomEditor {
       body.setAttribute("aria-label", `${area.label}, ${what}. ${t`Arrow keys move it, Delete removes it.`}`);
       for (const grip of grips) grip.show();
     };
-    this.dragged(body, () => this.choose(area), (by) => area.shift(by, (value) => this.view.fine(value)), altered, area.path);
+    this.dragged(
+      body,
+      () => this.choose(area),
+      (by) => area.shift(by, (value) => this.view.fine(value)),
+      altered,
+      area.path,
+    );
     body.addEventListener("focus", () => {
       if (!body.matches(":focus-visible") || this.memory.chosen === area.path) return;
       this.choose(area);
       this.focus(area.path);
     });
     if (area.free) body.addEventListener("dblclick", (/** @type {MouseEvent} */ event) => this.split(area, event));
-    this.keyed(body, (by) => area.shift(by, (value) => this.view.fine(value)), () => this.remove(area), altered);
+    this.keyed(
+      body,
+      (by) => area.shift(by, (value) => this.view.fine(value)),
+      () => this.remove(area),
+      altered,
+    );
     show();
     return svg("g", {}, body, ...grips.map((one) => one.node));
   }
@@ -170,7 +237,8 @@ export class RoomEditor {
   tell(area) {
     const { path, circle } = area;
     const shape = ["box", "body"].includes(area.role.name) ? "" : "/polygon";
-    const says = circle ? { [`${path}/circle/center`]: circle.center.join(", "), [`${path}/circle/radius`]: String(circle.radius) }
+    const says = circle
+      ? { [`${path}/circle/center`]: circle.center.join(", "), [`${path}/circle/radius`]: String(circle.radius) }
       : { [path + shape]: lines(area.role.name === "box" ? area.value : area.corners) };
     for (const [field, text] of Object.entries(says)) {
       const box = document.querySelector(`[data-path="${field}"]`);
@@ -190,20 +258,37 @@ export class RoomEditor {
     this.changed(true);
   }
 
-  /** The corners of an area, or the end of a circle's radius. @param {Area} area @param {() => void} all shows all of it */
+  /**
+   * The corners of an area, or the end of a circle's radius.
+   * @param {Area} area
+   * @param {() => void} all shows all of it
+   */
   grips(area, all) {
     const { circle, view } = { circle: area.circle, view: this.view };
-    const places = circle ? [{ name: t`Radius of ${area.label}`, get: () => /** @type {Point} */ ([circle.center[0] + circle.radius, circle.center[1]]), put: (/** @type {Point} */ [x, y]) => {
-      const radius = Number(Math.hypot(x - circle.center[0], y - circle.center[1]).toPrecision(4));
-      if (radius > 0) circle.radius = radius;
-    } }] : area.corners.map((_, k) => ({ name: t`Corner ${k + 1} of ${area.label}`, get: () => area.corners[k], put: (/** @type {Point} */ point) => area.put(k, point) }));
+    const places = circle
+      ? [
+          {
+            name: t`Radius of ${area.label}`,
+            get: () => /** @type {Point} */ ([circle.center[0] + circle.radius, circle.center[1]]),
+            put: (/** @type {Point} */ [x, y]) => {
+              const radius = Number(Math.hypot(x - circle.center[0], y - circle.center[1]).toPrecision(4));
+              if (radius > 0) circle.radius = radius;
+            },
+          },
+        ]
+      : area.corners.map((_, k) => ({
+          name: t`Corner ${k + 1} of ${area.label}`,
+          get: () => area.corners[k],
+          put: (/** @type {Point} */ point) => area.put(k, point),
+        }));
     return places.map(({ name, get, put }, k) => {
       const key = `${area.path}#${k}`;
       const grip = new Grip({ kind: "grip", dot: "corner", radius: 5, key });
       const show = () => {
         const [x, y] = get();
         grip.put(view.at(x, y));
-        const more = area.free && area.corners.length > 3 ? t`Arrow keys move it, Delete removes it.` : t`Arrow keys move it.`;
+        const more =
+          area.free && area.corners.length > 3 ? t`Arrow keys move it, Delete removes it.` : t`Arrow keys move it.`;
         grip.call(`${name}: x ${shown(x)}, y ${shown(y)}. ${more}`);
       };
       const by = (/** @type {Point} */ [dx, dy]) => {
@@ -211,17 +296,26 @@ export class RoomEditor {
         put([view.rounded(x + dx), view.rounded(y + dy)]);
       };
       this.dragged(grip.node, () => {}, by, all, key);
-      this.keyed(grip.node, by, () => {
-        area.drop(k);
-        this.changed(true);
-      }, all);
+      this.keyed(
+        grip.node,
+        by,
+        () => {
+          area.drop(k);
+          this.changed(true);
+        },
+        all,
+      );
       return { node: grip.node, show };
     });
   }
 
   /**
    * What is dragged by the pointer: each step is taken from where it was let go.
-   * @param {SVGElement} grip @param {() => void} taken @param {(by: Point) => void} move @param {() => void} show @param {string} key
+   * @param {SVGElement} grip
+   * @param {() => void} taken
+   * @param {(by: Point) => void} move
+   * @param {() => void} show
+   * @param {string} key
    */
   dragged(grip, taken, move, show, key) {
     const { picture, view } = this;
@@ -262,7 +356,9 @@ export class RoomEditor {
 
   /** @param {string} key */
   focus(key) {
-    /** @type {SVGElement | null} */ (this.picture.querySelector(`[data-grip="${CSS.escape(key)}"]`))?.focus({ preventScroll: true });
+    /** @type {SVGElement | null} */ (this.picture.querySelector(`[data-grip="${CSS.escape(key)}"]`))?.focus({
+      preventScroll: true,
+    });
   }
 }
 

@@ -16,19 +16,52 @@ export class Rotor {
     const [width, height] = this.size;
     const { mechanism, metrics } = design;
     this.motion = motion;
-    this.player = new Player({ count: motion.input_angle.length, closed: true, label: t`Rotor`,
-      reading: (at) => `${shown(Math.round(10 * this.degrees(at)) / 10)}°`, show: (at) => this.show(at) });
+    this.player = new Player({
+      count: motion.input_angle.length,
+      closed: true,
+      label: t`Rotor`,
+      reading: (at) => `${shown(Math.round(10 * this.degrees(at)) / 10)}°`,
+      show: (at) => this.show(at),
+    });
     this.faces = mechanism.planes.map((/** @type {number} */ _z, /** @type {number} */ n) => this.face(mechanism, n));
     const names = [t`Before`, t`After`];
-    const facts = (metrics.bearings ?? []).flatMap((/** @type {any} */ bearing) => [bearing.before, bearing.after].flatMap((force, k) =>
-      [el("dt", {}, `${names[k]}, ${t`bearing at ${shown(bearing.z)} ${problem.length_unit}`}`), el("dd", {}, `${shown(Number(force.toPrecision(4)))} ${symbolOf("force", problem)}`)]));
-    const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The planes of correction, turning with the rotor` },
-      svg("rect", { class: "paper", width, height }), ...this.faces.map((/** @type {any} */ one) => one.node));
-    const lines = Object.fromEntries(motion.bearings.map((/** @type {any} */ bearing, /** @type {number} */ n) => [t`bearing ${n + 1}`, bearing.force.x]));
-    this.marks = motion.bearings.length ? plots([{ title: t`Force on the bearings at 1 rad/s, along x`, lines, least: 1e-9 }], motion.input_angle, (at) => this.player.lead(at)) : [];
-    frame.fill({ picture, clock: this.player.row,
-      beside: [el("dl", { class: "facts" }, ...facts), el("p", { class: "note" }, t`Filled: masses that are added. Open: masses that are taken away.`)],
-      plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))] });
+    const facts = (metrics.bearings ?? []).flatMap((/** @type {any} */ bearing) =>
+      [bearing.before, bearing.after].flatMap((force, k) => [
+        el("dt", {}, `${names[k]}, ${t`bearing at ${shown(bearing.z)} ${problem.length_unit}`}`),
+        el("dd", {}, `${shown(Number(force.toPrecision(4)))} ${symbolOf("force", problem)}`),
+      ]),
+    );
+    const picture = svg(
+      "svg",
+      {
+        viewBox: `0 0 ${width} ${height}`,
+        class: "canvas",
+        role: "img",
+        "aria-label": t`The planes of correction, turning with the rotor`,
+      },
+      svg("rect", { class: "paper", width, height }),
+      ...this.faces.map((/** @type {any} */ one) => one.node),
+    );
+    const lines = Object.fromEntries(
+      motion.bearings.map((/** @type {any} */ bearing, /** @type {number} */ n) => [
+        t`bearing ${n + 1}`,
+        bearing.force.x,
+      ]),
+    );
+    this.marks = motion.bearings.length
+      ? plots([{ title: t`Force on the bearings at 1 rad/s, along x`, lines, least: 1e-9 }], motion.input_angle, (at) =>
+          this.player.lead(at),
+        )
+      : [];
+    frame.fill({
+      picture,
+      clock: this.player.row,
+      beside: [
+        el("dl", { class: "facts" }, ...facts),
+        el("p", { class: "note" }, t`Filled: masses that are added. Open: masses that are taken away.`),
+      ],
+      plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))],
+    });
     this.player.begin();
   }
 
@@ -40,11 +73,18 @@ export class Rotor {
     const all = mechanism.corrections;
     const reach = Math.max(...all.map((/** @type {any} */ one) => one.radius ?? one.unbalance), 1e-300);
     const heaviest = Math.max(...all.map((/** @type {any} */ one) => one.unbalance), 1e-300);
-    const marks = all.filter((/** @type {any} */ one) => one.plane === plane).map((/** @type {any} */ one) => {
-      const far = (0.85 * rim * (one.radius ?? one.unbalance)) / reach;
-      const angle = (one.angle * Math.PI) / 180;
-      return svg("circle", { class: one.removed ? "tyre" : "pin", cx: u + far * Math.cos(angle), cy: v - far * Math.sin(angle), r: 3 + 8 * Math.sqrt(one.unbalance / heaviest) });
-    });
+    const marks = all
+      .filter((/** @type {any} */ one) => one.plane === plane)
+      .map((/** @type {any} */ one) => {
+        const far = (0.85 * rim * (one.radius ?? one.unbalance)) / reach;
+        const angle = (one.angle * Math.PI) / 180;
+        return svg("circle", {
+          class: one.removed ? "tyre" : "pin",
+          cx: u + far * Math.cos(angle),
+          cy: v - far * Math.sin(angle),
+          r: 3 + 8 * Math.sqrt(one.unbalance / heaviest),
+        });
+      });
     const turning = svg("g", {}, svg("line", { class: "arm", x1: u, y1: v, x2: u + rim, y2: v }), ...marks);
     return { node: svg("g", {}, svg("circle", { class: "link", cx: u, cy: v, r: rim }), turning), turning, u, v };
   }
@@ -56,7 +96,8 @@ export class Rotor {
 
   /** @param {number} at */
   show(at) {
-    for (const { turning, u, v } of this.faces) turning.setAttribute("transform", `rotate(${-this.degrees(at)} ${u} ${v})`);
+    for (const { turning, u, v } of this.faces)
+      turning.setAttribute("transform", `rotate(${-this.degrees(at)} ${u} ${v})`);
     for (const mark of this.marks) mark.show(at);
   }
 

@@ -26,9 +26,25 @@ export class Ruler {
     this.text = svg("text", { class: "ruler-text", "text-anchor": "middle" });
     this.title = svg("title");
     this.grips = [0, 1].map((k) => this.grip(k));
-    this.node = svg("g", { class: "ruler" }, this.line, svg("g", {}, this.title, this.text), ...this.grips.map((one) => one.node));
-    this.button = el("button", { type: "button", class: "small", "aria-pressed": "false", title: t`Ruler: drag its ends (R)`, "data-tool": "ruler",
-      onclick: () => this.turn() }, t`Ruler`);
+    this.node = svg(
+      "g",
+      { class: "ruler" },
+      this.line,
+      svg("g", {}, this.title, this.text),
+      ...this.grips.map((one) => one.node),
+    );
+    this.button = el(
+      "button",
+      {
+        type: "button",
+        class: "small",
+        "aria-pressed": "false",
+        title: t`Ruler: drag its ends (R)`,
+        "data-tool": "ruler",
+        onclick: () => this.turn(),
+      },
+      t`Ruler`,
+    );
     this.show();
   }
 
@@ -36,7 +52,8 @@ export class Ruler {
   turn() {
     const [width, height] = [this.view.width / this.view.scale, this.view.height / this.view.scale];
     const [x, y] = this.view.middle;
-    this.memory.ends = this.memory.ends ? null
+    this.memory.ends = this.memory.ends
+      ? null
       : [this.caught([x - 0.2 * width, y - 0.2 * height]), this.caught([x + 0.2 * width, y - 0.2 * height])];
     this.show();
     if (this.memory.ends) this.grips[1].node.focus({ preventScroll: true });
@@ -67,7 +84,9 @@ export class Ruler {
   /** A place, or what is so near to it that it is meant. @param {Point} place @returns {Point} */
   caught(place) {
     const far = (/** @type {Point} */ [x, y]) => this.view.scale * Math.hypot(x - place[0], y - place[1]);
-    const near = this.points().filter((one) => far(one) < CATCH).sort((one, other) => far(one) - far(other))[0];
+    const near = this.points()
+      .filter((one) => far(one) < CATCH)
+      .sort((one, other) => far(one) - far(other))[0];
     return near ? [...near] : [this.view.fine(place[0]), this.view.fine(place[1])];
   }
 
@@ -78,7 +97,8 @@ export class Ruler {
     // Laid on once: what is put anew while it is dragged lets the pointer go.
     if (!this.node.parentNode) this.picture.append(this.node);
     const [[x, y], [u, v]] = ends.map((end) => this.view.at(...end));
-    for (const [name, value] of Object.entries({ x1: x, y1: y, x2: u, y2: v })) this.line.setAttribute(name, String(value));
+    for (const [name, value] of Object.entries({ x1: x, y1: y, x2: u, y2: v }))
+      this.line.setAttribute(name, String(value));
     const [dx, dy] = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]];
     const [length, angle] = [Math.hypot(dx, dy), (Math.atan2(dy, dx) * 180) / Math.PI];
     const unit = this.unit && ` ${this.unit}`;
@@ -86,13 +106,11 @@ export class Ruler {
     this.title.textContent = t`${length}${unit}, ${angle}°; across ${dx}${unit}, up ${dy}${unit}`;
     this.text.setAttribute("x", (x + u) / 2);
     this.text.setAttribute("y", (y + v) / 2 - 9);
-    this.grips.forEach(({ node, hit, dot }, k) => {
-      const [cu, cv] = this.view.at(...ends[k]);
-      for (const one of [hit, dot]) {
-        one.setAttribute("cx", cu);
-        one.setAttribute("cy", cv);
-      }
-      node.setAttribute("aria-label", `${t`End ${k + 1} of the ruler`}: x ${shown(ends[k][0])}, y ${shown(ends[k][1])}; ${t`it measures ${this.text.textContent}. Arrow keys move it, Delete takes the ruler away.`}`);
+    const keys = t`it measures ${this.text.textContent}. Arrow keys move it, Delete takes the ruler away.`;
+    this.grips.forEach((grip, k) => {
+      const [ex, ey] = ends[k];
+      grip.put(this.view.at(ex, ey));
+      grip.call(`${t`End ${k + 1} of the ruler`}: x ${shown(ex)}, y ${shown(ey)}; ${keys}`);
     });
   }
 }

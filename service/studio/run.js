@@ -24,20 +24,32 @@ export async function run(place, id) {
   const control = (following = new AbortController());
   const bar = el("progress", { max: 1, value: 0, "aria-label": t`Progress of the job` });
   const message = el("span", { class: "note" }, term("queued"));
-  const cancel = el("button", { type: "button", id: "cancel", onclick: async () => {
-    cancel.disabled = true;
-    await api.remove(id).catch((error) => message.replaceChildren(error.message));
-  } }, t`Cancel`);
+  const cancel = el(
+    "button",
+    {
+      type: "button",
+      id: "cancel",
+      onclick: async () => {
+        cancel.disabled = true;
+        await api.remove(id).catch((error) => message.replaceChildren(error.message));
+      },
+    },
+    t`Cancel`,
+  );
   place.replaceChildren(el("div", { class: "row running" }, bar, cancel, message));
   let removed = false;
-  await api.follow(id, (event, data) => {
-    if (event === "removed") removed = true;
-    else {
-      const progress = data.progress ?? data;
-      bar.value = progress.fraction;
-      message.replaceChildren(`${Math.round(100 * progress.fraction)} %, ${translated(progress.message)}`);
-    }
-  }, control.signal);
+  await api.follow(
+    id,
+    (event, data) => {
+      if (event === "removed") removed = true;
+      else {
+        const progress = data.progress ?? data;
+        bar.value = progress.fraction;
+        message.replaceChildren(`${Math.round(100 * progress.fraction)} %, ${translated(progress.message)}`);
+      }
+    },
+    control.signal,
+  );
   if (control.signal.aborted) return null;
   place.replaceChildren();
   return removed ? null : api.job(id);

@@ -31,23 +31,44 @@ const NUMBERED = 24;
  */
 
 export class Scatter {
-  /** @param {Quantity[]} quantities @param {[number, number]} axes which of them @param {(n: number) => void} choose @param {() => void} turned other axes */
+  /**
+   * @param {Quantity[]} quantities
+   * @param {[number, number]} axes which of them
+   * @param {(n: number) => void} choose
+   * @param {() => void} turned other axes
+   */
   constructor(quantities, axes, choose, turned) {
     this.quantities = quantities;
     this.axes = axes;
     this.choose = choose;
     const pick = (/** @type {0 | 1} */ k, /** @type {string} */ id, /** @type {string} */ text) => {
-      const box = el("select", { id, onchange: () => {
-        this.axes[k] = Number(box.value);
-        turned();
-      } }, ...quantities.map((one, n) => el("option", { value: n }, one.text)));
+      const box = el(
+        "select",
+        {
+          id,
+          onchange: () => {
+            this.axes[k] = Number(box.value);
+            turned();
+          },
+        },
+        ...quantities.map((one, n) => el("option", { value: n }, one.text)),
+      );
       box.value = String(axes[k]);
       return el("div", { class: "axis" }, el("label", { for: id }, text), box);
     };
-    this.picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "group", "aria-label": t`Designs by two quantities; arrow keys choose`,
-      onkeydown: (/** @type {KeyboardEvent} */ event) => this.keyed(event) });
+    this.picture = svg("svg", {
+      viewBox: `0 0 ${WIDTH} ${HEIGHT}`,
+      role: "group",
+      "aria-label": t`Designs by two quantities; arrow keys choose`,
+      onkeydown: (/** @type {KeyboardEvent} */ event) => this.keyed(event),
+    });
     this.place = el("div", { class: "scatter" }, this.picture);
-    this.node = el("figure", {}, el("div", { class: "axes" }, pick(1, "axis-up", t`Up`), pick(0, "axis-across", t`Across`)), this.place);
+    this.node = el(
+      "figure",
+      {},
+      el("div", { class: "axes" }, pick(1, "axis-up", t`Up`), pick(0, "axis-across", t`Across`)),
+      this.place,
+    );
   }
 
   /** @param {Told} now */
@@ -61,19 +82,38 @@ export class Scatter {
     const [across, up] = this.axes.map((k) => this.quantities[k]);
     const x = scale(across.values, EDGE.left, WIDTH - EDGE.right, APART[0]);
     const y = scale(up.values, HEIGHT - EDGE.bottom, EDGE.top, APART[1]);
-    this.places = across.values.map((value, n) => (value === null || up.values[n] === null ? null
-      : /** @type {[number, number]} */ ([x.at(value), y.at(/** @type {number} */ (up.values[n]))])));
+    this.places = across.values.map((value, n) =>
+      value === null || up.values[n] === null
+        ? null
+        : /** @type {[number, number]} */ ([x.at(value), y.at(/** @type {number} */ (up.values[n]))]),
+    );
     const [right, low] = [WIDTH - EDGE.right, HEIGHT - EDGE.bottom];
     const few = this.places.length <= NUMBERED;
-    return [svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
-      ...x.ticks.map((value) => svg("g", {}, svg("line", { class: "grid", x1: x.at(value), x2: x.at(value), y1: EDGE.top, y2: low }),
-        svg("text", { class: "tick", x: x.at(value), y: low + 14, "text-anchor": "middle" }, brief(value)))),
-      ...y.ticks.map((value) => svg("g", {}, svg("line", { class: "grid", x1: EDGE.left, x2: right, y1: y.at(value), y2: y.at(value) }),
-        svg("text", { class: "tick", x: EDGE.left - 5, y: y.at(value) + 4, "text-anchor": "end" }, brief(value)))),
+    return [
+      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
+      ...x.ticks.map((value) =>
+        svg(
+          "g",
+          {},
+          svg("line", { class: "grid", x1: x.at(value), x2: x.at(value), y1: EDGE.top, y2: low }),
+          svg("text", { class: "tick", x: x.at(value), y: low + 14, "text-anchor": "middle" }, brief(value)),
+        ),
+      ),
+      ...y.ticks.map((value) =>
+        svg(
+          "g",
+          {},
+          svg("line", { class: "grid", x1: EDGE.left, x2: right, y1: y.at(value), y2: y.at(value) }),
+          svg("text", { class: "tick", x: EDGE.left - 5, y: y.at(value) + 4, "text-anchor": "end" }, brief(value)),
+        ),
+      ),
       svg("path", { class: "axis-line", d: `M${EDGE.left} ${EDGE.top}V${low}H${right}` }),
       svg("text", { class: "axis-name", x: 6, y: 16 }, titled(up)),
       svg("text", { class: "axis-name", x: right, y: HEIGHT - 6, "text-anchor": "end" }, titled(across)),
-      ...[...this.places.keys()].sort((a, b) => Number(a === now.chosen) - Number(b === now.chosen)).map((n) => this.point(n, now, few))];
+      ...[...this.places.keys()]
+        .sort((a, b) => Number(a === now.chosen) - Number(b === now.chosen))
+        .map((n) => this.point(n, now, few)),
+    ];
   }
 
   /** @param {number} n @param {Told} now @param {boolean} few */
@@ -82,22 +122,51 @@ export class Scatter {
     if (!place) return "";
     const [u, v] = place;
     const [across, up] = this.axes.map((k) => this.quantities[k]);
-    const says = [t`Design ${n + 1}`, ...[up, across].map((one) => `${one.text} ${told(one, Number(one.values[n]))}`),
-      ...(now.front.includes(n) ? [t`no other beats it`] : []), ...(now.pinned.includes(n) ? [t`pinned`] : [])].join(", ");
-    const marks = [now.chosen === n && "chosen", !now.kept[n] && "beyond", now.pinned.includes(n) && "pinned"].filter(Boolean).join(" ");
-    return svg("g", { class: `spot ${marks}`, tabindex: n === this.stop(now) ? 0 : -1, role: "button", "aria-pressed": String(n === now.chosen),
-      "aria-label": says, "data-grip": `spot${n}`, "aria-disabled": now.kept[n] ? null : "true", onclick: () => this.choose(n) },
-    svg("title", {}, says), svg("circle", { class: "hit", cx: u, cy: v, r: 12 }),
-    now.front.includes(n) && svg("circle", { class: "ring", cx: u, cy: v, r: 8 }),
-    now.pinned.includes(n) ? svg("path", { class: "spot-mark", d: `M${u} ${v - 6}L${u + 6} ${v}L${u} ${v + 6}L${u - 6} ${v}Z` })
-      : svg("circle", { class: "spot-mark", cx: u, cy: v, r: 4.5 }),
-    few && svg("text", { class: "tick", x: u > WIDTH - 34 ? u - 10 : u + 10, y: v - 5, "text-anchor": u > WIDTH - 34 ? "end" : "start" }, n + 1));
+    const says = [
+      t`Design ${n + 1}`,
+      ...[up, across].map((one) => `${one.text} ${told(one, Number(one.values[n]))}`),
+      ...(now.front.includes(n) ? [t`no other beats it`] : []),
+      ...(now.pinned.includes(n) ? [t`pinned`] : []),
+    ].join(", ");
+    const marks = [now.chosen === n && "chosen", !now.kept[n] && "beyond", now.pinned.includes(n) && "pinned"]
+      .filter(Boolean)
+      .join(" ");
+    return svg(
+      "g",
+      {
+        class: `spot ${marks}`,
+        tabindex: n === this.stop(now) ? 0 : -1,
+        role: "button",
+        "aria-pressed": String(n === now.chosen),
+        "aria-label": says,
+        "data-grip": `spot${n}`,
+        "aria-disabled": now.kept[n] ? null : "true",
+        onclick: () => this.choose(n),
+      },
+      svg("title", {}, says),
+      svg("circle", { class: "hit", cx: u, cy: v, r: 12 }),
+      now.front.includes(n) && svg("circle", { class: "ring", cx: u, cy: v, r: 8 }),
+      now.pinned.includes(n)
+        ? svg("path", { class: "spot-mark", d: `M${u} ${v - 6}L${u + 6} ${v}L${u} ${v + 6}L${u - 6} ${v}Z` })
+        : svg("circle", { class: "spot-mark", cx: u, cy: v, r: 4.5 }),
+      few &&
+        svg(
+          "text",
+          {
+            class: "tick",
+            x: u > WIDTH - 34 ? u - 10 : u + 10,
+            y: v - 5,
+            "text-anchor": u > WIDTH - 34 ? "end" : "start",
+          },
+          n + 1,
+        ),
+    );
   }
 
   /** The design at which the keys stop. @param {Told} now */
   stop(now) {
     const there = (/** @type {number} */ n) => Boolean(this.places?.[n]);
-    return there(now.chosen) ? now.chosen : this.places?.findIndex((one) => one !== null) ?? -1;
+    return there(now.chosen) ? now.chosen : (this.places?.findIndex((one) => one !== null) ?? -1);
   }
 
   /** To the next design to the right, to the left, above or below. @param {KeyboardEvent} event */
@@ -107,12 +176,15 @@ export class Scatter {
     if (!way || !now || !places) return;
     event.preventDefault();
     const [axis, sense] = way;
-    const order = [...places.keys()].filter((n) => places[n] && now.kept[n])
+    const order = [...places.keys()]
+      .filter((n) => places[n] && now.kept[n])
       .sort((a, b) => sense * (Number(places[a]?.[axis]) - Number(places[b]?.[axis])) || a - b);
     const next = order[order.indexOf(now.chosen) + 1];
     if (next === undefined) return;
     this.choose(next);
-    /** @type {SVGElement | null} */ (this.picture.querySelector(`[data-grip="spot${next}"]`))?.focus({ preventScroll: true });
+    /** @type {SVGElement | null} */ (this.picture.querySelector(`[data-grip="spot${next}"]`))?.focus({
+      preventScroll: true,
+    });
   }
 }
 
@@ -135,6 +207,7 @@ function scale(values, from, to, apart) {
   const ticks = steady ? [high] : [];
   [low, high] = [low - more, high + more];
   const step = spacing(((high - low) * apart) / Math.abs(to - from));
-  if (!steady) for (let k = Math.ceil(low / step); k * step <= high; k++) ticks.push(Number((k * step).toPrecision(12)));
+  if (!steady)
+    for (let k = Math.ceil(low / step); k * step <= high; k++) ticks.push(Number((k * step).toPrecision(12)));
   return { at: (value) => from + ((value - low) / (high - low)) * (to - from), ticks };
 }

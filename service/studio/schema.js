@@ -5,7 +5,8 @@
 /**
  * Of one field: which control states it.
  * @typedef {object} Kinded
- * @property {"choice" | "choices" | "flag" | "number" | "numbers" | "points" | "text" | "stock" | "object" | "union" | "table" | "map" | "shapes" | "json" | "fixed"} control
+ * @property {"choice" | "choices" | "flag" | "number" | "numbers" | "points" | "text" | "stock" | "object" | "union" |
+ *   "table" | "map" | "shapes" | "json" | "fixed"} control
  * @property {Schema[]} options what the value may be, null apart
  * @property {boolean} nullable
  * @property {string[]} [choices]
@@ -21,7 +22,12 @@ export function resolved(schema, root) {
   return { ...resolved(target, root), ...more };
 }
 
-/** What a value may be, references followed and alternatives opened. @param {Schema} schema @param {Schema} root @returns {Schema[]} */
+/**
+ * What a value may be, references followed and alternatives opened.
+ * @param {Schema} schema
+ * @param {Schema} root
+ * @returns {Schema[]}
+ */
 export function alternatives(schema, root) {
   const open = resolved(schema, root);
   const several = open.anyOf ?? open.oneOf;
@@ -35,15 +41,23 @@ function numeric(schema) {
 
 /** A thing and how many there are of it. @param {Schema} schema */
 function counted(schema) {
-  return schema.type === "object" && Object.keys(schema.properties ?? {}).length === 2 && schema.properties.count !== undefined;
+  return (
+    schema.type === "object" &&
+    Object.keys(schema.properties ?? {}).length === 2 &&
+    schema.properties.count !== undefined
+  );
 }
 
 /** A list or tuple of numbers, some of which may be left open. @param {Schema} schema @param {Schema} root */
 function listOfNumbers(schema, root) {
   if (schema.type !== "array") return false;
   const parts = schema.prefixItems ?? (schema.items ? [schema.items] : []);
-  return parts.length > 0 && parts.every((/** @type {Schema} */ part) =>
-    alternatives(part, root).every((one) => numeric(one) || one.type === "null"));
+  return (
+    parts.length > 0 &&
+    parts.every((/** @type {Schema} */ part) =>
+      alternatives(part, root).every((one) => numeric(one) || one.type === "null"),
+    )
+  );
 }
 
 /** The name of the property that tells alternatives of an object apart. @param {Schema[]} options */
@@ -51,8 +65,11 @@ export function discriminator(options) {
   const names = Object.keys(options[0]?.properties ?? {});
   const constant = (/** @type {Schema} */ one, /** @type {string} */ name) =>
     one.properties?.[name]?.const !== undefined || one.properties?.[name]?.enum !== undefined;
-  const stated = (/** @type {Schema} */ one, /** @type {string} */ name) => one.required?.includes(name) || one.properties[name].default !== undefined;
-  return names.find((name) => options.every((one) => constant(one, name)) && options.filter((one) => !stated(one, name)).length === 0);
+  const stated = (/** @type {Schema} */ one, /** @type {string} */ name) =>
+    one.required?.includes(name) || one.properties[name].default !== undefined;
+  return names.find(
+    (name) => options.every((one) => constant(one, name)) && options.filter((one) => !stated(one, name)).length === 0,
+  );
 }
 
 /** The option that a discriminated value belongs to. @param {Schema[]} options @param {any} value */
@@ -62,7 +79,12 @@ export function optionOf(options, value) {
   return options.find((one) => name && tagsOf(one, name).includes(tag)) ?? options[0];
 }
 
-/** The values of the discriminating property of an option. @param {Schema} option @param {string} name @returns {string[]} */
+/**
+ * The values of the discriminating property of an option.
+ * @param {Schema} option
+ * @param {string} name
+ * @returns {string[]}
+ */
 export function tagsOf(option, name) {
   const property = option.properties[name];
   return property.enum ?? [property.const];
@@ -94,13 +116,15 @@ export function kinded(schema, root) {
       return is("table", { item: rows[0], count: array.prefixItems?.length });
     }
     if (members.length && members.every((/** @type {Schema} */ one) => listOfNumbers(one, root))) return is("points");
-    if (members.length && members.every((/** @type {Schema} */ one) => one.enum)) return is("choices", { choices: members[0].enum });
+    if (members.length && members.every((/** @type {Schema} */ one) => one.enum))
+      return is("choices", { choices: members[0].enum });
     if (members.some(counted)) return is("stock");
   }
   const objects = options.filter((one) => one.type === "object" && one.properties);
   if (objects.length === 1 && options.length === 1) return is("object");
   if (objects.length === options.length && discriminator(objects)) return is("union");
-  if (options.length === 1 && typeof options[0].additionalProperties === "object") return is("map", { item: options[0].additionalProperties });
+  if (options.length === 1 && typeof options[0].additionalProperties === "object")
+    return is("map", { item: options[0].additionalProperties });
   return is("json");
 }
 
@@ -118,7 +142,8 @@ export function initial(schema, root) {
   }
   if (option.type === "object") {
     return Object.fromEntries(
-      (option.required ?? []).map((/** @type {string} */ name) => [name, initial(option.properties[name], root)]));
+      (option.required ?? []).map((/** @type {string} */ name) => [name, initial(option.properties[name], root)]),
+    );
   }
   return option.type === "string" ? "" : false;
 }
@@ -158,23 +183,40 @@ export function columns(item, root) {
   return [...found.values()];
 }
 
-/** The properties of a row that are more than a cell can state. @param {Schema} option @param {Schema} root @returns {string[]} */
+/**
+ * The properties of a row that are more than a cell can state.
+ * @param {Schema} option
+ * @param {Schema} root
+ * @returns {string[]}
+ */
 export function beyond(option, root) {
-  return Object.entries(option.properties).filter(([, schema]) =>
-    ["shapes", "table", "object", "union", "map", "points", "json"].includes(kinded(schema, root).control)).map(([name]) => name);
+  return Object.entries(option.properties)
+    .filter(([, schema]) =>
+      ["shapes", "table", "object", "union", "map", "points", "json"].includes(kinded(schema, root).control),
+    )
+    .map(([name]) => name);
 }
 
 /**
- * The path of what is of another form than a schema has it; null where nothing is. Only the service judges numbers and words.
+ * The path of what is of another form than a schema has it; null where nothing is. Only the service judges numbers and
+ * words.
  * @param {any} value @param {Schema} schema @param {Schema} root @param {string} [path] @returns {string | null}
  */
 export function misfit(value, schema, root, path = "") {
   const found = alternatives(schema, root).map((one) => misfitIn(value, one, root, path));
   // Of what might have been meant that which goes along with it farthest.
-  return found.includes(null) ? null : found.reduce((one, other) => (Number(other?.length) > Number(one?.length) ? other : one), path);
+  return found.includes(null)
+    ? null
+    : found.reduce((one, other) => (Number(other?.length) > Number(one?.length) ? other : one), path);
 }
 
-/** @param {any} value @param {Schema} schema without alternatives @param {Schema} root @param {string} path @returns {string | null} */
+/**
+ * @param {any} value
+ * @param {Schema} schema without alternatives
+ * @param {Schema} root
+ * @param {string} path
+ * @returns {string | null}
+ */
 function misfitIn(value, schema, root, path) {
   const form = formOf(value);
   const wanted = schema.type ?? formOf(schema.const ?? schema.enum?.[0] ?? value);
@@ -182,7 +224,10 @@ function misfitIn(value, schema, root, path) {
   if (form !== "object" && form !== "array") return null;
   for (const [name, inner] of Object.entries(value)) {
     const at = `${path}/${name}`;
-    const of = form === "array" ? schema.prefixItems?.[Number(name)] ?? schema.items : schema.properties?.[name] ?? schema.additionalProperties;
+    const of =
+      form === "array"
+        ? (schema.prefixItems?.[Number(name)] ?? schema.items)
+        : (schema.properties?.[name] ?? schema.additionalProperties);
     // `true` takes anything.
     const wrong = of === true ? null : of ? misfit(inner, of, root, at) : at;
     if (wrong !== null) return wrong;

@@ -12,7 +12,11 @@ import { Mover, demanded } from "./mover.js";
 const STEPS = 240;
 
 export class SentLinkage {
-  /** @param {import("./desk.js").Desk} desk @param {import("./address.js").Sent} sent @param {(problem: any) => void} state begins another statement */
+  /**
+   * @param {import("./desk.js").Desk} desk
+   * @param {import("./address.js").Sent} sent
+   * @param {(problem: any) => void} state begins another statement
+   */
   constructor(desk, sent, state) {
     this.desk = desk;
     this.sent = sent;
@@ -32,7 +36,10 @@ export class SentLinkage {
     const { motion, circuits } = await overTheCycle(mechanism, STEPS, gone.signal);
     // The motion that is shown ends where a toggle ends it; whether the input turns through a whole turn says.
     const from = stands(mechanism.skeleton);
-    const turn = from === null ? motion : await api.analysis({ mechanism, motion: { from, to: from + 360, steps: STEPS } }, gone.signal);
+    const turn =
+      from === null
+        ? motion
+        : await api.analysis({ mechanism, motion: { from, to: from + 360, steps: STEPS } }, gone.signal);
     if (gone.signal.aborted) return;
     const named = t`From the address: ${term(mechanism.type)}`;
     const problem = sent.placed ? { ...sent.problem, positions: [], points: [] } : sent.problem;
@@ -43,14 +50,30 @@ export class SentLinkage {
     this.moving = new Mover(desk.frame, { mechanism }, motion, problem, circuits);
     const { facts } = driven(turn, mechanism.skeleton, demanded(problem, null));
     desk.numbers.replaceChildren(
-      el("p", { class: "note" }, t`This linkage came in the address. What is told of it here this service has found by driving it; whether it does what is stated, Solve says.`),
-      el("dl", { class: "facts" }, ...Object.entries(facts).flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)])));
+      el(
+        "p",
+        { class: "note" },
+        t`This linkage came in the address. What is told of it here this service has found by driving it; whether it does what is stated, Solve says.`,
+      ),
+      el(
+        "dl",
+        { class: "facts" },
+        ...Object.entries(facts).flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]),
+      ),
+    );
     desk.explored(true);
     desk.drawer.on("explore", {
       opened: () => {
         this.moving?.pause();
         desk.stage.show("explore");
-        this.explorer = new Explorer(desk.exploring, desk.explore, mechanism, problem, demanded(problem, null), this.state);
+        this.explorer = new Explorer(
+          desk.exploring,
+          desk.explore,
+          mechanism,
+          problem,
+          demanded(problem, null),
+          this.state,
+        );
       },
       closed: () => {
         this.explorer?.stop();

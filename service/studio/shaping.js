@@ -9,7 +9,12 @@ const OUTWARDS = -0.53;
 /** So many times for one press. */
 const ROUNDS = 3;
 
-/** Points made smoother; the ends of an open curve stay. @param {Point[]} points @param {boolean} closed @returns {Point[]} */
+/**
+ * Points made smoother; the ends of an open curve stay.
+ * @param {Point[]} points
+ * @param {boolean} closed
+ * @returns {Point[]}
+ */
 export function smoothed(points, closed) {
   const count = points.length;
   let now = points;
@@ -26,23 +31,31 @@ export function smoothed(points, closed) {
 }
 
 /**
- * Points made symmetric: each becomes the mean of itself and the mirror of its partner. An open curve is mirrored in the
- * perpendicular bisector of its ends. Of a closed one, with points z about their mean and partners z[j - k], the line through the
+ * Points made symmetric: each becomes the mean of itself and the mirror of its partner. An open curve is mirrored in
+ * the
+ * perpendicular bisector of its ends. Of a closed one, with points z about their mean and partners z[j - k], the line
+ * through the
  * mean at half the argument of sum(z[k] z[j - k]) mirrors it best, and the j whose sum is greatest is taken.
  * @param {Point[]} points @param {boolean} closed @returns {Point[]}
  */
 export function symmetric(points, closed) {
   const count = points.length;
-  const middle = closed ? points.reduce(([a, b], [x, y]) => /** @type {Point} */ ([a + x / count, b + y / count]), /** @type {Point} */ ([0, 0]))
+  const middle = closed
+    ? points.reduce(
+        ([a, b], [x, y]) => /** @type {Point} */ ([a + x / count, b + y / count]),
+        /** @type {Point} */ ([0, 0]),
+      )
     : /** @type {Point} */ ([(points[0][0] + points[count - 1][0]) / 2, (points[0][1] + points[count - 1][1]) / 2]);
   const about = points.map(([x, y]) => /** @type {Point} */ ([x - middle[0], y - middle[1]]));
   const partner = (/** @type {number} */ j, /** @type {number} */ k) => (j - k + 2 * count) % count;
   let best = { j: count - 1, size: -1, turn: /** @type {Point} */ ([-1, 0]) };
   for (let j = closed ? 0 : count - 1; j < count; j++) {
-    const [re, im] = closed ? about.reduce(([a, b], [x, y], k) => {
-      const [u, v] = about[partner(j, k)];
-      return /** @type {Point} */ ([a + x * u - y * v, b + x * v + y * u]);
-    }, /** @type {Point} */ ([0, 0])) : [0, 0];
+    const [re, im] = closed
+      ? about.reduce(([a, b], [x, y], k) => {
+          const [u, v] = about[partner(j, k)];
+          return /** @type {Point} */ ([a + x * u - y * v, b + x * v + y * u]);
+        }, /** @type {Point} */ ([0, 0]))
+      : [0, 0];
     const size = Math.hypot(re, im);
     if (size > best.size) best = { j, size, turn: size ? [re / size, im / size] : [1, 0] };
   }

@@ -1,15 +1,27 @@
-/** Surfaces of parts from the shapes that the service tells: triangles with their normals, and the edges of what is solid. */
+/**
+ * Surfaces of parts from the shapes that the service tells: triangles with their normals, and the edges of what is
+ * solid.
+ */
 
 /** @typedef {[number, number]} Point */
-/** @typedef {{form: "circle", centre: Point, radius: number} | {form: "corners", corners: Point[], bulges: number[], smooth: boolean}} Outline */
-/** @typedef {{form: string, low: number, high: number, outer: Outline, holes: Outline[], twist: number, centre: Point, profile: Point[], corners: number[][], triangles: number[][]}} Shape */
+/**
+ * @typedef {{form: "circle", centre: Point, radius: number} | {form: "corners", corners: Point[], bulges: number[],
+ *   smooth: boolean}} Outline
+ */
+/**
+ * @typedef {{form: string, low: number, high: number, outer: Outline, holes: Outline[], twist: number, centre: Point,
+ *   profile: Point[], corners: number[][], triangles: number[][]}} Shape
+ */
 
 /**
  * A straight piece of an outline, with the directions out of what it encloses at its ends.
  * @typedef {{from: Point, to: Point, out: [Point, Point]}} Piece
  */
 
-/** Divides a region into triangles, by numbers of the points of its outline and then of its holes. @typedef {(outer: Point[], holes: Point[][]) => number[][]} Triangulate */
+/**
+ * Divides a region into triangles, by numbers of the points of its outline and then of its holes.
+ * @typedef {(outer: Point[], holes: Point[][]) => number[][]} Triangulate
+ */
 
 /** Pieces of a whole circle. */
 const ROUND = 96;
@@ -40,7 +52,12 @@ export class Surface {
     else this.mesh(shape);
   }
 
-  /** A prism, or one that turns by so much as it goes up. @param {Shape} shape @param {number} twist @param {Point} centre */
+  /**
+   * A prism, or one that turns by so much as it goes up.
+   * @param {Shape} shape
+   * @param {number} twist
+   * @param {Point} centre
+   */
   upright({ low, high, outer, holes }, twist, centre) {
     const outlines = [outer, ...holes].map(pieces);
     const layers = Math.max(1, Math.ceil(Math.abs(twist) / TWIST));
@@ -60,21 +77,46 @@ export class Surface {
     const points = outlines.map((outline) => outline.map(({ from }) => from));
     const all = points.flat();
     for (const three of this.triangulate(points[0], points.slice(1))) {
-      for (const [{ height, turned }, up] of /** @type {[typeof at[0], number][]} */ ([[at[0], -1], [at[layers], 1]])) {
+      for (const [{ height, turned }, up] of /** @type {[typeof at[0], number][]} */ ([
+        [at[0], -1],
+        [at[layers], 1],
+      ])) {
         const corners = three.map((k) => turned.place(all[k]));
         const [a, b, c] = corners;
         const left = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0;
-        for (const [x, y] of left === (up > 0) ? corners : corners.reverse()) this.corner(x, y, height, 0, 0, up);
+        for (const [x, y] of left === up > 0 ? corners : corners.reverse()) this.corner(x, y, height, 0, 0, up);
       }
     }
   }
 
-  /** @param {Piece} piece @param {Level} below @param {Level} above @param {number} side 1 of an outline, -1 of a hole */
+  /**
+   * @param {Piece} piece
+   * @param {Level} below
+   * @param {Level} above
+   * @param {number} side 1 of an outline, -1 of a hole
+   */
   wall({ from, to, out }, below, above, side) {
-    const [a, b, c, d] = [below.turned.place(from), below.turned.place(to), above.turned.place(to), above.turned.place(from)];
-    const [na, nb, nc, nd] = [below.turned.way(out[0]), below.turned.way(out[1]), above.turned.way(out[1]), above.turned.way(out[0])];
+    const [a, b, c, d] = [
+      below.turned.place(from),
+      below.turned.place(to),
+      above.turned.place(to),
+      above.turned.place(from),
+    ];
+    const [na, nb, nc, nd] = [
+      below.turned.way(out[0]),
+      below.turned.way(out[1]),
+      above.turned.way(out[1]),
+      above.turned.way(out[0]),
+    ];
     /** @type {[Point, number, Point][]} */
-    const quad = [[a, below.height, na], [b, below.height, nb], [c, above.height, nc], [a, below.height, na], [c, above.height, nc], [d, above.height, nd]];
+    const quad = [
+      [a, below.height, na],
+      [b, below.height, nb],
+      [c, above.height, nc],
+      [a, below.height, na],
+      [c, above.height, nc],
+      [d, above.height, nd],
+    ];
     for (const [[x, y], z, [u, v]] of side > 0 ? quad : quad.reverse()) this.corner(x, y, z, side * u, side * v, 0);
   }
 
@@ -93,13 +135,17 @@ export class Surface {
   creases(outline, below, above) {
     outline.forEach(({ from, out }, k) => {
       const before = outline[(k + outline.length - 1) % outline.length].out[1];
-      if (out[0][0] * before[0] + out[0][1] * before[1] < Math.cos(CREASE)) this.edges.push(...from, below.height, ...from, above.height);
+      if (out[0][0] * before[0] + out[0][1] * before[1] < Math.cos(CREASE))
+        this.edges.push(...from, below.height, ...from, above.height);
     });
   }
 
   /** @param {Shape} shape */
   turned({ profile, centre }) {
-    const around = Array.from({ length: ROUND + 1 }, (_, k) => (2 * Math.PI * k) / ROUND).map((angle) => [Math.cos(angle), Math.sin(angle)]);
+    const around = Array.from({ length: ROUND + 1 }, (_, k) => (2 * Math.PI * k) / ROUND).map((angle) => [
+      Math.cos(angle),
+      Math.sin(angle),
+    ]);
     profile.forEach(([r, z], n) => {
       const [s, t] = profile[(n + 1) % profile.length];
       const long = Math.hypot(s - r, t - z);
@@ -108,7 +154,14 @@ export class Surface {
       for (let k = 0; k < ROUND; k++) {
         const [[c, d], [e, f]] = [around[k], around[k + 1]];
         /** @type {[number, number, number[]][]} */
-        const quad = [[r, z, [c, d]], [r, z, [e, f]], [s, t, [e, f]], [r, z, [c, d]], [s, t, [e, f]], [s, t, [c, d]]];
+        const quad = [
+          [r, z, [c, d]],
+          [r, z, [e, f]],
+          [s, t, [e, f]],
+          [r, z, [c, d]],
+          [s, t, [e, f]],
+          [s, t, [c, d]],
+        ];
         for (const [radius, height, [x, y]] of quad) {
           this.corner(centre[0] + radius * x, centre[1] + radius * y, height, flat * x, flat * y, up);
         }
@@ -133,7 +186,8 @@ export class Surface {
         const key = one < other ? `${one} ${other}` : `${other} ${one}`;
         const before = beside.get(key);
         if (!before) beside.set(key, normal);
-        else if (before.reduce((sum, value, k) => sum + value * normal[k], 0) < Math.cos(CREASE)) this.edges.push(...corners[one], ...corners[other]);
+        else if (before.reduce((sum, value, k) => sum + value * normal[k], 0) < Math.cos(CREASE))
+          this.edges.push(...corners[one], ...corners[other]);
       });
     }
   }
@@ -172,19 +226,39 @@ export function pieces(outline) {
     }
     const away = (1 - bulge * bulge) / (4 * bulge);
     const centre = /** @type {Point} */ ([(from[0] + to[0]) / 2 - away * dy, (from[1] + to[1]) / 2 + away * dx]);
-    return arc(centre, Math.hypot(from[0] - centre[0], from[1] - centre[1]), Math.atan2(from[1] - centre[1], from[0] - centre[0]), 4 * Math.atan(bulge));
+    return arc(
+      centre,
+      Math.hypot(from[0] - centre[0], from[1] - centre[1]),
+      Math.atan2(from[1] - centre[1], from[0] - centre[0]),
+      4 * Math.atan(bulge),
+    );
   });
   return outline.smooth ? smoothed(found) : found;
 }
 
-/** @param {Point} centre @param {number} radius @param {number} begin @param {number} angle signed @returns {Piece[]} */
+/**
+ * @param {Point} centre
+ * @param {number} radius
+ * @param {number} begin
+ * @param {number} angle signed
+ * @returns {Piece[]}
+ */
 function arc(centre, radius, begin, angle) {
   const count = Math.max(2, Math.ceil((Math.abs(angle) / (2 * Math.PI)) * ROUND));
   const side = Math.sign(angle);
-  const ways = Array.from({ length: count + 1 }, (_, k) => begin + (angle * k) / count).map((at) => [Math.cos(at), Math.sin(at)]);
+  const ways = Array.from({ length: count + 1 }, (_, k) => begin + (angle * k) / count).map((at) => [
+    Math.cos(at),
+    Math.sin(at),
+  ]);
   const places = ways.map(([x, y]) => /** @type {Point} */ ([centre[0] + radius * x, centre[1] + radius * y]));
-  return ways.slice(1).map((way, k) => ({ from: places[k], to: places[k + 1],
-    out: [[side * ways[k][0], side * ways[k][1]], [side * way[0], side * way[1]]] }));
+  return ways.slice(1).map((way, k) => ({
+    from: places[k],
+    to: places[k + 1],
+    out: [
+      [side * ways[k][0], side * ways[k][1]],
+      [side * way[0], side * way[1]],
+    ],
+  }));
 }
 
 /** Pieces of a smooth curve: their normals go over into one another. @param {Piece[]} found @returns {Piece[]} */
@@ -195,6 +269,12 @@ function smoothed(found) {
     const size = Math.hypot(x, y) || 1;
     return [x / size, y / size];
   };
-  return found.map(({ from, to, out: [out] }, k) => ({ from, to, out: [
-    between(out, found[(k + found.length - 1) % found.length].out[0]), between(out, found[(k + 1) % found.length].out[0])] }));
+  return found.map(({ from, to, out: [out] }, k) => ({
+    from,
+    to,
+    out: [
+      between(out, found[(k + found.length - 1) % found.length].out[0]),
+      between(out, found[(k + 1) % found.length].out[0]),
+    ],
+  }));
 }

@@ -1,4 +1,7 @@
-/** What the browser keeps for this page. Where it keeps nothing, as in some private windows, the page does until it is closed. */
+/**
+ * What the browser keeps for this page. Where it keeps nothing, as in some private windows, the page does until it is
+ * closed.
+ */
 
 export class Storage {
   /** @param {() => globalThis.Storage} of which a browser may refuse */

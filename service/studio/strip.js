@@ -20,15 +20,33 @@ export class Strip {
     /** What meets the bounds. @type {boolean[]} */
     this.kept = designs.map(() => true);
     /** @type {HTMLElement[]} */
-    this.cards = designs.map((/** @type {any} */ design, /** @type {number} */ n) => card(design, n, job.problem, () => this.select(n)));
-    this.pins = this.cards.map((_, n) => el("button", { type: "button", class: "pin-button", "aria-label": t`Pin design ${n + 1}`,
-      title: t`Pin it: it then comes first`, "aria-pressed": "false", onclick: () => this.pin(n) }, "☆"));
+    this.cards = designs.map((/** @type {any} */ design, /** @type {number} */ n) =>
+      card(design, n, job.problem, () => this.select(n)),
+    );
+    this.pins = this.cards.map((_, n) =>
+      el(
+        "button",
+        {
+          type: "button",
+          class: "pin-button",
+          "aria-label": t`Pin design ${n + 1}`,
+          title: t`Pin it: it then comes first`,
+          "aria-pressed": "false",
+          onclick: () => this.pin(n),
+        },
+        "☆",
+      ),
+    );
     this.slots = this.cards.map((one, n) => el("div", { class: "slot" }, one, this.pins[n]));
     this.pinned = pinned(job.id).filter((n) => n < this.cards.length);
     /** Told when pins change. */
     this.changed = () => {};
-    this.node = el("div", { class: "cards", role: "group", "aria-label": t`Designs, best first; arrow keys choose`,
-      onkeydown: (/** @type {KeyboardEvent} */ event) => this.keyed(event) });
+    this.node = el("div", {
+      class: "cards",
+      role: "group",
+      "aria-label": t`Designs, best first; arrow keys choose`,
+      onkeydown: (/** @type {KeyboardEvent} */ event) => this.keyed(event),
+    });
     this.order();
   }
 
@@ -74,7 +92,14 @@ export class Strip {
   keyed(event) {
     const shown = this.row.filter((n) => this.kept[n]);
     const at = shown.findIndex((n) => this.cards[n] === document.activeElement);
-    const to = { ArrowRight: at + 1, ArrowDown: at + 1, ArrowLeft: at - 1, ArrowUp: at - 1, Home: 0, End: shown.length - 1 }[event.key];
+    const to = {
+      ArrowRight: at + 1,
+      ArrowDown: at + 1,
+      ArrowLeft: at - 1,
+      ArrowUp: at - 1,
+      Home: 0,
+      End: shown.length - 1,
+    }[event.key];
     if (at < 0 || to === undefined) return;
     event.preventDefault();
     const n = shown[Math.min(shown.length - 1, Math.max(0, to))];
@@ -90,13 +115,26 @@ export class Strip {
 /** @param {any} design @param {number} n @param {any} problem @param {() => void} choose */
 function card(design, n, problem, choose) {
   const passed = design.verification?.passed;
-  return el("button", { type: "button", class: "card", "data-design": n + 1, "aria-pressed": "false", onclick: choose },
+  return el(
+    "button",
+    { type: "button", class: "card", "data-design": n + 1, "aria-pressed": "false", onclick: choose },
     thumbnail(design),
-    el("span", { class: "told" },
+    el(
+      "span",
+      { class: "told" },
       el("strong", { title: words(design.mechanism.type) }, `${n + 1}. ${words(design.mechanism.type)}`),
       el("span", { class: passed ? "good" : "bad" }, passed ? `✓ ${t`verified`}` : `✗ ${t`fails a check`}`),
-      ...figures(design).slice(0, 1).map(([name, value]) => {
-        const told = figure(name, value, problem, design.metrics?.size);
-        return el("span", { class: "figure", title: told.title }, el("span", {}, words(name)), el("span", {}, told.text));
-      })));
+      ...figures(design)
+        .slice(0, 1)
+        .map(([name, value]) => {
+          const told = figure(name, value, problem, design.metrics?.size);
+          return el(
+            "span",
+            { class: "figure", title: told.title },
+            el("span", {}, words(name)),
+            el("span", {}, told.text),
+          );
+        }),
+    ),
+  );
 }

@@ -51,16 +51,20 @@ const desk = new Desk();
 const opening = new Opening(desk, "Hatch lid");
 /** What is shown until somebody states something. @type {{leave: () => void}} */
 let guest = opening;
-const undo = new Undo((statement) => {
-  vacate();
-  if (statement.kind === problem.kind) {
-    problem = statement;
-    byId("example").value = "";
-    show();
-  } else begun(statement);
-  drafted();
-  if (answered === null) desk.stage.show("state");
-}, byId("undo"), byId("redo"));
+const undo = new Undo(
+  (statement) => {
+    vacate();
+    if (statement.kind === problem.kind) {
+      problem = statement;
+      byId("example").value = "";
+      show();
+    } else begun(statement);
+    drafted();
+    if (answered === null) desk.stage.show("state");
+  },
+  byId("undo"),
+  byId("redo"),
+);
 
 const backdrop = new Backdrop(() => fitted());
 
@@ -85,7 +89,8 @@ function roomy() {
  */
 function show({ form = true, sketch = true, json = true } = {}) {
   if (form) fill(fields, kind().schema, problem, (rebuilt) => edited({ form: rebuilt }));
-  if (sketch) canvas(byId("sketch"), problem, roomy(), (rebuilt) => edited({ form: rebuilt, sketch: rebuilt }), backdrop);
+  if (sketch)
+    canvas(byId("sketch"), problem, roomy(), (rebuilt) => edited({ form: rebuilt, sketch: rebuilt }), backdrop);
   if (sketch && !byId("sketch").childElementCount) outlined();
   if (json) {
     text.value = JSON.stringify(problem, null, 2);
@@ -98,8 +103,15 @@ function show({ form = true, sketch = true, json = true } = {}) {
 /** What is not placed in the plane is shown as its example looks, so that the stage is not empty. */
 async function outlined() {
   const { kind: of } = problem;
-  const place = el("div", { class: "said" }, el("p", { class: "note" },
-    t`Nothing of this is placed in the plane: it is stated beside the stage. Solve shows it in motion.`));
+  const place = el(
+    "div",
+    { class: "said" },
+    el(
+      "p",
+      { class: "note" },
+      t`Nothing of this is placed in the plane: it is stated beside the stage. Solve shows it in motion.`,
+    ),
+  );
   byId("sketch").replaceChildren(place);
   // The example is chosen when its statement has been shown.
   await Promise.resolve();
@@ -114,11 +126,21 @@ function compare() {
   byId("answers").classList.toggle("stale", stale);
 }
 
-/** A statement in one spelling: fields in order, without the empty groups in which the form has room for fields. @param {any} statement */
+/**
+ * A statement in one spelling: fields in order, without the empty groups in which the form has room for fields.
+ * @param {any} statement
+ */
 function spelt(statement) {
   const group = (/** @type {any} */ value) => typeof value === "object" && value !== null && !Array.isArray(value);
-  return JSON.stringify(statement, (_, value) => group(value)
-    ? Object.fromEntries(Object.entries(value).filter(([, inner]) => !group(inner) || Object.keys(inner).length).sort()) : value);
+  return JSON.stringify(statement, (_, value) =>
+    group(value)
+      ? Object.fromEntries(
+          Object.entries(value)
+            .filter(([, inner]) => !group(inner) || Object.keys(inner).length)
+            .sort(),
+        )
+      : value,
+  );
 }
 
 /** Make room for what is stated now. What came in the address is there again when one goes back. */
@@ -185,33 +207,67 @@ function begun(statement) {
 /** The kind, its examples, and what it is about. */
 function introduce() {
   byId("kind").value = problem.kind;
-  byId("example").replaceChildren(el("option", { value: "" }, t`as edited`),
-    ...examples().map((/** @type {any} */ _, /** @type {number} */ n) => el("option", { value: n }, translated(kind().examples[n].name))));
+  byId("example").replaceChildren(
+    el("option", { value: "" }, t`as edited`),
+    ...examples().map((/** @type {any} */ _, /** @type {number} */ n) =>
+      el("option", { value: n }, translated(kind().examples[n].name)),
+    ),
+  );
   byId("about").textContent = prose(kind().description);
 }
 
 function choices() {
-  const pick = el("select", { id: "kind", onchange: () => {
-    vacate();
-    resume(pick.value);
-    desk.stage.show("state");
-  } }, ...kinds.map((one) => el("option", { value: one.kind }, translated(one.title))));
-  const example = el("select", { id: "example", onchange: () => {
-    if (example.value === "") return;
-    const chosen = example.value;
-    state(examples()[Number(chosen)]);
-    example.value = chosen;
-  } });
+  const pick = el(
+    "select",
+    {
+      id: "kind",
+      onchange: () => {
+        vacate();
+        resume(pick.value);
+        desk.stage.show("state");
+      },
+    },
+    ...kinds.map((one) => el("option", { value: one.kind }, translated(one.title))),
+  );
+  const example = el("select", {
+    id: "example",
+    onchange: () => {
+      if (example.value === "") return;
+      const chosen = example.value;
+      state(examples()[Number(chosen)]);
+      example.value = chosen;
+    },
+  });
   byId("choices").replaceChildren(
-    el("div", { class: "choices" }, el("label", { for: "kind" }, t`Kind`), pick,
-      el("label", { for: "example" }, t`Example`), example),
-    el("p", { class: "note", id: "draft", hidden: true }, t`Your draft, as you left it.`, " ",
-      el("button", { type: "button", class: "small", onclick: () => {
-        forgetDraft(problem.kind);
-        state(kind().example);
-        example.value = "0";
-      } }, t`Back to the example`)),
-    el("p", { class: "note", id: "about" }));
+    el(
+      "div",
+      { class: "choices" },
+      el("label", { for: "kind" }, t`Kind`),
+      pick,
+      el("label", { for: "example" }, t`Example`),
+      example,
+    ),
+    el(
+      "p",
+      { class: "note", id: "draft", hidden: true },
+      t`Your draft, as you left it.`,
+      " ",
+      el(
+        "button",
+        {
+          type: "button",
+          class: "small",
+          onclick: () => {
+            forgetDraft(problem.kind);
+            state(kind().example);
+            example.value = "0";
+          },
+        },
+        t`Back to the example`,
+      ),
+    ),
+    el("p", { class: "note", id: "about" }),
+  );
 }
 
 async function solve() {
@@ -261,7 +317,9 @@ async function unpack() {
     posted = { id: "", problem: null };
     begun(sent.problem);
     byId("label").value = sent.label;
-    byId("result").replaceChildren(el("p", { class: "note" }, t`This statement came in the address. Solve finds its answers.`));
+    byId("result").replaceChildren(
+      el("p", { class: "note" }, t`This statement came in the address. Solve finds its answers.`),
+    );
     desk.stage.show("state");
     const linkage = new SentLinkage(desk, sent, state);
     guest = linkage;
@@ -332,7 +390,12 @@ async function begin() {
   }
   tell("");
   choices();
-  imported ??= new CurveImport(byId("import"), backdrop, () => ({ problem, roomy: roomy() }), () => edited({}));
+  imported ??= new CurveImport(
+    byId("import"),
+    backdrop,
+    () => ({ problem, roomy: roomy() }),
+    () => edited({}),
+  );
   history = new History(byId("jobs"), kinds);
   gallery = new Gallery(kinds, (example) => {
     state(example.problem);
@@ -340,7 +403,10 @@ async function begin() {
     byId("label").value = translated(example.name);
     solve();
   });
-  const leader = new Leader({ desk, problem: () => problem, answered: () => answered !== null && byId("stale").hidden && !byId("answers").hasAttribute("aria-busy"),
+  const leader = new Leader({
+    desk,
+    problem: () => problem,
+    answered: () => answered !== null && byId("stale").hidden && !byId("answers").hasAttribute("aria-busy"),
     state: (of, name) => {
       const example = listed(kinds).find((one) => one.kind === of && one.name === name);
       if (!example) return;
@@ -348,8 +414,12 @@ async function begin() {
       state(example.problem);
       byId("example").value = String(example.n);
       byId("label").value = translated(name);
-    } });
-  byId("guides").replaceChildren(el("p", { class: "note" }, t`Guided, a minute each`), ...leader.list(() => gallery?.dialog.close()));
+    },
+  });
+  byId("guides").replaceChildren(
+    el("p", { class: "note" }, t`Guided, a minute each`),
+    ...leader.list(() => gallery?.dialog.close()),
+  );
   if (wanted) gallery.open();
   opening.measured();
   const last = location.hash ? "" : lastKind();
@@ -375,8 +445,12 @@ function sending() {
   // What answers an earlier statement is no part of this one.
   const design = byId("stale").hidden ? desk.shown : null;
   const { type, skeleton, driven_by } = design?.mechanism ?? {};
-  return { problem, label: byId("label").value, placed: Boolean(design?.placement),
-    mechanism: skeleton ? { type, skeleton, ...(driven_by && { driven_by }) } : null };
+  return {
+    problem,
+    label: byId("label").value,
+    placed: Boolean(design?.placement),
+    mechanism: skeleton ? { type, skeleton, ...(driven_by && { driven_by }) } : null,
+  };
 }
 
 const link = new Link(byId("link"), byId("link-told"), sending);
@@ -401,9 +475,15 @@ function fitted() {
 }
 
 const keys = new Keys([
-  { keys: ["Ctrl+Enter"], shown: t`Ctrl Enter`, text: t`Solve`, everywhere: true, act: () => {
-    if (!byId("solve").disabled) solve();
-  } },
+  {
+    keys: ["Ctrl+Enter"],
+    shown: t`Ctrl Enter`,
+    text: t`Solve`,
+    everywhere: true,
+    act: () => {
+      if (!byId("solve").disabled) solve();
+    },
+  },
   { keys: ["Ctrl+z"], shown: t`Ctrl Z`, text: t`Undo`, everywhere: true, act: () => undo.undo() },
   { keys: ["Ctrl+Shift+z", "Ctrl+y"], shown: t`Ctrl Shift Z`, text: t`Redo`, everywhere: true, act: () => undo.redo() },
   { keys: [" "], shown: t`Space`, text: t`Play and pause`, act: () => visible(".player button")?.click() },
@@ -413,7 +493,12 @@ const keys = new Keys([
   { keys: ["Shift+ArrowRight"], shown: "", text: "", act: () => scrub(10) },
   { keys: ["Home"], shown: t`Home or End`, text: t`Beginning and end of the motion`, act: () => scrubTo(0) },
   { keys: ["End"], shown: "", text: "", act: () => scrubTo(1) },
-  { keys: [..."123456789"], shown: "1 … 9", text: t`Choose a design`, act: (event) => answers.select(Number(event.key)) },
+  {
+    keys: [..."123456789"],
+    shown: "1 … 9",
+    text: t`Choose a design`,
+    act: (event) => answers.select(Number(event.key)),
+  },
   { keys: ["["], shown: t`[ or ]`, text: t`The design before, the next one`, act: () => answers.further(-1) },
   { keys: ["]"], shown: "", text: "", act: () => answers.further(1) },
   { keys: ["c"], shown: "C", text: t`Compare designs`, act: () => desk.drawer.press("compare") },
@@ -428,7 +513,12 @@ const keys = new Keys([
   { keys: ["n"], shown: "N", text: t`Numbers`, act: () => desk.drawer.press("numbers") },
   { keys: ["p"], shown: "P", text: t`Plots`, act: () => desk.drawer.press("plots") },
   { keys: ["e"], shown: "E", text: t`Explore`, act: () => desk.drawer.press("explore") },
-  { keys: ["l"], shown: "L", text: t`Copy a link to the statement, and to the linkage that is shown`, act: () => link.copy() },
+  {
+    keys: ["l"],
+    shown: "L",
+    text: t`Copy a link to the statement, and to the linkage that is shown`,
+    act: () => link.copy(),
+  },
   { keys: ["g"], shown: "G", text: t`Gallery`, act: () => browse() },
   { keys: ["?"], shown: "?", text: t`These keys`, act: () => keys.open() },
   { keys: [], shown: t`Esc`, text: t`Close what lies over the stage; put the pen away`, act: () => {} },
@@ -453,14 +543,20 @@ text.addEventListener("input", () => {
     byId("json-error").textContent = /** @type {Error} */ (error).message;
   }
 });
-byId("key").querySelector("form").addEventListener("submit", (/** @type {Event} */ event) => {
-  event.preventDefault();
-  api.useKey(byId("key-value").value.trim());
-  byId("key-value").value = "";
-  byId("key").open = false;
-  begin();
-});
-byId("language").replaceChildren(...Object.entries(languages).map(([code, { name }]) => el("option", { value: code, lang: code, selected: code === language }, `${code.toUpperCase()} · ${name}`)));
+byId("key")
+  .querySelector("form")
+  .addEventListener("submit", (/** @type {Event} */ event) => {
+    event.preventDefault();
+    api.useKey(byId("key-value").value.trim());
+    byId("key-value").value = "";
+    byId("key").open = false;
+    begin();
+  });
+byId("language").replaceChildren(
+  ...Object.entries(languages).map(([code, { name }]) =>
+    el("option", { value: code, lang: code, selected: code === language }, `${code.toUpperCase()} · ${name}`),
+  ),
+);
 byId("language").addEventListener("change", () => choose(byId("language").value));
 window.addEventListener("hashchange", restore);
 let resizing = 0;

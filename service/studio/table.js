@@ -15,13 +15,34 @@ import { unitOf } from "./units.js";
  */
 export function table(sheet, item, rows, path, count) {
   const heads = columns(item, sheet.root);
-  const line = (/** @type {any} */ row, /** @type {number} */ k) => [el("tr", {},
-    el("th", { scope: "row" }, k + 1),
-    ...heads.map((head) => el("td", {}, cell(sheet, head, row, `${path}/${k}/${head.name}`, k, item))),
-    el("td", { class: "acts" }, ...inDetail(sheet, item, row, k), count === undefined && el("button", { type: "button", class: "small", "aria-label": t`Remove row ${k + 1}`, onclick: () => {
-      rows.splice(k, 1);
-      sheet.rebuild();
-    } }, "×"))), ...more(sheet, item, row, `${path}/${k}`, heads.length + 2, k)];
+  const line = (/** @type {any} */ row, /** @type {number} */ k) => [
+    el(
+      "tr",
+      {},
+      el("th", { scope: "row" }, k + 1),
+      ...heads.map((head) => el("td", {}, cell(sheet, head, row, `${path}/${k}/${head.name}`, k, item))),
+      el(
+        "td",
+        { class: "acts" },
+        ...inDetail(sheet, item, row, k),
+        count === undefined &&
+          el(
+            "button",
+            {
+              type: "button",
+              class: "small",
+              "aria-label": t`Remove row ${k + 1}`,
+              onclick: () => {
+                rows.splice(k, 1);
+                sheet.rebuild();
+              },
+            },
+            "×",
+          ),
+      ),
+    ),
+    ...more(sheet, item, row, `${path}/${k}`, heads.length + 2, k),
+  ];
   const onpaste = (/** @type {ClipboardEvent} */ event) => {
     const text = event.clipboardData?.getData("text/plain") ?? "";
     // Lines that are pasted into a field of many lines are lines of its own.
@@ -29,25 +50,77 @@ export function table(sheet, item, rows, path, count) {
     event.preventDefault();
     const at = /** @type {HTMLElement} */ (event.target).dataset.path ?? `${path}/${rows.length}/${heads[0].name}`;
     const [first, column] = at.slice(path.length + 1).split("/");
-    paste(text, rows, Number(first), heads.slice(Math.max(0, heads.findIndex((head) => head.name === column))), () => initial(item, sheet.root));
+    paste(
+      text,
+      rows,
+      Number(first),
+      heads.slice(
+        Math.max(
+          0,
+          heads.findIndex((head) => head.name === column),
+        ),
+      ),
+      () => initial(item, sheet.root),
+    );
     sheet.rebuild();
   };
-  const view = el("div", { class: "table", onpaste },
-    el("table", {},
-      el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "#"),
-        ...heads.map((head) => el("th", { scope: "col", title: prose(head.schema.description) }, words(head.name),
-          unitOf(head.schema, sheet.problem) && el("span", { class: "unit" }, ` (${unitOf(head.schema, sheet.problem)})`))), el("td"))),
-      el("tbody", {}, ...rows.flatMap(line))),
-    el("div", { class: "row" },
-      count === undefined && el("button", { type: "button", class: "small", onclick: () => {
-        rows.push(rows.length ? structuredClone(rows[rows.length - 1]) : initial(item, sheet.root));
-        sheet.rebuild();
-      } }, t`Add a row`),
-      el("span", { class: "note" }, t`Paste rows from a spreadsheet into any cell.`)));
+  const view = el(
+    "div",
+    { class: "table", onpaste },
+    el(
+      "table",
+      {},
+      el(
+        "thead",
+        {},
+        el(
+          "tr",
+          {},
+          el("th", { scope: "col" }, "#"),
+          ...heads.map((head) =>
+            el(
+              "th",
+              { scope: "col", title: prose(head.schema.description) },
+              words(head.name),
+              unitOf(head.schema, sheet.problem) &&
+                el("span", { class: "unit" }, ` (${unitOf(head.schema, sheet.problem)})`),
+            ),
+          ),
+          el("td"),
+        ),
+      ),
+      el("tbody", {}, ...rows.flatMap(line)),
+    ),
+    el(
+      "div",
+      { class: "row" },
+      count === undefined &&
+        el(
+          "button",
+          {
+            type: "button",
+            class: "small",
+            onclick: () => {
+              rows.push(rows.length ? structuredClone(rows[rows.length - 1]) : initial(item, sheet.root));
+              sheet.rebuild();
+            },
+          },
+          t`Add a row`,
+        ),
+      el("span", { class: "note" }, t`Paste rows from a spreadsheet into any cell.`),
+    ),
+  );
   return view;
 }
 
-/** @param {import("./form.js").Sheet} sheet @param {any} head @param {any} row @param {string} path @param {number} k @param {Schema} item */
+/**
+ * @param {import("./form.js").Sheet} sheet
+ * @param {any} head
+ * @param {any} row
+ * @param {string} path
+ * @param {number} k
+ * @param {Schema} item
+ */
 function cell(sheet, head, row, path, k, item) {
   const options = alternatives(item, sheet.root);
   const option = options.length > 1 ? optionOf(options, row) : options[0];
@@ -93,38 +166,73 @@ function structured(value) {
 
 /**
  * What of a row is more than a cell can state, in a row below it that opens.
- * @param {import("./form.js").Sheet} sheet @param {Schema} item @param {any} row @param {string} path @param {number} width columns
+ * @param {import("./form.js").Sheet} sheet
+ * @param {Schema} item
+ * @param {any} row
+ * @param {string} path
+ * @param {number} width columns
  * @param {number} k
  */
 function more(sheet, item, row, path, width, k) {
   const option = optionAt(sheet, item, row);
   // What a cell can state as a number stands here only where it is stated in detail.
-  const names = beyond(option, sheet.root).filter((name) => kinded(option.properties[name], sheet.root).control !== "shapes" || structured(row[name]));
+  const names = beyond(option, sheet.root).filter(
+    (name) => kinded(option.properties[name], sheet.root).control !== "shapes" || structured(row[name]),
+  );
   if (!names.length) return [];
   const stated = names.some((name) => structured(row[name]) && (!Array.isArray(row[name]) || row[name].length));
   const inside = el("div", { class: "fields" });
   const fill = () => {
-    if (!inside.childElementCount) inside.append(...sheet.controls(option, row, path, names).filter((one) => one !== null));
+    if (!inside.childElementCount)
+      inside.append(...sheet.controls(option, row, path, names).filter((one) => one !== null));
   };
-  const details = el("details", { "data-path": `${path}/`, open: stated, ontoggle: fill, onreveal: () => {
-    details.open = true;
-    fill();
-  } }, el("summary", {}, t`Row ${k + 1}: ${names.map(term).join(", ")}`), inside);
+  const details = el(
+    "details",
+    {
+      "data-path": `${path}/`,
+      open: stated,
+      ontoggle: fill,
+      onreveal: () => {
+        details.open = true;
+        fill();
+      },
+    },
+    el("summary", {}, t`Row ${k + 1}: ${names.map(term).join(", ")}`),
+    inside,
+  );
   if (stated) fill();
   return [el("tr", { class: "more" }, el("td", { colspan: width }, details))];
 }
 
-/** Buttons that begin to state in detail what a cell states as a number. @param {import("./form.js").Sheet} sheet @param {Schema} item @param {any} row @param {number} k */
+/**
+ * Buttons that begin to state in detail what a cell states as a number.
+ * @param {import("./form.js").Sheet} sheet
+ * @param {Schema} item
+ * @param {any} row
+ * @param {number} k
+ */
 function inDetail(sheet, item, row, k) {
   const option = optionAt(sheet, item, row);
   return beyond(option, sheet.root).flatMap((name) => {
     const what = kinded(option.properties[name], sheet.root);
     if (what.control !== "shapes" || structured(row[name])) return [];
     const title = t`${words(name)} of row ${k + 1} in detail`;
-    return [el("button", { type: "button", class: "small", title, "aria-label": title, onclick: () => {
-      row[name] = initial(what.options.find((one) => one.type === "object") ?? {}, sheet.root);
-      sheet.rebuild();
-    } }, "⋯")];
+    return [
+      el(
+        "button",
+        {
+          type: "button",
+          class: "small",
+          title,
+          "aria-label": title,
+          onclick: () => {
+            row[name] = initial(what.options.find((one) => one.type === "object") ?? {}, sheet.root);
+            sheet.rebuild();
+          },
+        },
+        "⋯",
+      ),
+    ];
   });
 }
 

@@ -12,17 +12,31 @@ const HEIGHT = 84;
 /** @param {any} design @param {Point[]} [curve] the path of a linkage's telling point */
 export function thumbnail(design, curve = []) {
   const drawing = drawn(design, curve);
-  return drawing && svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "thumbnail", "aria-hidden": "true" }, ...drawing);
+  return (
+    drawing && svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "thumbnail", "aria-hidden": "true" }, ...drawing)
+  );
 }
 
 /** @param {any} design @param {Point[]} curve @returns {Element[] | null} */
 function drawn({ mechanism, metrics }, curve) {
   if (mechanism.skeleton?.joints) return linkage(mechanism.skeleton, curve);
-  if (mechanism.profile) return outlines([mechanism.profile, mechanism.outer_wall, mechanism.second?.profile].filter(Boolean), true);
+  if (mechanism.profile)
+    return outlines([mechanism.profile, mechanism.outer_wall, mechanism.second?.profile].filter(Boolean), true);
   if (mechanism.upper_wall) return outlines([mechanism.lower_wall, mechanism.upper_wall], false);
   const listed = circles(mechanism, metrics);
   if (!listed.length) return null;
-  const view = new View(listed.flatMap(({ centre: [x, y], radius }) => /** @type {Point[]} */ ([[x - radius, y - radius], [x + radius, y + radius]])), WIDTH, HEIGHT, 4);
+  const view = new View(
+    listed.flatMap(
+      ({ centre: [x, y], radius }) =>
+        /** @type {Point[]} */ ([
+          [x - radius, y - radius],
+          [x + radius, y + radius],
+        ]),
+    ),
+    WIDTH,
+    HEIGHT,
+    4,
+  );
   return listed.map(({ centre, radius }) => {
     const [u, v] = view.at(...centre);
     return svg("circle", { class: "link", cx: u, cy: v, r: view.scale * radius });
@@ -33,54 +47,113 @@ function drawn({ mechanism, metrics }, curve) {
 function linkage(skeleton, curve) {
   const view = new View([...Object.values(skeleton.joints), ...curve], WIDTH, HEIGHT, curve.length ? 6 : 12);
   const path = view.path(curve);
-  return [...(path ? [svg("path", { class: "curve", d: path })] : []), ...skeleton.links.filter((/** @type {any} */ link) => link.name !== "ground").map((/** @type {any} */ link) =>
-    svg("path", { class: `link ${link.name === skeleton.input_link ? "input" : ""}`, d: `${view.path(link.joints.map((/** @type {string} */ name) => skeleton.joints[name]))}${link.joints.length > 2 ? "Z" : ""}` })),
-  ...Object.values(skeleton.joints).map((/** @type {any} */ [x, y]) => {
-    const [u, v] = view.at(x, y);
-    return svg("circle", { class: "pin", r: 2.5, cx: u, cy: v });
-  })];
+  return [
+    ...(path ? [svg("path", { class: "curve", d: path })] : []),
+    ...skeleton.links
+      .filter((/** @type {any} */ link) => link.name !== "ground")
+      .map((/** @type {any} */ link) =>
+        svg("path", {
+          class: `link ${link.name === skeleton.input_link ? "input" : ""}`,
+          d:
+            view.path(link.joints.map((/** @type {string} */ name) => skeleton.joints[name])) +
+            (link.joints.length > 2 ? "Z" : ""),
+        }),
+      ),
+    ...Object.values(skeleton.joints).map((/** @type {any} */ [x, y]) => {
+      const [u, v] = view.at(x, y);
+      return svg("circle", { class: "pin", r: 2.5, cx: u, cy: v });
+    }),
+  ];
 }
 
 /** Contours of a cam, or the walls of a groove. @param {any[]} curves @param {boolean} closed */
 function outlines(curves, closed) {
-  const lines = curves.map((curve) => curve.x.map((/** @type {number} */ x, /** @type {number} */ k) => /** @type {Point} */ ([x, curve.y[k]])));
+  const lines = curves.map((curve) =>
+    curve.x.map((/** @type {number} */ x, /** @type {number} */ k) => /** @type {Point} */ ([x, curve.y[k]])),
+  );
   const view = new View([...lines.flat(), .../** @type {Point[]} */ (closed ? [[0, 0]] : [])], WIDTH, HEIGHT, 6);
   const [u, v] = view.at(0, 0);
-  return [...lines.map((line) => svg("path", { class: closed ? "link" : "link input", d: `${view.path(line)}${closed ? "Z" : ""}` })),
-    ...(closed ? [svg("circle", { class: "pin", r: 2.5, cx: u, cy: v })] : [])];
+  return [
+    ...lines.map((line) =>
+      svg("path", { class: closed ? "link" : "link input", d: `${view.path(line)}${closed ? "Z" : ""}` }),
+    ),
+    ...(closed ? [svg("circle", { class: "pin", r: 2.5, cx: u, cy: v })] : []),
+  ];
 }
 
-/** Pitch circles; of a flywheel its own, of an engine those of its throws. @param {any} mechanism @param {any} metrics @returns {Circle[]} */
+/**
+ * Pitch circles; of a flywheel its own, of an engine those of its throws.
+ * @param {any} mechanism
+ * @param {any} metrics
+ * @returns {Circle[]}
+ */
 function circles(mechanism, metrics) {
   const { module } = mechanism;
   if (mechanism.type === "rotor") {
-    const reach = Math.max(...mechanism.corrections.map((/** @type {any} */ one) => one.radius ?? one.unbalance), 1e-300);
-    return [{ centre: [0, 0], radius: 1.2 * reach }, ...mechanism.corrections.map((/** @type {any} */ one) => {
-      const far = one.radius ?? one.unbalance;
-      const angle = (one.angle * Math.PI) / 180;
-      return { centre: [far * Math.cos(angle), far * Math.sin(angle)], radius: 0.12 * reach };
-    })];
+    const reach = Math.max(
+      ...mechanism.corrections.map((/** @type {any} */ one) => one.radius ?? one.unbalance),
+      1e-300,
+    );
+    return [
+      { centre: [0, 0], radius: 1.2 * reach },
+      ...mechanism.corrections.map((/** @type {any} */ one) => {
+        const far = one.radius ?? one.unbalance;
+        const angle = (one.angle * Math.PI) / 180;
+        return { centre: [far * Math.cos(angle), far * Math.sin(angle)], radius: 0.12 * reach };
+      }),
+    ];
   }
-  if (mechanism.type === "engine") return mechanism.throws.map((/** @type {number} */ _, /** @type {number} */ n) => ({ centre: [2.2 * mechanism.crank * n, 0], radius: mechanism.crank }));
-  if (mechanism.type === "flywheel") return [mechanism.radius, mechanism.inner_radius].filter(Boolean).map((radius) => ({ centre: [0, 0], radius }));
-  const row = (/** @type {[number, number, number, number][]} */ pairs) => pairs.flatMap(([from, to, one, other]) =>
-    /** @type {Circle[]} */ ([{ centre: [from, 0], radius: one }, { centre: [to, 0], radius: other }]));
+  if (mechanism.type === "engine")
+    return mechanism.throws.map((/** @type {number} */ _, /** @type {number} */ n) => ({
+      centre: [2.2 * mechanism.crank * n, 0],
+      radius: mechanism.crank,
+    }));
+  if (mechanism.type === "flywheel")
+    return [mechanism.radius, mechanism.inner_radius].filter(Boolean).map((radius) => ({ centre: [0, 0], radius }));
+  const row = (/** @type {[number, number, number, number][]} */ pairs) =>
+    pairs.flatMap(
+      ([from, to, one, other]) =>
+        /** @type {Circle[]} */ ([
+          { centre: [from, 0], radius: one },
+          { centre: [to, 0], radius: other },
+        ]),
+    );
   if (mechanism.type === "layshaft_gearbox") {
-    const pairs = [mechanism.head, ...mechanism.gears.filter((/** @type {any} */ one) => one.layshaft).map((/** @type {any} */ one) => ({ driver: one.mainshaft, driven: one.layshaft }))];
-    return row(pairs.map((pair) => [0, mechanism.centre_distance, (module * pair.driver) / 2, (module * pair.driven) / 2]));
+    const pairs = [
+      mechanism.head,
+      ...mechanism.gears
+        .filter((/** @type {any} */ one) => one.layshaft)
+        .map((/** @type {any} */ one) => ({ driver: one.mainshaft, driven: one.layshaft })),
+    ];
+    return row(
+      pairs.map((pair) => [0, mechanism.centre_distance, (module * pair.driver) / 2, (module * pair.driven) / 2]),
+    );
   }
   if (mechanism.stages) {
     let at = 0;
     return mechanism.stages.flatMap((/** @type {any} */ stage, /** @type {number} */ n) => {
       const pairs = stage.pairs ?? [stage];
-      const idle = (mechanism.idlers ?? []).filter((/** @type {any} */ one) => one.stage === n + 1).reduce((/** @type {number} */ sum, /** @type {any} */ one) => sum + one.teeth, 0);
+      const idle = (mechanism.idlers ?? [])
+        .filter((/** @type {any} */ one) => one.stage === n + 1)
+        .reduce((/** @type {number} */ sum, /** @type {any} */ one) => sum + one.teeth, 0);
       const size = stage.module ?? module;
       const from = at;
-      // Of a ring and its pinion the axes are as far apart as the radii differ; a worm is as thick as it is, whatever its threads.
+      // Of a ring and its pinion the axes are as far apart as the radii differ; a worm is as thick as it is, whatever
+      // its threads.
       const first = stage.type === "worm" ? stage.diameter_quotient : pairs[0].driver;
       const wide = stage.type === "helical" ? 1 / Math.cos((stage.helix_angle * Math.PI) / 180) : 1;
-      at += size * wide * ((stage.type === "internal" ? Math.abs(pairs[0].driven - first) : first + pairs[0].driven) / 2 + idle);
-      return row(pairs.map((/** @type {any} */ pair) => [from, at, (size * wide * (stage.type === "worm" ? first : pair.driver)) / 2, (size * wide * pair.driven) / 2]));
+      at +=
+        size *
+        wide *
+        ((stage.type === "internal" ? Math.abs(pairs[0].driven - first) : first + pairs[0].driven) / 2 + idle);
+      return row(
+        pairs.map((/** @type {any} */ pair) => [
+          from,
+          at,
+          (size * wide * (stage.type === "worm" ? first : pair.driver)) / 2,
+          (size * wide * pair.driven) / 2,
+        ]),
+      );
     });
   }
   if (mechanism.units) {
@@ -94,7 +167,13 @@ function circles(mechanism, metrics) {
     });
   }
   if (!mechanism.teeth) return [];
-  const far = Object.fromEntries((metrics?.meshes ?? []).flatMap((/** @type {any} */ mesh) => mesh.gears.map((/** @type {string} */ name) => [name, mesh.centre_distance])));
-  return Object.entries(mechanism.teeth).map(([name, teeth]) =>
-    ({ centre: name.startsWith("planet") ? [far[name] ?? 0, 0] : [0, 0], radius: (module * Number(teeth)) / 2 }));
+  const far = Object.fromEntries(
+    (metrics?.meshes ?? []).flatMap((/** @type {any} */ mesh) =>
+      mesh.gears.map((/** @type {string} */ name) => [name, mesh.centre_distance]),
+    ),
+  );
+  return Object.entries(mechanism.teeth).map(([name, teeth]) => ({
+    centre: name.startsWith("planet") ? [far[name] ?? 0, 0] : [0, 0],
+    radius: (module * Number(teeth)) / 2,
+  }));
 }

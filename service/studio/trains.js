@@ -22,25 +22,46 @@ export function wheels(mechanism, motion, design, problem) {
   }
 }
 
-/** Trains in series: each as it is alone, side by side, at the speed that its input has. @param {any} mechanism @param {any} motion @param {any} design @param {any} problem */
+/**
+ * Trains in series: each as it is alone, side by side, at the speed that its input has.
+ * @param {any} mechanism
+ * @param {any} motion
+ * @param {any} design
+ * @param {any} problem
+ */
 function series(mechanism, motion, design, problem) {
   /** @type {Wheel[]} */
   const found = [];
   let right = 0;
   mechanism.units.forEach((/** @type {any} */ unit, /** @type {number} */ n) => {
     const own = wheels(unit, motion.units[n], { mechanism: unit, metrics: design.metrics.units[n] }, problem.units[n]);
-    const ends = own.map((wheel) => [wheel.centre[0] - radius(wheel) - wheel.module, wheel.centre[0] + radius(wheel) + wheel.module]);
+    const ends = own.map((wheel) => [
+      wheel.centre[0] - radius(wheel) - wheel.module,
+      wheel.centre[0] + radius(wheel) + wheel.module,
+    ]);
     const [low, high] = [Math.min(...ends.map(([end]) => end)), Math.max(...ends.map(([, end]) => end))];
     const aside = n ? right + 0.15 * (high - low) - low : 0;
     right = high + aside;
     const share = motion.shafts[n].speed_ratio;
-    found.push(...own.map((wheel) => ({ ...wheel, name: t`Unit ${n + 1}, ${wheel.name}`, centre: /** @type {Point} */ ([wheel.centre[0] + aside, wheel.centre[1]]),
-      axis: /** @type {Point} */ ([aside, 0]), speed: share * wheel.speed, ...(wheel.orbit === undefined ? {} : { orbit: share * wheel.orbit }) })));
+    found.push(
+      ...own.map((wheel) => ({
+        ...wheel,
+        name: t`Unit ${n + 1}, ${wheel.name}`,
+        centre: /** @type {Point} */ ([wheel.centre[0] + aside, wheel.centre[1]]),
+        axis: /** @type {Point} */ ([aside, 0]),
+        speed: share * wheel.speed,
+        ...(wheel.orbit === undefined ? {} : { orbit: share * wheel.orbit }),
+      })),
+    );
   });
   return found;
 }
 
-/** An ordinary train: shafts in a line; those of a reverted train go to and fro, or round a triangle. @param {any} motion @param {any} problem */
+/**
+ * An ordinary train: shafts in a line; those of a reverted train go to and fro, or round a triangle.
+ * @param {any} motion
+ * @param {any} problem
+ */
 function ordinary(motion, problem) {
   const distances = motion.centre_distances;
   const stages = distances.length;
@@ -59,13 +80,24 @@ function ordinary(motion, problem) {
     const contact = inside && gears[0].teeth < gears[1].teeth ? ahead + Math.PI : ahead;
     // Shifted gears are shown by their working pitch circles, which touch; an idler's stage has none.
     // Bevel gears are shown as if spread out in one plane, a worm as the circle that it is from its end.
-    const apart = gears.length === 2 && !inside && kind !== "bevel" && kind !== "worm" ? distances[stage - 1] / (0.5 * gears[0].module * (gears[0].teeth + gears[1].teeth)) : 1;
+    const apart =
+      gears.length === 2 && !inside && kind !== "bevel" && kind !== "worm"
+        ? distances[stage - 1] / (0.5 * gears[0].module * (gears[0].teeth + gears[1].teeth))
+        : 1;
     const wide = Math.abs(apart - 1) > 1e-9 ? apart : 1;
     for (const gear of gears) {
       /** @type {Wheel} */
-      const wheel = { name: t`Stage ${stage} ${term(gear.role)}`, teeth: gear.teeth, module: gear.module * wide, centre: shaft, tooth: contact, speed: gear.speed_ratio, tone: stage - 1,
+      const wheel = {
+        name: t`Stage ${stage} ${term(gear.role)}`,
+        teeth: gear.teeth,
+        module: gear.module * wide,
+        centre: shaft,
+        tooth: contact,
+        speed: gear.speed_ratio,
+        tone: stage - 1,
         ...(inside ? { internal: gear.teeth === Math.max(...gears.map((/** @type {any} */ one) => one.teeth)) } : {}),
-        ...(kind === "worm" && gear.role === "driver" ? { module: gear.pitch_diameter / gear.teeth, idle: true } : {}) };
+        ...(kind === "worm" && gear.role === "driver" ? { module: gear.pitch_diameter / gear.teeth, idle: true } : {}),
+      };
       if (before) {
         const far = inside ? Math.abs(radius(before) - radius(wheel)) : radius(before) + radius(wheel);
         wheel.centre = [before.centre[0] + far * Math.cos(ahead), before.centre[1] + far * Math.sin(ahead)];
@@ -79,27 +111,55 @@ function ordinary(motion, problem) {
   return found;
 }
 
-/** A planetary train: which gear is on which body is told by the meshes. @param {any} mechanism @param {any} motion @param {any} design */
+/**
+ * A planetary train: which gear is on which body is told by the meshes.
+ * @param {any} mechanism
+ * @param {any} motion
+ * @param {any} design
+ */
 function planetary(mechanism, motion, design) {
   /** @type {{gears: string[], bodies: string[], carrier: string, distance: number}[]} */
   const meshes = design.metrics.meshes.map((/** @type {any} */ mesh, /** @type {number} */ k) => ({
-    gears: mesh.gears, bodies: [motion.meshes[k].first, motion.meshes[k].second], carrier: motion.meshes[k].carrier,
+    gears: mesh.gears,
+    bodies: [motion.meshes[k].first, motion.meshes[k].second],
+    carrier: motion.meshes[k].carrier,
     // Bevel gears, whose axes cross, are shown as if spread out in one plane.
-    distance: mesh.centre_distance ?? 0.5 * mechanism.module * mesh.gears.reduce((/** @type {number} */ sum, /** @type {string} */ name) => sum + mechanism.teeth[name], 0),
+    distance:
+      mesh.centre_distance ??
+      0.5 *
+        mechanism.module *
+        mesh.gears.reduce((/** @type {number} */ sum, /** @type {string} */ name) => sum + mechanism.teeth[name], 0),
   }));
   /** @type {Record<string, any>} */
   const bodies = Object.fromEntries(motion.bodies.map((/** @type {any} */ body) => [body.name, body]));
   const bodyOf = Object.fromEntries(meshes.flatMap((mesh) => mesh.gears.map((gear, k) => [gear, mesh.bodies[k]])));
-  const carrierOf = Object.fromEntries(meshes.flatMap((mesh) => mesh.bodies.filter((body) => bodies[body].planet).map((body) => [body, mesh.carrier])));
+  const carrierOf = Object.fromEntries(
+    meshes.flatMap((mesh) => mesh.bodies.filter((body) => bodies[body].planet).map((body) => [body, mesh.carrier])),
+  );
   const pins = pinsOf(meshes, bodies);
   const names = Object.keys(mechanism.teeth).filter((name) => name in bodyOf);
   /** @type {Record<string, Wheel>} */
-  const first = Object.fromEntries(names.map((name, k) => {
-    const body = bodyOf[name];
-    return [name, { name, teeth: mechanism.teeth[name], module: mechanism.module, internal: name.startsWith("ring"), centre: pins[body] ?? [0, 0],
-      tooth: NaN, speed: bodies[body].speed ?? 0, orbit: bodies[carrierOf[body]]?.speed ?? 0, tone: k }];
-  }));
-  const mates = (/** @type {string} */ gear) => meshes.filter((mesh) => mesh.gears.includes(gear)).map((mesh) => mesh.gears[mesh.gears[0] === gear ? 1 : 0]);
+  const first = Object.fromEntries(
+    names.map((name, k) => {
+      const body = bodyOf[name];
+      return [
+        name,
+        {
+          name,
+          teeth: mechanism.teeth[name],
+          module: mechanism.module,
+          internal: name.startsWith("ring"),
+          centre: pins[body] ?? [0, 0],
+          tooth: NaN,
+          speed: bodies[body].speed ?? 0,
+          orbit: bodies[carrierOf[body]]?.speed ?? 0,
+          tone: k,
+        },
+      ];
+    }),
+  );
+  const mates = (/** @type {string} */ gear) =>
+    meshes.filter((mesh) => mesh.gears.includes(gear)).map((mesh) => mesh.gears[mesh.gears[0] === gear ? 1 : 0]);
   // The first copies: from gear to gear, each facing the one before.
   for (const start of names) {
     if (!Number.isNaN(first[start].tooth)) continue;
@@ -120,15 +180,32 @@ function planetary(mechanism, motion, design) {
     return steps.map((/** @type {number} */ step, /** @type {number} */ copy) => {
       const turn = (2 * Math.PI * step) / divisions;
       const wheel = { ...first[name], name: `${name} ${copy + 1}`, centre: rotated(first[name].centre, turn) };
-      wheel.tooth = first[name].tooth + aside(names.filter((one) => bodyOf[one] === body), first, mates, turn);
+      wheel.tooth =
+        first[name].tooth +
+        aside(
+          names.filter((one) => bodyOf[one] === body),
+          first,
+          mates,
+          turn,
+        );
       return wheel;
     });
   });
 }
 
-/** How far a copy of a planet is turned itself so that all its gears mesh: the best of its first gear's tooth places. @param {string[]} own @param {Record<string, Wheel>} first @param {(gear: string) => string[]} mates @param {number} turn */
+/**
+ * How far a copy of a planet is turned itself so that all its gears mesh: the best of its first gear's tooth places.
+ * @param {string[]} own
+ * @param {Record<string, Wheel>} first
+ * @param {(gear: string) => string[]} mates
+ * @param {number} turn
+ */
 function aside(own, first, mates, turn) {
-  const pairs = own.flatMap((gear) => mates(gear).filter((mate) => first[mate].centre[0] === 0 && first[mate].centre[1] === 0).map((mate) => [gear, mate]));
+  const pairs = own.flatMap((gear) =>
+    mates(gear)
+      .filter((mate) => first[mate].centre[0] === 0 && first[mate].centre[1] === 0)
+      .map((mate) => [gear, mate]),
+  );
   if (!pairs.length) return turn;
   const wanted = ([gear, mate] = pairs[0]) => {
     const there = { ...first[gear], centre: rotated(first[gear].centre, turn) };
@@ -149,17 +226,29 @@ function aside(own, first, mates, turn) {
   return best;
 }
 
-/** Pins of the first planets: by their distance from the axis, those of one set beside each other. @param {any[]} meshes @param {Record<string, any>} bodies @returns {Record<string, Point>} */
+/**
+ * Pins of the first planets: by their distance from the axis, those of one set beside each other.
+ * @param {any[]} meshes
+ * @param {Record<string, any>} bodies
+ * @returns {Record<string, Point>}
+ */
 function pinsOf(meshes, bodies) {
   /** @type {Record<string, number>} */
   const far = {};
-  for (const { bodies: [one, other], distance } of meshes) {
+  for (const {
+    bodies: [one, other],
+    distance,
+  } of meshes) {
     if (bodies[one].planet !== bodies[other].planet) far[bodies[one].planet ? one : other] = distance;
   }
   /** @type {Record<string, Point>} */
   const found = {};
   for (const planet of Object.keys(far)) {
-    const beside = meshes.find((mesh) => mesh.bodies.includes(planet) && mesh.bodies.some((/** @type {string} */ body) => body !== planet && body in found));
+    const beside = meshes.find(
+      (mesh) =>
+        mesh.bodies.includes(planet) &&
+        mesh.bodies.some((/** @type {string} */ body) => body !== planet && body in found),
+    );
     if (!beside) found[planet] = [far[planet], 0];
     else {
       const [x, y] = found[beside.bodies.find((/** @type {string} */ body) => body !== planet)];
@@ -180,7 +269,11 @@ function toward(one, other) {
   return Math.atan2(v - y, u - x);
 }
 
-/** A machine-tool gearbox, its shafts in a line; the pairs that are not engaged are circles. @param {any} mechanism @param {any} motion */
+/**
+ * A machine-tool gearbox, its shafts in a line; the pairs that are not engaged are circles.
+ * @param {any} mechanism
+ * @param {any} motion
+ */
 function gearbox(mechanism, motion) {
   /** @type {Wheel[]} */
   const found = [];
@@ -191,9 +284,23 @@ function gearbox(mechanism, motion) {
       const idle = motion.engaged[n] !== k;
       const common = { module: mechanism.module, tone: n, idle };
       /** @type {Wheel} */
-      const one = { ...common, name: t`Stage ${n + 1}, pair ${k + 1}, driver`, teeth: pair.driver, centre: [from, 0], tooth: 0, speed: motion.shafts[n].speed_ratio };
+      const one = {
+        ...common,
+        name: t`Stage ${n + 1}, pair ${k + 1}, driver`,
+        teeth: pair.driver,
+        centre: [from, 0],
+        tooth: 0,
+        speed: motion.shafts[n].speed_ratio,
+      };
       /** @type {Wheel} */
-      const other = { ...common, name: t`Stage ${n + 1}, pair ${k + 1}, driven`, teeth: pair.driven, centre: [to, 0], tooth: 0, speed: motion.shafts[n + 1].speed_ratio };
+      const other = {
+        ...common,
+        name: t`Stage ${n + 1}, pair ${k + 1}, driven`,
+        teeth: pair.driven,
+        centre: [to, 0],
+        tooth: 0,
+        speed: motion.shafts[n + 1].speed_ratio,
+      };
       other.tooth = facing(one, other, 0);
       found.push(one, other);
     });
@@ -202,7 +309,11 @@ function gearbox(mechanism, motion) {
   return found.sort((one, other) => Number(other.idle) - Number(one.idle));
 }
 
-/** A layshaft gearbox: input and main shaft on one axis, the layshaft beside it, reverse by an idler. @param {any} mechanism @param {any} motion */
+/**
+ * A layshaft gearbox: input and main shaft on one axis, the layshaft beside it, reverse by an idler.
+ * @param {any} mechanism
+ * @param {any} motion
+ */
 function layshaft(mechanism, motion) {
   const { head, gears, reverse, module } = mechanism;
   const [input, lay, main] = motion.shafts.map((/** @type {any} */ shaft) => shaft.speed_ratio);
@@ -210,30 +321,52 @@ function layshaft(mechanism, motion) {
   const engaged = motion.engaged[0];
   /** @type {Wheel[]} */
   const found = [];
-  const add = (/** @type {string} */ name, /** @type {number} */ tone, /** @type {boolean} */ idle, /** @type {[number, number, Point, string][]} */ row) => {
+  const add = (
+    /** @type {string} */ name,
+    /** @type {number} */ tone,
+    /** @type {boolean} */ idle,
+    /** @type {[number, number, Point, string][]} */ row,
+  ) => {
     /** @type {Wheel | null} */
     let before = null;
     for (const [teeth, speed, centre, shaft] of row) {
       /** @type {Wheel} */
       const wheel = { name: `${name}, ${shaft}`, teeth, module, centre, tooth: 0, speed, tone, idle };
-      if (before) wheel.tooth = facing(before, wheel, Math.atan2(centre[1] - before.centre[1], centre[0] - before.centre[0]));
+      if (before)
+        wheel.tooth = facing(before, wheel, Math.atan2(centre[1] - before.centre[1], centre[0] - before.centre[0]));
       found.push(wheel);
       before = wheel;
     }
   };
-  const [axis, beside] = /** @type {[Point, Point]} */ ([[0, 0], [distance, 0]]);
+  const [axis, beside] = /** @type {[Point, Point]} */ ([
+    [0, 0],
+    [distance, 0],
+  ]);
   gears.forEach((/** @type {any} */ pair, /** @type {number} */ k) => {
-    if (pair.layshaft !== null) add(t`Gear ${k + 1}`, 1, k !== engaged, [[pair.layshaft, lay, beside, t`on the layshaft`], [pair.mainshaft, main, axis, t`on the main shaft`]]);
+    if (pair.layshaft !== null)
+      add(t`Gear ${k + 1}`, 1, k !== engaged, [
+        [pair.layshaft, lay, beside, t`on the layshaft`],
+        [pair.mainshaft, main, axis, t`on the main shaft`],
+      ]);
   });
   if (reverse) {
-    const [near, far] = [(module * (reverse.idler + reverse.layshaft)) / 2, (module * (reverse.idler + reverse.mainshaft)) / 2];
+    const [near, far] = [
+      (module * (reverse.idler + reverse.layshaft)) / 2,
+      (module * (reverse.idler + reverse.mainshaft)) / 2,
+    ];
     const x = (distance ** 2 + far ** 2 - near ** 2) / (2 * distance);
     const centre = /** @type {Point} */ ([x, Math.sqrt(Math.max(far ** 2 - x ** 2, 0))]);
     const back = engaged === gears.length;
-    add(t`Reverse`, 2, !back, [[reverse.layshaft, lay, beside, t`on the layshaft`],
-      [reverse.idler, (-lay * reverse.layshaft) / reverse.idler, centre, t`on the idler's pin`], [reverse.mainshaft, main, axis, t`on the main shaft`]]);
+    add(t`Reverse`, 2, !back, [
+      [reverse.layshaft, lay, beside, t`on the layshaft`],
+      [reverse.idler, (-lay * reverse.layshaft) / reverse.idler, centre, t`on the idler's pin`],
+      [reverse.mainshaft, main, axis, t`on the main shaft`],
+    ]);
   }
-  add(t`Head`, 0, false, [[head.driver, input, axis, t`on the input shaft`], [head.driven, lay, beside, t`on the layshaft`]]);
+  add(t`Head`, 0, false, [
+    [head.driver, input, axis, t`on the input shaft`],
+    [head.driven, lay, beside, t`on the layshaft`],
+  ]);
   return found.sort((one, other) => Number(other.idle) - Number(one.idle));
 }
 

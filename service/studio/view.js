@@ -15,9 +15,13 @@ export class View {
     const [south, north] = [ys.reduce((a, b) => Math.min(a, b)), ys.reduce((a, b) => Math.max(a, b))];
     const size = Math.max(east - west, north - south);
     /** Pixels for a length unit; a single point stands in the middle of a hundred units. */
-    this.scale = size > 0
-      ? Math.min((width - 2 * margin) / Math.max(east - west, 1e-9 * size), (height - 2 * margin) / Math.max(north - south, 1e-9 * size))
-      : (width - 2 * margin) / 100;
+    this.scale =
+      size > 0
+        ? Math.min(
+            (width - 2 * margin) / Math.max(east - west, 1e-9 * size),
+            (height - 2 * margin) / Math.max(north - south, 1e-9 * size),
+          )
+        : (width - 2 * margin) / 100;
     this.middle = /** @type {Point} */ ([(west + east) / 2, (south + north) / 2]);
     this.width = width;
     this.height = height;
@@ -31,8 +35,13 @@ export class View {
     const us = places.map(([u]) => u);
     const vs = places.map(([, v]) => v);
     const [west, east, north, south] = [Math.min(...us), Math.max(...us), Math.min(...vs), Math.max(...vs)];
-    return west >= 0 && east <= this.width && north >= 0 && south <= this.height
-      && (places.length < 2 || Math.max((east - west) / this.width, (south - north) / this.height) > 0.15);
+    return (
+      west >= 0 &&
+      east <= this.width &&
+      north >= 0 &&
+      south <= this.height &&
+      (places.length < 2 || Math.max((east - west) / this.width, (south - north) / this.height) > 0.15)
+    );
   }
 
   /** @param {number} x @param {number} y @returns {Point} */
@@ -40,7 +49,12 @@ export class View {
     return [this.width / 2 + this.scale * (x - this.middle[0]), this.height / 2 - this.scale * (y - this.middle[1])];
   }
 
-  /** Where in the plane the pointer is. @param {SVGSVGElement} picture @param {{clientX: number, clientY: number}} pointer @returns {Point} */
+  /**
+   * Where in the plane the pointer is.
+   * @param {SVGSVGElement} picture
+   * @param {{clientX: number, clientY: number}} pointer
+   * @returns {Point}
+   */
   under(picture, pointer) {
     const matrix = picture.getScreenCTM();
     if (!matrix) return [NaN, NaN];

@@ -17,9 +17,23 @@ export const STEPS = 240;
 /** Of a turn of what has no toggles: a sample a degree. */
 export const TURN_STEPS = 360;
 
-/** What shows a mechanism that is no linkage. @type {Record<string, new (frame: import("./stage.js").Frame, design: any, motion: any, problem: any) => Moving>} */
+/**
+ * What shows a mechanism that is no linkage.
+ * @type {Record<string, new (frame: import("./stage.js").Frame, design: any, motion: any, problem: any) => Moving>}
+ */
 export const VIEWS = {
-  cam: Disc, barrel_cam: Barrel, gear_train: Gears, planetary_train: Gears, train_series: Gears, gearbox: Gears, layshaft_gearbox: Gears, rotor: Rotor,
-  flywheel: Flywheel, engine: Engine, geneva_external: Geneva, geneva_internal: Geneva, geneva_spherical: Geneva,
+  cam: Disc,
+  barrel_cam: Barrel,
+  gear_train: Gears,
+  planetary_train: Gears,
+  train_series: Gears,
+  gearbox: Gears,
+  layshaft_gearbox: Gears,
+  rotor: Rotor,
+  flywheel: Flywheel,
+  engine: Engine,
+  geneva_external: Geneva,
+  geneva_internal: Geneva,
+  geneva_spherical: Geneva,
   ratchet: Ratchet,
 };

@@ -26,7 +26,8 @@ export function radius(wheel) {
 }
 
 /**
- * Angle of a tooth of `other` so that a space of it faces the tooth of `one` nearest to their contact, which lies in the
+ * Angle of a tooth of `other` so that a space of it faces the tooth of `one` nearest to their contact, which lies in
+ * the
  * direction `ahead` of the centre of `one`.
  * @param {Wheel} one @param {Wheel} other @param {number} ahead
  */
@@ -34,17 +35,28 @@ export function facing(one, other, ahead) {
   const pitch = (2 * Math.PI) / one.teeth;
   const off = one.tooth - ahead;
   const past = ((off - pitch * Math.round(off / pitch)) * one.teeth) / other.teeth;
-  return one.internal || other.internal ? ahead + past + Math.PI / other.teeth : ahead + Math.PI - past + Math.PI / other.teeth;
+  return one.internal || other.internal
+    ? ahead + past + Math.PI / other.teeth
+    : ahead + Math.PI - past + Math.PI / other.teeth;
 }
 
-/** Teeth as straight flanks around the origin, the first in the direction x; pixels. @param {Wheel} wheel @param {number} scale */
+/**
+ * Teeth as straight flanks around the origin, the first in the direction x; pixels.
+ * @param {Wheel} wheel
+ * @param {number} scale
+ */
 function outline(wheel, scale) {
   const m = scale * wheel.module;
   const r = (m * wheel.teeth) / 2;
   const out = wheel.internal ? -1 : 1;
   const quarter = Math.PI / (2 * wheel.teeth);
   const lean = (m * Math.tan(Math.PI / 9)) / r;
-  const corners = [[r - out * 1.25 * m, -quarter - 1.25 * lean], [r + out * m, -quarter + lean], [r + out * m, quarter - lean], [r - out * 1.25 * m, quarter + 1.25 * lean]];
+  const corners = [
+    [r - out * 1.25 * m, -quarter - 1.25 * lean],
+    [r + out * m, -quarter + lean],
+    [r + out * m, quarter - lean],
+    [r - out * 1.25 * m, quarter + 1.25 * lean],
+  ];
   let data = "";
   for (let k = 0; k < wheel.teeth; k++) {
     for (const [far, angle] of corners) {
@@ -59,17 +71,26 @@ function outline(wheel, scale) {
 /** A wheel as a drawing, and what turns it. @param {import("./view.js").View} view @param {Wheel} wheel */
 export function drawn(view, wheel) {
   const r = view.scale * radius(wheel);
-  const spoke = wheel.internal ? [r + view.scale * 1.4 * wheel.module, r + view.scale * 2.9 * wheel.module] : [0, 0.8 * r];
-  const node = svg("g", { class: `wheel t${wheel.tone % 4}${wheel.idle ? " idle" : ""}` }, svg("title", {}, t`${wheel.name}: ${wheel.teeth} teeth`),
+  const spoke = wheel.internal
+    ? [r + view.scale * 1.4 * wheel.module, r + view.scale * 2.9 * wheel.module]
+    : [0, 0.8 * r];
+  const node = svg(
+    "g",
+    { class: `wheel t${wheel.tone % 4}${wheel.idle ? " idle" : ""}` },
+    svg("title", {}, t`${wheel.name}: ${wheel.teeth} teeth`),
     !wheel.idle && svg("path", { class: "teeth", "fill-rule": "evenodd", d: outline(wheel, view.scale) }),
     svg("circle", { class: "pitch", r }),
     !wheel.idle && svg("path", { class: "spoke", d: `M${spoke[0]} 0H${spoke[1]}` }),
-    !wheel.internal && svg("circle", { class: "pin", r: 3.5 }));
+    !wheel.internal && svg("circle", { class: "pin", r: 3.5 }),
+  );
   const turn = (/** @type {number} */ input) => {
     const [x, y] = place(wheel, input);
     const [u, v] = view.at(x, y);
     const angle = wheel.tooth + wheel.speed * input;
-    node.setAttribute("transform", `translate(${u.toFixed(2)} ${v.toFixed(2)}) rotate(${((-angle * 180) / Math.PI).toFixed(3)})`);
+    node.setAttribute(
+      "transform",
+      `translate(${u.toFixed(2)} ${v.toFixed(2)}) rotate(${((-angle * 180) / Math.PI).toFixed(3)})`,
+    );
   };
   return { node, turn };
 }

@@ -25,7 +25,10 @@ const FARTHEST = 0.25;
 /** What takes the pointer itself. */
 const HELD = ".led, .hit, .target, .grip, .held, .placing, a, button";
 
-/** What of a picture is seen, in its own pixels; null where all is to be seen. @typedef {{middle: number[], nearness: number} | null} Seen */
+/**
+ * What of a picture is seen, in its own pixels; null where all is to be seen.
+ * @typedef {{middle: number[], nearness: number} | null} Seen
+ */
 
 export class Zoom {
   /**
@@ -52,22 +55,31 @@ export class Zoom {
     this.middle = [x + width / 2, y + height / 2];
     const button = (/** @type {string} */ text, /** @type {string} */ label, /** @type {() => void} */ act) =>
       el("button", { type: "button", class: "small", "aria-label": label, title: label, onclick: act }, text);
-    this.buttons = el("div", { class: "zoom" }, button("−", t`Farther`, () => this.press(1 / PRESS)),
-      button("+", t`Nearer`, () => this.press(PRESS)), button(t`Fit`, t`Fit everything`, () => {
+    this.buttons = el(
+      "div",
+      { class: "zoom" },
+      button("−", t`Farther`, () => this.press(1 / PRESS)),
+      button("+", t`Nearer`, () => this.press(PRESS)),
+      button(t`Fit`, t`Fit everything`, () => {
         this.fit();
         this.settled(null);
-      }));
+      }),
+    );
     // The window, or what else stands on the stage, gives it another size: words and lines keep theirs.
     new ResizeObserver(([{ contentRect }]) => {
       this.room = [contentRect.width, contentRect.height];
       this.tell();
     }).observe(picture);
-    picture.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      this.by(WHEEL ** -event.deltaY, this.under(event));
-      clearTimeout(this.turning);
-      this.turning = window.setTimeout(() => this.settle(), REST_MS);
-    }, { passive: false });
+    picture.addEventListener(
+      "wheel",
+      (event) => {
+        event.preventDefault();
+        this.by(WHEEL ** -event.deltaY, this.under(event));
+        clearTimeout(this.turning);
+        this.turning = window.setTimeout(() => this.settle(), REST_MS);
+      },
+      { passive: false },
+    );
     picture.addEventListener("pointerdown", (event) => this.take(event));
     picture.addEventListener("pointermove", (event) => this.lead(event));
     for (const end of /** @type {const} */ (["pointerup", "pointercancel", "lostpointercapture"])) {
