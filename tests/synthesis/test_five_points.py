@@ -69,7 +69,7 @@ def real_solutions_by_newton(points, o2, o4, rng, starts):
                 step = np.linalg.solve(np.concatenate(slopes), gap)
             except np.linalg.LinAlgError:
                 break
-            v = v - step * min(1.0, 2.0 / np.abs(step).max())
+            v = v - step / max(1.0, 0.5 * np.abs(step).max())
             if np.abs(step).max() < 1e-13:
                 break
         if np.abs(gap).max() < 1e-10 and np.isfinite(v).all():
