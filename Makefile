@@ -6,7 +6,7 @@
 # make test-browser  drive the studio in the system's Chromium, check its types and its accessibility, and run a
 #              generated TypeScript client in node (Chromium and node are installed where they are missing and we are root)
 # make test-cad  the tests of solids, in an environment of their own with the extra cad (.venv-cad, a gigabyte)
-# make campaign  the checks with thousands of random problems: a twentieth of them, or all with SHARE=1 (independent
+# make campaign  the checks with thousands of random problems: three hundredths of them, or all with SHARE=1 (independent
 #              multibody programs are installed for them), and the studio's kinds on a phone
 # make fuzz    hundreds of requests of each operation, and of absurd problems of each kind; half an hour
 # make format  format the sources as make check and make test-browser want them
@@ -100,7 +100,7 @@ $(VENV)/.cad-tests: requirements-dev.lock requirements-cad.lock tests/cad/mesh.l
 	$(call install,requirements-dev.lock -r requirements-cad.lock -r tests/cad/mesh.lock)
 	@touch $@
 
-SHARE := 0.05
+SHARE := 0.03
 
 campaign: $(STAMP) $(MULTIBODY) chromium
 	$(BIN)/pytest -m "campaign and not browser and not cad" --campaign-share $(SHARE) $(SPREAD) $(shell grep -rlE campaign tests --include='test_*.py' --exclude-dir=cad)
