@@ -1,6 +1,5 @@
 """Which job a free lane gets, and what becomes of short jobs beside long ones, floods and cancels."""
 
-import statistics
 import threading
 import time
 from dataclasses import dataclass
@@ -330,5 +329,4 @@ def test_a_short_job_is_done_while_workers_are_killed_by_cancels(server, gate):
         for client in clients:
             client.join()
     print(f"short jobs beside a storm of cancels: {max(took):.2f} s at most")
-    # A worker that has to be started first takes longer, on a busy machine by far; each waits 20 s at most.
-    assert statistics.median(took) < 5.0
+    assert max(took) < 5.0  # a worker that has to be started first takes longer, on a busy machine by far
