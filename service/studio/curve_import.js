@@ -6,7 +6,7 @@
 
 import * as api from "./api.js";
 import { el, shown, svg } from "./dom.js";
-import { called, rounded, spread } from "./drawing_import.js";
+import { called, leftOut, rounded, spread } from "./drawing_import.js";
 import { segmentsOf } from "./follower_table.js";
 import { t } from "./messages.js";
 import { rolesOf, stateArea } from "./room.js";
@@ -254,14 +254,7 @@ export class CurveImport {
         count,
       ),
       el("ul", { class: "drawn", "aria-label": t`Curves in ${file.name}` }, ...rows.map(({ node }) => node)),
-      (found.left_out_count > 0 &&
-        el(
-          "details",
-          {},
-          el("summary", {}, t`${found.left_out_count} left out`),
-          el("ul", { class: "reasons" }, ...found.left_out.map((one) => el("li", {}, `${called(one)}: ${one.reason}`))),
-        )) ||
-        "",
+      leftOut(found),
       el(
         "div",
         { class: "row" },

@@ -114,14 +114,7 @@ export class DrawingImport {
         rows.length > 1 && all,
       ),
       el("ul", { class: "drawn", "aria-label": t`Outlines in ${name}` }, ...rows.map((row) => row.node)),
-      (found.left_out_count > 0 &&
-        el(
-          "details",
-          {},
-          el("summary", {}, t`${found.left_out_count} left out`),
-          el("ul", { class: "reasons" }, ...found.left_out.map((one) => el("li", {}, `${called(one)}: ${one.reason}`))),
-        )) ||
-        "",
+      leftOut(found),
       el(
         "div",
         { class: "row" },
@@ -237,6 +230,20 @@ function stated(space) {
             .sort(),
         )
       : value,
+  );
+}
+
+/**
+ * What was left out of a file, and why; nothing where all was taken.
+ * @param {{left_out: import("./api.js").LeftOut[], left_out_count: number}} found
+ */
+export function leftOut({ left_out, left_out_count }) {
+  if (!left_out_count) return "";
+  return el(
+    "details",
+    {},
+    el("summary", {}, t`${left_out_count} left out`),
+    el("ul", { class: "reasons" }, ...left_out.map((one) => el("li", {}, `${called(one)}: ${one.reason}`))),
   );
 }
 
