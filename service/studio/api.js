@@ -42,12 +42,6 @@ const RECONNECT_MS = 1000;
 const BUSY_TRIES = 4;
 const BUSY_MS = 5000;
 
-/**
- * The service answers an analysis, or refuses it, within twenty seconds: what has not come by then was lost on its way.
- */
-const LOST_MS = 25_000;
-const LOST_TRIES = 3;
-
 /** An answer that says what went wrong (problem+json). */
 export class Refused extends Error {
   /** @param {any} problem @param {number} status */
@@ -96,29 +90,6 @@ async function patiently(asked, signal) {
     } catch (error) {
       if (!(error instanceof Refused) || error.status !== 503 || left <= 1 || signal?.aborted) throw error;
       await new Promise((done) => setTimeout(done, BUSY_MS));
-    }
-  }
-}
-
-/**
- * The answer to a question that the analysis core answers, in JSON; one that is lost is asked for again.
- * @param {(signal: AbortSignal) => Promise<Response>} asked @param {AbortSignal} [signal] @returns {Promise<any>}
- */
-async function analysed(asked, signal) {
-  for (let left = LOST_TRIES; ; left--) {
-    const lost = new AbortController();
-    const either = signal ? AbortSignal.any([signal, lost.signal]) : lost.signal;
-    try {
-      return await patiently(async () => {
-        const waiting = setTimeout(() => lost.abort(), LOST_MS);
-        try {
-          return await (await asked(either)).json();
-        } finally {
-          clearTimeout(waiting);
-        }
-      }, either);
-    } catch (error) {
-      if (!lost.signal.aborted || signal?.aborted || left <= 1) throw error;
     }
   }
 }
@@ -264,7 +235,7 @@ export async function remove(id) {
 /** @param {string} id @param {number} design @param {number} steps @param {AbortSignal} [signal] */
 export async function motion(id, design, steps, signal) {
   const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/motion?steps=${steps}`;
-  return analysed((either) => ask(path, { signal: either }), signal);
+  return (await patiently(() => ask(path, { signal }), signal)).json();
 }
 
 /**
@@ -277,15 +248,13 @@ export async function motion(id, design, steps, signal) {
  */
 export async function forces(id, design, steps, block, signal) {
   const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/forces?steps=${steps}`;
-  return analysed(
-    (either) => (block === null ? ask(path, { signal: either }) : post(path, { dynamics: block }, either)),
-    signal,
-  );
+  const asked = () => (block === null ? ask(path, { signal }) : post(path, { dynamics: block }, signal));
+  return (await patiently(asked, signal)).json();
 }
 
 /** @param {any} question @param {AbortSignal} signal */
 export async function analysis(question, signal) {
-  return analysed((either) => post("/v1/analyses", question, either), signal);
+  return (await patiently(() => post("/v1/analyses", question, signal), signal)).json();
 }
 
 /**

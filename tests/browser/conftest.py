@@ -85,6 +85,7 @@ class Studio:
         if self.page.url.startswith(self.url):
             self.page.evaluate("sessionStorage.clear(); localStorage.clear()")
         self.context.clear_cookies()
+        self.page.unroute_all(behavior="ignoreErrors")
         self.page.goto("about:blank")
         self.page.emulate_media(media="null", color_scheme="null", reduced_motion="null")
         self.page.set_viewport_size(self.viewport)
