@@ -17,6 +17,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from itertools import combinations, groupby, pairwise
 from typing import NamedTuple
 
@@ -27,7 +28,7 @@ from service.parts.bodies import Prism
 from service.parts.curves import Curve
 from service.parts.exploded import lifts
 from service.parts.model import FLAT, Assembly, Part, Placed
-from service.parts.shapes import Disc, Loop, Outline, Region, arc, ring_of
+from service.parts.shapes import Complex, Disc, Loop, Outline, Region, arc, ring_of
 from service.render.page.sheet import EDGE, FULL, TOP, caption, framed, sheet
 from service.render.page.svg import Box, Element, Viewport, element, line, text, text_width
 from service.render.page.symbols import GREY, INK, scale_bar
@@ -221,8 +222,12 @@ def view(place: complex, height: float) -> complex:
     return complex(across.real, SINE * across.imag + COSINE * height)
 
 
-def stretches(outline: Outline, *, hole: bool = False, scale: float = 0.0) -> list[Stretch]:
-    """An outline in bands, counter-clockwise; normals lead out of what is solid, as turns from :data:`TOWARD`."""
+@lru_cache(maxsize=256)
+def stretches(outline: Outline, *, hole: bool = False, scale: float = 0.0) -> tuple[Stretch, ...]:
+    """An outline in bands, counter-clockwise; normals lead out of what is solid, as turns from :data:`TOWARD`.
+
+    Each slab that a part goes through asks for the same.
+    """
     found = []
     for start, end, bulge in _edges(outline):
         turned = 4.0 * math.atan(bulge)
@@ -242,7 +247,7 @@ def stretches(outline: Outline, *, hole: bool = False, scale: float = 0.0) -> li
             a, b = (centre + (start - centre) * cmath.exp(1j * turned * share) for share in (one, other))
             part = math.tan(0.25 * turned * (other - one))
             found.append(Stretch(a, b, part, first + 0.5 * (one + other) * turned))
-    return found
+    return tuple(found)
 
 
 def _edges(outline: Outline) -> Iterator[tuple[complex, complex, float]]:
@@ -254,9 +259,10 @@ def _edges(outline: Outline) -> Iterator[tuple[complex, complex, float]]:
         yield from outline.edges()
 
 
-def _outline_points(piece: Piece) -> np.ndarray[tuple[int], np.dtype[np.complex128]]:
-    ends = [one for stretch in stretches(piece.region.outer) for one in (stretch.start, stretch.end)]
-    return np.array([view(end, height) for end in ends for height in (piece.low, piece.high)])
+def _outline_points(piece: Piece) -> Complex:
+    """Where the outer corners of a piece appear in the view, below and above."""
+    rim = _rim(piece)
+    return np.concatenate([rim.real + 1j * (SINE * rim.imag + COSINE * height) for height in (piece.low, piece.high)])
 
 
 def behind_first(pieces: Sequence[Piece]) -> list[Piece]:
@@ -265,18 +271,19 @@ def behind_first(pieces: Sequence[Piece]) -> list[Piece]:
     Two that share a vertical of the view are compared in the middle of what they share: what stands in another's hole
     has its nearest point farther away than that, and comes first.
     """
-    spans = [_across(piece) for piece in pieces]
+    rims = [_rim(piece) for piece in pieces]
+    spans = [(float(rim.real.min()), float(rim.real.max())) for rim in rims]
     before: dict[int, set[int]] = {k: set() for k in range(len(pieces))}
     for i, j in combinations(range(len(pieces)), 2):
         low, high = max(spans[i][0], spans[j][0]), min(spans[i][1], spans[j][1])
         if high <= low:
             continue
         middle = 0.5 * (low + high)
-        if _nearest(pieces[i], middle) < _nearest(pieces[j], middle):
+        if _nearest(rims[i], middle) < _nearest(rims[j], middle):
             before[j].add(i)
         else:
             before[i].add(j)
-    left = sorted(before, key=lambda k: _nearest(pieces[k], 0.5 * sum(spans[k])))
+    left = sorted(before, key=lambda k: _nearest(rims[k], 0.5 * sum(spans[k])))
     order: list[int] = []
     while left:
         # Where three hide one another in a circle, the farthest is drawn.
@@ -286,20 +293,17 @@ def behind_first(pieces: Sequence[Piece]) -> list[Piece]:
     return [pieces[k] for k in order]
 
 
-def _across(piece: Piece) -> tuple[float, float]:
-    xs = [(s.start * ALONG.conjugate()).real for s in stretches(piece.region.outer)]
-    return min(xs), max(xs)
+def _rim(piece: Piece) -> Complex:
+    """The outer corners of a piece: how far to the right of the view, and how far from the viewer."""
+    return np.array([stretch.start for stretch in stretches(piece.region.outer)]) * ALONG.conjugate()
 
 
-def _nearest(piece: Piece, across: float) -> float:
-    """How near to the viewer a piece comes on a vertical of the view."""
-    found = -math.inf
-    for stretch in stretches(piece.region.outer):
-        a, b = (z * ALONG.conjugate() for z in (stretch.start, stretch.end))
-        if min(a.real, b.real) <= across <= max(a.real, b.real) and a.real != b.real:
-            share = (across - a.real) / (b.real - a.real)
-            found = max(found, -(a.imag + share * (b.imag - a.imag)))
-    return found
+def _nearest(rim: Complex, across: float) -> float:
+    """How near to the viewer a rim comes on a vertical of the view."""
+    a, b = rim, np.roll(rim, -1)
+    met = (np.minimum(a.real, b.real) <= across) & (across <= np.maximum(a.real, b.real)) & (a.real != b.real)
+    a, b = a[met], b[met]
+    return float(np.max(-(a.imag + (across - a.real) / (b.real - a.real) * (b.imag - a.imag)), initial=-math.inf))
 
 
 # How it is drawn
