@@ -18,6 +18,10 @@ CASES = {
     "gear_train": examples("gear_train")[0],
 }
 
+WIDE, NARROW = (1360, 1000), (390, 844)
+LOOKED_AT = {"motion": {"light": (WIDE, NARROW), "dark": (WIDE, NARROW)}}
+"""Colours and sizes come from the same style sheets for all kinds: of one each pair is tried, of others two."""
+
 TABS = ("task", "answers", "explore", "files", "jobs", "plots", "numbers")
 
 RUN = """async () => {
@@ -50,8 +54,8 @@ def test_no_serious_violation(open_studio, kind):
     until(lambda: drawn(page), 90, "the drawing")
     page.evaluate(OPEN_ALL)
     page.locator("details:not(#fields details, #key)").evaluate_all("all => all.forEach(one => { one.open = true; })")
-    for scheme in ("light", "dark"):
-        for width, height in ((1360, 1000), (390, 844)):
+    for scheme, places in LOOKED_AT.get(kind, {"light": (WIDE,), "dark": (NARROW,)}).items():
+        for width, height in places:
             page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
             page.set_viewport_size({"width": width, "height": height})
             tabs = [one for one in TABS if width < 860 or one not in ("task", "answers")]
