@@ -16,6 +16,7 @@
 # make package  a wheel, in dist/
 # make vendor  fetch three.js, which the studio shows assemblies with, as it is published
 # make openapi  rewrite docs/openapi.json after a change of the API or of a kind of problem
+# make types   rewrite the studio's types of the API, service/studio/types/api.d.ts, after docs/openapi.json has changed
 # make lock    resolve the dependencies of pyproject.toml anew
 
 PYTHON ?= python3
@@ -39,7 +40,7 @@ BESIDES := --ignore tests/browser --ignore tests/cad
 
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: vendor serve test format fuzz test-cluster engines test-faults test-browser chromium campaign demo check quick bench openapi lock package docs \
+.PHONY: vendor serve test format fuzz test-cluster engines test-faults test-browser chromium campaign demo check quick bench openapi types lock package docs \
     test-docs clean suite test-cad cad-suite cluster-rabbitmq cluster-redis
 
 serve: $(SERVING) $(if $(filter-out 0 false no,$(MECHSYNTH_CAD)),$(CAD))
@@ -160,6 +161,9 @@ test-docs: $(SITE)
 # Rewrites what the service promises; see the difference before it is committed.
 openapi: $(STAMP)
 	$(BIN)/python -m service.cli openapi docs/openapi.json
+
+types: $(STAMP) $(NODE)
+	$(BIN)/python -m tools.studio.types
 
 # All that runs outside of a checkout: pip install dist/*.whl && mechsynth serve
 package: $(STAMP)

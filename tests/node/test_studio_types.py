@@ -1,4 +1,4 @@
-"""The studio's modules keep the types that their comments state."""
+"""The studio's modules keep the types that their comments state, and those of the API are current."""
 
 import json
 import shutil
@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.service.running import ROOT
+from tools.studio.types import DOCUMENT, TYPES, written
 
 HERE = Path(__file__).parent
 MODULES = HERE / "node_modules"
@@ -22,6 +23,7 @@ def test_the_studio_is_well_typed(tmp_path):
     assert (MODULES / ".installed").exists(), "make test-browser installs what this needs of node"
     for module in (ROOT / "service" / "studio").glob("*.js"):
         shutil.copy(module, tmp_path)
+    shutil.copytree(TYPES.parent, tmp_path / "types")
     (tmp_path / "vendor").mkdir()
     (tmp_path / "node_modules").symlink_to(MODULES)
     for name, module in VENDORED.items():
@@ -29,11 +31,18 @@ def test_the_studio_is_well_typed(tmp_path):
     # What must be refused, so that nothing passes because nothing is looked at.
     (tmp_path / "mistaken.js").write_text(
         'import { View } from "./view.js";\n/** @param {View} view */\nexport const wrong = (view) => view.at("one");\n'
+        '/** @param {import("./types/values.js").Design} one */\nexport const no = (one) => one.mechanism.cranc;\n'
     )
     settings = json.loads((HERE / "studio.json").read_text())
-    (tmp_path / "tsconfig.json").write_text(json.dumps({**settings, "include": ["*.js"]}))
+    (tmp_path / "tsconfig.json").write_text(json.dumps({**settings, "include": ["*.js", "types/*.d.ts"]}))
     done = subprocess.run(
         [str(MODULES / ".bin" / "tsc"), "-p", "."], cwd=tmp_path, capture_output=True, text=True, timeout=300
     )
     assert [line for line in done.stdout.splitlines() if not line.startswith(("mistaken.js", " "))] == []
     assert "mistaken.js(3,37): error TS2554" in done.stdout, done.stdout
+    assert "mistaken.js(5,42): error TS2551: Property 'cranc'" in done.stdout, done.stdout
+
+
+def test_the_types_are_those_of_the_api(tmp_path):
+    written(DOCUMENT, tmp_path / "api.d.ts")
+    assert (tmp_path / "api.d.ts").read_text() == TYPES.read_text(), "make types writes them anew"

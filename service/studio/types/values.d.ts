@@ -1,0 +1,46 @@
+/** What the page knows of the service's values, by short names; ./api.d.ts is made of the OpenAPI document. */
+
+import type { components } from "./api.js";
+
+export type Schemas = components["schemas"];
+
+type Names<Union> = Union extends unknown ? keyof Union : never;
+type At<Union, Name> = Union extends unknown ? (Name extends keyof Union ? Union[Name] : never) : never;
+type Always<Union, Name extends keyof Union = keyof Union> = Name extends unknown
+  ? undefined extends Union[Name]
+    ? never
+    : Name
+  : never;
+
+/** What of a type is an object with fields, and what is a list of such. */
+type Group<Value> = Value extends object ? (Value extends readonly unknown[] ? never : Value) : never;
+type Item<Value> = Value extends readonly (infer One)[] ? Group<One> : never;
+type Rest<Value> = Value extends object
+  ? Value extends readonly (infer One)[]
+    ? [Group<One>] extends [never]
+      ? Value
+      : never
+    : never
+  : Value;
+
+/** Where all of several have a field it is there, and it may be there where one has it. */
+type Fields<Union> = { [Name in Always<Union>]: Merged<Union[Name]> } & {
+  [Name in Exclude<Names<Union>, Always<Union>>]?: Merged<At<Union, Name>>;
+};
+
+/** One of several, of which it is not known which, with the fields of all; so are the values of its fields. */
+export type Merged<Value> =
+  | Rest<Value>
+  | ([Item<Value>] extends [never] ? never : Merged<Item<Value>>[])
+  | ([Group<Value>] extends [never] ? never : Fields<Group<Value>>);
+
+/** A statement: of whatever kind, and perhaps not complete. */
+export type Problem = Merged<Schemas["JobRequest"]["problem"]>;
+export type Result = Merged<NonNullable<Schemas["Job"]["result"]>>;
+export type Job = Omit<Schemas["Job"], "problem" | "result"> & { problem: Problem; result: Result | null };
+export type Design = Result["designs"][number];
+export type Mechanism = Design["mechanism"];
+export type Skeleton = Schemas["Skeleton"];
+export type LinkageAnalysis = Schemas["LinkageAnalysis"];
+export type Analysis = Schemas["Analysis"];
+export type Question = Omit<Schemas["LinkageAnalysisRequest"], "mechanism"> & { mechanism: Mechanism };
