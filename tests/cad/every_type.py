@@ -120,8 +120,11 @@ MADE: dict[Key, Row] = {
 }  # fmt: skip
 """One design of each."""
 
-STAGES: dict[str, Row] = {"bevel": Row(BEVELS), "worm": Row(WORM)}
-"""Trains whose shafts are not parallel, which have the type of all trains."""
+STAGES: dict[Key, Row] = {
+    ("gear_train", "bevel"): Row(BEVELS, 0, {"process": "laser"}),
+    ("gear_train", "worm"): Row(WORM, 0, {"process": "laser"}),
+}
+"""Trains whose shafts are not parallel, which have the type of all trains: by the type of their stage."""
 
 REFUSED: dict[Key, tuple[Row, str]] = {
     # Its crank goes round the pivot of the lever, whose coupler passes over both shafts.

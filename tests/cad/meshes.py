@@ -1,0 +1,120 @@
+"""Whether the meshes of an assembly, as its files have them, share room while it moves: boxes first, then manifold3d.
+
+The triangles are those of STL and 3MF files, and every part goes where the motion takes it. Of each pair of parts the
+second is moved as the first sees it; places that come again are looked at once, and so are parts that go together.
+
+What two meshes share is judged by its *layer*, its volume V over its surface S: the rounding of a face that rests on
+another is a layer of no thickness, however wide it is. Parts that move against each other have a clearance that is more
+than the deflection d of the meshes, or faces at one height: they share nothing but rounding.
+
+Parts that go together or roll on each other may have one surface, whose chords differ in the two meshes. A mesh is
+at most d off the surface of its solid. What two of them share whose solids do not overlap is outside of one of the
+solids, and so within d of the surface of its mesh: V is at most d S. Where they overlap by a depth t,
+V / S is t / 2 of a wide layer and t / 5 of a square corner: an overlap is told from chords where it is a few d deep.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+from typing import Any, NamedTuple
+
+import numpy as np
+from manifold3d import Error, Manifold, Mesh64
+from numpy.typing import NDArray
+
+from service.parts import cad
+from service.parts.model import Assembly, Part
+
+Real = NDArray[np.float64]
+
+ROUNDING = 1e-9
+"""Share of the assembly's size by which places may differ that are one, and a layer is thick that is none."""
+
+
+class Shared(NamedTuple):
+    """What two meshes share where its layer is the thickest, millimetres, and how thick it may be."""
+
+    parts: tuple[str, str]
+    at: float
+    layer: float
+    bound: float
+
+
+class Looked(NamedTuple):
+    """How many intersections of meshes were made, what any two share, and what of it is an overlap."""
+
+    tried: int
+    shared: list[Shared]
+
+    @property
+    def overlaps(self) -> list[Shared]:
+        """What is more than chords and rounding."""
+        return [one for one in self.shared if one.layer > one.bound]
+
+
+def meshed(solids: Sequence[Any]) -> list[Manifold]:
+    """The meshes of solids as they are exported, each of them closed."""
+    made = []
+    for solid in solids:
+        corners, triangles = cad.surface(solid)
+        mesh = Manifold(Mesh64(np.ascontiguousarray(corners), np.ascontiguousarray(triangles, np.uint64)))
+        assert mesh.status() == Error.NoError, (solid.label, mesh.status())
+        assert mesh.volume() > 0.0, solid.label
+        made.append(mesh)
+    return made
+
+
+def places(whole: Assembly, part: Part, inputs: Real) -> Real:
+    """Where the motion takes a part from the reference configuration, shape (n, 4, 4)."""
+    at = whole.motion.placed(part.carrier, whole.motion.at(inputs))
+    plane = np.zeros((len(inputs), 4, 4))
+    plane[:, 0, 0] = plane[:, 1, 1] = at.turn.real
+    plane[:, 1, 0], plane[:, 0, 1] = at.turn.imag, -at.turn.imag
+    plane[:, 0, 3], plane[:, 1, 3] = at.shift.real, at.shift.imag
+    plane[:, 2, 2] = plane[:, 3, 3] = 1.0
+    if at.frame is None:
+        return plane
+    standing = np.zeros((len(inputs), 4, 4))
+    standing[:, :3, :3], standing[:, :3, 3], standing[:, 3, 3] = at.frame.axes, at.frame.origin, 1.0
+    return standing @ plane
+
+
+def looked_through(whole: Assembly, meshes: Sequence[Manifold], inputs: Real) -> Looked:
+    """All pairs of parts at all inputs."""
+    moved = [places(whole, part, inputs) for part in whole.parts]
+    boxes = [np.array(mesh.bounding_box()).reshape(2, 3) for mesh in meshes]
+    tried = 0
+    found: list[Shared] = []
+    for (n, one), (m, other) in combinations(enumerate(whole.parts), 2):
+        towards = np.linalg.inv(moved[n]) @ moved[m]
+        rounding = ROUNDING * whole.size
+        different = _different(towards, rounding)
+        one_surface = len(different) == 1 or frozenset((one.name, other.name)) in whole.touching
+        worst: Shared | None = None
+        for k in different:
+            if not _near(boxes[n], boxes[m], towards[k]):
+                continue
+            tried += 1
+            common = meshes[n] ^ meshes[m].transform(np.ascontiguousarray(towards[k, :3]))
+            if (volume := common.volume()) > 0.0:
+                layer = volume / common.surface_area()
+                if worst is None or layer > worst.layer:
+                    bound = cad.DEFLECTION if one_surface else rounding
+                    worst = Shared((one.name, other.name), float(inputs[k]), layer, bound)
+        if worst is not None:
+            found.append(worst)
+    return Looked(tried, found)
+
+
+def _different(towards: Real, rounding: float) -> Real:
+    """The first of each of the places that differ."""
+    _, first = np.unique(np.round(towards[:, :3] / rounding), axis=0, return_index=True)
+    return first
+
+
+def _near(one: Real, other: Real, towards: Real) -> bool:
+    """Whether the box of the first meets the one about the box of the second where it is moved to."""
+    middle = towards[:3, :3] @ other.mean(axis=0) + towards[:3, 3]
+    half = np.abs(towards[:3, :3]) @ (0.5 * (other[1] - other[0]))
+    return bool(((middle - half < one[1]) & (one[0] < middle + half)).all())
