@@ -6,6 +6,8 @@
 import { t } from "./messages.js";
 import { misfit } from "./schema.js";
 
+/** @import { Linked, Problem } from "./types/values.js" */
+
 const MARK = "#statement=";
 
 /** What an address may hold, characters, and what may come out of it, bytes. */
@@ -15,14 +17,12 @@ const MOST_UNPACKED = 1_000_000;
 /**
  * What an address holds: no claim on the linkage, which is driven where the address is opened.
  * @typedef {object} Sent
- * @property {any} problem
+ * @property {Problem} problem
  * @property {string} label of the task
- * @property {Mechanism | null} mechanism
+ * @property {Linked | null} mechanism
  * @property {boolean} placed whether the linkage was shifted, turned and sized to what is stated, which it then need
  *   not pass as stated
  */
-
-/** A linkage as an analysis takes it. @typedef {{type: string, skeleton: any, driven_by?: string}} Mechanism */
 
 /** Why an address cannot be read. */
 export class Unreadable extends Error {}

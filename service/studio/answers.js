@@ -8,6 +8,8 @@ import { foreign, t, term, translated } from "./messages.js";
 import { missed } from "./misses.js";
 import { Strip } from "./strip.js";
 
+/** @import { Problem, Result, Solved } from "./types/values.js" */
+
 /** @type {Shown | null} */
 let chosen = null;
 /** @type {Strip | null} */
@@ -26,8 +28,8 @@ export function leave(place, desk) {
 
 /**
  * @param {HTMLElement} place @param {import("./desk.js").Desk} desk @param {api.Job} job
- * @param {(problem: any) => void} state begins another statement
- * @param {(problem: any) => void} solve states and solves one
+ * @param {(problem: Problem) => void} state begins another statement
+ * @param {(problem: Problem) => void} solve states and solves one
  */
 export function answer(place, desk, job, state, solve) {
   leave(place, desk);
@@ -44,18 +46,19 @@ export function answer(place, desk, job, state, solve) {
     desk.stage.offer(false);
     return;
   }
-  const { designs, search, summary, nearest_miss } = job.result;
+  const solved = /** @type {Solved} */ (job);
+  const { designs, search, summary, nearest_miss } = solved.result;
   /** @type {Choosing | null} */
   let choosing = null;
-  const row = (strip = new Strip(job, (n) => {
+  const row = (strip = new Strip(solved, (n) => {
     chosen?.stop();
-    chosen = new Shown(desk, job, n, state, chosen?.before);
+    chosen = new Shown(desk, solved, n, state, chosen?.before);
     choosing?.chosen(chosen);
   }));
   const count = el("p", { class: "warn", role: "status" });
   const choice =
     designs.length > 1
-      ? new Choosing(desk.choosing, desk, job, row, () => {
+      ? new Choosing(desk.choosing, desk, solved, row, () => {
           const kept = row.kept.filter(Boolean).length;
           count.textContent =
             kept < designs.length ? t`${kept} of ${designs.length} designs meet the bounds and are shown.` : "";
@@ -103,7 +106,11 @@ export function pin() {
   if (strip && strip.chosen >= 0) strip.pin(strip.chosen);
 }
 
-/** What the search has shown, in a sentence. @param {any} search @param {number} found */
+/**
+ * What the search has shown, in a sentence.
+ * @param {Partial<Result["search"]> | undefined} search
+ * @param {number} found
+ */
 function known(search, found) {
   if (!search) return "";
   const counted = Object.entries(search.rejected ?? {})

@@ -3,16 +3,16 @@
 import { t, translated } from "./messages.js";
 import { ofTheTab } from "./storage.js";
 
-/** @typedef {{path: string, detail: string}} FieldError */
-/** @typedef {{fraction: number, message: string}} Progress */
+/** @import { Analysis, LinkageAnalysis, Mechanism, Problem, Question, Schemas } from "./types/values.js" */
+
+/** @typedef {Schemas["FieldError"]} FieldError */
+/** @typedef {Schemas["Progress"]} Progress */
+/** @typedef {Schemas["JobListItem"]} JobItem */
+/** @typedef {import("./types/values.js").Job} Job */
 /**
- * @typedef {{id: string, kind: string, label: string | null, status: string, created_at: string, progress: Progress}}
- *   JobItem
- */
-/** @typedef {JobItem & {problem: any, result: any, error: any}} Job */
-/**
- * @typedef {{kind: string, title: string, description: string, schema: any, example: any, files: Record<string,
- *   string[]>, examples: {name: string, group: string, line: string}[], measures: Record<string, string>}} Kind
+ * @typedef {{kind: string, title: string, description: string, schema: import("./schema.js").Schema, example: Problem,
+ *   files: Record<string, string[]>, examples: {name: string, group: string, line: string}[], measures:
+ *   Record<string, string>}} Kind
  */
 /**
  * @typedef {{element: string, id: string | null, name: string | null, layer: string | null, polygon: [number, number][]
@@ -44,7 +44,7 @@ const BUSY_MS = 5000;
 
 /** An answer that says what went wrong (problem+json). */
 export class Refused extends Error {
-  /** @param {any} problem @param {number} status */
+  /** @param {Partial<Schemas["ProblemDetails"]>} problem @param {number} status */
   constructor(problem, status) {
     super(problem.detail ? translated(problem.detail) : t`The service answered ${status}.`);
     this.status = status;
@@ -94,7 +94,7 @@ async function patiently(asked, signal) {
   }
 }
 
-/** @param {string} path @param {any} body @param {AbortSignal} [signal] */
+/** @param {string} path @param {unknown} body @param {AbortSignal} [signal] */
 function post(path, body, signal) {
   const headers = { "Content-Type": "application/json" };
   return ask(path, { method: "POST", headers, body: JSON.stringify(body), signal });
@@ -127,7 +127,7 @@ export function makesSolids() {
   return solids;
 }
 
-/** Whether designs of a mechanism are had as parts. @param {any} mechanism */
+/** Whether designs of a mechanism are had as parts. @param {Mechanism} mechanism */
 export function hasParts(mechanism) {
   return Boolean(mechanism.skeleton) || built.includes(mechanism.type);
 }
@@ -193,14 +193,14 @@ export async function report(id) {
   return URL.createObjectURL(await (await patiently(() => ask(reportAt(id)))).blob());
 }
 
-/** @param {any} problem @param {string | null} label @returns {Promise<Job>} */
+/** @param {Problem} problem @param {string | null} label @returns {Promise<Job>} */
 export async function solve(problem, label) {
   return (await post("/v1/jobs", { problem, label })).json();
 }
 
 /**
  * Solve a small problem, and wait for its answer.
- * @param {any} problem
+ * @param {Problem} problem
  * @param {string} label
  * @param {AbortSignal} signal
  * @returns {Promise<Job>}
@@ -232,7 +232,10 @@ export async function remove(id) {
   await ask(`/v1/jobs/${encodeURIComponent(id)}`, { method: "DELETE" });
 }
 
-/** @param {string} id @param {number} design @param {number} steps @param {AbortSignal} [signal] */
+/**
+ * @param {string} id @param {number} design @param {number} steps @param {AbortSignal} [signal]
+ * @returns {Promise<Analysis>}
+ */
 export async function motion(id, design, steps, signal) {
   const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/motion?steps=${steps}`;
   return (await patiently(() => ask(path, { signal }), signal)).json();
@@ -243,8 +246,9 @@ export async function motion(id, design, steps, signal) {
  * @param {string} id
  * @param {number} design
  * @param {number} steps
- * @param {any} block null for the problem's own
+ * @param {Schemas["DynamicsBlock"] | null} block null for the problem's own
  * @param {AbortSignal} signal
+ * @returns {Promise<LinkageAnalysis>}
  */
 export async function forces(id, design, steps, block, signal) {
   const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/forces?steps=${steps}`;
@@ -252,7 +256,10 @@ export async function forces(id, design, steps, block, signal) {
   return (await patiently(asked, signal)).json();
 }
 
-/** @param {any} question @param {AbortSignal} signal */
+/**
+ * @template {Analysis} [Answer=LinkageAnalysis] as that of a linkage, where nothing else is asked about
+ * @param {Question} question @param {AbortSignal} signal @returns {Promise<Answer>}
+ */
 export async function analysis(question, signal) {
   return (await patiently(() => post("/v1/analyses", question, signal), signal)).json();
 }

@@ -9,6 +9,8 @@ import { foreign, t, term, translated } from "./messages.js";
 import { between } from "./player.js";
 import { symbolOf } from "./units.js";
 
+/** @import { Solved } from "./types/values.js" */
+
 /**
  * @typedef {{name: string, described: string, sort: string, material: string, colour: string, standard: string, lift:
  *   number, carrier: number, shapes: import("./solids.js").Shape[], item: string, files: string[]}} Part
@@ -32,7 +34,7 @@ const PROCESSES = { laser: t`cut by laser`, print: t`printed`, mill: t`milled` }
 
 export class AssemblyView {
   /**
-   * @param {HTMLElement} place of the list of parts @param {api.Job} job @param {number} n
+   * @param {HTMLElement} place of the list of parts @param {Solved} job @param {number} n
    * @param {() => any} moving what moves in the drawing now, if anything does
    * @param {HTMLElement} board of the picture
    */

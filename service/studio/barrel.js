@@ -6,6 +6,8 @@ import { t } from "./messages.js";
 import { between } from "./player.js";
 import { View } from "./view.js";
 
+/** @import { Schemas } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 
 export class Barrel extends Turning {
@@ -20,7 +22,7 @@ export class Barrel extends Turning {
       lower_wall: lower,
       upper_wall: upper,
       pitch_curve: pitch,
-    } = this.mechanism;
+    } = /** @type {Schemas["BarrelCamMechanism"]} */ (this.mechanism);
     this.turn = 2 * Math.PI * radius;
     const [floor, ceiling] = [
       Math.min(...lower.y) - follower.roller_radius,
@@ -36,7 +38,7 @@ export class Barrel extends Turning {
     );
     const { view } = this;
     // Three turns side by side, so that one is always in the picture.
-    const thrice = (/** @type {any} */ curve) =>
+    const thrice = (/** @type {{x: number[], y: number[]}} */ curve) =>
       [-1, 0, 1].flatMap((n) =>
         curve.x.map(
           (/** @type {number} */ x, /** @type {number} */ k) => /** @type {Point} */ ([x + n * this.turn, curve.y[k]]),

@@ -3,25 +3,28 @@
 import { telling } from "./circuits.js";
 import { t } from "./messages.js";
 
+/** @import { LinkageAnalysis, Problem, Schemas, Skeleton } from "./types/values.js" */
+
 /** How many points of a curve a statement takes. */
 const POINTS = 24;
 
 /** @typedef {[number, number]} Point */
 
 /**
- * @param {any} problem that the linkage answered
- * @param {any} skeleton
- * @param {any} motion over the cycle
- * @param {any[]} targets
- * @returns {{text: string, statement: () => any}[]}
+ * @param {Problem} problem that the linkage answered
+ * @param {Skeleton} skeleton
+ * @param {LinkageAnalysis} motion over the cycle
+ * @param {import("./mover.js").Target[]} targets
+ * @returns {{text: string, statement: () => Problem}[]}
  */
 export function beginnings(problem, skeleton, motion, targets) {
+  /** @type {{text: string, statement: () => Problem}[]} */
   const found = [];
   const { O2, O4 } = skeleton.joints;
   if (O2 && O4 && problem.kind === "motion") {
-    const side = (/** @type {any} */ choices, /** @type {Point} */ at) => ({
-      dyad: choices.dyad,
-      fixed_pivot: at.map(round),
+    const side = (/** @type {Partial<Schemas["DyadChoices"]> | undefined} */ choices, /** @type {Point} */ at) => ({
+      dyad: choices?.dyad,
+      fixed_pivot: rounded(at),
     });
     found.push({
       text: t`Begin a statement with these fixed pivots`,
@@ -36,7 +39,7 @@ export function beginnings(problem, skeleton, motion, targets) {
   if (O2 && O4 && "fixed_pivots" in problem && problem.kind === "path") {
     found.push({
       text: t`Begin a statement with these fixed pivots`,
-      statement: () => ({ ...problem, fixed_pivots: { input: O2.map(round), output: O4.map(round) } }),
+      statement: () => ({ ...problem, fixed_pivots: { input: rounded(O2), output: rounded(O4) } }),
     });
   }
   if (problem.kind === "motion" && "P" in skeleton.joints) {
@@ -60,17 +63,20 @@ export function beginnings(problem, skeleton, motion, targets) {
   return found;
 }
 
+/** @param {Point} point @returns {Point} */
+function rounded([x, y]) {
+  return [round(x), round(y)];
+}
+
 /** @param {number} value */
 function round(value) {
   return Number(value.toPrecision(6));
 }
 
-/** @param {any} motion @param {string} name @returns {Point[]} */
+/** @param {LinkageAnalysis} motion @param {string} name @returns {Point[]} */
 function curve(motion, name) {
   const { x, y } = motion.joints[name];
-  return x
-    .map((/** @type {number | null} */ one, /** @type {number} */ k) => [one, y[k]])
-    .filter((/** @type {any} */ [one]) => one !== null);
+  return x.flatMap((one, k) => (one === null ? [] : [/** @type {Point} */ ([one, y[k]])]));
 }
 
 /**
@@ -88,28 +94,28 @@ function spread(known, closed) {
 
 /**
  * Where the body is when P is nearest to each demanded position.
- * @param {any} problem
- * @param {any} skeleton
- * @param {any} motion
- * @param {any[]} targets
+ * @param {Problem} problem
+ * @param {Skeleton} skeleton
+ * @param {LinkageAnalysis} motion
+ * @param {import("./mover.js").Target[]} targets
  */
 function taken(problem, skeleton, motion, targets) {
-  const body = skeleton.links.find((/** @type {any} */ link) => link.joints.includes("P")).name;
+  const body = skeleton.links.find((link) => link.joints.includes("P"))?.name ?? "";
   const { x, y } = motion.joints.P;
   const { angle } = motion.links[body];
-  const first = problem.positions[0].angle;
+  const first = problem.positions?.[0]?.angle ?? 0;
   return targets.map((target) => {
     let best = 0;
     let least = Infinity;
-    x.forEach((/** @type {number | null} */ one, /** @type {number} */ k) => {
-      const away = one === null ? Infinity : Math.hypot(one - target.x, y[k] - target.y);
+    x.forEach((one, k) => {
+      const away = one === null ? Infinity : Math.hypot(one - target.x, Number(y[k]) - target.y);
       if (away < least) [least, best] = [away, k];
     });
-    const turned = first + angle[best] - angle[0];
+    const turned = first + Number(angle[best]) - Number(angle[0]);
     return {
-      x: round(x[best]),
-      y: round(y[best]),
-      angle: round(turned + 360 * Math.round((target.angle - turned) / 360)),
+      x: round(Number(x[best])),
+      y: round(Number(y[best])),
+      angle: round(turned + 360 * Math.round(((target.angle ?? 0) - turned) / 360)),
     };
   });
 }

@@ -8,6 +8,8 @@ import { roomOf } from "./stage.js";
 import { View } from "./view.js";
 import { Zoom } from "./zoom.js";
 
+/** @import { Design, Skeleton, Solved } from "./types/values.js" */
+
 /** Height of what stands above and below the curves, pixels. */
 const WORDS = 84;
 
@@ -25,22 +27,23 @@ const SIDES = /** @type {const} */ ([
 
 export class Burmester {
   /**
-   * @param {HTMLElement} place @param {api.Job} job of four positions @param {any} design whose dyads stand first
-   * @param {(job: api.Job) => void} show called with the job of the new linkage
+   * @param {HTMLElement} place @param {Solved} job of four positions @param {Design} design whose dyads stand first
+   * @param {(job: Solved) => void} show called with the job of the new linkage
    */
   constructor(place, job, design, show) {
     const [width, height] = roomOf(place, WORDS);
     this.problem = job.problem;
     /** @type {Branch[]} */
-    this.branches = job.result.curves;
+    this.branches = job.result.curves ?? [];
     this.showSolved = show;
     this.gone = new AbortController();
     this.asking = new AbortController();
     this.timer = 0;
     /** The job of the linkage that is shown; it goes when the next comes, unless it is kept. */
     this.trial = "";
-    const { joints } = design.mechanism.skeleton;
-    const around = Object.values(joints).concat(job.problem.positions.map((/** @type {any} */ one) => [one.x, one.y]));
+    const { joints } = /** @type {Skeleton} */ (design.mechanism.skeleton);
+    const positions = job.problem.positions ?? [];
+    const around = Object.values(joints).concat(positions.map((one) => [one.x, one.y]));
     this.view = new View(/** @type {Point[]} */ (around), width, height, Math.min(90, 0.2 * Math.min(width, height)));
     this.dyads = SIDES.map(({ moving }) => this.nearest("circle_points", joints[moving]));
     this.lines = SIDES.map((_, k) => svg("line", { class: k ? "arm" : "arm input" }));
@@ -57,7 +60,7 @@ export class Burmester {
         svg("path", { class: "centre-points", d: this.view.path(branch.centre_points) + (branch.closed ? "Z" : "") }),
         svg("path", { class: "circle-points", d: this.view.path(branch.circle_points) + (branch.closed ? "Z" : "") }),
       ]),
-      ...job.problem.positions.map((/** @type {any} */ one, /** @type {number} */ k) => this.position(one, k)),
+      ...positions.map((one, k) => this.position(one, k)),
       ...this.lines,
     );
     this.handles = SIDES.flatMap((names, k) => [
@@ -103,10 +106,10 @@ export class Burmester {
     this.draw();
   }
 
-  /** @param {any} one @param {number} k */
+  /** @param {{x: number, y: number, angle?: number}} one @param {number} k */
   position(one, k) {
     const [u, v] = this.view.at(one.x, one.y);
-    const angle = (one.angle * Math.PI) / 180;
+    const angle = ((one.angle ?? 0) * Math.PI) / 180;
     return svg(
       "g",
       { class: "goal" },
@@ -220,7 +223,7 @@ export class Burmester {
               : t`Solved: it fails a check; see below which.`
             : translated(job.result.summary),
         );
-        if (found) this.showSolved(job);
+        if (found) this.showSolved(/** @type {Solved} */ (job));
       }
       // Only now, when nothing of it is asked for any more.
       if (before) api.remove(before).catch(() => undefined);

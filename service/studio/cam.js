@@ -11,23 +11,28 @@ import { plots } from "./plots.js";
 import { along } from "./quantities.js";
 import { View } from "./view.js";
 
+/** @import { Merged, Problem, Schemas } from "./types/values.js" */
+
 /** Length of a follower's stem beyond its roller or face, as a share of the base radius. */
 const STEM = 0.8;
 
 /** @typedef {[number, number]} Point */
+/** @typedef {Merged<Schemas["CamMechanism"] | Schemas["BarrelCamMechanism"]>} Cam */
+/** @typedef {Merged<Schemas["CamAnalysis"] | Schemas["BarrelCamAnalysis"]>} CamMotion */
 
 /**
  * Displacement and its derivatives over the motion, with the pressure angle.
- * @param {any} mechanism
- * @param {any} motion
- * @param {any} problem
+ * @param {Cam} mechanism
+ * @param {CamMotion} motion
+ * @param {Problem} problem
  * @returns {import("./plots.js").Plotted[]}
  */
 export function diagrams(mechanism, motion, problem) {
   const { program } = mechanism;
   // A turn of the cam comes back to its beginning.
   const angles = [...program.angle, 360];
-  const over = (/** @type {string} */ name) => along(angles, [...program[name], program[name][0]], motion.input_angle);
+  const over = (/** @type {"s" | "v" | "a" | "j"} */ name) =>
+    along(angles, [...program[name], program[name][0]], motion.input_angle);
   const swings = mechanism.follower.type.startsWith("oscillating");
   const unit = swings ? "°" : problem.length_unit;
   const titles = {
@@ -38,7 +43,11 @@ export function diagrams(mechanism, motion, problem) {
   };
   const lift = Math.max(...program.s) - Math.min(...program.s);
   return [
-    ...Object.entries(titles).map(([name, title]) => ({ title, lines: { "": over(name) }, least: lift })),
+    .../** @type {const} */ (["s", "v", "a", "j"]).map((name) => ({
+      title: titles[name],
+      lines: { "": over(name) },
+      least: lift,
+    })),
     {
       title: t`Pressure angle (°)`,
       lines: { "": motion.pressure_angle },
@@ -50,10 +59,17 @@ export function diagrams(mechanism, motion, problem) {
 
 /** What a disc cam and a barrel have in common: clock, gauge and diagrams. */
 export class Turning {
-  /** @param {import("./stage.js").Frame} frame @param {any} design @param {any} motion @param {any} problem */
+  /**
+   * @param {import("./stage.js").Frame} frame
+   * @param {Schemas["CamDesign"] | Schemas["BarrelCamDesign"]} design
+   * @param {Schemas["CamAnalysis"] | Schemas["BarrelCamAnalysis"]} motion
+   * @param {Problem} problem
+   */
   constructor(frame, design, motion, problem) {
     this.size = frame.size();
+    /** @type {CamMotion} */
     this.motion = motion;
+    /** @type {Cam} */
     this.mechanism = design.mechanism;
     this.count = motion.input_angle.length;
     // What the scene of each kind decides.
@@ -65,7 +81,7 @@ export class Turning {
     this.spin = [];
     const scene = this.scene();
     // A flat face that only moves along has none.
-    this.gauge = motion.pressure_angle.some((/** @type {any} */ one) => one > 0.01)
+    this.gauge = motion.pressure_angle.some((one) => Number(one) > 0.01)
       ? new Gauge(t`Pressure angle`, motion.pressure_angle, { limit: problem.limits?.pressure_angle, atMost: true })
       : null;
     this.player = new Player({
@@ -90,7 +106,7 @@ export class Turning {
       beside: [this.gauge?.node, this.facts],
       plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))],
     });
-    this.displacement = /** @type {any} */ (diagrams(this.mechanism, motion, problem)[0].lines)[""];
+    this.displacement = diagrams(this.mechanism, motion, problem)[0].lines[""];
     this.player.begin();
   }
 
@@ -126,13 +142,21 @@ export class Turning {
 }
 
 export class Disc extends Turning {
+  get disc() {
+    return /** @type {Schemas["CamMechanism"]} */ (this.mechanism);
+  }
+
+  get contact() {
+    return /** @type {Schemas["CamAnalysis"]} */ (this.motion).contact;
+  }
+
   scene() {
-    const { follower, profile, pitch_curve: pitch, outer_wall: wall, second } = this.mechanism;
+    const { follower, profile, pitch_curve: pitch, outer_wall: wall, second } = this.disc;
     this.sense = this.mechanism.rotation === "cw" ? -1 : 1;
     this.radius = follower.roller_radius ?? 0;
     this.rolls = follower.type.endsWith("roller");
     this.swings = follower.type.startsWith("oscillating");
-    this.base = this.mechanism.base_radius ?? this.mechanism.prime_radius - this.radius;
+    this.base = this.disc.base_radius ?? Number(this.disc.prime_radius) - this.radius;
     const outline = ring(profile);
     const far = Math.max(
       ...outline.map(([x, y]) => Math.hypot(x, y)),
@@ -142,7 +166,7 @@ export class Disc extends Turning {
       ...pitch.x.map((/** @type {number} */ x, /** @type {number} */ k) => Math.hypot(x, pitch.y[k])),
     );
     const reach = this.swings
-      ? [follower.pivot_distance + 0.1 * this.base, 0.2 * this.base]
+      ? [(follower.pivot_distance ?? 0) + 0.1 * this.base, 0.2 * this.base]
       : [high + this.radius + STEM * this.base, 0];
     const beside = second ? Math.max(...ring(second.pitch_curve).map(([x, y]) => Math.hypot(x, y))) + this.radius : 0;
     const wide = Math.max(far, high, beside);
@@ -194,7 +218,7 @@ export class Disc extends Turning {
     this.touch = svg("circle", { class: "touch", r: 3.5 });
     this.normal = svg("line", { class: "normal" });
     const pivot =
-      this.swings && svg("circle", { class: "pin", r: 5, cx: view.at(follower.pivot_distance, 0)[0], cy: v });
+      this.swings && svg("circle", { class: "pin", r: 5, cx: view.at(follower.pivot_distance ?? 0, 0)[0], cy: v });
     return [
       circle("rim", this.base),
       this.cam,
@@ -213,14 +237,14 @@ export class Disc extends Turning {
    * @returns {number[]} radians
    */
   rolling() {
-    const { x, y } = this.motion.contact;
+    const { x, y } = this.contact;
     if (!this.rolls || !(this.radius > 0)) return [];
     let travelled = 0;
     let before = 0;
-    return x.map((/** @type {number} */ one, /** @type {number} */ k) => {
-      if (k > 0) travelled += Math.hypot(one - x[k - 1], y[k] - y[k - 1]);
+    return x.map(Number).map((one, k) => {
+      if (k > 0) travelled += Math.hypot(one - Number(x[k - 1]), Number(y[k]) - Number(y[k - 1]));
       const angle = (this.motion.input_angle[k] * Math.PI) / 180;
-      const [[cx, cy], [tx, ty]] = [this.centre(angle), turned([one, y[k]], this.sense * angle)];
+      const [[cx, cy], [tx, ty]] = [this.centre(angle), turned([one, Number(y[k])], this.sense * angle)];
       let toward = Math.atan2(ty - cy, tx - cx);
       toward += 2 * Math.PI * Math.round((before - toward) / (2 * Math.PI));
       before = toward;
@@ -254,7 +278,7 @@ export class Disc extends Turning {
     } = this;
     const [u, v] = view.at(0, 0);
     this.cam.setAttribute("transform", `rotate(${(-this.sense * angle * 180) / Math.PI} ${u} ${v})`);
-    const [across, up] = [between(this.motion.contact.x, at), between(this.motion.contact.y, at)];
+    const [across, up] = [between(this.contact.x, at), between(this.contact.y, at)];
     if (across === null || up === null) return;
     const touching = turned([across, up], this.sense * angle);
     const [tu, tv] = view.at(...touching);
@@ -271,7 +295,7 @@ export class Disc extends Turning {
       for (const [name, value] of Object.entries({ x1: tu, y1: tv, x2: 3 * cu - 2 * tu, y2: 3 * cv - 2 * tv }))
         this.normal.setAttribute(name, String(value));
       const end = /** @type {Point} */ (
-        this.swings ? [follower.pivot_distance, 0] : [centre[0] + this.radius + STEM * this.base, centre[1]]
+        this.swings ? [follower.pivot_distance ?? 0, 0] : [centre[0] + this.radius + STEM * (this.base ?? 0), centre[1]]
       );
       const other = this.opposite(centre);
       this.holder.setAttribute(
@@ -299,12 +323,12 @@ export class Disc extends Turning {
   opposite([x, y]) {
     const { second, follower } = this.mechanism;
     if (!second) return null;
-    if (!this.swings) return [x - second.roller_distance, y];
+    if (!this.swings) return [x - (second.roller_distance ?? 0), y];
     const [u, v] = turned(
-      [x - follower.pivot_distance, y],
-      (-this.sense * follower.sense * (second.arm_angle * Math.PI)) / 180,
+      [x - (follower.pivot_distance ?? 0), y],
+      (-this.sense * (follower.sense ?? 1) * ((second.arm_angle ?? 0) * Math.PI)) / 180,
     );
-    return [follower.pivot_distance + u, v];
+    return [(follower.pivot_distance ?? 0) + u, v];
   }
 
   /** Displacement of the follower. @param {number} at */
@@ -320,7 +344,7 @@ export class Disc extends Turning {
     const {
       view,
       mechanism: { follower },
-      base,
+      base = 0,
     } = this;
     const [x, y] = touching;
     if (!this.swings) {
@@ -336,7 +360,7 @@ export class Disc extends Turning {
         ])
       );
     }
-    const [rx, ry] = [x - follower.pivot_distance, y];
+    const [rx, ry] = [x - (follower.pivot_distance ?? 0), y];
     const offset = follower.face_offset ?? 0;
     const foot = Math.sqrt(Math.max(rx * rx + ry * ry - offset * offset, 0));
     // reach / (foot − i offset·sense): the direction of the face, away from the pivot.
@@ -347,7 +371,7 @@ export class Disc extends Turning {
     const start = /** @type {Point} */ ([x - near * ax, y - near * ay]);
     return (
       view.path([start, [x + 0.35 * base * ax, y + 0.35 * base * ay]]) +
-      view.path([start, [follower.pivot_distance, 0]])
+      view.path([start, [follower.pivot_distance ?? 0, 0]])
     );
   }
 }

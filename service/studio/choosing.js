@@ -7,6 +7,8 @@ import { quantities } from "./measured.js";
 import { t, term } from "./messages.js";
 import { Scatter } from "./scatter.js";
 
+/** @import { Solved } from "./types/values.js" */
+
 /** Of a front, the names of what stands in the metrics under another name. @type {Record<string, string>} */
 const FRONT = { rms: "rms_residual" };
 
@@ -14,7 +16,7 @@ export class Choosing {
   /**
    * @param {HTMLElement} place
    * @param {import("./desk.js").Desk} desk
-   * @param {import("./api.js").Job} job with two designs at least
+   * @param {Solved} job with two designs at least
    * @param {import("./strip.js").Strip} strip @param {() => void} narrowed told when bounds hide designs
    */
   constructor(place, desk, job, strip, narrowed) {
@@ -88,7 +90,7 @@ export class Choosing {
 
   /** What the designs of the front are not beaten in. @returns {string[]} */
   beaten() {
-    return this.job.result.front.quantities.map((/** @type {string} */ name) => term(FRONT[name] ?? name));
+    return (this.job.result.front?.quantities ?? []).map((/** @type {string} */ name) => term(FRONT[name] ?? name));
   }
 
   /** The tab has been opened. */

@@ -4,6 +4,8 @@ import { el, svg } from "./dom.js";
 import { Linkage, drawn, grounded } from "./linkage.js";
 import { t } from "./messages.js";
 
+/** @import { LinkageAnalysis, Skeleton } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 /**
  * @typedef {{from: number, to: number, full: boolean, reference: boolean, circuit: number, joints: Record<string, {x:
@@ -12,18 +14,18 @@ import { t } from "./messages.js";
 
 /**
  * Branches other than the one that moves, as far as their joints are known.
- * @param {any} motion with `branches` included
+ * @param {LinkageAnalysis | null} [motion] with `branches` included
  * @returns {Branch[]}
  */
 export function others(motion) {
-  return (motion?.circuits ?? []).flatMap((/** @type {any} */ circuit, /** @type {number} */ n) =>
-    circuit.branches
-      .filter((/** @type {any} */ branch) => !branch.reference && branch.joints)
-      .map((/** @type {any} */ branch) => ({ ...branch, circuit: n })),
+  return (motion?.circuits ?? []).flatMap((circuit, n) =>
+    circuit.branches.flatMap(({ joints, ...branch }) =>
+      !branch.reference && joints ? [{ ...branch, joints, circuit: n }] : [],
+    ),
   );
 }
 
-/** The joint whose path tells the most: P, or the last pin that moves. @param {any} skeleton */
+/** The joint whose path tells the most: P, or the last pin that moves. @param {Skeleton} skeleton */
 export function telling(skeleton) {
   const still = grounded(skeleton);
   const names = drawn(skeleton).filter((name) => !still.includes(name));
@@ -37,14 +39,16 @@ export function track(branch, name) {
 }
 
 export class Circuits {
-  /** @param {import("./view.js").View} view @param {any} skeleton @param {any} motion with `branches` included */
+  /**
+   * @param {import("./view.js").View} view
+   * @param {Skeleton} skeleton
+   * @param {LinkageAnalysis | null} [motion] with `branches` included
+   */
   constructor(view, skeleton, motion) {
     const circuits = motion?.circuits ?? [];
     this.branches = others(motion);
     const name = telling(skeleton);
-    const own = circuits.findIndex((/** @type {any} */ one) =>
-      one.branches.some((/** @type {any} */ branch) => branch.reference),
-    );
+    const own = circuits.findIndex((one) => one.branches.some((branch) => branch.reference));
     this.ghosts = this.branches.map((branch) => ({
       branch,
       linkage: new Linkage(view, skeleton, { names: false, faint: true }),
@@ -63,10 +67,7 @@ export class Circuits {
     // Of a linkage with many branches, as Peaucellier's, a drawing of all shows nothing any more.
     box.checked = this.branches.length <= 3;
     this.node.toggleAttribute("hidden", !box.checked);
-    const branches = circuits.reduce(
-      (/** @type {number} */ sum, /** @type {any} */ one) => sum + one.branches.length,
-      0,
-    );
+    const branches = circuits.reduce((/** @type {number} */ sum, one) => sum + one.branches.length, 0);
     const text =
       circuits.length === 1
         ? branches === 2

@@ -4,9 +4,11 @@ import * as api from "./api.js";
 import { el, shown, words } from "./dom.js";
 import { foreign, t, translated } from "./messages.js";
 
+/** @import { Design, Mechanism, Metrics, Problem, Question, Schemas } from "./types/values.js" */
+
 /**
- * @typedef {{name: string, mechanism: any, note: string, metrics: Record<string, any>}} Choice with what was measured
- *   of it
+ * @typedef {{name: string, mechanism: Mechanism, note: string, metrics: Partial<Metrics>}} Choice with what was
+ *   measured of it
  */
 
 /** Kinds whose answer is the curve of P and not the turning of the body. */
@@ -14,7 +16,7 @@ const BY_CURVE = ["path", "straight_line"];
 
 /**
  * The design and its cognates; one choice only where there are none.
- * @param {any} design @param {any} problem @param {AbortSignal} signal @returns {Promise<Choice[]>}
+ * @param {Design} design @param {Problem} problem @param {AbortSignal} signal @returns {Promise<Choice[]>}
  */
 export async function cognates(design, problem, signal) {
   const { mechanism } = design;
@@ -23,20 +25,21 @@ export async function cognates(design, problem, signal) {
   if (design.cognates?.length) {
     return [
       own,
-      ...design.cognates.map((/** @type {any} */ cognate) => {
+      ...design.cognates.map((cognate) => {
         const { side, mechanism: its, ...metrics } = cognate;
         return {
           name: side === "left" ? t`Left cognate` : t`Right cognate`,
           mechanism: its,
           note: told(cognate),
-          metrics,
+          metrics: /** @type {Partial<Metrics>} */ (metrics),
         };
       }),
     ];
   }
-  const question = { mechanism, motion: { at: mechanism.reference_input_angle }, include: ["cognates"] };
+  /** @type {Question} */
+  const question = { mechanism, motion: { at: Number(mechanism.reference_input_angle) }, include: ["cognates"] };
   const pair = await api.analysis(question, signal).then(
-    (answer) => answer.fourbar.cognates,
+    (answer) => answer.fourbar?.cognates,
     () => null,
   );
   if (!pair) return [own];
@@ -44,20 +47,20 @@ export async function cognates(design, problem, signal) {
     own,
     {
       name: t`Left cognate`,
-      mechanism: pair.left,
+      mechanism: /** @type {Mechanism} */ (pair.left),
       metrics: {},
       note: t`It traces the same curve; its input turns with the design's coupler.`,
     },
     {
       name: t`Right cognate`,
-      mechanism: pair.right,
+      mechanism: /** @type {Mechanism} */ (pair.right),
       metrics: {},
       note: t`It traces the same curve; its input turns with the design's input.`,
     },
   ];
 }
 
-/** @param {any} one a cognate as measured */
+/** @param {Schemas["PathCognate"]} one a cognate as measured */
 function told(one) {
   const able = [
     t`${words(one.grashof)}, transmits at ${shown(Math.round(10 * one.min_transmission_angle) / 10)}° at least`,

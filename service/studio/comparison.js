@@ -11,6 +11,8 @@ import { telling } from "./circuits.js";
 import { t } from "./messages.js";
 import { STEPS, TURN_STEPS, VIEWS } from "./views.js";
 
+/** @import { Design, LinkageAnalysis, Linked, LinkedDesign, Problem, Solved } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 /** @typedef {"beside" | "over"} Manner */
 
@@ -34,7 +36,7 @@ class Second extends Frame {
 
 export class Comparison {
   /**
-   * @param {import("./desk.js").Desk} desk @param {api.Job} job @param {number} n the other design
+   * @param {import("./desk.js").Desk} desk @param {Solved} job @param {number} n the other design
    * @param {Manner} manner @param {import("./design.js").Shown} shown the design that is chosen
    */
   constructor(desk, job, n, manner, shown) {
@@ -59,10 +61,11 @@ export class Comparison {
     const { design, desk, job, manner, shown } = this;
     const linkage = Boolean(design.mechanism.skeleton);
     this.split(manner === "beside");
-    const motion = await api.motion(job.id, this.n, linkage ? STEPS : TURN_STEPS, this.gone.signal);
+    const moved = await api.motion(job.id, this.n, linkage ? STEPS : TURN_STEPS, this.gone.signal);
+    const motion = /** @type {LinkageAnalysis} */ (moved);
     if (this.gone.signal.aborted) return;
     if (manner === "over") {
-      const tracks = Object.values(motion.joints).flatMap((/** @type {any} */ track) => points(track));
+      const tracks = Object.values(motion.joints).flatMap((track) => points(track));
       shown.around = tracks;
       shown.told = () => this.overlay(motion);
       shown.again();
@@ -70,7 +73,9 @@ export class Comparison {
     }
     const frame = new Second(desk.other, t`Design ${this.n + 1}: ${words(design.mechanism.type)}`);
     const View = VIEWS[design.mechanism.type];
-    this.moving = View ? new View(frame, design, motion, job.problem) : new Mover(frame, design, motion, job.problem);
+    this.moving = View
+      ? new View(frame, design, moved, job.problem)
+      : new Mover(frame, /** @type {LinkedDesign} */ (design), motion, job.problem);
     const { player } = this.moving;
     player.stop();
     this.follow = (share) => player.seek(share * player.last);
@@ -88,11 +93,11 @@ export class Comparison {
     follow(player.at / player.last);
   }
 
-  /** Draw the other one over the chosen one. @param {any} motion */
+  /** Draw the other one over the chosen one. @param {LinkageAnalysis} motion */
   overlay(motion) {
     const { mover } = this.shown;
     if (!mover) return;
-    const { skeleton } = this.design.mechanism;
+    const { skeleton } = /** @type {Linked} */ (this.design.mechanism);
     const linkage = new Linkage(mover.view, skeleton, { names: false });
     linkage.node.setAttribute("class", "overlaid");
     const name = telling(skeleton);
@@ -133,9 +138,9 @@ function points({ x, y }) {
 
 /**
  * The numbers of two designs beside each other; those that differ are marked.
- * @param {any[]} designs
+ * @param {Design[]} designs
  * @param {[number, number]} which
- * @param {any} problem
+ * @param {Problem} problem
  */
 export function sideBySide(designs, which, problem) {
   const [one, other] = which.map((n) => designs[n]);
@@ -144,7 +149,7 @@ export function sideBySide(designs, which, problem) {
       new Map(figures(design).map(([name, value]) => [name, figure(name, value, problem, design.metrics?.size)])),
   );
   const sizes = [one, other].map((design) => new Map(dimensionRows(design, problem)));
-  const names = (/** @type {Map<string, any>[]} */ maps) => [...new Set(maps.flatMap((map) => [...map.keys()]))];
+  const names = (/** @type {Map<string, Cell>[]} */ maps) => [...new Set(maps.flatMap((map) => [...map.keys()]))];
   const rows = (/** @type {Map<string, {text: string, title: string | null}>[]} */ maps) =>
     names(maps).map((name) => {
       const [a, b] = maps.map((map) => map.get(name) ?? { text: "–", title: null });

@@ -3,6 +3,8 @@
 import { el, words } from "./dom.js";
 import { t, term } from "./messages.js";
 
+/** @import { Schemas } from "./types/values.js" */
+
 /** @param {string[]} choices @param {any} value @param {boolean} nullable @param {(value: any) => void} set */
 export function choice(choices, value, nullable, set) {
   const names = nullable ? ["", ...choices] : choices;
@@ -30,7 +32,7 @@ export function numberBox(value, fallback, set) {
 
 /** @param {any} value @param {any} fallback @param {(value: any) => void} set @param {(text: string) => any} read */
 export function textBox(value, fallback, set, read) {
-  const written = (/** @type {any} */ one) =>
+  const written = (/** @type {unknown} */ one) =>
     Array.isArray(one) ? one.map((part) => part ?? "open").join(", ") : String(one ?? "");
   const box = el("input", {
     type: "text",
@@ -148,7 +150,7 @@ export function choices(name, note, path, all, value, set) {
  * @param {(value: any) => void} set
  */
 export function stockBox(value, set) {
-  const written = (/** @type {any} */ one) =>
+  const written = (/** @type {string | number | Schemas["StockedGear"]} */ one) =>
     typeof one === "object" && one !== null ? `${one.teeth} × ${one.count ?? 1}` : String(one);
   const box = el("input", {
     type: "text",

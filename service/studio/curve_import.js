@@ -12,6 +12,8 @@ import { t } from "./messages.js";
 import { rolesOf, stateArea } from "./room.js";
 import { View } from "./view.js";
 
+/** @import { Problem } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 /** @typedef {import("./api.js").Curve} Curve */
 /**
@@ -33,7 +35,7 @@ const LEAST = 3;
 export class CurveImport {
   /**
    * @param {HTMLElement} place @param {import("./backdrop.js").Backdrop} backdrop
-   * @param {() => {problem: any, roomy: boolean}} stated the statement as it is now @param {() => void} changed
+   * @param {() => {problem: Problem, roomy: boolean}} stated the statement as it is now @param {() => void} changed
    */
   constructor(place, backdrop, stated, changed) {
     this.backdrop = backdrop;

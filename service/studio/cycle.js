@@ -3,15 +3,17 @@
 import * as api from "./api.js";
 import { grounded } from "./linkage.js";
 
+/** @import { LinkageAnalysis, Linked, Mechanism, Skeleton } from "./types/values.js" */
+
 /**
  * Input angle of the configuration in which a skeleton stands, degrees; null where a slide drives.
- * @param {any} skeleton
+ * @param {Skeleton} skeleton
  * @returns {number | null}
  */
 export function stands(skeleton) {
-  const link = skeleton.links.find((/** @type {any} */ one) => one.name === skeleton.input_link);
+  const link = skeleton.links.find((one) => one.name === skeleton.input_link);
   const [one, other] = link?.joints.map((/** @type {string} */ name) => skeleton.joints[name]) ?? [];
-  if (!one || !other) return null;
+  if (!link || !one || !other) return null;
   // The input angle is that of the line from the fixed pivot.
   const back = !grounded(skeleton).includes(link.joints[0]);
   const sign = back ? -1 : 1;
@@ -20,8 +22,8 @@ export function stands(skeleton) {
 
 /**
  * The motion over the cycle, and an analysis with all branches.
- * @param {any} mechanism @param {number} steps @param {AbortSignal} signal
- * @returns {Promise<{motion: any, circuits: any}>}
+ * @param {Mechanism} mechanism @param {number} steps @param {AbortSignal} signal
+ * @returns {Promise<{motion: LinkageAnalysis, circuits: LinkageAnalysis}>}
  */
 export async function overTheCycle(mechanism, steps, signal) {
   const at = mechanism.reference_input_angle ?? (mechanism.skeleton ? stands(mechanism.skeleton) : null);
@@ -30,9 +32,7 @@ export async function overTheCycle(mechanism, steps, signal) {
     return { motion, circuits: motion };
   }
   const circuits = await api.analysis({ mechanism, motion: { at }, include: ["branches"] }, signal);
-  const here = circuits.circuits
-    .flatMap((/** @type {any} */ one) => one.branches)
-    .find((/** @type {any} */ one) => one.reference);
+  const here = circuits.circuits.flatMap((one) => one.branches).find((one) => one.reference);
   const from = here && !here.full ? at - (at - here.from - 360 * Math.floor((at - here.from) / 360)) : at;
   const to = from + (here ? here.to - here.from : 360);
   return { motion: await api.analysis({ mechanism, motion: { from, to, steps } }, signal), circuits };
@@ -40,14 +40,18 @@ export async function overTheCycle(mechanism, steps, signal) {
 
 /**
  * A mechanism that is stated by its dimensions, with its skeleton as the motion shows it.
- * @param {any} mechanism
- * @param {any} motion
+ * @param {Mechanism} mechanism
+ * @param {LinkageAnalysis} motion
+ * @returns {Linked}
  */
 export function withSkeleton(mechanism, motion) {
-  if (mechanism.skeleton) return mechanism;
+  if (mechanism.skeleton) return /** @type {Linked} */ (mechanism);
   const k = motion.valid.indexOf(true);
   const joints = Object.fromEntries(
-    Object.entries(motion.joints).map(([name, track]) => [name, [track.x[k], track.y[k]]]),
+    Object.entries(motion.joints).map(([name, track]) => [
+      name,
+      /** @type {[number, number]} */ ([track.x[k], track.y[k]]),
+    ]),
   );
   const links = [
     ["ground", "O2", "O4"],

@@ -15,17 +15,22 @@ import { Mover, demanded } from "./mover.js";
 import { thumbnail } from "./thumbnail.js";
 import { STEPS, TURN_STEPS, VIEWS } from "./views.js";
 
+/** @import { Design, LinkageAnalysis, Linked, LinkedDesign, Problem, Question, Solved } from "./types/values.js" */
+
 const OF_THE_DESIGN = t`Checks, drawing and files are those of the design: choose it above the numbers to see them.`;
 
 /** @typedef {import("./views.js").Moving} Moving */
-/** @typedef {{choice: import("./cognates.js").Choice, design: any, motion: any, circuits: any}} Film */
+/**
+ * @typedef {{choice: import("./cognates.js").Choice, design: LinkedDesign, motion: LinkageAnalysis, circuits:
+ *   LinkageAnalysis | null}} Film
+ */
 
 export class Shown {
   /**
    * @param {import("./desk.js").Desk} desk
-   * @param {api.Job} job
+   * @param {Solved} job
    * @param {number} n
-   * @param {(problem: any) => void} state begins another statement
+   * @param {(problem: Problem) => void} state begins another statement
    * @param {Moving | null} [before] what stands still on the stage until this design moves there
    */
   constructor(desk, job, n, state, before = null) {
@@ -61,7 +66,7 @@ export class Shown {
     this.present(job, n, t`Design ${n + 1}`);
   }
 
-  /** Show a design of a job. @param {api.Job} job @param {number} n @param {string} title */
+  /** Show a design of a job. @param {Solved} job @param {number} n @param {string} title */
   present(job, n, title) {
     this.leave();
     this.job = job;
@@ -130,14 +135,19 @@ export class Shown {
         return this.again();
       }
       const at = mechanism.reference_input_angle;
-      const question = { mechanism, ...(Number.isFinite(at) ? { motion: { at } } : {}), include: ["branches"] };
+      /** @type {Question} */
+      const question = {
+        mechanism,
+        ...(typeof at === "number" && Number.isFinite(at) ? { motion: { at } } : {}),
+        include: ["branches"],
+      };
       // One after the other: the service analyses for others too.
-      const motion = await api.motion(this.job.id, this.n, STEPS, gone);
+      const motion = /** @type {LinkageAnalysis} */ (await api.motion(this.job.id, this.n, STEPS, gone));
       // Without other circuits the motion is still worth seeing.
       const circuits = await api.analysis(question, gone).catch(() => null);
       const choices = await cognates(this.design, this.job.problem, gone);
       /** @type {(Film | null)[]} */
-      const films = [{ choice: choices[0], design: this.design, motion, circuits }];
+      const films = [{ choice: choices[0], design: /** @type {LinkedDesign} */ (this.design), motion, circuits }];
       for (const choice of choices.slice(1)) films.push(await this.film(choice));
       if (!gone.aborted) this.offer(films.filter((one) => one !== null));
     } catch (error) {
@@ -191,10 +201,8 @@ export class Shown {
       films.length < 2
         ? []
         : films.flatMap(({ motion }) =>
-            Object.values(motion.joints).flatMap((/** @type {any} */ track) =>
-              track.x.map((/** @type {number | null} */ x, /** @type {number} */ k) =>
-                x === null ? [NaN, NaN] : [x, track.y[k]],
-              ),
+            Object.values(motion.joints).flatMap((track) =>
+              track.x.map((x, k) => /** @type {[number, number]} */ (x === null ? [NaN, NaN] : [x, track.y[k]])),
             ),
           );
     const show = (/** @type {Film} */ film) => {
@@ -231,7 +239,10 @@ export class Shown {
     }
   }
 
-  /** The place where a linkage's pins are dragged. @param {any} design the design or a cognate of it */
+  /**
+   * The place where a linkage's pins are dragged.
+   * @param {LinkedDesign | Design} design the design or a cognate of it
+   */
   explored(design) {
     const { mechanism } = design;
     const { problem } = this.job;
@@ -250,7 +261,7 @@ export class Shown {
               this.explorer = new Explorer(
                 exploring,
                 explore,
-                mechanism,
+                /** @type {Linked} */ (mechanism),
                 problem,
                 demanded(problem, design),
                 this.state,
@@ -322,7 +333,7 @@ export class Shown {
     drawer.offer("assembly", there);
   }
 
-  /** Burmester's curves, where the job has them. @param {api.Job} job @param {number} n */
+  /** Burmester's curves, where the job has them. @param {Solved} job @param {number} n */
   burmester(job, n) {
     const { mechanism } = job.result.designs[n];
     const { drawer, curves } = this.desk;
@@ -383,7 +394,11 @@ export class Shown {
   }
 }
 
-/** The numbers of a cognate: what was measured of it, and its dimensions. @param {Film} film @param {any} problem */
+/**
+ * The numbers of a cognate: what was measured of it, and its dimensions.
+ * @param {Film} film
+ * @param {Problem} problem
+ */
 function cognateNumbers({ choice, design }, problem) {
   const measured = figures(design);
   return [

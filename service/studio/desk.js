@@ -5,9 +5,11 @@ import { Drawer } from "./drawer.js";
 import { t } from "./messages.js";
 import { Stage } from "./stage.js";
 
+/** @import { Mechanism } from "./types/values.js" */
+
 export class Desk {
   constructor() {
-    /** The design that is shown, if one is. @type {{mechanism: any, placement?: any} | null} */
+    /** The design that is shown, if one is. @type {{mechanism: Mechanism, placement?: unknown} | null} */
     this.shown = null;
     this.stage = new Stage();
     this.drawer = new Drawer(byId("design"), byId("tabs"));

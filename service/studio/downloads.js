@@ -4,6 +4,8 @@ import * as api from "./api.js";
 import { el } from "./dom.js";
 import { t } from "./messages.js";
 
+/** @import { Solved } from "./types/values.js" */
+
 /** @type {Record<string, [string, string]>} */
 const SIMULATIONS = {
   mjcf: ["MuJoCo", t`A model of MuJoCo: loops closed, the input driven`],
@@ -12,7 +14,7 @@ const SIMULATIONS = {
   "sim.py": [t`Simulation`, t`A Python script that runs the design in MuJoCo and compares it with the analysis`],
 };
 
-/** @param {api.Job} job @param {number} n @param {HTMLElement} drawing where the labelled drawing stands */
+/** @param {Solved} job @param {number} n @param {HTMLElement} drawing where the labelled drawing stands */
 export function downloads(job, n, drawing) {
   const place = el(
     "div",
@@ -26,7 +28,7 @@ export function downloads(job, n, drawing) {
       {
         type: "button",
         class: "small",
-        onclick: async (/** @type {any} */ event) => {
+        onclick: async (event) => {
           const pressed = event.currentTarget;
           pressed.disabled = true;
           fault.replaceChildren();
@@ -73,7 +75,7 @@ export function downloads(job, n, drawing) {
 
 /**
  * The parts of a design, to cut and to print.
- * @param {api.Job} job @param {number} n
+ * @param {Solved} job @param {number} n
  * @param {(title: string, name: string, make: () => Promise<string>) => HTMLElement} button
  */
 function made(job, n, button) {
@@ -92,7 +94,7 @@ function made(job, n, button) {
 
 /**
  * What opens a linkage in PMKS+.
- * @param {api.Job} job @param {number} n
+ * @param {Solved} job @param {number} n
  * @param {(title: string, name: string, make: () => Promise<string>) => HTMLElement} button
  */
 function opened(job, n, button) {

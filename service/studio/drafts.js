@@ -5,12 +5,14 @@
 
 import { lasting } from "./storage.js";
 
+/** @import { Problem } from "./types/values.js" */
+
 const NAME = "mechsynth.draft";
 
 /** How much of the steps is kept, characters: statements of the usual size by the dozen. */
 const STEPS = 60_000;
 
-/** @typedef {{problem: any, label: string}} Draft */
+/** @typedef {{problem: Problem, label: string}} Draft */
 /** @typedef {import("./undo.js").Steps} Steps */
 
 /** The last statement of a kind, where one was left. @param {string} kind @returns {Draft | null} */
@@ -28,12 +30,12 @@ export function lastKind() {
 /** The steps that led to it. @returns {Steps} */
 export function lastSteps() {
   const { past, future } = read(NAME) ?? {};
-  const texts = (/** @type {any} */ listed) =>
+  const texts = (/** @type {unknown} */ listed) =>
     Array.isArray(listed) ? listed.filter((one) => typeof one === "string") : [];
   return { past: texts(past), future: texts(future) };
 }
 
-/** @param {any} problem @param {string} label @param {Steps} steps */
+/** @param {Problem} problem @param {string} label @param {Steps} steps */
 export function keepDraft(problem, label, { past, future }) {
   lasting.write(`${NAME}.${problem.kind}`, JSON.stringify({ problem, label }));
   lasting.write(NAME, JSON.stringify({ kind: problem.kind, past: newest(past), future: newest(future) }));

@@ -7,6 +7,8 @@ import { t } from "./messages.js";
 import { rolesOf, stateArea } from "./room.js";
 import { View } from "./view.js";
 
+/** @import { Problem } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 /** @typedef {import("./room.js").Role} Role */
 /** @typedef {import("./api.js").Drawn} Drawn */
@@ -16,7 +18,7 @@ const DIGITS = 9;
 
 export class DrawingImport {
   /**
-   * @param {any} problem changed in place
+   * @param {Problem} problem changed in place
    * @param {(path: string | undefined) => void} placed the area that is chosen then
    */
   constructor(problem, placed) {
@@ -90,7 +92,7 @@ export class DrawingImport {
         id: "drawing-all",
         onchange: () => {
           for (const { use } of rows)
-            if ([...use.options].some((/** @type {any} */ one) => one.value === all.value)) use.value = all.value;
+            if ([...use.options].some((one) => one.value === all.value)) use.value = all.value;
           told();
         },
       },
@@ -220,7 +222,7 @@ export class DrawingImport {
 
 /** A room as text, without the empty groups in which the form has room for fields. @param {any} space */
 function stated(space) {
-  const empty = (/** @type {any} */ value) =>
+  const empty = (/** @type {unknown} */ value) =>
     typeof value === "object" && value !== null && !Array.isArray(value) && !Object.keys(value).length;
   return JSON.stringify(space ?? null, (_, value) =>
     value && !Array.isArray(value) && typeof value === "object"

@@ -5,19 +5,19 @@ import { shown, words } from "./dom.js";
 import { degrees } from "./gauge.js";
 import { t } from "./messages.js";
 
+/** @import { LinkageAnalysis, Skeleton } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 
 /**
  * The curve of the point that tells a linkage, over a motion; NaN where it is not reached.
- * @param {any} answer
- * @param {any} skeleton
+ * @param {LinkageAnalysis} answer
+ * @param {Skeleton} skeleton
  * @returns {Point[]}
  */
 export function curveOf(answer, skeleton) {
   const { x, y } = answer.joints[telling(skeleton)];
-  return x.map((/** @type {number | null} */ one, /** @type {number} */ k) =>
-    one === null ? [NaN, NaN] : [one, y[k]],
-  );
+  return x.map((one, k) => (one === null ? [NaN, NaN] : [one, Number(y[k])]));
 }
 
 /**
@@ -30,8 +30,8 @@ export function curveOf(answer, skeleton) {
  */
 
 /**
- * @param {any} answer of the analysis over a turn of its input
- * @param {any} skeleton
+ * @param {LinkageAnalysis} answer of the analysis over a turn of its input
+ * @param {Skeleton} skeleton
  * @param {{x: number, y: number}[]} targets
  * @returns {Driven}
  */

@@ -4,11 +4,17 @@ import { el, shown, svg } from "./dom.js";
 import { t } from "./messages.js";
 import { Player, between } from "./player.js";
 
+/** @import { Schemas } from "./types/values.js" */
+
 /** Room above and below, pixels. */
 const EDGE = 24;
 
 export class Engine {
-  /** @param {import("./stage.js").Frame} frame @param {any} design @param {any} motion */
+  /**
+   * @param {import("./stage.js").Frame} frame
+   * @param {Schemas["EngineDesign"]} design
+   * @param {Schemas["EngineAnalysis"]} motion
+   */
   constructor(frame, design, motion) {
     const [width, height] = frame.size();
     const { mechanism } = design;
@@ -26,7 +32,7 @@ export class Engine {
       { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The cylinders, turning` },
       svg("rect", { class: "paper", width, height }),
     );
-    this.drawings = mechanism.cylinders.map((/** @type {any} */ cylinder, /** @type {number} */ n) => {
+    this.drawings = mechanism.cylinders.map((cylinder, /** @type {number} */ n) => {
       const middle = column * (n + 0.5);
       const half = 0.75 * this.scale * this.crank;
       const crank = svg("path", { class: "link input" });
@@ -101,7 +107,7 @@ export class Engine {
     const last = this.motion.input_angle.length - 1;
     const within = at - last * Math.floor(at / last);
     const input = this.degrees(at);
-    this.drawings.forEach((/** @type {any} */ { cylinder, middle, crank, rod, piston }, /** @type {number} */ n) => {
+    this.drawings.forEach(({ cylinder, middle, crank, rod, piston }, /** @type {number} */ n) => {
       // Upwards is the cylinder's axis; to the left of it is left.
       const turn = ((input - cylinder.phase - cylinder.axis) * Math.PI) / 180;
       const [u, v] = [

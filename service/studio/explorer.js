@@ -13,6 +13,8 @@ import { CLOCK, roomOf } from "./stage.js";
 import { View } from "./view.js";
 import { Zoom } from "./zoom.js";
 
+/** @import { LinkageAnalysis, Linked, Problem, Skeleton } from "./types/values.js" */
+
 const STEPS = 180;
 
 /** @typedef {[number, number]} Point */
@@ -21,10 +23,10 @@ export class Explorer {
   /**
    * @param {HTMLElement} board of the stage
    * @param {HTMLElement} place what is told of it
-   * @param {any} mechanism with its skeleton
-   * @param {any} problem
-   * @param {any[]} targets as demanded
-   * @param {(problem: any) => void} state called to begin a statement
+   * @param {Linked} mechanism with its skeleton
+   * @param {Problem} problem
+   * @param {import("./mover.js").Target[]} targets as demanded
+   * @param {(problem: Problem) => void} state called to begin a statement
    */
   constructor(board, place, mechanism, problem, targets, state) {
     const [width, height] = roomOf(board, CLOCK);
@@ -38,6 +40,7 @@ export class Explorer {
     this.state = state;
     this.asking = false;
     this.stale = false;
+    /** @type {LinkageAnalysis | null} */
     this.motion = null;
     this.gone = new AbortController();
     const around = Object.values(this.joints).concat(targets.map((one) => [one.x, one.y]));
@@ -118,7 +121,7 @@ export class Explorer {
 
   /** Lines of slides go with the joints that they pass: turned about the pivot that they pass too, or shifted. */
   carry() {
-    this.skeleton.slides?.forEach((/** @type {any} */ slide, /** @type {number} */ k) => {
+    this.skeleton.slides?.forEach((slide, /** @type {number} */ k) => {
       const [x, y] = this.joints[slide.joint];
       const through = this.anchors[k] && this.joints[this.anchors[k]];
       if (through) {
@@ -156,6 +159,7 @@ export class Explorer {
         );
       } catch (error) {
         if (this.gone.signal.aborted) return;
+        /** @type {LinkageAnalysis | null} */
         this.motion = null;
         this.curve.removeAttribute("d");
         this.ghost.node.setAttribute("hidden", "");
@@ -173,14 +177,14 @@ export class Explorer {
     this.asking = false;
   }
 
-  /** @param {any} answer */
+  /** @param {LinkageAnalysis} answer */
   tell(answer) {
     this.motion = answer;
     this.curve.setAttribute("d", this.view.path(curveOf(answer, this.skeleton)));
     const { facts, turns, least, grashof, missed } = driven(answer, this.skeleton, this.targets);
     renewed(this.facts, Object.entries(facts), ([name, value]) => [el("dt", {}, name), el("dd", {}, value)]);
     this.judge(turns, least, grashof, missed);
-    const offered = () => beginnings(this.problem, this.skeleton, this.motion, this.targets);
+    const offered = () => beginnings(this.problem, this.skeleton, this.motion ?? answer, this.targets);
     renewed(
       this.buttons,
       offered().map(({ text }) => text),
@@ -253,8 +257,8 @@ export class Explorer {
     this.ghost.show(
       Object.fromEntries(
         Object.entries(motion.joints).map(([name, track]) => {
-          const x = between(/** @type {any} */ (track).x, at);
-          return [name, x === null ? null : [x, Number(between(/** @type {any} */ (track).y, at))]];
+          const x = between(track.x, at);
+          return [name, x === null ? null : [x, Number(between(track.y, at))]];
         }),
       ),
     );
@@ -285,15 +289,15 @@ function renewed(place, said, make) {
 
 /**
  * Of each slide the joint of its own link that its line passes, if there is one.
- * @param {any} skeleton
+ * @param {Skeleton} skeleton
  * @returns {(string | null)[]}
  */
 function anchors(skeleton) {
   const places = /** @type {Point[]} */ (Object.values(skeleton.joints));
   const size = Math.max(...places.map(([x, y]) => Math.hypot(x - places[0][0], y - places[0][1])));
-  return (skeleton.slides ?? []).map((/** @type {any} */ slide) => {
+  return (skeleton.slides ?? []).map((slide) => {
     if (slide.link === "ground") return null;
-    const on = skeleton.links.find((/** @type {any} */ link) => link.name === slide.link)?.joints ?? [];
+    const on = skeleton.links.find((link) => link.name === slide.link)?.joints ?? [];
     const angle = (slide.angle * Math.PI) / 180;
     return (
       on.find((/** @type {string} */ name) => {

@@ -5,6 +5,8 @@ import { el, shown, words } from "./dom.js";
 import { BETWEEN, number, t, term, translated } from "./messages.js";
 import { symbolOf } from "./units.js";
 
+/** @import { Design, Problem, Schemas } from "./types/values.js" */
+
 /** What a card shows first of a design's metrics, where the design has it. */
 const FIRST = [
   "quality",
@@ -27,12 +29,14 @@ const FIRST = [
 
 /**
  * The metrics that are plain numbers or words, the telling ones first.
- * @param {any} design
- * @returns {[string, any][]}
+ * @param {Partial<Design>} design
+ * @returns {[string, string | number | boolean][]}
  */
 export function figures(design) {
-  const all = Object.entries(design.metrics ?? {}).filter(([, value]) =>
-    ["number", "string", "boolean"].includes(typeof value),
+  const all = Object.entries(design.metrics ?? {}).flatMap(([name, value]) =>
+    typeof value === "number" || typeof value === "string" || typeof value === "boolean"
+      ? [/** @type {[string, string | number | boolean]} */ ([name, value])]
+      : [],
   );
   const rank = (/** @type {string} */ name) => (FIRST.includes(name) ? FIRST.indexOf(name) : FIRST.length);
   return all.sort(([a], [b]) => rank(a) - rank(b));
@@ -62,7 +66,7 @@ export function brief(value) {
 /**
  * Whether a number says that nothing is missed, but for the rounding of the computer.
  * @param {string} name
- * @param {any} value
+ * @param {unknown} value
  * @param {string | undefined} dimension
  * @param {number} [size] of the mechanism, where lengths are asked for
  */
@@ -76,8 +80,8 @@ export function exact(name, value, dimension, size = 0) {
 /**
  * A figure of a design: few digits, `exact` where nothing is missed, and all of its digits where the pointer rests.
  * @param {string} name
- * @param {any} value
- * @param {any} problem whose units stand beside it
+ * @param {unknown} value
+ * @param {Problem | null} problem whose units stand beside it
  * @param {number} [size] of the mechanism
  * @returns {{text: string, title: string | null}}
  */
@@ -88,7 +92,7 @@ export function figure(name, value, problem, size) {
   return { text: plain ? t`exact` : beside(brief(value), unit), title: beside(number(value), unit) };
 }
 
-/** @param {any} value @param {string} [unit] beside a number */
+/** @param {unknown} value @param {string} [unit] beside a number */
 export function text(value, unit = "") {
   return typeof value === "number"
     ? beside(shown(value), unit)
@@ -99,7 +103,11 @@ export function text(value, unit = "") {
       : words(String(value));
 }
 
-/** The unit of a number of a design by its name; empty for a pure number. @param {string} name @param {any} problem */
+/**
+ * The unit of a number of a design by its name; empty for a pure number.
+ * @param {string} name
+ * @param {Problem} problem
+ */
 export function unitFor(name, problem) {
   return symbolOf(api.measures(problem.kind)[name], problem);
 }
@@ -112,21 +120,22 @@ function beside(number, unit) {
 /**
  * A number of a check with the unit of what the check measures.
  * @param {number} value
- * @param {any} check
- * @param {any} problem
+ * @param {Pick<Schemas["Check"], "dimension">} check
+ * @param {Problem} problem
  */
 export function amount(value, check, problem) {
-  return beside(shown(value), symbolOf(check.dimension, problem));
+  return beside(shown(value), symbolOf(check.dimension ?? undefined, problem));
 }
 
 /**
  * Value and limit of a check; with as many digits as it takes to tell the two apart.
- * @param {any} check
- * @param {any} problem
+ * @param {Schemas["Check"]} check
+ * @param {Problem} problem
  */
 function measured(check, problem) {
-  const { name, value, passed, dimension } = check;
-  const unit = symbolOf(dimension, problem);
+  const { name, passed, dimension } = check;
+  const value = Number(check.value);
+  const unit = symbolOf(dimension ?? undefined, problem);
   const limit = typeof check.limit === "number" ? check.limit : null;
   const close = !passed || (limit !== null && brief(value) === brief(limit));
   const told = (/** @type {(value: number) => string} */ as) =>
@@ -134,11 +143,11 @@ function measured(check, problem) {
   return el(
     "span",
     { class: "note", title: told(number) },
-    passed && exact(name, value, dimension) ? ` ${t`exact`}` : ` ${told(close ? shown : brief)}`,
+    passed && exact(name, value, dimension ?? undefined) ? ` ${t`exact`}` : ` ${told(close ? shown : brief)}`,
   );
 }
 
-/** @param {any} design @param {any} problem */
+/** @param {Partial<Design>} design @param {Problem} problem */
 export function checks(design, problem) {
   return el(
     "section",
@@ -147,7 +156,7 @@ export function checks(design, problem) {
     el(
       "ul",
       { class: "checks" },
-      ...(design.verification?.checks ?? []).map((/** @type {any} */ check) =>
+      ...(design.verification?.checks ?? []).map((check) =>
         el(
           "li",
           { class: check.passed ? "good" : "bad" },
@@ -161,9 +170,13 @@ export function checks(design, problem) {
   );
 }
 
-/** @param {string} title @param {[string, any][]} rows @param {any} [problem] whose units stand beside the numbers */
+/**
+ * @param {string} title
+ * @param {[string, unknown][]} rows
+ * @param {Problem | null} [problem] whose units stand beside the numbers
+ */
 export function table(title, rows, problem = null) {
-  const size = rows.find(([name]) => name === "size")?.[1];
+  const size = Number(rows.find(([name]) => name === "size")?.[1]) || undefined;
   return rowed(
     title,
     rows.map(([name, value]) => [name, figure(name, value, problem, size)]),
@@ -192,7 +205,7 @@ function rowed(title, rows) {
 
 /**
  * What becomes of a design as a shop makes it: nothing where the problem does not ask.
- * @param {any} design
+ * @param {Partial<Design>} design
  * @returns {HTMLElement[]}
  */
 export function made(design) {
@@ -200,7 +213,7 @@ export function made(design) {
   if (!told) return [];
   const share = design.metrics?.yield;
   const { worst_case: worst, cost } = told;
-  /** @type {[string, any][]} */
+  /** @type {[string, unknown][]} */
   const rows = [
     [t`yield`, share?.value],
     [t`yield, at least`, share?.low],
@@ -212,7 +225,7 @@ export function made(design) {
     [t`rounding cost, error`, cost?.max_error],
     [t`remark`, translated(told.remark ?? "") || undefined],
     ...Object.entries(told.dimensions ?? {}).map(
-      ([name, value]) => /** @type {[string, any]} */ ([t`made: ${name.split(".").map(term).join(" ")}`, value]),
+      ([name, value]) => /** @type {[string, unknown]} */ ([t`made: ${name.split(".").map(term).join(" ")}`, value]),
     ),
   ];
   return [
@@ -225,8 +238,8 @@ export function made(design) {
 
 /**
  * The dimensions of a mechanism, as they are made, as deep as they go; curves and skeletons are in the JSON.
- * @param {any} design
- * @param {any} problem
+ * @param {Partial<Design>} design
+ * @param {Problem} problem
  */
 export function dimensions(design, problem) {
   return rowed(t`Dimensions`, dimensionRows(design, problem));
@@ -234,8 +247,8 @@ export function dimensions(design, problem) {
 
 /**
  * Names and values of the dimensions.
- * @param {any} design
- * @param {any} problem
+ * @param {Partial<Design>} design
+ * @param {Problem} problem
  * @returns {[string, {text: string, title: string | null}][]}
  */
 export function dimensionRows(design, problem) {
@@ -246,7 +259,7 @@ export function dimensionRows(design, problem) {
       name,
       { text: beside(all.map(shown).join(BETWEEN), unit), title: beside(all.map(number).join(BETWEEN), unit) },
     ]);
-  const walk = (/** @type {string} */ name, /** @type {any} */ value, /** @type {string} */ unit) => {
+  const walk = (/** @type {string} */ name, /** @type {unknown} */ value, /** @type {string} */ unit) => {
     if (Array.isArray(value)) {
       if (!value.length) return;
       if (value.length <= 4 && value.every((one) => typeof one === "number")) row(name, value, unit);
@@ -258,7 +271,7 @@ export function dimensionRows(design, problem) {
     } else if (typeof value === "number") row(name, [value], unit);
     else if (value !== null) rows.push([name, { text: text(value), title: null }]);
   };
-  for (const [name, value] of Object.entries(design.mechanism))
+  for (const [name, value] of Object.entries(design.mechanism ?? {}))
     if (!["type", "skeleton", "profile", "pitch_curve", "program", "outer_wall"].includes(name))
       walk(term(name), value, unitFor(name, problem));
   return rows;

@@ -5,8 +5,12 @@ import { t } from "./messages.js";
 import { Player, between } from "./player.js";
 import { View } from "./view.js";
 
+/** @import { Schemas } from "./types/values.js" */
+
+/** @typedef {{angle: number[], torque: number[], speed: number[]}} Course */
+
 export class Flywheel {
-  /** @param {import("./stage.js").Frame} frame @param {any} design */
+  /** @param {import("./stage.js").Frame} frame @param {Schemas["FlywheelDesign"]} design */
   constructor(frame, design) {
     const [width, height] = frame.size();
     const { mechanism, course } = design;
@@ -86,7 +90,7 @@ export class Flywheel {
   }
 }
 
-/** Angles at equal times over the cycle, degrees. @param {any} course @returns {number[]} */
+/** Angles at equal times over the cycle, degrees. @param {Course} course @returns {number[]} */
 function turned({ angle, speed }) {
   const times = [0];
   for (let k = 1; k < angle.length; k++)
@@ -103,7 +107,7 @@ function turned({ angle, speed }) {
 
 /**
  * Values that are known over the angle, at the angles of equal times.
- * @param {any} course
+ * @param {Course} course
  * @param {number[]} angles
  * @param {number[]} values
  */

@@ -5,6 +5,8 @@ import { slope } from "./linkage.js";
 import { t, term } from "./messages.js";
 import { between } from "./player.js";
 
+/** @import { LinkageAnalysis, Skeleton } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 /** @typedef {(number | null)[]} Series */
 /**
@@ -20,27 +22,30 @@ const HEAD = [11, 4.5];
 
 /**
  * Every force in a joint of an answer: of its pin on each of its links, and of the lines of slides.
- * @param {any} answer
- * @param {any} skeleton
+ * @param {LinkageAnalysis} answer
+ * @param {Skeleton} skeleton
  * @param {{joint: string, on: string[], lean: number}[]} slides
  * @returns {Force[]}
  */
 export function forcesIn(answer, skeleton, slides) {
-  const { joints = {}, slides: lines = [] } = answer.dynamics;
+  const { joints = {}, slides: lines = [] } = answer.dynamics ?? {};
   const pins = Object.entries(joints ?? {}).flatMap(([joint, links]) =>
-    Object.entries(/** @type {any} */ (links)).map(([on, { x, y }]) => ({ joint, on, from: `pin ${joint}`, x, y })),
+    Object.entries(links).map(([on, { x, y }]) => ({ joint, on, from: `pin ${joint}`, x, y })),
   );
   return [
     ...pins,
-    ...(lines ?? []).flatMap((/** @type {any} */ { joint, normal, friction }, /** @type {number} */ k) => {
+    ...(lines ?? []).flatMap(({ joint, normal, friction }, k) => {
       /** @type {Point[]} */
-      const turned = normal.map((/** @type {number | null} */ across, /** @type {number} */ at) => {
+      const turned = normal.map((across, at) => {
         const along = friction[at];
         if (across === null || along === null) return [NaN, NaN];
         const angle = slope(
           slides[k],
           Object.fromEntries(
-            slides[k].on.map((name) => [name, [answer.joints[name].x[at], answer.joints[name].y[at]]]),
+            slides[k].on.map((name) => [
+              name,
+              /** @type {Point} */ ([answer.joints[name].x[at], answer.joints[name].y[at]]),
+            ]),
           ),
         );
         return [along * Math.cos(angle) - across * Math.sin(angle), along * Math.sin(angle) + across * Math.cos(angle)];

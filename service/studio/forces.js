@@ -11,6 +11,8 @@ import { brief, plots, runs } from "./plots.js";
 import { placeOf } from "./sweep.js";
 import { symbolOf } from "./units.js";
 
+/** @import { LinkageAnalysis, Schemas, Skeleton, Solved } from "./types/values.js" */
+
 /** Samples of a turn, or of the range. */
 const STEPS = 360;
 
@@ -33,7 +35,7 @@ const REASONS = {
 export class Forces {
   /**
    * @param {HTMLElement} place
-   * @param {api.Job} job
+   * @param {Solved} job
    * @param {number} n
    * @param {Mover | null} mover the design in motion, where it moves already
    */
@@ -41,9 +43,10 @@ export class Forces {
     this.job = job;
     this.n = n;
     this.design = job.result.designs[n];
+    this.skeleton = /** @type {Skeleton} */ (this.design.mechanism.skeleton);
     this.mover = mover;
     this.gone = new AbortController();
-    /** @type {any} */
+    /** @type {LinkageAnalysis | null} */
     this.answer = null;
     /** @type {ForceArrows | null} */
     this.arrows = null;
@@ -61,7 +64,7 @@ export class Forces {
     // What a design with masses of its own weighs is not for the page to say.
     this.editor = this.design.dynamics
       ? null
-      : new LoadEditor(this.design.mechanism.skeleton, job.problem, this.sliding, (block) => this.ask(block));
+      : new LoadEditor(this.skeleton, job.problem, this.sliding, (block) => this.ask(block));
     place.replaceChildren(...(this.editor ? [this.editor.node] : []), this.pictures);
     this.editor?.attach(mover);
     const { forces } = this.design;
@@ -81,7 +84,7 @@ export class Forces {
       );
   }
 
-  /** Ask for the forces and show them. @param {any} block null for that of the problem */
+  /** Ask for the forces and show them. @param {Schemas["DynamicsBlock"] | null} block null for that of the problem */
   async ask(block) {
     const answer = await api.forces(this.job.id, this.n, STEPS, block, this.gone.signal);
     if (this.gone.signal.aborted) return;
@@ -90,7 +93,7 @@ export class Forces {
     this.put();
   }
 
-  /** @param {any} error */
+  /** @param {Error} error */
   fail(error) {
     if (!this.gone.signal.aborted) this.pictures.replaceChildren(el("p", { class: "error" }, error.message));
   }
@@ -108,7 +111,7 @@ export class Forces {
     if (!answer || !mover) return;
     this.arrows = new ForceArrows(
       mover.view,
-      forcesIn(answer, this.design.mechanism.skeleton, mover.linkage.slides),
+      forcesIn(answer, this.skeleton, mover.linkage.slides),
       this.unit("force"),
       answer.joints,
       (input) => this.placeAt(input),
@@ -127,22 +130,27 @@ export class Forces {
     });
   }
 
+  /** The answer, where it is there. */
+  get known() {
+    return /** @type {LinkageAnalysis & {dynamics: Schemas["DynamicsAnswer"]}} */ (this.answer);
+  }
+
   /** The unit of a quantity as the answer has it; empty where its units are the client's. @param {string} dimension */
   unit(dimension) {
-    const { units, length_unit: length } = this.answer.dynamics;
+    const { units, length_unit: length } = this.known.dynamics;
     return symbolOf(dimension, { kind: this.job.problem.kind, dynamics: { units }, length_unit: length });
   }
 
   /** Whether a slide drives, so that the input is a place. */
   get sliding() {
-    const { links, input_link: input } = this.design.mechanism.skeleton;
-    return links.every((/** @type {any} */ link) => link.name !== input);
+    const { links, input_link: input } = this.skeleton;
+    return links.every((link) => link.name !== input);
   }
 
   /** An input with its unit. @param {number} input */
   input(input) {
     const rounded = shown(Math.round(10 * input) / 10);
-    return this.sliding ? `${rounded} ${this.answer.dynamics.length_unit}` : `${rounded}°`;
+    return this.sliding ? `${rounded} ${this.known.dynamics.length_unit}` : `${rounded}°`;
   }
 
   /**
@@ -151,7 +159,7 @@ export class Forces {
    * @returns {number | null}
    */
   placeAt(input) {
-    const inputs = this.answer.input_angle;
+    const inputs = this.known.input_angle;
     const last = inputs.length - 1;
     const [low, high] = [Math.min(inputs[0], inputs[last]), Math.max(inputs[0], inputs[last])];
     const closed = !this.sliding && Math.abs((high - low) % 360) < 1e-6 && high > low;
@@ -161,7 +169,7 @@ export class Forces {
   }
 
   build() {
-    const { answer } = this;
+    const answer = this.known;
     const { dynamics, input_angle: inputs } = answer;
     const lead = (/** @type {number} */ at) => this.mover?.lead(Number(between(inputs, at)));
     const wanted = this.plotted();
@@ -190,7 +198,7 @@ export class Forces {
   now() {
     const [name, unit] = this.driven();
     const box = el("output", { class: "reading" }, "–");
-    this.readings.push({ box, series: this.answer.dynamics.drive ?? [], unit });
+    this.readings.push({ box, series: this.known.dynamics.drive ?? [], unit });
     return el("p", { class: "row drive-now" }, el("span", {}, t`${name} now`), box, this.outside);
   }
 
@@ -201,7 +209,7 @@ export class Forces {
 
   /** @returns {import("./plots.js").Plotted[]} */
   plotted() {
-    const { dynamics } = this.answer;
+    const { dynamics } = this.known;
     const unknown = dynamics.status.map(
       (/** @type {string} */ one) => !["ok", "stick", "statically_indeterminate"].includes(one),
     );
@@ -240,10 +248,10 @@ export class Forces {
 
   /** What there is a hodograph of. @returns {{title: string, x: Series, y: Series}[]} */
   hodographs() {
-    const { joints, shaking } = this.answer.dynamics;
+    const { joints, shaking } = this.known.dynamics;
     return [
       ...Object.entries(joints ?? {}).flatMap(([joint, links]) =>
-        Object.entries(/** @type {any} */ (links)).map(([on, { x, y }]) => ({
+        Object.entries(links).map(([on, { x, y }]) => ({
           title: t`pin ${joint} on ${term(on)}`,
           x,
           y,
@@ -264,7 +272,7 @@ export class Forces {
 
   /** Where numbers are missing and why, and what is to be known of all of them. */
   remarks() {
-    const { dynamics, input_angle: inputs } = this.answer;
+    const { dynamics, input_angle: inputs } = this.known;
     const found = [...new Set(/** @type {string[]} */ (dynamics.status))]
       .filter((one) => one !== "ok")
       .flatMap((status) =>
@@ -291,7 +299,7 @@ export class Forces {
 
   /** The greatest of everything, with the input at which it stands and the value that it has now. */
   peaks() {
-    const { extremes, power, joints, shaking, drive } = this.answer.dynamics;
+    const { extremes, power, joints, shaking, drive } = this.known.dynamics;
     const [name, unit] = this.driven();
     const [force, torque] = [this.unit("force"), this.unit("torque")];
     /** @type {[string, number | null, number | null, string, Series | null][]} */
@@ -371,13 +379,13 @@ export class Forces {
   /** @param {number} input */
   show(input) {
     const at = this.placeAt(input);
-    const inputs = this.answer.input_angle;
+    const inputs = this.known.input_angle;
     this.at = at;
     for (const { box, series, unit } of this.readings) {
       const value = at === null || !series.length ? null : between(series, at);
       box.textContent = value === null ? "–" : `${brief(value)} ${unit}`.trim();
     }
-    const status = at === null ? "ok" : this.answer.dynamics.status[Math.round(at)];
+    const status = at === null ? "ok" : this.known.dynamics.status[Math.round(at)];
     const [first, last] = [inputs[0], inputs[inputs.length - 1]].map((end) => this.input(end));
     const said =
       at === null

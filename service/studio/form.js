@@ -12,13 +12,15 @@ import { discriminator, initial, kinded, optionOf, resolved, shapeOf, tagsOf } f
 import { table } from "./table.js";
 import { unitOf } from "./units.js";
 
+/** @import { Problem } from "./types/values.js" */
+
 /** @typedef {import("./schema.js").Schema} Schema */
 
 /**
  * What the controls of one form share.
  * @typedef {object} Sheet
  * @property {Schema} root
- * @property {any} problem
+ * @property {Problem} problem
  * @property {(schema: Schema, owner: any, path: string, names: string[]) => (Node | null)[]} controls of some
  *   properties of an object
  * @property {() => void} changed a value was changed
@@ -35,7 +37,7 @@ let ids = 0;
 
 /**
  * Fill `form` with the controls of a problem.
- * @param {HTMLElement} form @param {Schema} root @param {any} problem @param {(rebuilt: boolean) => void} changed
+ * @param {HTMLElement} form @param {Schema} root @param {Problem} problem @param {(rebuilt: boolean) => void} changed
  */
 export function fill(form, root, problem, changed) {
   /** @type {Sheet} */
@@ -94,7 +96,7 @@ function folded(sheet, schema, value, path, order = Object.keys(schema.propertie
  */
 function field(sheet, schema, name, owner, path, required) {
   const what = kinded(schema, sheet.root);
-  const set = (/** @type {any} */ value) => {
+  const set = (/** @type {unknown} */ value) => {
     if (value === undefined) delete owner[name];
     else owner[name] = value;
     // The units beside the other fields are those of the length unit, or of the mechanism that is asked for.

@@ -3,12 +3,14 @@
 import { byId, el, svg } from "./dom.js";
 import { translated } from "./messages.js";
 
-/** @typedef {{kind: string, n: number, name: string, group: string, line: string, problem: any}} Example */
+/** @import { Problem } from "./types/values.js" */
+
+/** @typedef {{kind: string, n: number, name: string, group: string, line: string, problem: Problem}} Example */
 
 /** In the order of the service. @param {import("./api.js").Kind[]} kinds @returns {Example[]} */
 export function listed(kinds) {
   return kinds.flatMap(({ kind, schema, example, examples }) =>
-    (schema.examples ?? [example]).map((/** @type {any} */ problem, /** @type {number} */ n) => ({
+    /** @type {Problem[]} */ (schema.examples ?? [example]).map((problem, n) => ({
       kind,
       n,
       problem,

@@ -8,13 +8,21 @@ import { wheels } from "./trains.js";
 import { View } from "./view.js";
 import { drawn, place, radius } from "./wheels.js";
 
+/** @import { Design, Merged, Problem, Schemas, TrainMotion } from "./types/values.js" */
+
 export class Gears {
-  /** @param {import("./stage.js").Frame} frame @param {any} design @param {any} motion @param {any} problem */
+  /**
+   * @param {import("./stage.js").Frame} frame
+   * @param {Design} design
+   * @param {TrainMotion} motion
+   * @param {Problem} problem
+   */
   constructor(frame, design, motion, problem) {
     this.size = frame.size();
     const [width, height] = this.size;
     this.design = design;
     this.problem = problem;
+    /** @type {Merged<TrainMotion>} */
     this.motion = motion;
     this.gone = new AbortController();
     this.picture = svg("svg", {
@@ -52,7 +60,7 @@ export class Gears {
 
   build() {
     const { mechanism } = this.design;
-    const listed = wheels(mechanism, this.motion, this.design, this.problem);
+    const listed = wheels(mechanism, /** @type {TrainMotion} */ (this.motion), this.design, this.problem);
     const corners = listed.flatMap((wheel) =>
       [0, 1, 2, 3].flatMap((quarter) => {
         const far = radius(wheel) + (wheel.internal ? 3 : 1) * wheel.module;
@@ -83,19 +91,17 @@ export class Gears {
 
   /** @returns {[string, string][]} */
   speeds() {
-    const { bodies, shafts, gears } = this.motion;
-    const told = (/** @type {number | null} */ ratio) =>
-      ratio === null ? t`open` : t`${shown(Number(ratio.toPrecision(6)))} × input`;
-    if (bodies)
-      return bodies.map((/** @type {any} */ body) => [words(body.name), body.speed === 0 ? t`held` : told(body.speed)]);
+    const { bodies, shafts = [], gears = [] } = this.motion;
+    const told = (/** @type {number | null | undefined} */ ratio) =>
+      ratio === null || ratio === undefined ? t`open` : t`${shown(Number(ratio.toPrecision(6)))} × input`;
+    if (bodies) return bodies.map((body) => [words(body.name), body.speed === 0 ? t`held` : told(body.speed)]);
     if (this.motion.units)
-      return shafts.map((/** @type {any} */ shaft, /** @type {number} */ k) => [
+      return shafts.map((shaft, k) => [
         k === 0 ? t`Input` : k === shafts.length - 1 ? t`Output` : t`Shaft ${k + 1}`,
         told(shaft.speed_ratio),
       ]);
-    if (shafts?.[0]?.name)
-      return shafts.map((/** @type {any} */ shaft) => [words(shaft.name), told(shaft.speed_ratio)]);
-    return gears.map((/** @type {any} */ gear) => [
+    if (shafts?.[0]?.name) return shafts.map((shaft) => [words(String(shaft.name)), told(shaft.speed_ratio)]);
+    return gears.map((gear) => [
       t`Stage ${gear.stage} ${term(gear.role)}, ${gear.teeth} teeth`,
       told(gear.speed_ratio),
     ]);
@@ -107,22 +113,20 @@ export class Gears {
     const { speeds } = this.motion;
     if (!speeds?.[0]?.engaged) return null;
     const boxed = mechanism.type === "gearbox";
-    const name = (/** @type {any} */ one) =>
+    const name = (/** @type {Schemas["EngagedSpeed"]} */ one) =>
       boxed
         ? t`pairs ${one.engaged.map((/** @type {number} */ k) => k + 1).join(", ")}`
-        : one.engaged[0] === mechanism.gears.length
+        : one.engaged[0] === mechanism.gears?.length
           ? t`reverse`
           : t`gear ${one.engaged[0] + 1}`;
     const pick = el(
       "select",
       { id: "engaged", onchange: () => this.engage(speeds[Number(pick.value)].engaged) },
-      ...speeds.map((/** @type {any} */ one, /** @type {number} */ k) =>
+      ...speeds.map((one, k) =>
         el("option", { value: k }, t`${name(one)}: ${shown(Number(one.speed_ratio.toPrecision(4)))} × input`),
       ),
     );
-    pick.value = String(
-      speeds.findIndex((/** @type {any} */ one) => String(one.engaged) === String(this.motion.engaged)),
-    );
+    pick.value = String(speeds.findIndex((one) => String(one.engaged) === String(this.motion.engaged)));
     return el("div", { class: "row" }, el("label", { for: "engaged" }, t`Engaged`), pick);
   }
 
@@ -132,7 +136,7 @@ export class Gears {
     const which =
       mechanism.type === "gearbox"
         ? { engaged }
-        : { gear: engaged[0] === mechanism.gears.length ? t`reverse` : engaged[0] + 1 };
+        : { gear: engaged[0] === mechanism.gears?.length ? "reverse" : engaged[0] + 1 };
     const motion = { from: 0, to: 360, steps: this.motion.input_angle.length - 1 };
     const found = await api.analysis({ mechanism, motion, ...which }, this.gone.signal).catch((error) => {
       if (!this.gone.signal.aborted) this.facts.replaceChildren(el("dt", {}, t`Refused`), el("dd", {}, error.message));

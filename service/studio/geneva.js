@@ -6,6 +6,8 @@ import { Player, between } from "./player.js";
 import { plots } from "./plots.js";
 import { View } from "./view.js";
 
+/** @import { Merged, Schemas } from "./types/values.js" */
+
 /** Steps of a drawn arc. */
 const STEPS = 48;
 
@@ -15,7 +17,11 @@ const BESIDE = 2.4;
 /** @typedef {[number, number]} Point */
 
 export class Geneva {
-  /** @param {import("./stage.js").Frame} frame @param {any} design @param {any} motion */
+  /**
+   * @param {import("./stage.js").Frame} frame
+   * @param {Merged<Schemas["IndexingDesign"]>} design
+   * @param {Schemas["GenevaAnalysis"]} motion
+   */
   constructor(frame, design, motion) {
     const [width, height] = frame.size();
     const { mechanism } = design;
@@ -32,7 +38,9 @@ export class Geneva {
       wheel: (-this.sense * 180) / mechanism.stations,
       crank: (external ? 180 : spherical ? 90 : 0) - half,
     };
-    const { disc, rollers, reach, centre } = spherical ? cap(mechanism) : crank(mechanism);
+    const { disc, rollers, reach, centre } = spherical
+      ? cap(/** @type {Schemas["SphericalGenevaMechanism"]} */ (mechanism))
+      : crank(/** @type {Schemas["GenevaMechanism"]} */ (mechanism));
     const wheel = ring(mechanism.profile);
     const outside = mechanism.ring_radius ?? Math.max(...wheel.map(([x, y]) => Math.hypot(x, y)));
     const far = reach + mechanism.roller_diameter / 2;
@@ -153,7 +161,10 @@ export class Geneva {
   }
 }
 
-/** Disc and rollers of a plane drive, about the crank's axis, with the first roller along x. @param {any} mechanism */
+/**
+ * Disc and rollers of a plane drive, about the crank's axis, with the first roller along x.
+ * @param {Schemas["GenevaMechanism"]} mechanism
+ */
 function crank(mechanism) {
   const { angle, outer_radius: outer, inner_radius: inner } = mechanism.disc;
   const edge = (/** @type {number[]} */ radii) => radii.map((radius, k) => polar(radius, angle[k]));
@@ -168,7 +179,7 @@ function crank(mechanism) {
 
 /**
  * Input, coupler and output of a drag link.
- * @param {any} link
+ * @param {Schemas["DragLinkDriver"]} link
  * @param {number} centre
  * @param {number} input
  * @param {number} crank degrees
@@ -186,7 +197,10 @@ function bars(link, centre, input, crank) {
   ];
 }
 
-/** Cap and roller of a spherical drive, seen along the crank's axis, with the roller along x. @param {any} mechanism */
+/**
+ * Cap and roller of a spherical drive, seen along the crank's axis, with the roller along x.
+ * @param {Schemas["SphericalGenevaMechanism"]} mechanism
+ */
 function cap(mechanism) {
   const radius = mechanism.sphere_radius * Math.sin((mechanism.cap_angle * Math.PI) / 180);
   const end = 90 + (Math.asin(Math.min(1, mechanism.cap_offset / radius)) * 180) / Math.PI;

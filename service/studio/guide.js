@@ -4,6 +4,8 @@ import { byId, el } from "./dom.js";
 import { GUIDES } from "./guides.js";
 import { t } from "./messages.js";
 
+/** @import { Problem } from "./types/values.js" */
+
 /** @typedef {import("./guides.js").Guide} Guide */
 
 /** How often it is looked whether a step is done and where its thing stands, milliseconds. */
@@ -16,7 +18,7 @@ const GAP = 12;
  * What a guide has of the page.
  * @typedef {object} Page
  * @property {(kind: string, example: string) => void} state begins with an example by its name
- * @property {() => any} problem as it is stated
+ * @property {() => Problem} problem as it is stated
  * @property {() => boolean} answered whether there are answers to what is stated
  * @property {import("./desk.js").Desk} desk
  */
@@ -118,7 +120,7 @@ export class Leader {
     if (
       step?.done({
         problem: this.page.problem(),
-        before: this.before,
+        before: this.before ?? this.page.problem(),
         answered: this.page.answered(),
         chosen: this.chosen,
       })

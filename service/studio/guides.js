@@ -2,11 +2,13 @@
 
 import { t } from "./messages.js";
 
+/** @import { Problem } from "./types/values.js" */
+
 /**
  * What a step is judged by.
  * @typedef {object} Now
- * @property {any} problem as it is stated
- * @property {any} before as it was when the step began
+ * @property {Problem} problem as it is stated
+ * @property {Problem} before as it was when the step began
  * @property {boolean} answered whether there are answers to what is stated
  * @property {string} chosen the number of the design that was chosen when the step began
  */
@@ -25,7 +27,8 @@ import { t } from "./messages.js";
 
 const shown = (/** @type {string} */ selector) =>
   [...document.querySelectorAll(selector)].some((one) => one.getClientRects().length > 0);
-const differs = (/** @type {any} */ one, /** @type {any} */ other) => JSON.stringify(one) !== JSON.stringify(other);
+const differs = (/** @type {unknown} */ one, /** @type {unknown} */ other) =>
+  JSON.stringify(one) !== JSON.stringify(other);
 const chosen = () => document.querySelector('.card[aria-pressed="true"]')?.getAttribute("data-design") ?? "";
 
 /** @type {Step} */
@@ -111,7 +114,7 @@ export const GUIDES = [
         stage: "state",
         text: t`How far the valve opens. Give the rise another lift, in the first row, and the fall below it the same.`,
         done: ({ problem, before }) =>
-          differs(problem.segments, before.segments) && problem.segments[0]?.lift === problem.segments[1]?.lift,
+          differs(problem.segments, before.segments) && problem.segments?.[0]?.lift === problem.segments?.[1]?.lift,
       },
       {
         at: '[data-path="/problem/limits/pressure_angle"], [data-path="/problem/limits"]',

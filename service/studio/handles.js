@@ -5,6 +5,8 @@
 import { t } from "./messages.js";
 import { smoothed, symmetric } from "./shaping.js";
 
+/** @import { Problem, Schemas } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 
 /**
@@ -15,7 +17,7 @@ import { smoothed, symmetric } from "./shaping.js";
  * @property {(x: number, y: number) => void} put
  * @property {{get: () => number, set: (degrees: number) => void}} [turn]
  * @property {() => void} [remove]
- * @property {any} [owner] the object with x, y and angle, whose fields are those of the form
+ * @property {{x: number, y: number, angle?: number}} [owner] with the fields of the form
  * @property {string} [path] JSON pointer of the owner
  */
 
@@ -31,9 +33,9 @@ import { smoothed, symmetric } from "./shaping.js";
  *   a curve as a whole
  */
 
-/** @param {any} problem changed in place @returns {Stated | null} null for a kind that has no place in the plane */
+/** @param {Problem} problem changed in place @returns {Stated | null} null for a kind that has no place in the plane */
 export function stated(problem) {
-  /** @type {Record<string, (problem: any) => Stated | null>} */
+  /** @type {Record<string, {make(problem: Problem): Stated | null}["make"]>} */
   const makers = {
     motion,
     path,
@@ -50,7 +52,7 @@ export function stated(problem) {
   return found;
 }
 
-/** @param {any} value */
+/** @param {unknown} value */
 const whole = (value) => Array.isArray(value) && value.length === 2 && value.every(Number.isFinite);
 
 /**
@@ -104,7 +106,7 @@ function listed(list, field, word, turning, fixed = false) {
   );
 }
 
-/** @param {any} problem @returns {Stated} */
+/** @param {Schemas["MotionProblem"]} problem @returns {Stated} */
 function motion(problem) {
   const { positions } = problem;
   const sides = /** @type {const} */ ([
@@ -143,11 +145,11 @@ function motion(problem) {
     word: "position",
     offers,
     lines: () => [
-      positions.map((/** @type {any} */ one) => [one.x, one.y]),
-      ...(ground.length ? [through(line.point, line.angle, 1e4)] : []),
+      positions.map((one) => [one.x, one.y]),
+      ...(line && ground.length ? [through(/** @type {Point} */ (line.point), line.angle, 1e4)] : []),
       ...sides.flatMap(([side]) =>
         whole(problem[side]?.fixed_pivot) && whole(problem[side]?.moving_pivot)
-          ? [[problem[side].fixed_pivot, problem[side].moving_pivot]]
+          ? [/** @type {Point[]} */ ([problem[side]?.fixed_pivot, problem[side]?.moving_pivot])]
           : [],
       ),
     ],
@@ -155,12 +157,12 @@ function motion(problem) {
   };
 }
 
-/** @param {any} problem @returns {Stated} */
+/** @param {Schemas["PathProblem"]} problem @returns {Stated} */
 function path(problem) {
   const pivots = problem.fixed_pivots;
   return {
     handles: [...listed(problem.points, "points", t`Point`, false), ...chosenPivots(problem)],
-    lines: () => [problem.points.map((/** @type {any} */ one) => [one.x, one.y])],
+    lines: () => [problem.points.map((one) => [one.x, one.y])],
     word: "point",
     freehand: true,
     shapes: shaped(problem),
@@ -170,7 +172,7 @@ function path(problem) {
         ? [{ text: t`Keep it open`, make: () => opened(problem) }]
         : []),
       pivots
-        ? { text: t`Leave the pivots open`, make: () => (problem.fixed_pivots = null) }
+        ? { text: t`Leave the pivots open`, make: () => Object.assign(problem, { fixed_pivots: null }) }
         : {
             text: t`Choose the fixed pivots`,
             make: (/** @type {Point} */ [x, y], /** @type {number} */ size) =>
@@ -186,17 +188,17 @@ function path(problem) {
 /** Fewer points than these are no curve. */
 const CURVE = 5;
 
-/** What is done to the points of a path as a whole. @param {any} problem */
+/** What is done to the points of a path as a whole. @param {Schemas["PathProblem"]} problem */
 function shaped(problem) {
   if (problem.points.length < CURVE) return [];
   const by =
     (/** @type {(points: Point[], closed: boolean) => Point[]} */ shape) =>
     (/** @type {(value: number) => number} */ fine) => {
       const shapes = shape(
-        problem.points.map((/** @type {any} */ one) => [one.x, one.y]),
+        problem.points.map((one) => [one.x, one.y]),
         Boolean(problem.closed),
       );
-      problem.points.forEach((/** @type {any} */ one, /** @type {number} */ k) =>
+      problem.points.forEach((one, /** @type {number} */ k) =>
         Object.assign(one, { x: fine(shapes[k][0]), y: fine(shapes[k][1]) }),
       );
     };
@@ -206,19 +208,19 @@ function shaped(problem) {
   ];
 }
 
-/** A curve that is closed is matched as a whole; a curve has no timing. @param {any} problem */
+/** A curve that is closed is matched as a whole; a curve has no timing. @param {Problem} problem */
 export function matched(problem) {
   Object.assign(problem, { closed: true, method: "curve_match" });
   delete problem.timing;
 }
 
-/** A curve that ends somewhere else than it begins. @param {any} problem */
+/** A curve that ends somewhere else than it begins. @param {Problem} problem */
 export function opened(problem) {
   delete problem.closed;
   if (problem.method === "curve_match") delete problem.method;
 }
 
-/** @param {any} problem @returns {Stated} */
+/** @param {Schemas["QuickReturnProblem"]} problem @returns {Stated} */
 function quickReturn(problem) {
   const offers = [];
   if (!problem.positions) {
@@ -256,7 +258,7 @@ function quickReturn(problem) {
       ...point(problem, "rotopole", "O4", t`Pivot of the rocker`),
       ...crank,
     ],
-    lines: () => (problem.positions ? [problem.positions.map((/** @type {any} */ one) => [one.x, one.y])] : []),
+    lines: () => (problem.positions ? [problem.positions.map((one) => [one.x, one.y])] : []),
     offers: problem.positions
       ? [
           ...offers,
@@ -269,7 +271,7 @@ function quickReturn(problem) {
   };
 }
 
-/** @param {any} problem @returns {Stated} */
+/** @param {Schemas["StraightLineProblem"]} problem @returns {Stated} */
 function straightLine(problem) {
   const start = () => /** @type {Point} */ (problem.start ?? [0, 0]);
   const end = () => {
@@ -299,7 +301,7 @@ function straightLine(problem) {
   };
 }
 
-/** @param {any} problem @returns {Stated} */
+/** @param {Schemas["DwellProblem"]} problem @returns {Stated} */
 function dwell(problem) {
   const get = () => /** @type {Point} */ (problem.pivot ?? [0, 0]);
   const crank = () => problem.crank ?? 10;
@@ -323,7 +325,11 @@ function dwell(problem) {
   };
 }
 
-/** A car from above: kingpins in front, the rear axle behind. @param {any} problem @returns {Stated} */
+/**
+ * A car from above: kingpins in front, the rear axle behind.
+ * @param {Schemas["SteeringProblem"]} problem
+ * @returns {Stated}
+ */
 function steering(problem) {
   const half = () => problem.pivot_distance / 2;
   const digits = (/** @type {number} */ value) => Number(Math.max(value, 1e-6).toPrecision(6));
@@ -374,7 +380,11 @@ function steering(problem) {
   };
 }
 
-/** The fourbar whose curve is followed, held by its joints. @param {any} problem @returns {Stated | null} */
+/**
+ * The fourbar whose curve is followed, held by its joints.
+ * @param {Schemas["ParallelMotionProblem"]} problem
+ * @returns {Stated | null}
+ */
 function parallelMotion(problem) {
   const { linkage } = problem;
   if (!linkage) return null;
@@ -450,7 +460,7 @@ function assembled(linkage) {
 
 /**
  * The fixed pivots of a function's linkage, where they are chosen: they lie in the plane and not in its graph.
- * @param {any} problem
+ * @param {Problem} problem
  * @returns {Handle[]}
  */
 export function chosenPivots(problem) {
@@ -461,13 +471,13 @@ export function chosenPivots(problem) {
   ];
 }
 
-/** Pairs of a function as points of its graph. @param {any} problem @returns {Stated} */
+/** Pairs of a function as points of its graph. @param {Schemas["FunctionProblem"]} problem @returns {Stated} */
 function functionPairs(problem) {
   const pairs = problem.pairs ?? [];
   return {
     word: "pair",
-    lines: () => [pairs.map((/** @type {any} */ one) => [one.input, one.output])],
-    handles: pairs.map((/** @type {any} */ one, /** @type {number} */ k) => ({
+    lines: () => [pairs.map((one) => [one.input, one.output])],
+    handles: pairs.map((one, /** @type {number} */ k) => ({
       name: String(k + 1),
       label: t`Pair ${k + 1}, input across and output up`,
       get: () => [one.input, one.output],
@@ -483,7 +493,7 @@ function functionPairs(problem) {
           {
             text: t`State pairs instead`,
             make: () => {
-              for (const name of [
+              for (const name of /** @type {const} */ ([
                 "function",
                 "precision_points",
                 "criterion",
@@ -491,7 +501,7 @@ function functionPairs(problem) {
                 "output_range",
                 "scales",
                 "zeros",
-              ])
+              ]))
                 delete problem[name];
               problem.pairs = [
                 { input: 40, output: 70 },
@@ -504,14 +514,15 @@ function functionPairs(problem) {
   };
 }
 
-/** Rectangles in which pivots may lie, held by two corners. @param {any} problem @param {Stated} found */
+/** Rectangles in which pivots may lie, held by two corners. @param {Problem} problem @param {Stated} found */
 function regions(problem, found) {
-  for (const [field, name] of [
+  const { constraints } = problem;
+  for (const [field, name] of /** @type {const} */ ([
     ["fixed_pivot_region", t`fixed pivots`],
     ["moving_pivot_region", t`moving pivots`],
-  ]) {
-    const region = problem.constraints?.[field];
-    if (!region || !whole(region.x) || !whole(region.y)) continue;
+  ])) {
+    const region = constraints?.[field];
+    if (!constraints || !region || !whole(region.x) || !whole(region.y)) continue;
     const { lines } = found;
     found.lines = () => [
       ...lines(),
@@ -532,7 +543,7 @@ function regions(problem, found) {
           region.x[k] = k ? Math.max(x, region.x[0]) : Math.min(x, region.x[1]);
           region.y[k] = k ? Math.max(y, region.y[0]) : Math.min(y, region.y[1]);
         },
-        remove: () => (problem.constraints[field] = null),
+        remove: () => (constraints[field] = null),
       })),
     );
   }

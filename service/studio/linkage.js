@@ -2,18 +2,20 @@
 
 import { svg } from "./dom.js";
 
+/** @import { Schemas, Skeleton } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 /** @typedef {Record<string, Point | null>} Places */
 /** @typedef {import("./view.js").View} View */
 
-/** Joints that stand still. @param {any} skeleton @returns {string[]} */
+/** Joints that stand still. @param {Skeleton} skeleton @returns {string[]} */
 export function grounded(skeleton) {
-  return skeleton.links.find((/** @type {any} */ link) => link.name === "ground")?.joints ?? [];
+  return skeleton.links.find((link) => link.name === "ground")?.joints ?? [];
 }
 
 /**
  * Joints worth a drawing: a coupler point that nobody asked for lies on another joint.
- * @param {any} skeleton
+ * @param {Skeleton} skeleton
  * @returns {string[]}
  */
 export function drawn(skeleton) {
@@ -35,21 +37,21 @@ export function slope({ on, lean }, places) {
 export class Linkage {
   /**
    * @param {View} view
-   * @param {any} skeleton
+   * @param {Skeleton} skeleton
    * @param {{names?: boolean, faint?: boolean, classes?: Record<string, string>}} [manner] classes of links by their
    *   names
    */
   constructor(view, skeleton, { names = true, faint = false, classes = {} } = {}) {
     this.view = view;
     this.links = skeleton.links
-      .filter((/** @type {any} */ link) => link.name !== "ground")
-      .map((/** @type {any} */ link) => ({
+      .filter((link) => link.name !== "ground")
+      .map((link) => ({
         joints: link.joints,
         path: svg("path", {
           class: `link ${link.name === skeleton.input_link ? "input" : ""} ${classes[link.name] ?? ""}`,
         }),
       }));
-    this.slides = (skeleton.slides ?? []).map((/** @type {any} */ slide) => this.slide(skeleton, slide));
+    this.slides = (skeleton.slides ?? []).map((slide) => this.slide(skeleton, slide));
     this.pins = drawn(skeleton).map((name) => ({
       name,
       dot: svg("circle", { class: name === "P" ? "point" : "pin", r: name === "P" ? 5 : 4 }),
@@ -59,11 +61,11 @@ export class Linkage {
     this.node = svg(
       "g",
       { class: faint ? "faint" : "live" },
-      ...this.slides.map((/** @type {any} */ one) => one.rail),
+      ...this.slides.map((one) => one.rail),
       ...still,
-      ...this.links.map((/** @type {any} */ one) => one.path),
-      ...this.slides.map((/** @type {any} */ one) => one.block),
-      ...this.pins.flatMap((/** @type {any} */ one) => [one.dot, one.text]),
+      ...this.links.map((one) => one.path),
+      ...this.slides.map((one) => one.block),
+      ...this.pins.flatMap((one) => [one.dot, one.text]),
     );
   }
 
@@ -76,12 +78,12 @@ export class Linkage {
 
   /**
    * A block on its line; a line of a moving link is known by two joints of it.
-   * @param {any} skeleton
-   * @param {any} slide
+   * @param {Skeleton} skeleton
+   * @param {Schemas["Slide"]} slide
    */
   slide(skeleton, slide) {
     const angle = (slide.angle * Math.PI) / 180;
-    const link = skeleton.links.find((/** @type {any} */ one) => one.name === slide.link);
+    const link = skeleton.links.find((one) => one.name === slide.link);
     const on = slide.link === "ground" ? [] : (link?.joints ?? []);
     const rail = svg("line", { class: "rail" });
     const block = svg("rect", { class: "block", x: -12, y: -7, width: 24, height: 14, rx: 2 });
@@ -93,8 +95,8 @@ export class Linkage {
   /** @param {Places} places */
   show(places) {
     for (const { joints, path } of this.links) {
-      const points = joints.map((/** @type {string} */ name) => places[name]);
-      const known = points.every((/** @type {any} */ one) => one);
+      const points = joints.map((name) => places[name]).filter((one) => !!one);
+      const known = points.length === joints.length;
       path.setAttribute("d", known ? `${this.view.path(points)}${points.length > 2 ? "Z" : ""}` : "");
     }
     for (const { joint, on, lean, rail, block } of this.slides) {

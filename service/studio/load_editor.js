@@ -10,6 +10,8 @@ import * as faults from "./faults.js";
 import { t, term } from "./messages.js";
 import { symbolOf } from "./units.js";
 
+/** @import { Problem, Skeleton } from "./types/values.js" */
+
 /** How near to a pin a click means it, pixels of the picture. */
 const NEAR = 22;
 
@@ -23,7 +25,7 @@ let ids = 0;
 
 export class LoadEditor {
   /**
-   * @param {any} skeleton @param {any} problem @param {boolean} sliding whether a slide drives
+   * @param {Skeleton} skeleton @param {Problem} problem @param {boolean} sliding whether a slide drives
    * @param {(block: any) => Promise<void>} show asks for the forces by a block, and shows them
    */
   constructor(skeleton, problem, sliding, show) {
@@ -101,9 +103,7 @@ export class LoadEditor {
 
   /** @returns {string[]} */
   get links() {
-    return this.skeleton.links
-      .map((/** @type {any} */ link) => link.name)
-      .filter((/** @type {string} */ name) => name !== "ground");
+    return this.skeleton.links.map((link) => link.name).filter((/** @type {string} */ name) => name !== "ground");
   }
 
   /** @returns {any[]} */
@@ -163,7 +163,7 @@ export class LoadEditor {
       angle: undefined,
       ...(this.block.gravity && { magnitude: 9.80665, angle: 270, ...this.block.gravity }),
     };
-    const set = (/** @type {"magnitude" | "angle"} */ name) => (/** @type {any} */ value) => {
+    const set = (/** @type {"magnitude" | "angle"} */ name) => (/** @type {number | undefined} */ value) => {
       pull[name] = value;
       if (pull.magnitude === undefined) delete this.block.gravity;
       else this.block.gravity = pull.angle === undefined ? { magnitude: pull.magnitude } : { ...pull };

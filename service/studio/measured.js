@@ -6,6 +6,8 @@ import * as api from "./api.js";
 import { t, term } from "./messages.js";
 import { symbolOf } from "./units.js";
 
+/** @import { Design, Problem, Schemas } from "./types/values.js" */
+
 /**
  * A quantity of all designs.
  * @typedef {object} Quantity
@@ -19,7 +21,7 @@ import { symbolOf } from "./units.js";
 /** Of what more is better; of all else less is. */
 const MORE = /^(quality|yield|min_.*|.*efficiency|.*_share|locking_angle|transmission_angle)$/;
 
-/** @param {any[]} designs @param {any} problem @returns {Quantity[]} the telling ones first */
+/** @param {Design[]} designs @param {Problem} problem @returns {Quantity[]} the telling ones first */
 export function quantities(designs, problem) {
   const names = [
     ...new Set(
@@ -36,18 +38,30 @@ export function quantities(designs, problem) {
       name,
       words(name),
       unitFor(name, problem),
-      designs.map((design, n) => plain(name, design.metrics?.[name], api.measures(problem.kind)[name], sizes[n])),
+      designs.map((design, n) =>
+        plain(
+          name,
+          /** @type {Record<string, unknown>} */ (design.metrics ?? {})[name],
+          api.measures(problem.kind)[name],
+          sizes[n],
+        ),
+      ),
     ),
   );
   for (const check of checksOf(designs)) {
     const values = designs.map((design, n) => {
-      const one = (design.verification?.checks ?? []).find((/** @type {any} */ other) => other.name === check.name);
-      return plain(check.name, one?.value, check.dimension, sizes[n]);
+      const one = (design.verification?.checks ?? []).find((other) => other.name === check.name);
+      return plain(check.name, one?.value, check.dimension ?? undefined, sizes[n]);
     });
     const told = found.some((one) => one.values.every((value, n) => value === values[n]));
     if (!told && differ(values))
       found.push(
-        made(`check:${check.name}`, t`Check: ${term(check.name)}`, symbolOf(check.dimension, problem), values),
+        made(
+          `check:${check.name}`,
+          t`Check: ${term(check.name)}`,
+          symbolOf(check.dimension ?? undefined, problem),
+          values,
+        ),
       );
   }
   // What all have alike is no choice.
@@ -65,17 +79,17 @@ function made(name, text, unit, values) {
   return { name, text, unit, values, more: MORE.test(name.replace("check:", "")) };
 }
 
-/** Every check with a number, once. @param {any[]} designs @returns {any[]} */
+/** Every check with a number, once. @param {Design[]} designs @returns {Schemas["Check"][]} */
 function checksOf(designs) {
   const all = designs
     .flatMap((design) => design.verification?.checks ?? [])
-    .filter((/** @type {any} */ one) => typeof one.value === "number");
+    .filter((one) => typeof one.value === "number");
   return all.filter((one, k) => all.findIndex((other) => other.name === one.name) === k);
 }
 
 /**
  * @param {string} name
- * @param {any} value
+ * @param {unknown} value
  * @param {string | undefined} dimension
  * @param {number | undefined} size
  * @returns {number | null}

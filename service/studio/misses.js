@@ -5,14 +5,16 @@ import { amount, unitFor } from "./figures.js";
 import { t, term } from "./messages.js";
 import { thumbnail } from "./thumbnail.js";
 
-/** @typedef {{check: string, value?: number, limit?: number, dimension?: string}} Gap */
+/** @import { Problem, Result, Schemas } from "./types/values.js" */
+
+/** @typedef {Schemas["Gap"]} Gap */
 /**
  * How a demand is eased.
  * @typedef {object} Easing
  * @property {string} text after "Solve "
- * @property {(problem: any) => void} apply changes a statement
+ * @property {(problem: Problem) => void} apply changes a statement
  */
-/** @typedef {{text: string, statement: any}} Offer */
+/** @typedef {{text: string, statement: Problem}} Offer */
 
 /** Between the last two of a list. */
 const AND = ` ${t`and`} `;
@@ -67,13 +69,17 @@ const REACHED = {
   tolerance: "ratio_error",
 };
 
-/** @param {any} miss @param {any} problem @param {(problem: any) => void} solve */
+/**
+ * @param {NonNullable<Result["nearest_miss"]>} miss
+ * @param {Problem} problem
+ * @param {(problem: Problem) => void} solve
+ */
 export function missed(miss, problem, solve) {
   const { design, gaps, reachable } = miss;
-  const short = (/** @type {any} */ value) =>
+  const short = (/** @type {number | number[] | null} */ value) =>
     [value]
       .flat()
-      .map((one) => shown(Number(one.toPrecision(4))))
+      .map((one) => shown(Number(Number(one).toPrecision(4))))
       .join(AND);
   const unit = (/** @type {string} */ name) => (name.includes("angle") ? "°" : "");
   const within = Object.entries(reachable).map(([name, value]) => `${term(name)} ${short(value)}${unit(name)}`);
@@ -101,7 +107,7 @@ export function missed(miss, problem, solve) {
 /**
  * The problem with what the nearest miss has, and with what can be reached of one demand beside all others; of two that
  * are the same the first.
- * @param {any} problem @param {any} miss @returns {Offer[]}
+ * @param {Problem} problem @param {NonNullable<Result["nearest_miss"]>} miss @returns {Offer[]}
  */
 export function offers(problem, { gaps, reachable }) {
   const whole = gaps.map((/** @type {Gap} */ gap) => eased(problem, gap));
@@ -109,7 +115,8 @@ export function offers(problem, { gaps, reachable }) {
   const sets = [...(single.length && gaps.length < 2 ? [] : [whole]), ...single.map((one) => [one]), whole];
   const found = sets
     .filter((/** @type {(Easing | null)[]} */ set) => set.length && set.every((one) => one))
-    .map((/** @type {Easing[]} */ set) => {
+    .map((all) => {
+      const set = all.filter((one) => one !== null);
       const statement = structuredClone(problem);
       for (const { apply } of set) apply(statement);
       return { text: t`Solve ${set.map((one) => one.text).join(AND)}`, statement };
@@ -121,7 +128,7 @@ export function offers(problem, { gaps, reachable }) {
 
 /**
  * Ease a demand by as much as the nearest miss breaks it.
- * @param {any} problem
+ * @param {Problem} problem
  * @param {Gap} gap
  * @returns {Easing | null} null where nothing of the statement says it
  */
@@ -152,7 +159,7 @@ function eased(problem, gap) {
 
 /**
  * Demand what is reached where all else holds.
- * @param {any} problem
+ * @param {Problem} problem
  * @param {string} name
  * @param {any} value
  * @returns {Easing | null}
@@ -164,8 +171,7 @@ function reached(problem, name, value) {
     const angles = value.map((/** @type {number} */ one) => rounded(one, false));
     return {
       text: t`with dwells of ${angles.map((/** @type {number} */ one) => `${shown(one)}°`).join(AND)}`,
-      apply: (statement) =>
-        statement.dwells.forEach((/** @type {any} */ dwell, /** @type {number} */ k) => (dwell.angle = angles[k])),
+      apply: (statement) => statement.dwells?.forEach((dwell, k) => (dwell.angle = angles[k])),
     };
   }
   const limit = at(problem, path);

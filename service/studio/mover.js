@@ -15,6 +15,8 @@ import { Ruler } from "./ruler.js";
 import { Sweep, jointsAt, placeOf, rangeOf } from "./sweep.js";
 import { View } from "./view.js";
 
+/** @import { Design, LinkageAnalysis, LinkedDesign, Problem, Schemas, Skeleton } from "./types/values.js" */
+
 /** Height of the side view beneath a linkage in planes, with what stands below it, pixels. */
 const PLANES = 300;
 
@@ -32,13 +34,17 @@ const PLANES = 300;
 
 export class Mover {
   /**
-   * @param {import("./stage.js").Frame} frame @param {any} design @param {any} motion @param {any} problem
-   * @param {any} [circuits] an analysis with `branches`, where there is one
+   * @param {import("./stage.js").Frame} frame
+   * @param {LinkedDesign} design
+   * @param {LinkageAnalysis} motion
+   * @param {Problem} problem
+   * @param {LinkageAnalysis | null} [circuits] an analysis with `branches`, where there is one
    * @param {Point[]} [around] what else is to lie in the picture
    */
   constructor(frame, design, motion, problem, circuits, around = []) {
     this.frame = frame;
-    const layered = design.layout && problem.layout;
+    const stated = /** @type {Schemas["StatedLayout"] | null | undefined} */ (problem.layout);
+    const layered = design.layout && stated;
     this.size = frame.size(layered ? PLANES : 0);
     this.motion = motion;
     this.skeleton = design.mechanism.skeleton;
@@ -81,11 +87,14 @@ export class Mover {
       () => this.player.keep(this.sweep.on ? range : null),
     );
     this.closed = closed;
-    this.planes = layered ? new Planes(this.view, design, problem, (input) => this.lead(input)) : null;
-    this.gauge = motion.transmission_angle?.some((/** @type {any} */ one) => one !== null)
+    this.planes =
+      design.layout && stated
+        ? new Planes(this.view, this.skeleton, design.layout, problem, stated, (input) => this.lead(input))
+        : null;
+    this.gauge = motion.transmission_angle?.some((one) => one !== null)
       ? new Gauge(t`Transmission angle`, motion.transmission_angle, {
           limit: problem.constraints?.min_transmission_angle,
-          used: partly(design) ? design.metrics.min_transmission_angle : null,
+          used: partly(design) ? design.metrics?.min_transmission_angle : null,
         })
       : null;
     /** @type {{figure: HTMLElement, show: (at: number) => void}[]} */
@@ -101,10 +110,10 @@ export class Mover {
   /** @param {string} name @returns {Point[]} */
   track(name) {
     const { x, y } = this.motion.joints[name];
-    return x.map((/** @type {number} */ one, /** @type {number} */ k) => (one === null ? [NaN, NaN] : [one, y[k]]));
+    return x.map((one, k) => (one === null ? [NaN, NaN] : [one, Number(y[k])]));
   }
 
-  /** @param {any} design @param {any} problem */
+  /** @param {LinkedDesign} design @param {Problem} problem */
   build(design, problem) {
     const { view, skeleton } = this;
     const [width, height] = this.size;
@@ -196,7 +205,7 @@ export class Mover {
       return ghost.node;
     });
     const still = grounded(skeleton);
-    const link = skeleton.links.find((/** @type {any} */ one) => one.name === skeleton.input_link);
+    const link = skeleton.links.find((one) => one.name === skeleton.input_link);
     const [pivot, pin] = [
       link?.joints.find((/** @type {string} */ one) => still.includes(one)),
       inputPin(skeleton, still),
@@ -221,9 +230,7 @@ export class Mover {
 
   /** Samples at which the motion ends at a toggle. @returns {number[]} */
   endings() {
-    const here = this.motion.circuits
-      .flatMap((/** @type {any} */ one) => one.branches)
-      .find((/** @type {any} */ one) => one.reference);
+    const here = this.motion.circuits.flatMap((one) => one.branches).find((one) => one.reference);
     return here && !here.full ? [0, this.count - 1] : [];
   }
 
@@ -288,7 +295,7 @@ export class Mover {
   /** @param {number} at */
   reading(at) {
     const input = Number(between(this.motion.input_angle, at));
-    const sliding = this.skeleton.links.every((/** @type {any} */ link) => link.name !== this.skeleton.input_link);
+    const sliding = this.skeleton.links.every((link) => link.name !== this.skeleton.input_link);
     return `${shown(Math.round(10 * input) / 10)}${sliding ? "" : "°"}`;
   }
 
@@ -303,25 +310,23 @@ export class Mover {
 
 /**
  * The pin by which the input is led: of the crank, or of the slide that drives.
- * @param {any} skeleton
+ * @param {Skeleton} skeleton
  * @param {string[]} still
  * @returns {string | undefined}
  */
 function inputPin(skeleton, still) {
-  const link = skeleton.links.find((/** @type {any} */ one) => one.name === skeleton.input_link);
+  const link = skeleton.links.find((one) => one.name === skeleton.input_link);
   return link ? link.joints.find((/** @type {string} */ one) => !still.includes(one)) : skeleton.input_link;
 }
 
 /**
  * The demanded positions or points, where a design that was placed freely has them.
- * @param {any} problem
- * @param {any} design
+ * @param {Problem} problem
+ * @param {Partial<Design> | null} design
  * @returns {Target[]}
  */
 export function demanded(problem, design) {
-  const listed = (problem.positions ?? problem.points ?? []).filter((/** @type {any} */ one) =>
-    Number.isFinite(one?.x),
-  );
+  const listed = (problem.positions ?? problem.points ?? []).filter((one) => Number.isFinite(one?.x));
   const placed = design?.placement;
   if (!placed) return listed;
   const turn = (placed.rotation * Math.PI) / 180;
@@ -335,7 +340,7 @@ export function demanded(problem, design) {
 /**
  * Whether a limit was measured over a part of the motion: between the targets of a design, or over what its cognate
  * uses.
- * @param {any} design
+ * @param {LinkedDesign} design
  */
 function partly(design) {
   return (
@@ -344,7 +349,7 @@ function partly(design) {
   );
 }
 
-/** Whether the last configuration is the first again. @param {any} motion @param {number} count */
+/** Whether the last configuration is the first again. @param {LinkageAnalysis} motion @param {number} count */
 function returns(motion, count) {
   const tracks = Object.values(/** @type {Record<string, Track>} */ (motion.joints));
   const spread = Math.max(

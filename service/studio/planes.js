@@ -5,6 +5,8 @@ import { grounded } from "./linkage.js";
 import { foreign, t, term, translated } from "./messages.js";
 import { symbolOf } from "./units.js";
 
+/** @import { Layout, Problem, Schemas, Skeleton } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 /** @typedef {import("./linkage.js").Places} Places */
 
@@ -28,20 +30,16 @@ export function planeClass(plane) {
 
 /**
  * Wheels as they stand on the ground: those that mesh, or an idler between them.
- * @param {any} skeleton
+ * @param {Skeleton} skeleton
  * @returns {Record<string, {centre: Point, radius: number}>}
  */
 function wheels(skeleton) {
   const still = grounded(skeleton);
   return Object.fromEntries(
-    (skeleton.gears ?? []).flatMap((/** @type {any} */ { links, ratio }) => {
+    (skeleton.gears ?? []).flatMap(({ links, ratio }) => {
       const [o, q] = links
-        .map((/** @type {string} */ name) =>
-          skeleton.links
-            .find((/** @type {any} */ link) => link.name === name)
-            ?.joints.find((/** @type {string} */ joint) => still.includes(joint)),
-        )
-        .map((/** @type {string} */ joint) => skeleton.joints[joint]);
+        .map((name) => skeleton.links.find((link) => link.name === name)?.joints.find((joint) => still.includes(joint)))
+        .map((joint) => skeleton.joints[joint ?? ""]);
       if (!o || !q) return [];
       const idled = ratio > 0 ? 2 * Math.min(1, ratio) : 0;
       const unit = Math.hypot(q[0] - o[0], q[1] - o[1]) / (1 + Math.abs(ratio) + idled);
@@ -65,11 +63,13 @@ function wheels(skeleton) {
 export class Planes {
   /**
    * @param {import("./view.js").View} view of the linkage: both pictures stand one above the other
-   * @param {any} design with its `layout`
-   * @param {any} problem
+   * @param {Skeleton} skeleton
+   * @param {Layout} layout
+   * @param {Problem} problem
+   * @param {Schemas["StatedLayout"]} stated what planes are asked for
    * @param {(input: number) => void} lead leads the motion to an input
    */
-  constructor(view, design, problem, lead) {
+  constructor(view, skeleton, layout, problem, stated, lead) {
     this.view = view;
     this.floor = HEIGHT - FOOT - BASE;
     /** Pixels for a length unit upward. */
@@ -80,11 +80,10 @@ export class Planes {
     this.pins = [];
     /** @type {SVGElement | null} */
     this.side = null;
-    this.wheels = wheels(design.mechanism.skeleton);
-    this.layout = design.layout;
-    this.skeleton = design.mechanism.skeleton;
-    this.stated = problem.layout;
-    const { layout } = this;
+    this.wheels = wheels(skeleton);
+    this.layout = layout;
+    this.skeleton = skeleton;
+    this.stated = stated;
     const unit = symbolOf("length", problem);
     const listed = Object.entries(layout.planes).sort(([, one], [, other]) => other - one);
     this.node = el(
@@ -153,8 +152,8 @@ export class Planes {
       el(
         "ul",
         { class: "clashes" },
-        ...clashes.map((/** @type {any} */ { parts, distance, input_angle: angle, input_place: place }) => {
-          const at = angle ?? place;
+        ...clashes.map(({ parts, distance, input_angle: angle, input_place: place }) => {
+          const at = angle ?? place ?? NaN;
           return el(
             "li",
             {},
@@ -273,10 +272,8 @@ export class Planes {
 
   /** The joints that a plate takes in, those in its slots among them. @param {string} name @returns {string[]} */
   on(name) {
-    const link = this.skeleton.links.find((/** @type {any} */ one) => one.name === name);
-    const slots = (this.skeleton.slides ?? [])
-      .filter((/** @type {any} */ slide) => slide.link === name)
-      .map((/** @type {any} */ slide) => slide.joint);
+    const link = this.skeleton.links.find((one) => one.name === name);
+    const slots = (this.skeleton.slides ?? []).filter((slide) => slide.link === name).map((slide) => slide.joint);
     return [...(link?.joints ?? []), ...slots];
   }
 }

@@ -3,13 +3,15 @@
 import { drawn, grounded } from "./linkage.js";
 import { t, term } from "./messages.js";
 
+/** @import { Design, LinkageAnalysis, Problem, Skeleton } from "./types/values.js" */
+
 /** @typedef {import("./plots.js").Plotted} Plotted */
 /** @typedef {(number | null)[]} Series */
 
 /**
  * Parts whose motion can be plotted, the telling ones first.
- * @param {any} motion
- * @param {any} skeleton
+ * @param {LinkageAnalysis} motion
+ * @param {Skeleton} skeleton
  * @returns {string[]}
  */
 export function parts(motion, skeleton) {
@@ -34,7 +36,7 @@ export function partName(part) {
 
 /**
  * Position, velocity and acceleration of a part, by the radian (or length unit) of the input.
- * @param {any} motion
+ * @param {LinkageAnalysis} motion
  * @param {string} part
  * @returns {Plotted[]}
  */
@@ -70,9 +72,9 @@ export function moved(motion, part) {
 
 /**
  * What a linkage must do well: transmit force, and keep to its function.
- * @param {any} motion
- * @param {any} design
- * @param {any} problem
+ * @param {LinkageAnalysis} motion
+ * @param {Partial<Design>} design
+ * @param {Problem} problem
  * @returns {Plotted[]}
  */
 export function judged(motion, design, problem) {
@@ -93,16 +95,16 @@ export function judged(motion, design, problem) {
 
 /**
  * Where the input stands at a target: an angle, or the place of an input that slides.
- * @param {any} target
+ * @param {NonNullable<Design["targets"]>[number]} target
  * @returns {number}
  */
 function inputOf(target) {
-  return target.input_angle ?? target.input_place;
+  return target.input_angle ?? target.input_place ?? NaN;
 }
 
 /**
  * Which samples lie between the first target and the last: the range that limits are for.
- * @param {any} design
+ * @param {Partial<Design>} design
  * @param {number[]} inputs
  * @returns {boolean[] | undefined}
  */
@@ -116,7 +118,7 @@ function usedRange(design, inputs) {
 
 /**
  * Structural error as the answer has it.
- * @param {any} design
+ * @param {Partial<Design>} design
  * @returns {{title: string, at: number[], values: number[]} | null}
  */
 function errorCurve(design) {
@@ -129,14 +131,12 @@ function errorCurve(design) {
     };
   }
   const targets = design.targets ?? [];
-  if (
-    targets.length > 2 &&
-    targets.every((/** @type {any} */ one) => Number.isFinite(one.error) && Number.isFinite(inputOf(one)))
-  ) {
+  const errors = targets.map((one) => one.error ?? NaN);
+  if (targets.length > 2 && errors.every(Number.isFinite) && targets.every((one) => Number.isFinite(inputOf(one)))) {
     return {
       title: t`Steering error (°)`,
       at: targets.map(inputOf),
-      values: targets.map((/** @type {any} */ one) => one.error),
+      values: errors,
     };
   }
   return null;

@@ -6,10 +6,16 @@ import { Player, between } from "./player.js";
 import { plots } from "./plots.js";
 import { View } from "./view.js";
 
+/** @import { Schemas } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 
 export class Ratchet {
-  /** @param {import("./stage.js").Frame} frame @param {any} design @param {any} motion */
+  /**
+   * @param {import("./stage.js").Frame} frame
+   * @param {Schemas["RatchetDesign"]} design
+   * @param {Schemas["RatchetAnalysis"]} motion
+   */
   constructor(frame, design, motion) {
     const [width, height] = frame.size();
     const { mechanism } = design;
@@ -18,11 +24,11 @@ export class Ratchet {
       mechanism.profile.x.map((/** @type {number} */ x, /** @type {number} */ k) => [x, mechanism.profile.y[k]])
     );
     const radius = mechanism.wheel_radius;
-    const pivots = mechanism.pawls.map((/** @type {any} */ pawl) => pawl.pivot);
+    const pivots = mechanism.pawls.map((pawl) => pawl.pivot);
     const view = new View([[-radius, -radius], [radius, radius], ...pivots], width, height, 40);
     this.axis = view.at(0, 0);
     this.wheel = svg("path", { class: "teeth", d: `${view.path(teeth)}Z` });
-    this.pawls = mechanism.pawls.map((/** @type {any} */ pawl) => {
+    this.pawls = mechanism.pawls.map((pawl) => {
       const [u, v] = view.at(pawl.pivot[0], pawl.pivot[1]);
       return {
         at: [u, v],
@@ -34,8 +40,8 @@ export class Ratchet {
       { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The ratchet, turning` },
       svg("rect", { class: "paper", width, height }),
       svg("g", { class: "wheel t0" }, this.wheel),
-      ...this.pawls.map((/** @type {any} */ pawl) => pawl.bar),
-      ...[this.axis, ...this.pawls.map((/** @type {any} */ pawl) => pawl.at)].map(([cx, cy]) =>
+      ...this.pawls.map((pawl) => pawl.bar),
+      ...[this.axis, ...this.pawls.map((pawl) => pawl.at)].map(([cx, cy]) =>
         svg("circle", { class: "pin", cx, cy, r: 3.5 }),
       ),
     );
@@ -51,10 +57,7 @@ export class Ratchet {
         {
           title: t`Lift of pawls (°)`,
           lines: Object.fromEntries(
-            motion.pawls.map((/** @type {any} */ pawl, /** @type {number} */ k) => [
-              motion.pawls.length > 1 ? `${k + 1}` : "",
-              pawl.lift,
-            ]),
+            motion.pawls.map((pawl, /** @type {number} */ k) => [motion.pawls.length > 1 ? `${k + 1}` : "", pawl.lift]),
           ),
         },
       ],
@@ -77,7 +80,7 @@ export class Ratchet {
       "transform",
       `rotate(${(-Number(between(this.motion.input_angle, at))).toFixed(3)} ${u.toFixed(2)} ${v.toFixed(2)})`,
     );
-    this.pawls.forEach((/** @type {any} */ pawl, /** @type {number} */ k) => {
+    this.pawls.forEach((pawl, /** @type {number} */ k) => {
       const lift = Number(between(this.motion.pawls[k].lift, at));
       pawl.bar.setAttribute(
         "transform",
@@ -92,7 +95,12 @@ export class Ratchet {
   }
 }
 
-/** Where a pawl turns down to its nose, above the tips. @param {any} pawl @param {number} height @returns {Point} */
+/**
+ * Where a pawl turns down to its nose, above the tips.
+ * @param {Schemas["Pawl"]} pawl
+ * @param {number} height
+ * @returns {Point}
+ */
 function over({ nose: [x, y] }, height) {
   const share = 1 + (1.9 * height) / Math.hypot(x, y);
   return [share * x, share * y];

@@ -4,6 +4,8 @@
 
 import { t } from "./messages.js";
 
+/** @import { Problem } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 /** @typedef {{polygon?: Point[] | null, circle?: {center: Point, radius: number} | null, frame?: string}} Zone */
 /** @typedef {"polygon" | "rectangle" | "circle"} Tool */
@@ -59,7 +61,7 @@ export const ROLES = [
   },
 ];
 
-/** The roles that areas of a problem can have: only a body that is carried has an outline. @param {any} problem */
+/** The roles that areas of a problem can have: only a body that is carried has an outline. @param {Problem} problem */
 export function rolesOf(problem) {
   return ROLES.filter((role) => role.name !== "body" || problem.kind === "motion");
 }
@@ -193,7 +195,7 @@ export class Area {
  * @param {any} value
  */
 function drawable(role, value) {
-  const point = (/** @type {any} */ one) => Array.isArray(one) && one.length === 2 && one.every(Number.isFinite);
+  const point = (/** @type {unknown} */ one) => Array.isArray(one) && one.length === 2 && one.every(Number.isFinite);
   if (role.name === "box") return Array.isArray(value) && value.length === 2 && value.every(point);
   const corners = role.name === "body" ? value : value?.polygon;
   if (Array.isArray(corners)) return corners.length >= 3 && corners.every(point);
@@ -225,7 +227,7 @@ export function areas(space) {
 /**
  * State an area: a pivot may have several zones, and there may be several obstacles; a box or an outline takes the
  * place of the one before.
- * @param {any} problem changed in place @param {Role} role @param {Zone} zone @returns {string} its JSON pointer
+ * @param {Problem} problem changed in place @param {Role} role @param {Zone} zone @returns {string} its JSON pointer
  */
 export function stateArea(problem, role, zone) {
   const space = (problem.space ??= {});
@@ -243,19 +245,20 @@ export function stateArea(problem, role, zone) {
     return path;
   }
   if (role.name === "body") {
-    space.body = { outline: zone.polygon };
+    space.body = { outline: zone.polygon ?? [] };
     return path;
   }
   if (!inner) {
     space.obstacles = [...(space.obstacles ?? []), zone];
     return `${path}/${space.obstacles.length - 1}`;
   }
-  const owner = (space[outer] ??= {});
+  const groups = /** @type {Record<string, Record<string, Zone | Zone[]>>} */ (space);
+  const owner = (groups[outer] ??= {});
   const before = owner[inner];
   if (!before) {
     owner[inner] = zone;
     return path;
   }
-  owner[inner] = [...(Array.isArray(before) ? before : [before]), zone];
-  return `${path}/${owner[inner].length - 1}`;
+  const zones = (owner[inner] = [...(Array.isArray(before) ? before : [before]), zone]);
+  return `${path}/${zones.length - 1}`;
 }

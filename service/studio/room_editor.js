@@ -12,6 +12,8 @@ import { t } from "./messages.js";
 import { Pen } from "./pen.js";
 import { areas, rolesOf, stateArea } from "./room.js";
 
+/** @import { Problem } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 /** @typedef {import("./room.js").Area} Area */
 /** @typedef {import("./room.js").Tool} Tool */
@@ -32,7 +34,7 @@ const TOOLS = /** @type {Tool[]} */ (["polygon", "rectangle", "circle"]);
 
 export class RoomEditor {
   /**
-   * @param {SVGSVGElement} picture @param {import("./view.js").View} view @param {any} problem changed in place
+   * @param {SVGSVGElement} picture @param {import("./view.js").View} view @param {Problem} problem changed in place
    * @param {Memory} memory @param {(rebuilt: boolean) => void} changed
    */
   constructor(picture, view, problem, memory, changed) {

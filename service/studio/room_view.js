@@ -4,13 +4,15 @@ import { svg } from "./dom.js";
 import { hatched, legend, outline } from "./hatch.js";
 import { areas } from "./room.js";
 
+/** @import { Mechanism, Problem } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 /** @typedef {import("./linkage.js").Places} Places */
 
 /** How a link lies: its turn, and where that takes a point. @typedef {{turn: Point, from: Point, to: Point}} Pose */
 
 export class RoomView {
-  /** @param {any} problem @param {any} mechanism with its skeleton */
+  /** @param {Problem} problem @param {Mechanism} mechanism with its skeleton */
   constructor(problem, mechanism) {
     this.areas = areas(problem.space);
     this.skeleton = mechanism.skeleton;
@@ -19,16 +21,13 @@ export class RoomView {
     /** Corners of the body as it lies at the first target. @type {Point[]} */
     this.body = body && first ? asMet(body.corners, first, mechanism) : [];
     const joints =
-      this.skeleton?.links.find((/** @type {any} */ link) => link.name !== "ground" && link.joints.includes("P"))
-        ?.joints ?? [];
+      this.skeleton?.links.find((link) => link.name !== "ground" && link.joints.includes("P"))?.joints ?? [];
     this.carrier = farthest(joints, this.skeleton?.joints ?? {});
     this.standing = this.areas.filter((one) => one !== body);
     /** Joints of each moving link; the coupler of a body that has an outline is a bar. @type {string[][]} */
     this.links = (this.skeleton?.links ?? [])
-      .filter((/** @type {any} */ link) => link.name !== "ground")
-      .map((/** @type {any} */ link) =>
-        link.joints.filter((/** @type {string} */ name) => !(this.body.length && name === "P")),
-      );
+      .filter((link) => link.name !== "ground")
+      .map((link) => link.joints.filter((/** @type {string} */ name) => !(this.body.length && name === "P")));
     this.width = Number(problem.space?.link_width ?? 0);
     this.cycle = problem.space?.over === "cycle";
   }
@@ -75,9 +74,10 @@ export class RoomView {
    * @returns {Point[] | null}
    */
   carried(places) {
-    if (!this.body.length || !this.carrier) return null;
+    const { skeleton } = this;
+    if (!this.body.length || !this.carrier || !skeleton) return null;
     const pose = posed(
-      this.carrier.map((name) => this.skeleton.joints[name]),
+      this.carrier.map((name) => skeleton.joints[name]),
       this.carrier.map((name) => places[name]),
     );
     return pose && this.body.map((corner) => moved(pose, corner));
@@ -107,19 +107,20 @@ export function plateOf(view, joints, places) {
 /**
  * The outline of a body that a fit has put elsewhere in its first position.
  * @param {Point[]} corners
- * @param {any} first
- * @param {any} mechanism
+ * @param {import("./mover.js").Target} first
+ * @param {Mechanism} mechanism
  * @returns {Point[]}
  */
 function asMet(corners, first, mechanism) {
   const stands = mechanism.reference_body_angle ?? first.angle ?? 0;
   const turn = ((stands - (first.angle ?? 0)) * Math.PI) / 180;
-  const pose = {
+  const to = mechanism.skeleton?.joints.P;
+  const pose = to && {
     turn: /** @type {Point} */ ([Math.cos(turn), Math.sin(turn)]),
     from: /** @type {Point} */ ([first.x, first.y]),
-    to: mechanism.skeleton.joints.P,
+    to,
   };
-  return pose.to ? corners.map((corner) => moved(pose, corner)) : corners;
+  return pose ? corners.map((corner) => moved(pose, corner)) : corners;
 }
 
 /**

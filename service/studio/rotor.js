@@ -6,11 +6,18 @@ import { Player, between } from "./player.js";
 import { plots } from "./plots.js";
 import { symbolOf } from "./units.js";
 
+/** @import { Problem, Schemas } from "./types/values.js" */
+
 /** Radius of a face as a share of the room that it has. */
 const RIM = 0.4;
 
 export class Rotor {
-  /** @param {import("./stage.js").Frame} frame @param {any} design @param {any} motion @param {any} problem */
+  /**
+   * @param {import("./stage.js").Frame} frame
+   * @param {Schemas["RotorDesign"]} design
+   * @param {Schemas["RotorAnalysis"]} motion
+   * @param {Problem} problem
+   */
   constructor(frame, design, motion, problem) {
     this.size = frame.size();
     const [width, height] = this.size;
@@ -25,7 +32,7 @@ export class Rotor {
     });
     this.faces = mechanism.planes.map((/** @type {number} */ _z, /** @type {number} */ n) => this.face(mechanism, n));
     const names = [t`Before`, t`After`];
-    const facts = (metrics.bearings ?? []).flatMap((/** @type {any} */ bearing) =>
+    const facts = (metrics.bearings ?? []).flatMap((bearing) =>
       [bearing.before, bearing.after].flatMap((force, k) => [
         el("dt", {}, `${names[k]}, ${t`bearing at ${shown(bearing.z)} ${problem.length_unit}`}`),
         el("dd", {}, `${shown(Number(force.toPrecision(4)))} ${symbolOf("force", problem)}`),
@@ -40,13 +47,10 @@ export class Rotor {
         "aria-label": t`The planes of correction, turning with the rotor`,
       },
       svg("rect", { class: "paper", width, height }),
-      ...this.faces.map((/** @type {any} */ one) => one.node),
+      ...this.faces.map((one) => one.node),
     );
     const lines = Object.fromEntries(
-      motion.bearings.map((/** @type {any} */ bearing, /** @type {number} */ n) => [
-        t`bearing ${n + 1}`,
-        bearing.force.x,
-      ]),
+      motion.bearings.map((bearing, /** @type {number} */ n) => [t`bearing ${n + 1}`, bearing.force.x]),
     );
     this.marks = motion.bearings.length
       ? plots([{ title: t`Force on the bearings at 1 rad/s, along x`, lines, least: 1e-9 }], motion.input_angle, (at) =>
@@ -65,17 +69,17 @@ export class Rotor {
     this.player.begin();
   }
 
-  /** @param {any} mechanism @param {number} plane */
+  /** @param {Schemas["RotorMechanism"]} mechanism @param {number} plane */
   face(mechanism, plane) {
     const [width, height] = this.size;
     const room = width / mechanism.planes.length;
     const [u, v, rim] = [room * (plane + 0.5), height / 2, RIM * Math.min(room, height)];
     const all = mechanism.corrections;
-    const reach = Math.max(...all.map((/** @type {any} */ one) => one.radius ?? one.unbalance), 1e-300);
-    const heaviest = Math.max(...all.map((/** @type {any} */ one) => one.unbalance), 1e-300);
+    const reach = Math.max(...all.map((one) => one.radius ?? one.unbalance), 1e-300);
+    const heaviest = Math.max(...all.map((one) => one.unbalance), 1e-300);
     const marks = all
-      .filter((/** @type {any} */ one) => one.plane === plane)
-      .map((/** @type {any} */ one) => {
+      .filter((one) => one.plane === plane)
+      .map((one) => {
         const far = (0.85 * rim * (one.radius ?? one.unbalance)) / reach;
         const angle = (one.angle * Math.PI) / 180;
         return svg("circle", {

@@ -8,6 +8,8 @@ import { Explorer } from "./explorer.js";
 import { t, term } from "./messages.js";
 import { Mover, demanded } from "./mover.js";
 
+/** @import { Problem } from "./types/values.js" */
+
 /** Samples of its cycle. */
 const STEPS = 240;
 
@@ -15,7 +17,7 @@ export class SentLinkage {
   /**
    * @param {import("./desk.js").Desk} desk
    * @param {import("./address.js").Sent} sent
-   * @param {(problem: any) => void} state begins another statement
+   * @param {(problem: Problem) => void} state begins another statement
    */
   constructor(desk, sent, state) {
     this.desk = desk;

@@ -6,11 +6,13 @@ import { t } from "./messages.js";
 import { pin, pinned } from "./pins.js";
 import { thumbnail } from "./thumbnail.js";
 
+/** @import { Design, Problem, Solved } from "./types/values.js" */
+
 /** How long keys must rest on a card before it is shown. */
 const PASSING_MS = 150;
 
 export class Strip {
-  /** @param {import("./api.js").Job} job with its result @param {(n: number) => void} choose */
+  /** @param {Solved} job with its result @param {(n: number) => void} choose */
   constructor(job, choose) {
     this.job = job;
     this.choose = choose;
@@ -20,9 +22,7 @@ export class Strip {
     /** What meets the bounds. @type {boolean[]} */
     this.kept = designs.map(() => true);
     /** @type {HTMLElement[]} */
-    this.cards = designs.map((/** @type {any} */ design, /** @type {number} */ n) =>
-      card(design, n, job.problem, () => this.select(n)),
-    );
+    this.cards = designs.map((design, /** @type {number} */ n) => card(design, n, job.problem, () => this.select(n)));
     this.pins = this.cards.map((_, n) =>
       el(
         "button",
@@ -112,7 +112,7 @@ export class Strip {
   }
 }
 
-/** @param {any} design @param {number} n @param {any} problem @param {() => void} choose */
+/** @param {Design} design @param {number} n @param {Problem} problem @param {() => void} choose */
 function card(design, n, problem, choose) {
   const passed = design.verification?.passed;
   return el(

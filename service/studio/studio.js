@@ -23,6 +23,8 @@ import { SentLinkage } from "./sent.js";
 import { canvas } from "./targets.js";
 import { Undo } from "./undo.js";
 
+/** @import { Linked, Problem } from "./types/values.js" */
+
 /** So long after the last change of the window's size the canvas is drawn anew. */
 const RESIZED_MS = 150;
 
@@ -32,9 +34,9 @@ let kinds = [];
 let problem = {};
 /** @type {History} */
 let history;
-/** The statement that was posted last. @type {{id: string, problem: any}} */
+/** The statement that was posted last. @type {{id: string, problem: Problem | null}} */
 let posted = { id: "", problem: null };
-/** The statement whose answers are shown; null while there are none. @type {any} */
+/** The statement whose answers are shown; null while there are none. @type {Problem | null} */
 let answered = null;
 /** @type {CurveImport | undefined} */
 let imported;
@@ -128,10 +130,10 @@ function compare() {
 
 /**
  * A statement in one spelling: fields in order, without the empty groups in which the form has room for fields.
- * @param {any} statement
+ * @param {Problem} statement
  */
 function spelt(statement) {
-  const group = (/** @type {any} */ value) => typeof value === "object" && value !== null && !Array.isArray(value);
+  const group = (/** @type {unknown} */ value) => typeof value === "object" && value !== null && !Array.isArray(value);
   return JSON.stringify(statement, (_, value) =>
     group(value)
       ? Object.fromEntries(
@@ -152,7 +154,7 @@ function vacate() {
 /** Keep the statement as it is now, unless the service has it as an example. */
 function drafted() {
   const now = spelt(problem);
-  if (examples().some((/** @type {any} */ one) => spelt(one) === now)) forgetDraft(problem.kind);
+  if (examples().some((one) => spelt(one) === now)) forgetDraft(problem.kind);
   else keepDraft(problem, byId("label").value, undo.steps);
 }
 
@@ -171,7 +173,7 @@ function resume(of) {
   byId("draft").hidden = false;
 }
 
-/** The examples of the kind. @returns {any[]} */
+/** The examples of the kind. @returns {Problem[]} */
 function examples() {
   return kind().schema.examples ?? [kind().example];
 }
@@ -186,14 +188,14 @@ function edited(parts) {
   if (answered === null) desk.stage.show("state");
 }
 
-/** Begin with another statement. @param {any} statement */
+/** Begin with another statement. @param {Problem} statement */
 function state(statement) {
   vacate();
   begun(statement);
   desk.stage.show("state");
 }
 
-/** Have another statement in the form and on the canvas. @param {any} statement */
+/** Have another statement in the form and on the canvas. @param {Problem} statement */
 function begun(statement) {
   problem = structuredClone(statement);
   undo.note(problem, true);
@@ -209,9 +211,7 @@ function introduce() {
   byId("kind").value = problem.kind;
   byId("example").replaceChildren(
     el("option", { value: "" }, t`as edited`),
-    ...examples().map((/** @type {any} */ _, /** @type {number} */ n) =>
-      el("option", { value: n }, translated(kind().examples[n].name)),
-    ),
+    ...examples().map((_, /** @type {number} */ n) => el("option", { value: n }, translated(kind().examples[n].name))),
   );
   byId("about").textContent = prose(kind().description);
 }
@@ -449,7 +449,7 @@ function sending() {
     problem,
     label: byId("label").value,
     placed: Boolean(design?.placement),
-    mechanism: skeleton ? { type, skeleton, ...(driven_by && { driven_by }) } : null,
+    mechanism: skeleton ? /** @type {Linked} */ ({ type, skeleton, ...(driven_by && { driven_by }) }) : null,
   };
 }
 
@@ -524,7 +524,7 @@ const keys = new Keys([
   { keys: [], shown: t`Esc`, text: t`Close what lies over the stage; put the pen away`, act: () => {} },
 ]);
 byId("stale-solve").addEventListener("click", () => solve());
-byId("stale-back").addEventListener("click", () => begun(answered));
+byId("stale-back").addEventListener("click", () => answered && begun(answered));
 byId("fold").addEventListener("click", () => unfold(folded()));
 byId("gallery-open").addEventListener("click", () => browse());
 byId("keys-open").addEventListener("click", () => keys.open());

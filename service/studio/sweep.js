@@ -9,6 +9,8 @@ import { t } from "./messages.js";
 import { between, within } from "./player.js";
 import { plateOf } from "./room_view.js";
 
+/** @import { LinkageAnalysis, Skeleton } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 
 /** Places of the motion that make up the swept area, and of them those that have an outline: one in so many. */
@@ -17,7 +19,7 @@ const OUTLINED = 12;
 
 export class Sweep {
   /**
-   * @param {import("./view.js").View} view @param {any} skeleton @param {import("./room_view.js").RoomView} room
+   * @param {import("./view.js").View} view @param {Skeleton} skeleton @param {import("./room_view.js").RoomView} room
    * @param {(at: number) => import("./linkage.js").Places} places joints at a place of the motion
    * @param {[number, number]} range of the motion, places of its arrays @param {() => void} toggled
    */
@@ -47,16 +49,14 @@ export class Sweep {
 
   /**
    * @param {import("./view.js").View} view
-   * @param {any} skeleton
+   * @param {Skeleton} skeleton
    * @param {import("./room_view.js").RoomView} room
    * @param {(at: number) => import("./linkage.js").Places} places
    */
   draw(view, skeleton, room, places) {
     const [from, to] = this.range;
     const stands = Array.from({ length: PLACES + 1 }, (_, k) => places(from + ((to - from) * k) / PLACES));
-    const names = skeleton.links
-      .map((/** @type {any} */ link) => link.name)
-      .filter((/** @type {string} */ name) => name !== "ground");
+    const names = skeleton.links.map((link) => link.name).filter((/** @type {string} */ name) => name !== "ground");
     const links = room.links.map((joints, k) => ({
       name: names[k],
       width: room.width,
@@ -83,7 +83,7 @@ export class Sweep {
 
 /**
  * The places of a motion's arrays between two inputs; beyond the arrays where the motion comes back to its beginning.
- * @param {any} motion
+ * @param {LinkageAnalysis} motion
  * @param {[number, number] | null | undefined} used inputs
  * @param {boolean} closed
  * @returns {[number, number]}
@@ -112,7 +112,7 @@ export function placeOf(input, value, closed) {
 
 /**
  * The joints at a place of a motion, which may lie beyond its arrays.
- * @param {any} motion
+ * @param {LinkageAnalysis} motion
  * @param {number} place
  * @returns {import("./linkage.js").Places}
  */
@@ -120,8 +120,8 @@ export function jointsAt(motion, place) {
   const at = within(place, motion.input_angle.length - 1);
   return Object.fromEntries(
     Object.entries(motion.joints).map(([name, track]) => {
-      const x = between(/** @type {any} */ (track).x, at);
-      return [name, x === null ? null : [x, Number(between(/** @type {any} */ (track).y, at))]];
+      const x = between(track.x, at);
+      return [name, x === null ? null : [x, Number(between(track.y, at))]];
     }),
   );
 }

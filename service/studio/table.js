@@ -15,7 +15,7 @@ import { unitOf } from "./units.js";
  */
 export function table(sheet, item, rows, path, count) {
   const heads = columns(item, sheet.root);
-  const line = (/** @type {any} */ row, /** @type {number} */ k) => [
+  const line = (/** @type {Record<string, unknown>} */ row, /** @type {number} */ k) => [
     el(
       "tr",
       {},
@@ -125,7 +125,7 @@ function cell(sheet, head, row, path, k, item) {
   const options = alternatives(item, sheet.root);
   const option = options.length > 1 ? optionOf(options, row) : options[0];
   if (!option.properties[head.name]) return "";
-  const set = (/** @type {any} */ value) => {
+  const set = (/** @type {unknown} */ value) => {
     if (value === undefined) delete row[head.name];
     else row[head.name] = value;
     // Another alternative has other fields: what it does not know goes.

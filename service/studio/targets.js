@@ -15,6 +15,8 @@ import { roomOf } from "./stage.js";
 import { View } from "./view.js";
 import { Zoom } from "./zoom.js";
 
+/** @import { Problem } from "./types/values.js" */
+
 /** @typedef {import("./handles.js").Handle} Handle */
 
 /** Height of the tools below a canvas, pixels. */
@@ -31,7 +33,7 @@ const tools = { grid: true, snap: false };
 /**
  * What of a canvas outlives its being made anew.
  * @typedef {object} Kept
- * @property {any} problem whose view it is
+ * @property {Problem} problem whose view it is
  * @property {View | null} view
  * @property {boolean} led whether somebody has led the view somewhere; otherwise all is to be seen
  * @property {import("./room_editor.js").Memory} room
@@ -43,7 +45,7 @@ const kept = new WeakMap();
 
 /**
  * @param {HTMLElement} place
- * @param {any} problem changed in place
+ * @param {Problem} problem changed in place
  * @param {boolean} roomy whether the problem may state the room
  * @param {(rebuilt: boolean) => void} changed @param {import("./backdrop.js").Backdrop} backdrop what lies behind it
  */
@@ -77,7 +79,7 @@ export function canvas(place, problem, roomy, changed, backdrop) {
 
 /**
  * A plane in which nothing is placed but the fixed pivots, where they are chosen.
- * @param {any} problem
+ * @param {Problem} problem
  * @returns {import("./handles.js").Stated}
  */
 function bare(problem) {
@@ -87,7 +89,7 @@ function bare(problem) {
 /**
  * A picture of a plane, and what is done in it.
  * @param {HTMLElement} place
- * @param {any} problem
+ * @param {Problem} problem
  * @param {import("./handles.js").Stated} found
  * @param {boolean} roomy
  * @param {Kept} memory
@@ -137,7 +139,7 @@ function drawnPlane(
     trail.setAttribute(
       "d",
       lines()
-        .map((/** @type {any} */ line) => view.path(line))
+        .map((line) => view.path(line))
         .join(""),
     );
   const drawn = handles.map((handle, k) =>
@@ -282,7 +284,7 @@ function drawnPlane(
   );
 }
 
-/** What can be held; nothing while the JSON is not what its kind has. @param {any} problem */
+/** What can be held; nothing while the JSON is not what its kind has. @param {Problem} problem */
 function readable(problem) {
   try {
     const found = stated(problem);
@@ -328,9 +330,10 @@ function held(handle, key, view, picture, all, redraw, changed) {
       line.setAttribute(attribute, String(value));
   };
   const altered = () => {
-    for (const field of handle.path ? ["x", "y", "angle"] : []) {
+    for (const field of handle.path ? /** @type {const} */ (["x", "y", "angle"]) : []) {
       const box = document.querySelector(`[data-path="${handle.path}/${field}"]`);
-      if (box instanceof HTMLInputElement && handle.owner[field] !== undefined) box.value = String(handle.owner[field]);
+      const value = handle.owner?.[field];
+      if (box instanceof HTMLInputElement && value !== undefined) box.value = String(value);
     }
     all();
     redraw();

@@ -3,38 +3,63 @@
 import { t, term } from "./messages.js";
 import { facing, radius } from "./wheels.js";
 
+/** @import { Design, Mechanism, Problem, Schemas, TrainMotion } from "./types/values.js" */
+
 /** @typedef {import("./wheels.js").Wheel} Wheel */
 /** @typedef {import("./wheels.js").Point} Point */
+/** @typedef {{gears: string[], bodies: string[], carrier: string, distance: number}} PlanetMesh */
 
-/** @param {any} mechanism @param {any} motion @param {any} design @param {any} problem @returns {Wheel[]} */
+/**
+ * @param {Pick<Mechanism, "type">} mechanism
+ * @param {TrainMotion} motion
+ * @param {Pick<Design, "metrics">} design
+ * @param {Pick<Problem, "reverted" | "units">} problem
+ * @returns {Wheel[]}
+ */
 export function wheels(mechanism, motion, design, problem) {
   switch (mechanism.type) {
     case "gear_train":
-      return ordinary(motion, problem);
+      return ordinary(/** @type {Schemas["GearTrainAnalysis"]} */ (motion), problem);
     case "planetary_train":
-      return planetary(mechanism, motion, design);
+      return planetary(
+        /** @type {Schemas["PlanetaryMechanism"]} */ (mechanism),
+        /** @type {Schemas["PlanetaryAnalysis"]} */ (motion),
+        /** @type {Schemas["PlanetaryMetrics"]} */ (design.metrics),
+      );
     case "train_series":
-      return series(mechanism, motion, design, problem);
+      return series(
+        /** @type {Schemas["TrainSeriesMechanism"]} */ (mechanism),
+        /** @type {Schemas["TrainSeriesAnalysis"]} */ (motion),
+        /** @type {Schemas["TrainSeriesMetrics"]} */ (design.metrics),
+        problem,
+      );
     case "gearbox":
-      return gearbox(mechanism, motion);
+      return gearbox(
+        /** @type {Schemas["GearboxMechanism"]} */ (mechanism),
+        /** @type {Schemas["GearboxAnalysis"]} */ (motion),
+      );
     default:
-      return layshaft(mechanism, motion);
+      return layshaft(
+        /** @type {Schemas["LayshaftMechanism"]} */ (mechanism),
+        /** @type {Schemas["GearboxAnalysis"]} */ (motion),
+      );
   }
 }
 
 /**
  * Trains in series: each as it is alone, side by side, at the speed that its input has.
- * @param {any} mechanism
- * @param {any} motion
- * @param {any} design
- * @param {any} problem
+ * @param {Schemas["TrainSeriesMechanism"]} mechanism
+ * @param {Schemas["TrainSeriesAnalysis"]} motion
+ * @param {Schemas["TrainSeriesMetrics"]} metrics
+ * @param {Pick<Problem, "reverted" | "units">} problem
  */
-function series(mechanism, motion, design, problem) {
+function series(mechanism, motion, metrics, problem) {
   /** @type {Wheel[]} */
   const found = [];
   let right = 0;
-  mechanism.units.forEach((/** @type {any} */ unit, /** @type {number} */ n) => {
-    const own = wheels(unit, motion.units[n], { mechanism: unit, metrics: design.metrics.units[n] }, problem.units[n]);
+  const stated = Array.isArray(problem.units) ? problem.units : [];
+  mechanism.units.forEach((unit, /** @type {number} */ n) => {
+    const own = wheels(unit, motion.units[n], { metrics: metrics.units[n] }, stated[n] ?? {});
     const ends = own.map((wheel) => [
       wheel.centre[0] - radius(wheel) - wheel.module,
       wheel.centre[0] + radius(wheel) + wheel.module,
@@ -59,8 +84,8 @@ function series(mechanism, motion, design, problem) {
 
 /**
  * An ordinary train: shafts in a line; those of a reverted train go to and fro, or round a triangle.
- * @param {any} motion
- * @param {any} problem
+ * @param {Schemas["GearTrainAnalysis"]} motion
+ * @param {Pick<Problem, "reverted" | "units">} problem
  */
 function ordinary(motion, problem) {
   const distances = motion.centre_distances;
@@ -73,8 +98,8 @@ function ordinary(motion, problem) {
     const ahead = !back ? 0 : stages === 3 ? (2 * Math.PI * (stage - 1)) / 3 : Math.PI * ((stage - 1) % 2);
     /** @type {Wheel | null} */
     let before = null;
-    const gears = motion.gears.filter((/** @type {any} */ one) => one.stage === stage);
-    const kind = motion.meshes.find((/** @type {any} */ mesh) => mesh.stage === stage).type;
+    const gears = motion.gears.filter((one) => one.stage === stage);
+    const kind = motion.meshes.find((mesh) => mesh.stage === stage)?.type;
     const inside = kind === "internal";
     // A pinion that drives a ring meshes with it on the side away from the ring's axis.
     const contact = inside && gears[0].teeth < gears[1].teeth ? ahead + Math.PI : ahead;
@@ -95,7 +120,7 @@ function ordinary(motion, problem) {
         tooth: contact,
         speed: gear.speed_ratio,
         tone: stage - 1,
-        ...(inside ? { internal: gear.teeth === Math.max(...gears.map((/** @type {any} */ one) => one.teeth)) } : {}),
+        ...(inside ? { internal: gear.teeth === Math.max(...gears.map((one) => one.teeth)) } : {}),
         ...(kind === "worm" && gear.role === "driver" ? { module: gear.pitch_diameter / gear.teeth, idle: true } : {}),
       };
       if (before) {
@@ -113,25 +138,22 @@ function ordinary(motion, problem) {
 
 /**
  * A planetary train: which gear is on which body is told by the meshes.
- * @param {any} mechanism
- * @param {any} motion
- * @param {any} design
+ * @param {Schemas["PlanetaryMechanism"]} mechanism
+ * @param {Schemas["PlanetaryAnalysis"]} motion
+ * @param {Schemas["PlanetaryMetrics"]} metrics
  */
-function planetary(mechanism, motion, design) {
-  /** @type {{gears: string[], bodies: string[], carrier: string, distance: number}[]} */
-  const meshes = design.metrics.meshes.map((/** @type {any} */ mesh, /** @type {number} */ k) => ({
+function planetary(mechanism, motion, metrics) {
+  /** @type {PlanetMesh[]} */
+  const meshes = metrics.meshes.map((mesh, k) => ({
     gears: mesh.gears,
     bodies: [motion.meshes[k].first, motion.meshes[k].second],
     carrier: motion.meshes[k].carrier,
     // Bevel gears, whose axes cross, are shown as if spread out in one plane.
     distance:
-      mesh.centre_distance ??
-      0.5 *
-        mechanism.module *
-        mesh.gears.reduce((/** @type {number} */ sum, /** @type {string} */ name) => sum + mechanism.teeth[name], 0),
+      mesh.centre_distance ?? 0.5 * mechanism.module * mesh.gears.reduce((sum, name) => sum + mechanism.teeth[name], 0),
   }));
-  /** @type {Record<string, any>} */
-  const bodies = Object.fromEntries(motion.bodies.map((/** @type {any} */ body) => [body.name, body]));
+  /** @type {Record<string, Schemas["PlanetaryAnalysis"]["bodies"][number]>} */
+  const bodies = Object.fromEntries(motion.bodies.map((body) => [body.name, body]));
   const bodyOf = Object.fromEntries(meshes.flatMap((mesh) => mesh.gears.map((gear, k) => [gear, mesh.bodies[k]])));
   const carrierOf = Object.fromEntries(
     meshes.flatMap((mesh) => mesh.bodies.filter((body) => bodies[body].planet).map((body) => [body, mesh.carrier])),
@@ -228,8 +250,8 @@ function aside(own, first, mates, turn) {
 
 /**
  * Pins of the first planets: by their distance from the axis, those of one set beside each other.
- * @param {any[]} meshes
- * @param {Record<string, any>} bodies
+ * @param {PlanetMesh[]} meshes
+ * @param {Record<string, {planet: boolean}>} bodies
  * @returns {Record<string, Point>}
  */
 function pinsOf(meshes, bodies) {
@@ -245,13 +267,11 @@ function pinsOf(meshes, bodies) {
   const found = {};
   for (const planet of Object.keys(far)) {
     const beside = meshes.find(
-      (mesh) =>
-        mesh.bodies.includes(planet) &&
-        mesh.bodies.some((/** @type {string} */ body) => body !== planet && body in found),
+      (mesh) => mesh.bodies.includes(planet) && mesh.bodies.some((body) => body !== planet && body in found),
     );
     if (!beside) found[planet] = [far[planet], 0];
     else {
-      const [x, y] = found[beside.bodies.find((/** @type {string} */ body) => body !== planet)];
+      const [x, y] = found[beside.bodies.find((body) => body !== planet) ?? ""];
       const there = Math.hypot(x, y);
       const cosine = (there ** 2 + far[planet] ** 2 - beside.distance ** 2) / (2 * there * far[planet]);
       const angle = Math.atan2(y, x) + Math.acos(Math.min(1, Math.max(-1, cosine)));
@@ -271,16 +291,16 @@ function toward(one, other) {
 
 /**
  * A machine-tool gearbox, its shafts in a line; the pairs that are not engaged are circles.
- * @param {any} mechanism
- * @param {any} motion
+ * @param {Schemas["GearboxMechanism"]} mechanism
+ * @param {Schemas["GearboxAnalysis"]} motion
  */
 function gearbox(mechanism, motion) {
   /** @type {Wheel[]} */
   const found = [];
   let at = 0;
-  mechanism.stages.forEach((/** @type {any} */ stage, /** @type {number} */ n) => {
+  mechanism.stages.forEach((stage, /** @type {number} */ n) => {
     const [from, to] = [at, at + stage.centre_distance];
-    stage.pairs.forEach((/** @type {any} */ pair, /** @type {number} */ k) => {
+    stage.pairs.forEach((pair, /** @type {number} */ k) => {
       const idle = motion.engaged[n] !== k;
       const common = { module: mechanism.module, tone: n, idle };
       /** @type {Wheel} */
@@ -311,12 +331,12 @@ function gearbox(mechanism, motion) {
 
 /**
  * A layshaft gearbox: input and main shaft on one axis, the layshaft beside it, reverse by an idler.
- * @param {any} mechanism
- * @param {any} motion
+ * @param {Schemas["LayshaftMechanism"]} mechanism
+ * @param {Schemas["GearboxAnalysis"]} motion
  */
 function layshaft(mechanism, motion) {
   const { head, gears, reverse, module } = mechanism;
-  const [input, lay, main] = motion.shafts.map((/** @type {any} */ shaft) => shaft.speed_ratio);
+  const [input, lay, main] = motion.shafts.map((shaft) => shaft.speed_ratio);
   const distance = mechanism.centre_distance;
   const engaged = motion.engaged[0];
   /** @type {Wheel[]} */
@@ -342,11 +362,11 @@ function layshaft(mechanism, motion) {
     [0, 0],
     [distance, 0],
   ]);
-  gears.forEach((/** @type {any} */ pair, /** @type {number} */ k) => {
+  gears.forEach((pair, /** @type {number} */ k) => {
     if (pair.layshaft !== null)
       add(t`Gear ${k + 1}`, 1, k !== engaged, [
         [pair.layshaft, lay, beside, t`on the layshaft`],
-        [pair.mainshaft, main, axis, t`on the main shaft`],
+        [Number(pair.mainshaft), main, axis, t`on the main shaft`],
       ]);
   });
   if (reverse) {

@@ -1,5 +1,7 @@
 /** What has been stated, step by step, to go back and forth in. */
 
+/** @import { Problem } from "./types/values.js" */
+
 /** Edits that follow one another so soon are one step: a number that is typed, a point that is dragged. */
 const BURST_MS = 700;
 
@@ -9,7 +11,7 @@ const MOST = 200;
 /** Statements as JSON, the oldest first in both. @typedef {{past: string[], future: string[]}} Steps */
 
 export class Undo {
-  /** @param {(statement: any) => void} apply @param {HTMLButtonElement} back @param {HTMLButtonElement} forth */
+  /** @param {(statement: Problem) => void} apply @param {HTMLButtonElement} back @param {HTMLButtonElement} forth */
   constructor(apply, back, forth) {
     this.apply = apply;
     this.buttons = { back, forth };
@@ -26,7 +28,7 @@ export class Undo {
 
   /**
    * Note the statement as it is now.
-   * @param {any} statement
+   * @param {Problem} statement
    * @param {boolean} [apart] whether it is a step of its own however soon it follows
    */
   note(statement, apart = false) {

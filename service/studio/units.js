@@ -3,12 +3,16 @@
  * `dimension`.
  */
 
-/** @param {any} problem */
+/** @import { Problem } from "./types/values.js" */
+
+/** @param {Problem} problem */
 function symbols(problem) {
   const length = problem.length_unit ?? "mm";
   const arm = problem.kind === "indexing" || String(problem.follower?.type ?? "").startsWith("oscillating");
   const slides =
-    problem.mechanism === "slider_crank" || problem.output?.type === "slider" || (problem.stroke ?? null) !== null;
+    problem.mechanism === "slider_crank" ||
+    (typeof problem.output === "object" && problem.output?.type === "slider") ||
+    (problem.stroke ?? null) !== null;
   const way = slides ? length : "rad";
   const [lift, rate] = arm ? ["°", "rad"] : [length, length];
   const inches = length === "in";
@@ -55,12 +59,20 @@ function symbols(problem) {
   });
 }
 
-/** The unit of a dimension; empty where there is none. @param {string | undefined} dimension @param {any} problem */
+/**
+ * The unit of a dimension; empty where there is none.
+ * @param {string | undefined} dimension
+ * @param {Problem} problem
+ */
 export function symbolOf(dimension, problem) {
   return dimension === undefined ? "" : (symbols(problem)[dimension] ?? "");
 }
 
-/** The unit of a field; empty for a pure number. @param {import("./schema.js").Schema} schema @param {any} problem */
+/**
+ * The unit of a field; empty for a pure number.
+ * @param {import("./schema.js").Schema} schema
+ * @param {Problem} problem
+ */
 export function unitOf(schema, problem) {
   return symbolOf(schema["x-dimension"], problem);
 }

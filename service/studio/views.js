@@ -9,6 +9,8 @@ import { Geneva } from "./geneva.js";
 import { Ratchet } from "./ratchet.js";
 import { Rotor } from "./rotor.js";
 
+/** @import { MovingView } from "./types/values.js" */
+
 /** @typedef {{stop: () => void, pause?: () => void, player: import("./player.js").Player}} Moving */
 
 /** Samples of a cycle of a linkage. */
@@ -19,7 +21,7 @@ export const TURN_STEPS = 360;
 
 /**
  * What shows a mechanism that is no linkage.
- * @type {Record<string, new (frame: import("./stage.js").Frame, design: any, motion: any, problem: any) => Moving>}
+ * @type {Record<string, typeof MovingView>}
  */
 export const VIEWS = {
   cam: Disc,

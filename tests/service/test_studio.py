@@ -15,7 +15,8 @@ VENDORED = sorted(f"vendor/{path.name}" for path in (FOLDER / "vendor").iterdir(
 SPOKEN = sorted(f"messages/{path.name}" for path in (FOLDER / "messages").iterdir())
 NAMES = sorted(OWN + VENDORED + SPOKEN)
 NAMESPACE = "http://www.w3.org/2000/svg"
-IMPORTED = re.compile(r'(?:from ?|import\()"\./([^"]+)"')
+# Types are named in comments alone: no browser asks for them.
+IMPORTED = re.compile(r'(?:from ?|import\()"\./(?!types/)([^"]+)"')
 TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml",
          ".json": "application/json", ".LICENSE": "text/plain"}  # fmt: skip
 
@@ -28,6 +29,7 @@ def test_every_file_of_the_folder_is_served():
     made = {name for name in studio_files() if name.endswith(".bundle.js")}
     assert sorted(set(studio_files()) - made) == NAMES
     assert made == {"studio.bundle.js", "assembly_scene.bundle.js"}
+    assert not [name for name in studio_files() if name.startswith("types/")]
 
 
 @pytest.mark.slow
@@ -107,7 +109,7 @@ def versions():
 
 def test_a_bundle_has_each_module_once_after_those_that_it_imports():
     bundle = studio_files()[name_of("studio.js")].content.decode()
-    modules = imported(re.compile(r'from "\./([^"]+)"'))
+    modules = imported(re.compile(r'from "\./(?!types/)([^"]+)"'))
     begun = re.findall(r"^const \$(\w+) = (?:await \(async |\()\(\) => \{$", bundle, re.MULTILINE)
     assert sorted(begun) == sorted(name.removesuffix(".js") for name in modules)
     for name in modules:

@@ -14,7 +14,7 @@ type Always<Union, Name extends keyof Union = keyof Union> = Name extends unknow
 
 /** What of a type is an object with fields, and what is a list of such. */
 type Group<Value> = Value extends object ? (Value extends readonly unknown[] ? never : Value) : never;
-type Item<Value> = Value extends readonly (infer One)[] ? Group<One> : never;
+type Item<Value> = Value extends readonly (infer One)[] ? ([Group<One>] extends [never] ? never : One) : never;
 type Rest<Value> = Value extends object
   ? Value extends readonly (infer One)[]
     ? [Group<One>] extends [never]
@@ -38,9 +38,29 @@ export type Merged<Value> =
 export type Problem = Merged<Schemas["JobRequest"]["problem"]>;
 export type Result = Merged<NonNullable<Schemas["Job"]["result"]>>;
 export type Job = Omit<Schemas["Job"], "problem" | "result"> & { problem: Problem; result: Result | null };
+export type Solved = Job & { result: Result };
 export type Design = Result["designs"][number];
 export type Mechanism = Design["mechanism"];
 export type Skeleton = Schemas["Skeleton"];
 export type LinkageAnalysis = Schemas["LinkageAnalysis"];
 export type Analysis = Schemas["Analysis"];
+export type TrainMotion = Schemas[
+  "GearTrainAnalysis" | "PlanetaryAnalysis" | "TrainSeriesAnalysis" | "GearboxAnalysis"];
 export type Question = Omit<Schemas["LinkageAnalysisRequest"], "mechanism"> & { mechanism: Mechanism };
+
+/** One mechanism, which its type tells from the others. */
+export type OneMechanism = NonNullable<Schemas["Job"]["result"]>["designs"][number]["mechanism"];
+export type Metrics = Design["metrics"];
+
+/** A linkage, and what is known of it: of a cognate that is less than of a design. */
+export type Linked = Mechanism & { skeleton: Skeleton };
+export type LinkedDesign = Partial<Omit<Design, "mechanism">> & { mechanism: Linked };
+export type Layout = NonNullable<Design["layout"]>;
+
+/** What shows one type of mechanism takes the designs and the motions of that type only, which is its name's affair. */
+export declare class MovingView {
+  constructor(frame: import("../stage.js").Frame, design: Design, motion: Analysis, problem: Problem);
+  stop(): void;
+  pause?(): void;
+  player: import("../player.js").Player;
+}
