@@ -305,7 +305,7 @@ export async function file(id, design, form, signal) {
  * cannot send a key; a stream that breaks is taken up again after the last event.
  *
  * @param {string} id
- * @param {(event: string, data: any) => void} tell
+ * @param {(event: string, data: Job & Partial<Progress>) => void} tell
  * @param {AbortSignal} signal
  */
 export async function follow(id, tell, signal) {

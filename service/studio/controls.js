@@ -5,7 +5,7 @@ import { t, term } from "./messages.js";
 
 /** @import { Schemas } from "./types/values.js" */
 
-/** @param {string[]} choices @param {any} value @param {boolean} nullable @param {(value: any) => void} set */
+/** @param {string[]} choices @param {unknown} value @param {boolean} nullable @param {(value: unknown) => void} set */
 export function choice(choices, value, nullable, set) {
   const names = nullable ? ["", ...choices] : choices;
   const box = el(
@@ -17,7 +17,7 @@ export function choice(choices, value, nullable, set) {
   return box;
 }
 
-/** @param {any} value @param {any} fallback @param {(value: any) => void} set */
+/** @param {unknown} value @param {unknown} fallback @param {(value: unknown) => void} set */
 export function numberBox(value, fallback, set) {
   const box = el("input", {
     type: "number",
@@ -30,7 +30,7 @@ export function numberBox(value, fallback, set) {
   return box;
 }
 
-/** @param {any} value @param {any} fallback @param {(value: any) => void} set @param {(text: string) => any} read */
+/** @param {unknown} value @param {unknown} fallback @param {(value: unknown) => void} set @param {(text: string) => unknown} read */
 export function textBox(value, fallback, set, read) {
   const written = (/** @type {unknown} */ one) =>
     Array.isArray(one) ? one.map((part) => part ?? "open").join(", ") : String(one ?? "");
@@ -44,7 +44,7 @@ export function textBox(value, fallback, set, read) {
   return box;
 }
 
-/** Points as text, one to a line. @param {any} points */
+/** Points as text, one to a line. @param {unknown} points */
 export function lines(points) {
   return Array.isArray(points)
     ? points.map((point) => (Array.isArray(point) ? point.join(", ") : String(point))).join("\n")
@@ -53,7 +53,7 @@ export function lines(points) {
 
 /**
  * Points of the plane, one to a line: `120, 35`. What is no number stays as it is written, and the service says so.
- * @param {any} value @param {(value: any) => void} set
+ * @param {unknown} value @param {(value: unknown) => void} set
  */
 export function pointsBox(value, set) {
   const box = el("textarea", {
@@ -83,7 +83,7 @@ export function pointsBox(value, set) {
 
 /**
  * What a statement has as an analysis has it, such as a mechanism: its JSON. Nothing is set while the text is none.
- * @param {any} value @param {(value: any) => void} set
+ * @param {unknown} value @param {(value: unknown) => void} set
  */
 export function jsonBox(value, set) {
   const box = el("textarea", {
@@ -119,7 +119,7 @@ let ids = 0;
  * @param {string} path
  * @param {string[]} all
  * @param {string[]} value
- * @param {(value: any) => void} set
+ * @param {(value: unknown) => void} set
  */
 export function choices(name, note, path, all, value, set) {
   const boxes = all.map((one) => {
@@ -146,8 +146,8 @@ export function choices(name, note, path, all, value, set) {
 
 /**
  * Tooth numbers that there are, some of them several times: `20, 24 × 3, 30`.
- * @param {any} value
- * @param {(value: any) => void} set
+ * @param {unknown} value
+ * @param {(value: unknown) => void} set
  */
 export function stockBox(value, set) {
   const written = (/** @type {string | number | Schemas["StockedGear"]} */ one) =>

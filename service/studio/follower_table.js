@@ -2,6 +2,8 @@
 
 import { t } from "./messages.js";
 
+/** @import { Problem } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 
 /** Degrees of a turn. */
@@ -19,7 +21,7 @@ function rounded(value) {
  * The segments of a motion through points: x is turned into cam angles so that all of it is one turn.
  * @param {Point[]} points
  * @param {number} unit of displacements in their derivatives: 1, or radians in a degree for an arm
- * @returns {any[]}
+ * @returns {NonNullable<Problem["segments"]>}
  */
 export function segmentsOf(points, unit) {
   const [first, last] = [points[0], points[points.length - 1]];

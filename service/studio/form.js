@@ -222,7 +222,7 @@ function shapes(sheet, what, schema, name, note, path, required, owner, set) {
   const dimension = schema["x-dimension"];
   const ways = options.map(shapeName);
   const way = choice(ways, shapeName(now), false, (chosen) => {
-    const option = options[ways.indexOf(chosen)];
+    const option = options[ways.indexOf(String(chosen))];
     owner[name] = option.type === "null" ? null : initial(option, sheet.root);
     sheet.rebuild();
   });
@@ -315,7 +315,7 @@ function union(sheet, options, owner, name, path) {
     owner[name][tag] ?? option.properties[tag].default,
     false,
     (value) => {
-      const next = initial(options.find((one) => tagsOf(one, tag).includes(value)) ?? options[0], sheet.root);
+      const next = initial(options.find((one) => tagsOf(one, tag).includes(String(value))) ?? options[0], sheet.root);
       owner[name] = { ...next, [tag]: value };
       sheet.rebuild();
     },
