@@ -30,7 +30,12 @@ export function numberBox(value, fallback, set) {
   return box;
 }
 
-/** @param {unknown} value @param {unknown} fallback @param {(value: unknown) => void} set @param {(text: string) => unknown} read */
+/**
+ * @param {unknown} value
+ * @param {unknown} fallback
+ * @param {(value: unknown) => void} set
+ * @param {(text: string) => unknown} read
+ */
 export function textBox(value, fallback, set, read) {
   const written = (/** @type {unknown} */ one) =>
     Array.isArray(one) ? one.map((part) => part ?? "open").join(", ") : String(one ?? "");
