@@ -127,3 +127,16 @@ def test_german_is_spoken_with_decimal_commas(open_studio, server):
     assert page.inner_text("#solve") == "Solve"
     page.wait_for_selector(".figures td")
     assert any(re.search(r"\d\.\d", text) for text in page.locator(".figures td").all_inner_texts())
+
+
+def test_a_gear_is_engaged_by_what_the_service_calls_it(open_studio):
+    studio = open_studio(locale="de-DE", reduced_motion="reduce")
+    page = studio.page
+    state(page, examples("layshaft_gearbox")[0])
+    studio.solve()
+    page.wait_for_selector(".speeds")
+    reverse = page.locator("#engaged option", has_text="Rückwärtsgang: −")
+    output = page.locator(".speeds dd").last
+    assert not output.inner_text().startswith("−")
+    page.select_option("#engaged", reverse.get_attribute("value"))
+    until(lambda: output.inner_text().startswith("−"), 30, "another direction")
