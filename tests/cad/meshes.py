@@ -17,14 +17,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from manifold3d import Error, Manifold, Mesh64
 from numpy.typing import NDArray
 
 from service.parts import cad
 from service.parts.model import Assembly, Part
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
 
 Real = NDArray[np.float64]
 
@@ -55,6 +57,8 @@ class Looked(NamedTuple):
 
 def meshed(solids: Sequence[Any]) -> list[Manifold]:
     """The meshes of solids as they are exported, each of them closed."""
+    from manifold3d import Error, Manifold, Mesh64
+
     made = []
     for solid in solids:
         corners, triangles = cad.surface(solid)

@@ -16,7 +16,6 @@ from typing import Any
 
 import ezdxf
 import pytest
-from manifold3d import Manifold
 from pydantic import ValidationError
 
 from service.parts import cad
@@ -71,7 +70,7 @@ def solids(key: tuple[str, str]) -> list[Any]:
 
 
 @cache
-def meshes(key: tuple[str, str]) -> list[Manifold]:
+def meshes(key: tuple[str, str]) -> list[Any]:
     return meshed(solids(key))
 
 
