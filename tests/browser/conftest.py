@@ -42,8 +42,8 @@ def server(tmp_path_factory):
 def chromium():
     assert Path(CHROMIUM).exists(), "make test-browser installs chromium, or says how"
     with sync_playwright() as playwright:
-        # Without its sandbox, which needs a user other than root; it sees our own page only. And no GPU: only solids are
-        # drawn by the library that stands in for one. The page itself takes it six times as long as a plain painter.
+        # Without its sandbox, which needs a user other than root; it sees our own page only. And no GPU: solids
+        # are drawn by the library that stands in for one. The page itself would take it six times as long.
         drawing = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
         drawing += ("--disable-gpu-compositing", "--disable-gpu-rasterization")
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", *drawing])
