@@ -23,7 +23,7 @@ from tests.oracles.loops import Loops
 
 TASKS = 200
 
-SIXBARS = ["watt_1", "stephenson_1", "stephenson_3"]
+SIXBARS = ["watt_1", "stephenson_1", "stephenson_2", "stephenson_3"]
 SOUND, REACH = 20.0, 5.0
 Task = list[dict[str, float]]
 
@@ -72,7 +72,8 @@ def false_claim(design: Any, task: Task) -> str:
     """What another formulation does not confirm of a design; empty where it confirms all."""
     inputs = np.radians([target.input_angle for target in design.targets])
     try:
-        met = Loops(design.mechanism.skeleton.model_dump(mode="json")).followed(inputs - inputs[0])
+        loops = Loops(design.mechanism.skeleton.model_dump(mode="json"))
+        met = loops.followed(inputs - inputs[0])
     except AssertionError as error:
         return str(error)
     if not met.branch > 0.0:
@@ -86,7 +87,10 @@ def false_claim(design: Any, task: Task) -> str:
         return "another position"
     at = {"coupler": "B", "link_5": "D" if design.mechanism.type == "stephenson_3" else "E"}
     for link, angle in design.metrics.transmission_angles.items():
-        seen = min(value for (joint, *on), value in met.angles.items() if joint == at[link] and link in on)
+        if link == "output":
+            seen = min(loops.pushed(places, link) for places in met.places)
+        else:
+            seen = min(value for (joint, *on), value in met.angles.items() if joint == at[link] and link in on)
         if seen < angle - 0.1:
             return "transmission angle"
     return ""

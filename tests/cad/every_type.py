@@ -58,6 +58,7 @@ MADE: dict[Key, Row] = {
     ("motion", "watt_1"): _sixbar(SIXBAR_MOTION, "watt_1"),
     ("motion", "watt_2"): Row({**MOTION, "driver_dyad": True}),
     ("motion", "stephenson_1"): _sixbar(SIXBAR_MOTION, "stephenson_1"),
+    ("motion", "stephenson_2"): _sixbar(SIXBAR_MOTION, "stephenson_2"),
     ("motion", "stephenson_3"): Row({**MOTION, "driver_dyad": {"link": "coupler"}}),
     ("path", "fourbar"): Row({"kind": "path", "points": SIXBAR_PATH["points"][:5], "max_designs": 1}),
     ("path", "slider_crank"): Row(

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
 
 from benchmarks.sixbars.motion import on_a_way
 from synthesis.kinds.motion import by_type
@@ -32,7 +33,7 @@ FIVE = [
 ]
 SIX = [*FIVE, {"x": 118.0, "y": -80.0, "angle": -48.0}]
 TASK: dict[str, Any] = {"kind": "motion", "positions": FIVE, "mechanisms": ["watt_1"], "max_designs": 2}
-SIXBARS = "watt_1", "stephenson_1", "stephenson_3"
+SIXBARS = "watt_1", "stephenson_2", "stephenson_1", "stephenson_3"
 FOURBAR_TASK = [FIVE[0], FIVE[1], {"x": 70.0, "y": 20.0, "angle": 30.0}]
 
 
@@ -62,12 +63,15 @@ def held_against_loops(design, positions, only: Sequence[int] | None = None) -> 
     stated = design["metrics"]["transmission_angles"]
     at_joint = {"coupler": "B", "link_5": "D" if design["mechanism"]["type"] == "stephenson_3" else "E"}
     for link, angle in stated.items():
-        seen = min(value for (joint, *on), value in met.angles.items() if joint == at_joint[link] and link in on)
+        if link == "output":
+            seen = min(loops.pushed(places, link) for places in met.places)
+        else:
+            seen = min(value for (joint, *on), value in met.angles.items() if joint == at_joint[link] and link in on)
         assert seen == pytest.approx(angle, abs=0.05)
 
 
 @pytest.mark.timeout(300)
-@pytest.mark.parametrize("kind", further(SIXBARS, ["watt_1"]))
+@pytest.mark.parametrize("kind", further(SIXBARS, ["watt_1", "stephenson_2"]))
 def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
     body = answered(client, mechanisms=[kind])
     designs = passed(body)
@@ -421,6 +425,12 @@ def test_room_planes_and_forces_hold_together(client):
         ({"mechanisms": "auto", "chain": {"elbow": "left"}}, "/problem/chain"),
         ({"mechanisms": ["fourbar", "watt_1"], "chain": {"elbow": "left"}}, "/problem/chain"),
         ({"mechanisms": "auto", "positions": SIX, "chain": {"elbow": "left"}}, "/problem/chain"),
+        ({"mechanisms": ["stephenson_2"], "constraints": {"grashof": "crank_rocker"}}, "/problem/constraints/grashof"),
+        (
+            {"mechanisms": ["stephenson_2"], "constraints": {"full_rotation": True}},
+            "/problem/constraints/full_rotation",
+        ),
+        ({"mechanisms": ["fourbar", "stephenson_2"], "chain": {"elbow": "left"}}, "/problem/chain"),
         ({"mechanisms": ["slider_crank"], "driver_dyad": True}, "/problem/driver_dyad"),
         ({"mechanisms": ["slider_crank"], "constraints": {"grashof": "double_crank"}}, "/problem/constraints/grashof"),
         (
@@ -440,3 +450,22 @@ def test_what_cannot_be_had_is_refused_at_its_field(client, changed, path):
     answer = client.post("/v1/jobs", json={"problem": TASK | changed})
     assert answer.status_code == 422, answer.text
     assert any(fault["path"].startswith(path) for fault in answer.json()["errors"]), answer.text
+
+
+def test_positions_without_a_crank_have_no_stephenson_2(client):
+    positions = on_a_way(np.random.default_rng(9))
+    result = answered(client, positions=positions, mechanisms=["stephenson_2"])["result"]
+    assert not result["designs"]
+    assert "there is none that meets these positions" in result["summary"]
+    # By another route: no descent on the pins of a crank arrives, from wherever it begins.
+    at = np.array([complex(p["x"], p["y"]) for p in positions]) / 100.0
+    turns = np.exp(1j * np.radians([p["angle"] - positions[0]["angle"] for p in positions]))
+
+    def unequal(pins):
+        lengths = np.abs(at + turns * (complex(*pins[:2]) - at[0]) - complex(*pins[2:]))
+        return lengths[1:] - lengths[0]
+
+    starts = np.random.default_rng(1).normal(size=(60, 4)) * 2.0 + np.tile([at.mean().real, at.mean().imag], 2)
+    met = [least_squares(unequal, start, xtol=1e-14, ftol=1e-14, gtol=1e-14) for start in starts]
+    # A crank without length, and one that is as long as can be, meet all positions nearly.
+    assert min(one.cost for one in met if 1e-3 < np.abs(one.x).max() < 100.0) > 1e-12

@@ -2867,7 +2867,7 @@ export interface components {
             /** @enum {string} */
             method?: "auto" | "exact" | "least_squares";
             driver_dyad?: boolean | components["schemas"]["DriverDyad"];
-            mechanisms?: "auto" | (("fourbar" | "slider_crank") | ("watt_1" | "stephenson_1" | "stephenson_3"))[] | null;
+            mechanisms?: "auto" | (("fourbar" | "slider_crank") | ("watt_1" | "stephenson_1" | "stephenson_2" | "stephenson_3"))[] | null;
             chain?: components["schemas"]["Chain"] | null;
         };
         MotionResult: {

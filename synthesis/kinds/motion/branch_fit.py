@@ -34,7 +34,8 @@ from synthesis.kinds.motion.branch_rows import (
     driven,
     most_rows,
 )
-from synthesis.kinds.motion.branch_walk import ARRIVED, Pool, Poses, Room, descended, of_first, value_of
+from synthesis.kinds.motion.branch_values import Poses, value_of
+from synthesis.kinds.motion.branch_walk import ARRIVED, Pool, Room, descended, of_first
 from synthesis.kinds.motion.sixbar_makes import Found
 
 Real = NDArray[np.float64]

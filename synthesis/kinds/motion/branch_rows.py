@@ -7,13 +7,16 @@ on which it stands first. What does not close at one of :data:`SAMPLES` inputs o
 descent never leaves the branch. There remain as residuals, each 0 where it holds:
 
 * P's distance and the body's angle from each later position, or what either has beyond its tolerance;
-* |cos μ| beyond that of the least transmission angle, of both dyads, at the samples;
+* |cos μ| beyond that of the least transmission angle, of both dyads, or of the triad, at the samples;
 * distances of two joints of a link beyond the reach and the longest link, and short of the shortest; the link ratio;
 * what joints have beyond their boxes: pivots in the first position, all joints on the way.
 
 With five positions there are twelve of the first sort and eighteen unknowns: six freedoms, along which the others find
 room. Derivatives are exact, by the closures |j − p| = const, |j − q| = const differentiated (a column for each unknown
 coordinate, and one for the input).
+
+A Stephenson II is driven by a link that turns relative to its input, and seen from the ground then
+(:mod:`synthesis.kinds.motion.inversion`): "the input" is that link here.
 """
 
 from __future__ import annotations
@@ -35,6 +38,7 @@ from synthesis.kinds.motion.chain_kernels import (
     OUTPUT,
     Q1,
     Q2,
+    STEPHENSON_2,
     A,
     B,
     J,
@@ -42,6 +46,7 @@ from synthesis.kinds.motion.chain_kernels import (
     on_link,
     signed_sine,
 )
+from synthesis.kinds.motion.inversion import on_ground, rates_on_ground
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -89,7 +94,7 @@ def _pairs() -> NDArray[np.int64]:
     for make, (first, second) in enumerate(MAKES):
         pairs = [(O2, A), (A, B), (O4, B), (O2, O4), (Q1, J), (Q2, J)]
         pairs += [(Q1, int(pin)) for pin in OF_LINK[first]] + [(Q2, int(pin)) for pin in OF_LINK[second]]
-        pairs += [(Q1, TO_P), (J, TO_P)]
+        pairs += [(Q1, TO_P), (A if make == STEPHENSON_2 else J, TO_P)]
         listed[make, : len(pairs)] = pairs
     return listed
 
@@ -126,10 +131,10 @@ def dimensions(z: Complex, lengths: Real, inverses: Complex) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def driven(
+def assembled(
     z: Complex, lengths: Real, inverses: Complex, setting: Real, angle: float, at: Complex, turns: Complex
 ) -> tuple[float, float]:
-    """The linkage with its input turned by ``angle`` from the first position.
+    """The linkage with its input turned by ``angle`` from the first position, closed by its dyads.
 
     Parameters
     ----------
@@ -147,7 +152,7 @@ def driven(
     Returns
     -------
     tuple of float
-        Cosines of both transmission angles; what is filled has no meaning where either is beyond ±1.
+        Cosines of the angles at both dyads; what is filled has no meaning where either is beyond ±1.
     """
     first, second = MAKES[int(setting[MAKE]), 0], MAKES[int(setting[MAKE]), 1]
     turns[0] = complex(math.cos(angle), math.sin(angle))
@@ -161,6 +166,17 @@ def driven(
     at[4], other = closed(at[2], at[3], lengths[2], lengths[3], setting[SECOND_SIDE])
     turns[3] = (at[4] - at[2]) * inverses[2]
     at[5] = at[2] + turns[3] * (complex(setting[FIRST_X], setting[FIRST_Y]) - z[Q1])
+    return cosine, other
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def driven(
+    z: Complex, lengths: Real, inverses: Complex, setting: Real, angle: float, at: Complex, turns: Complex
+) -> tuple[float, float]:
+    """The same as the ground sees it, with the cosines of transmission angles: of a Stephenson II one, and 0."""
+    cosine, other = assembled(z, lengths, inverses, setting, angle, at, turns)
+    if int(setting[MAKE]) == STEPHENSON_2 and abs(cosine) < 1.0 and abs(other) < 1.0:
+        return on_ground(z, complex(setting[FIRST_X], setting[FIRST_Y]), at, turns), 0.0
     return cosine, other
 
 
@@ -190,9 +206,13 @@ def _rates(
     cosines: Real,
     moving: Complex,
     turning: Real,
+    through: Real,
     bending: Real,
 ) -> None:
-    """Rates by each row of :data:`UNITS`: of ``at`` (6, 15), of the body's angle (15,), of both cosines (2, 15)."""
+    """Rates by each row of :data:`UNITS`, 15 of them: of ``at`` (6, 15), of angles, and of both cosines (2, 15).
+
+    The angles are the body's and the coupler's.
+    """
     make = int(setting[MAKE])
     first, second = MAKES[make, 0], MAKES[make, 1]
     ab, db, u, v = z[B] - z[A], z[B] - z[O4], z[J] - z[Q1], z[J] - z[Q2]
@@ -220,6 +240,7 @@ def _rates(
         moving[4, m] = j
         moving[5, m] = moving[2, m] + body * (start - z[Q1]) - turns[3] * unit[Q1]
         turning[m] = (body * turns[3].conjugate()).imag
+        through[m] = (rates[2] * turns[1].conjugate()).imag
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -271,7 +292,7 @@ def _sizes(z: Complex, setting: Real, residuals: Real, jacobian: Real, m: int, f
                 _along(i, k, free, sense * BY_SIZE * way / abs(way) ** 2, jacobian[m])
         m += 1
     for i in range(7):
-        fixed = i in (O2, O4) or (i == Q2 and MAKES[make, 1] == GROUND)
+        fixed = i in (Q2, J) if make == STEPHENSON_2 else i in (O2, O4) or (i == Q2 and MAKES[make, 1] == GROUND)
         box = setting[FIXED_BOX:MOVING_BOX] if fixed else setting[MOVING_BOX:ROOM]
         for axis in range(2):
             off = _outside(z[i].imag if axis else z[i].real, box[2 * axis], box[2 * axis + 1])
@@ -353,11 +374,11 @@ def branch_rows(x: Real, points: Real, setting: Real, residuals: Real, jacobian:
     if setting[SECOND_SIDE] * signed_sine(z[Q1], z[Q2], z[J]) <= 0.0:
         return -1
     dimensions(z, lengths, inverses)
-    rates, turning = np.empty((6, JOINTS + 1), np.complex128), np.empty(JOINTS + 1)
+    rates, turning, through = np.empty((6, JOINTS + 1), np.complex128), np.empty(JOINTS + 1), np.empty(JOINTS + 1)
     bending, cosines = np.empty((2, JOINTS + 1)), np.empty(2)
     room = setting[ROOM : ROOM + 4]
     everywhere = math.isinf(room[1] - room[0]) and math.isinf(room[3] - room[2])
-    m, angle = 0, 0.0
+    m, angle, inverted = 0, 0.0, int(setting[MAKE]) == STEPHENSON_2
     if free > 0:
         for axis in range(FREE):
             weight = points[0, 7 if axis == 2 else 6]
@@ -369,15 +390,23 @@ def branch_rows(x: Real, points: Real, setting: Real, residuals: Real, jacobian:
     for n in range(SAMPLES + intervals):
         target = n - SAMPLES
         angle = total * n / SAMPLES if target < 0 else parts[target] + (angle if target > 0 else 0.0)
-        cosines[0], cosines[1] = driven(z, lengths, inverses, setting, setting[WAY] * angle, at, turns)
+        cosines[0], cosines[1] = assembled(z, lengths, inverses, setting, setting[WAY] * angle, at, turns)
         if not (abs(cosines[0]) < BARRIER and abs(cosines[1]) < BARRIER):
             return -1
-        if target < 0 and everywhere and max(abs(cosines[0]), abs(cosines[1])) <= setting[COSINE]:
+        plain = everywhere and not inverted and max(abs(cosines[0]), abs(cosines[1])) <= setting[COSINE]
+        if target < 0 and plain:
             continue
         if derived:
             for k in range(intervals):
                 by_turn[k] = setting[WAY] * parts[k] * (n / SAMPLES if target < 0 else (1.0 if k <= target else 0.0))
-            _rates(z, lengths, inverses, setting, at, turns, cosines, rates, turning, bending)
+            _rates(z, lengths, inverses, setting, at, turns, cosines, rates, turning, through, bending)
+        if inverted:
+            start = complex(setting[FIRST_X], setting[FIRST_Y])
+            if derived:
+                rates_on_ground(z, UNITS, start, at, turns, through, rates, turning, bending[0])
+            cosines[0], cosines[1] = on_ground(z, start, at, turns), 0.0
+            if not abs(cosines[0]) < BARRIER:
+                return -1
         for dyad in range(2):
             over = abs(cosines[dyad]) - setting[COSINE]
             if over > 0.0:

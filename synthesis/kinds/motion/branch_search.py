@@ -11,9 +11,11 @@ from synthesis.kinds.motion import branch_fit as fit
 from synthesis.kinds.motion import branch_rows as rows
 from synthesis.kinds.motion import branch_walk as walk
 from synthesis.kinds.motion import chain_kernels as kernels
+from synthesis.kinds.motion.branch_values import Poses
 from synthesis.kinds.motion.chain_draws import needed
 from synthesis.kinds.motion.demanded import Demanded, Real
 from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.relative_dyads import MOST, dyads, relative
 from synthesis.kinds.motion.sixbar_makes import Found
 from synthesis.kinds.motion.stated_positions import MOST_HELD
 from synthesis.kinds.motion.task import MotionTask
@@ -24,7 +26,7 @@ DESCENTS = 1500
 KEPT = 400
 """Linkages that are kept of a round."""
 
-DRAWN = 4, 4, 3, 1, 1, 1, 1
+DRAWN = 4, 4, 3, 1, 1, 1, 1, 2
 """How often each make is drawn: most often those that carry a body through most positions."""
 
 FIRST_POSES = 64
@@ -55,7 +57,12 @@ class BranchSearch:
     def __init__(
         self, problem: MotionProblem, task: MotionTask, target: Demanded, wanted: NDArray[np.bool_], limits: Real
     ) -> None:
-        self.makes = np.repeat(np.arange(len(wanted)), np.where(wanted, DRAWN, 0))
+        exactly = len(target.held) == kernels.POSITIONS and bool(target.held.all())
+        self.cranks = _cranks(task) if exactly else np.empty((0, 2), np.complex128)
+        drawn = np.where(wanted, DRAWN, 0)
+        if exactly and not len(self.cranks):
+            drawn[kernels.STEPHENSON_2] = 0
+        self.makes = np.repeat(np.arange(len(wanted)), drawn)
         self.first, self.later = _poses(problem, task, target, np.random.default_rng(problem.seed))
         self.held: NDArray[np.bool_] = np.all(target.held, axis=1)
         self.each = math.ceil(DESCENTS * min(1.0, MOST_HELD / len(self.held)))
@@ -66,10 +73,12 @@ class BranchSearch:
 
     def round(self, rng: np.random.Generator, *, relaxed: bool) -> Found:
         """Goes on with what was found before; ``relaxed`` without limits that nobody stated."""
+        if not len(self.makes):
+            return Found.none()
         joints, makes = np.empty((KEPT, 7), np.complex128), np.empty(KEPT, np.int64)
         starts, counts = np.empty(KEPT, np.int64), np.zeros(3, np.int64)
         arrived = walk.Arrived(joints, makes, np.empty(KEPT), starts, counts)
-        poses = walk.Poses(self.first, self.later, self.needed, self.limits)
+        poses = Poses(self.first, self.later, self.needed, self.limits, self.cranks)
         walk.walked(rng, self.each, self.makes, self.settings[relaxed], poses, self.pools[relaxed], arrived)
         self.descents += int(counts[1])
         n = int(counts[0])
@@ -85,13 +94,24 @@ class BranchSearch:
     def fitted(self) -> Found:
         """Those that miss least, taken to the end of their least squares; what follows begins anew."""
         found = Found.none()
-        poses = walk.Poses(self.first, self.later, self.needed, self.limits)
+        poses = Poses(self.first, self.later, self.needed, self.limits, self.cranks)
         for pool in self.pools:
             ends = Found.room(len(pool.costs))
             n = int(fit.fitted(poses, self.held, pool, ends))
             found = found.beside(ends.best(np.arange(n)))
             pool.costs[:] = np.inf
         return found
+
+
+def _cranks(task: MotionTask) -> NDArray[np.complex128]:
+    """The cranks between body and ground, (n, 2), on the body and on the ground: a Stephenson II has one of them."""
+    still, upright = np.zeros(kernels.POSITIONS, np.complex128), np.ones(kernels.POSITIONS, np.complex128)
+    shift, spin = np.empty_like(still), np.empty_like(still)
+    fixed, moving = np.empty(MOST, np.complex128), np.empty(MOST, np.complex128)
+    relative(still, upright, task.points, task.turns, shift, spin)
+    none = complex(math.nan, math.nan)
+    n = int(dyads(shift, spin, none, none, fixed, moving))
+    return np.stack([moving[:n], fixed[:n]], axis=1)
 
 
 def _poses(problem: MotionProblem, task: MotionTask, target: Demanded, rng: np.random.Generator) -> tuple[Real, Real]:

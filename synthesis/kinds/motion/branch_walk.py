@@ -30,11 +30,10 @@ from synthesis.kinds.motion.branch_rows import (
     SETTINGS,
     WAY,
     branch_rows,
-    dimensions,
-    driven,
     most_rows,
 )
-from synthesis.kinds.motion.chain_kernels import O4, Q1, Q2, A, B, J, signed_sine, weighed
+from synthesis.kinds.motion.branch_values import Poses, value_of
+from synthesis.kinds.motion.chain_kernels import O4, Q1, Q2, STEPHENSON_2, A, B, J, signed_sine
 from synthesis.numerics.cholesky import solve_positive
 
 Real = NDArray[np.float64]
@@ -97,27 +96,6 @@ class Pool(NamedTuple):
     costs: Real
     settings: Real
     starts: NDArray[np.int64]
-
-
-class Poses(NamedTuple):
-    """What is demanded of the body, with first poses of it that are within their tolerance.
-
-    Attributes
-    ----------
-    first : float, shape (n, 3)
-        P and the angle of the body in the first position, one of which each linkage takes.
-    later : float, shape (k, 8)
-        Later positions as :data:`branch_rows.OF_POSE` has them, but with the angle from the first demanded one.
-    needed : float, shape (2,)
-        Way and turn that the body needs.
-    limits : float, shape (19,)
-        See :data:`synthesis.kinds.motion.chain_kernels.LEAST_SINE`.
-    """
-
-    first: Real
-    later: Real
-    needed: Real
-    limits: Real
 
 
 class Arrived(NamedTuple):
@@ -263,7 +241,7 @@ def of_first(poses: Poses, start: int, setting: Real, points: Real) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _drawn(rng: np.random.Generator, x: Real, points: Real, setting: Real, room: Room) -> float:
+def _drawn(rng: np.random.Generator, x: Real, points: Real, setting: Real, cranks: Complex, room: Room) -> float:
     """A random linkage that closes, the nearest of a few; its cost."""
     trial, best, found = np.empty(x.size), np.inf, 0
     centre = complex(setting[FIRST_X], setting[FIRST_Y])
@@ -277,6 +255,10 @@ def _drawn(rng: np.random.Generator, x: Real, points: Real, setting: Real, room:
         spread = LEAST_SPREAD * (MOST_SPREAD / LEAST_SPREAD) ** rng.random()
         for j in range(JOINTS):
             trial[j] = (centre.imag if j % 2 else centre.real) + spread * rng.normal()
+        if int(setting[MAKE]) == STEPHENSON_2 and len(cranks) > 0:
+            row = int(rng.random() * len(cranks))
+            trial[2 * Q1], trial[2 * Q1 + 1] = cranks[row, 0].real, cranks[row, 0].imag
+            trial[2 * J], trial[2 * J + 1] = cranks[row, 1].real, cranks[row, 1].imag
         turn = LEAST_TURN + (MOST_DRAWN - LEAST_TURN) * rng.random()
         total = 0.0
         for k in range(JOINTS, x.size):
@@ -298,25 +280,13 @@ def _drawn(rng: np.random.Generator, x: Real, points: Real, setting: Real, room:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def value_of(x: Real, points: Real, setting: Real, poses: Poses, joints: Complex) -> float:
-    """The value of a linkage that meets the positions, and its joints in the first one."""
-    at, turns = np.empty(6, np.complex128), np.ones(4, np.complex128)
-    places = len(points) + 1
-    into, out = np.ones(places, np.complex128), np.ones(places, np.complex128)
-    place, turn = np.empty(places, np.complex128), np.ones(places, np.complex128)
-    demanded = np.ones(places, np.bool_)
-    for j in range(7):
-        joints[j] = complex(x[2 * j], x[2 * j + 1])
-    lengths, inverses = np.empty(4), np.empty(4, np.complex128)
-    dimensions(joints, lengths, inverses)
-    place[0] = complex(setting[FIRST_X], setting[FIRST_Y])
-    angle = 0.0
-    for k in range(1, places):
-        angle += math.exp(x[JOINTS + k - 1])
-        driven(joints, lengths, inverses, setting, setting[WAY] * angle, at, turns)
-        place[k], turn[k], into[k], out[k] = at[5], turns[3], turns[0], turns[2]
-    make = int(setting[MAKE])
-    return float(weighed(joints, make, into, out, place, turn, demanded, poses.needed, poses.limits))
+def _hopped(rng: np.random.Generator, x: Real, spread: float, setting: Real, poses: Poses, to: Real) -> None:
+    """Changes a linkage at random, but for the crank of a Stephenson II to which there is no other."""
+    for k in range(x.size):
+        to[k] = x[k] + spread * rng.normal()
+    if int(setting[MAKE]) == STEPHENSON_2 and len(poses.cranks) > 0:
+        for j in (Q1, J):
+            to[2 * j], to[2 * j + 1] = x[2 * j], x[2 * j + 1]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -342,8 +312,7 @@ def _improved(
         if n % 3:
             aims[COSINE] = math.cos(min(angle + 0.1, 1.4))
             aims[REACH], aims[RATIO] = BETTER_SHARE * reach, BETTER_SHARE * ratio
-        for k in range(x.size):
-            trial[k] = x[k] + spread * rng.normal()
+        _hopped(rng, x, spread, setting, poses, trial)
         _sides(trial, aims)
         if descended(trial, points, aims, room, counts, WORTH) < ARRIVED:
             better = value_of(trial, points, aims, poses, other)
@@ -414,7 +383,7 @@ def walked(
             setting[MAKE] = makes[int(rng.random() * len(makes))]
             setting[WAY] = 1.0 if rng.random() < 0.5 else -1.0
             of_first(poses, start, setting, points)
-            cost = _drawn(rng, x, points, setting, room)
+            cost = _drawn(rng, x, points, setting, poses.cranks, room)
         else:
             parent = int(POOL * rng.random() ** 2)
             start = int(pool.starts[parent])
@@ -422,8 +391,7 @@ def walked(
             of_first(poses, start, setting, points)
             spread = LEAST_HOP * (MOST_HOP / LEAST_HOP) ** rng.random()
             for _hop in range(REFUSED):
-                for k in range(unknowns):
-                    x[k] = pool.x[parent, k] + spread * rng.normal()
+                _hopped(rng, pool.x[parent], spread, setting, poses, x)
                 _sides(x, setting)
                 cost = _cost(x, points, setting, room)
                 if cost < np.inf:

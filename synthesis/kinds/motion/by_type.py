@@ -48,6 +48,9 @@ def solve_types(problem: MotionProblem, two_dyads: Solve, progress: Progress) ->
         progress,
         not_looked_for(lacking(problem)) if problem.mechanisms == "auto" else "",
     )
+    if problem.unclassed:
+        told = f"Stephenson II sixbars were not looked for beside {problem.unclassed}."
+        return answer.model_copy(update={"summary": f"{answer.summary} {told}"})
     return answer
 
 

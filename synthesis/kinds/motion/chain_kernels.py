@@ -44,12 +44,14 @@ GROUND, INPUT, COUPLER, OUTPUT = range(4)
 
 MAKES = np.array(
     [[COUPLER, INPUT], [COUPLER, OUTPUT], [COUPLER, GROUND], [INPUT, OUTPUT], [OUTPUT, INPUT], [INPUT, COUPLER],
-     [OUTPUT, COUPLER]]
+     [OUTPUT, COUPLER], [COUPLER, GROUND]]
 )  # fmt: skip
-"""By the number of a make: the link of Q₁ and that of Q₂. The last two are no 3R chains: the body is two pins from the
-ground on all ways but one, and only :mod:`synthesis.kinds.motion.branch_walk` has them."""
+"""By the number of a make: the link of Q₁ and that of Q₂. Only :mod:`synthesis.kinds.motion.branch_walk` has the last
+three: two that are no 3R chains, the body being two pins from the ground on all ways but one; and the Stephenson II,
+which is seen from its input link (:mod:`synthesis.kinds.motion.inversion`)."""
 
 WATT_1_IN, WATT_1_OUT, STEPHENSON_3, STEPHENSON_1_IN, STEPHENSON_1_OUT, WATT_1_BESIDE_IN, WATT_1_BESIDE_OUT = range(7)
+STEPHENSON_2 = 7
 
 OF_LINK = np.array([[O2, O4], [O2, A], [A, B], [O4, B]])
 """The pins of each link of the fourbar."""
@@ -197,7 +199,7 @@ def run(input_turns: Complex, demanded: NDArray[np.bool_], inputs: Real) -> floa
         at, back, before = 0.0, 0.0, input_turns[0]
         for k in range(1, len(demanded)):
             if demanded[k]:
-                turned = _turned(before, input_turns[k]) * way
+                turned = angle_to(before, input_turns[k]) * way
                 back += min(turned, 0.0)
                 at += turned if turned >= 0.0 else turned + 2.0 * math.pi
                 before = input_turns[k]
@@ -207,21 +209,21 @@ def run(input_turns: Complex, demanded: NDArray[np.bool_], inputs: Real) -> floa
         shorter, at, before = at, 0.0, input_turns[0]
         for k in range(1, len(demanded)):
             if demanded[k]:
-                turned = _turned(before, input_turns[k]) * way
+                turned = angle_to(before, input_turns[k]) * way
                 at += turned if turned >= 0.0 else turned + 2.0 * math.pi
                 before, inputs[k] = input_turns[k], way * at
     return 0.0 if shorter < 2.0 * math.pi else min(best, 0.0)
 
 
 @njit(**OPTIONS)
-def _turned(before: complex, after: complex) -> float:
+def angle_to(before: complex, after: complex) -> float:
     """The angle from one direction to another, −π to π."""
     step = after * before.conjugate()
     return math.atan2(step.imag, step.real)
 
 
 @njit(**OPTIONS)
-def _outside(point: complex, box: Real) -> float:
+def outside_of(point: complex, box: Real) -> float:
     """How far a point lies outside a box."""
     across = max(box[0] - point.real, point.real - box[1], 0.0)
     return math.hypot(across, max(box[2] - point.imag, point.imag - box[3], 0.0))
@@ -342,10 +344,14 @@ def weighed(
             continue
         body = (j - one) / (joints[J] - joints[Q1])
         p = one + body * (points[0] - joints[Q1])
-        outside = max(outside, _outside(a, limits[ROOM:]), _outside(b, limits[ROOM:]), _outside(one, limits[ROOM:]))
-        outside = max(outside, _outside(two, limits[ROOM:]), _outside(j, limits[ROOM:]), _outside(p, limits[ROOM:]))
+        outside = max(
+            outside, outside_of(a, limits[ROOM:]), outside_of(b, limits[ROOM:]), outside_of(one, limits[ROOM:])
+        )
+        outside = max(
+            outside, outside_of(two, limits[ROOM:]), outside_of(j, limits[ROOM:]), outside_of(p, limits[ROOM:])
+        )
         travelled += abs(p - place_before)
-        turned += abs(_turned(turn_before, body))
+        turned += abs(angle_to(turn_before, body))
         place_before, turn_before = p, body
     if flattest <= 0.0:
         beyond /= STEPS
@@ -356,7 +362,7 @@ def weighed(
     for joint in range(7):
         fixed = joint in (O2, O4) or (joint == Q2 and c2 == GROUND)
         outside = max(
-            outside, _outside(joints[joint], limits[FIXED_BOX:MOVING_BOX] if fixed else limits[MOVING_BOX:ROOM])
+            outside, outside_of(joints[joint], limits[FIXED_BOX:MOVING_BOX] if fixed else limits[MOVING_BOX:ROOM])
         )
     over = max(over, 1.0) + outside
     if limits[CLASS] != ANY:
@@ -401,7 +407,7 @@ class Given(NamedTuple):
         Which positions are demanded; the others only help to find dyads.
     needed : float, shape (2,)
         Way and turn that the body needs.
-    wanted : bool, shape (7,)
+    wanted : bool, shape (8,)
         The makes that are wanted.
     limits : float, shape (19,)
         See :data:`LEAST_SINE`.

@@ -66,6 +66,13 @@ MAKES = (
         {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B", "C"), "output": ("O4", "B", "D"),
          "link_5": ("C", "E"), "link_6": ("D", "E", "P")},
     ),
+    Make(
+        "stephenson_2",
+        {"A": kernels.O2, "B": kernels.A, "D": kernels.B, "C": kernels.O4, "E": kernels.Q1, "O2": kernels.Q2,
+         "O4": kernels.J},
+        {"ground": ("O2", "O4"), "input": ("O2", "A", "C"), "link_3": ("A", "B"), "link_4": ("B", "D", "E", "P"),
+         "link_5": ("C", "D"), "output": ("O4", "E")},
+    ),
 )  # fmt: skip
 """By the number of a make (:data:`chain_kernels.MAKES`)."""
 

@@ -20,7 +20,7 @@ from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.nearness import error_of, order_of
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sixbar_makes import MAKES, Found
-from synthesis.kinds.motion.stated_mechanisms import Sixbar
+from synthesis.kinds.motion.stated_mechanisms import UNCLASSED, Sixbar
 from synthesis.kinds.motion.stated_positions import MOST_HELD
 from synthesis.kinds.motion.task import MotionTask, motion_task
 from synthesis.kinds.motion.verification import verify
@@ -71,6 +71,9 @@ ATTEMPTS_IN_ROOM = 150
 CLASSES = "any", "crank_rocker", "double_crank", "double_rocker", "non_grashof"
 """As the kernel numbers them."""
 
+NO_CRANK = "A Stephenson II has a crank between body and ground, and there is none that meets these positions"
+"""What is said where none is looked for."""
+
 EVERYWHERE = np.array([-np.inf, np.inf, -np.inf, np.inf])
 
 
@@ -94,7 +97,7 @@ class SixbarSearch:
     def method(self) -> str:
         """How they were found."""
         counts = (self.branches.descents, "held_branches"), (self.chains.weighed, "constrained_chains")
-        return ", ".join(name for count, name in counts if count)
+        return ", ".join(name for count, name in counts if count) or "held_branches"
 
     def run(self, progress: Progress) -> Found:
         """Rounds until enough sound sixbars that differ are known, or all is spent."""
@@ -102,7 +105,7 @@ class SixbarSearch:
         stated = self.problem.constraints
         regions = stated.fixed_pivot_region, stated.moving_pivot_region, self.problem.space
         mixed = stated.full_rotation or stated.grashof != "any" or any(region is not None for region in regions)
-        mixed = mixed and len(self.problem.positions) <= MOST_HELD
+        mixed = mixed and len(self.problem.positions) <= MOST_HELD and self.types != (UNCLASSED,)
         found = Found.none()
         spent, until, n = 0.0, 1.0, 0
         while spent < until:
@@ -225,7 +228,7 @@ def _summary(sifting: Sifting[LinkageDesign], search: SixbarSearch) -> str:
         )
         if count
     ]
-    told = " and ".join(looked_at)
+    told = " and ".join(looked_at) or NO_CRANK
     if not sifting.passed:
         return (
             f"{told}, and none was found that satisfies all demands.{sifting.reasons()} "

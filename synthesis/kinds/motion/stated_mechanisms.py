@@ -10,15 +10,18 @@ from pydantic import Field
 
 from synthesis.kinds.motion.stated_dyads import whole_point
 from synthesis.kinds.motion.stated_positions import MOST_HELD, MOST_OF_SIXBARS
-from synthesis.model.stated_types import Auto, beside_sixbars, refused
+from synthesis.model.stated_types import Auto, beside_sixbars, named_among, refused
 from synthesis.model.statement import Contradiction, PartialPoint, PositiveLength, Statement
 
-Sixbar = Literal["watt_1", "stephenson_1", "stephenson_3"]
+Sixbar = Literal["watt_1", "stephenson_1", "stephenson_2", "stephenson_3"]
 """Sixbars that carry a body by a link that a fourbar alone does not move."""
 
 SIXBARS: tuple[Sixbar, ...] = get_args(Sixbar)
 
-Mechanisms = Auto | Annotated[list[Literal["fourbar", "slider_crank"] | Sixbar], Field(min_length=1, max_length=5)]
+UNCLASSED: Sixbar = "stephenson_2"
+"""The type whose links make no fourbar O2 A B O4, and whose input is driven by no other closure than a triad."""
+
+Mechanisms = Auto | Annotated[list[Literal["fourbar", "slider_crank"] | Sixbar], Field(min_length=1, max_length=6)]
 """Types by their names, or the simplest that does."""
 
 
@@ -60,9 +63,12 @@ def of_sixbars(problem: Any) -> list[Contradiction]:
             f"is constrained for up to {MOST_HELD} positions that are met exactly or within tolerances; leave it out"
         )
         listed.append(Contradiction("/chain", detail))
-    if not (isinstance(stated, list) and problem.sixbars):
+    if not (isinstance(stated, list) and named_among(stated, SIXBARS)):
         return [*listed, *_of_types(problem)]
-    return [*listed, *refused(stated, SIXBARS, lacking(problem)), *_faults_of_chain(problem)]
+    listed += refused(stated, SIXBARS, lacking(problem))
+    if named_among(stated, SIXBARS) == (UNCLASSED,):
+        listed += beyond_unclassed(problem)
+    return [*listed, *_faults_of_chain(problem)]
 
 
 def lacking(problem: Any) -> Iterator[Contradiction]:
@@ -80,6 +86,20 @@ def lacking(problem: Any) -> Iterator[Contradiction]:
             detail = "is of fourbars; leave it out, or take the sixbars out of mechanisms"
             yield Contradiction(f"/{name}", detail)
     yield from beside_sixbars(problem)
+
+
+def beyond_unclassed(problem: Any) -> Iterator[Contradiction]:
+    """What is stated that a Stephenson II sixbar cannot keep, or is not looked for with."""
+    yield from problem.constraints.of_another_class(
+        (), "classifies the fourbar O2 A B O4, which a Stephenson II sixbar does not have"
+    )
+    if problem.constraints.full_rotation:
+        yield Contradiction(
+            "/constraints/full_rotation", "is not looked for in Stephenson II sixbars; drop the demand, or name others"
+        )
+    if problem.chain is not None:
+        detail = "is constrained to Watt I and Stephenson I and III sixbars; name one of these, or leave it out"
+        yield Contradiction("/chain", detail)
 
 
 def _of_types(problem: Any) -> list[Contradiction]:

@@ -24,6 +24,7 @@ from synthesis.kinds.motion.checks import Driven, Side, linkage_design
 from synthesis.kinds.motion.closest import SAME_MISS, as_near, closest_inputs
 from synthesis.kinds.motion.demanded import Complex, Demanded, Real
 from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.stated_mechanisms import UNCLASSED
 from synthesis.model.answer import Check
 from synthesis.model.linkage_answer import (
     InvertedSliderCrankMechanism,
@@ -110,7 +111,7 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
         target.size,
         least_angles(bodies[own].at, np.linspace(*used, GRID)) if same_branch else {},
         np.array(list(joints.values())),
-        barker=barker_of(mechanism) if isinstance(design, SixbarMechanism) else None,
+        barker=barker_of(mechanism) if isinstance(design, SixbarMechanism) and design.type != UNCLASSED else None,
         same_branch=same_branch,
         visits_in_order=way.in_order,
         full_rotation=here.full,

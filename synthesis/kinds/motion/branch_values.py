@@ -1,0 +1,142 @@
+"""The value of a sixbar that meets its positions by a descent, compiled: how sound it is, and how good."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.compiling import njit
+from synthesis.kinds.motion.branch_rows import (
+    FIRST_X,
+    FIRST_Y,
+    JOINTS,
+    MAKE,
+    PAIRS,
+    TO_P,
+    WAY,
+    dimensions,
+    driven,
+)
+from synthesis.kinds.motion.chain_kernels import (
+    FIXED_BOX,
+    LEAST_SINE,
+    LITTLE_TURN,
+    LONGEST_LINK,
+    MOST_RATIO,
+    MOST_REACH,
+    MOVING_BOX,
+    Q2,
+    ROOM,
+    SHORTEST,
+    SHORTEST_LINK,
+    STEPHENSON_2,
+    STEPS,
+    J,
+    angle_to,
+    outside_of,
+    weighed,
+)
+from synthesis.proof.carried import ease
+from synthesis.proof.measures import quality
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+class Poses(NamedTuple):
+    """What is demanded of the body, with first poses of it that are within their tolerance.
+
+    Attributes
+    ----------
+    first : float, shape (n, 3)
+        P and the angle of the body in the first position, one of which each linkage takes.
+    later : float, shape (k, 8)
+        Later positions as :data:`branch_rows.OF_POSE` has them, but with the angle from the first demanded one.
+    needed : float, shape (2,)
+        Way and turn that the body needs.
+    limits : float, shape (19,)
+        See :data:`synthesis.kinds.motion.chain_kernels.LEAST_SINE`.
+    cranks : complex, shape (m, 2)
+        Of five positions that are met exactly the pins in the first one of all cranks between body and ground.
+    """
+
+    first: Real
+    later: Real
+    needed: Real
+    limits: Real
+    cranks: Complex
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def value_of(x: Real, points: Real, setting: Real, poses: Poses, joints: Complex) -> float:
+    """The value of a linkage that meets the positions, and its joints in the first one."""
+    at, turns = np.empty(6, np.complex128), np.ones(4, np.complex128)
+    places = len(points) + 1
+    into, out = np.ones(places, np.complex128), np.ones(places, np.complex128)
+    place, turn = np.empty(places, np.complex128), np.ones(places, np.complex128)
+    demanded = np.ones(places, np.bool_)
+    for j in range(7):
+        joints[j] = complex(x[2 * j], x[2 * j + 1])
+    lengths, inverses = np.empty(4), np.empty(4, np.complex128)
+    dimensions(joints, lengths, inverses)
+    place[0] = complex(setting[FIRST_X], setting[FIRST_Y])
+    angle = 0.0
+    for k in range(1, places):
+        angle += math.exp(x[JOINTS + k - 1])
+        driven(joints, lengths, inverses, setting, setting[WAY] * angle, at, turns)
+        place[k], turn[k], into[k], out[k] = at[5], turns[3], turns[0], turns[2]
+    make = int(setting[MAKE])
+    if make == STEPHENSON_2:
+        return _of_stephenson_2(joints, lengths, inverses, setting, angle, poses)
+    return float(weighed(joints, make, into, out, place, turn, demanded, poses.needed, poses.limits))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _of_stephenson_2(
+    joints: Complex, lengths: Real, inverses: Complex, setting: Real, angle: float, poses: Poses
+) -> float:
+    """The same of a Stephenson II, which has no fourbar for a class and whose full turns are not looked at."""
+    limits, start = poses.limits, complex(setting[FIRST_X], setting[FIRST_Y])
+    shortest, longest, reach = np.inf, 0.0, 0.0
+    for i, k in PAIRS[STEPHENSON_2]:
+        if i < 0:
+            break
+        length = abs(joints[i] - (start if k == TO_P else joints[k]))
+        reach = max(reach, length)
+        if k != TO_P:
+            shortest, longest = min(shortest, length), max(longest, length)
+    if not shortest > SHORTEST:
+        return -3.0
+    at, turns = np.empty(6, np.complex128), np.ones(4, np.complex128)
+    flattest, beyond, input_turn, travelled, bent = 1.0, 0.0, 0.0, 0.0, 0.0
+    input_before, body_before, place_before = 1.0 + 0.0j, 1.0 + 0.0j, start
+    for n in range(STEPS + 1):
+        cosine, other = driven(joints, lengths, inverses, setting, setting[WAY] * angle * n / STEPS, at, turns)
+        if not (abs(cosine) < 1.0 and abs(other) < 1.0):
+            return -1.0
+        flattest = min(flattest, math.sqrt((1.0 - cosine) * (1.0 + cosine)))
+        for k in range(6):
+            beyond = max(beyond, outside_of(at[k], limits[ROOM:]))
+        input_turn += angle_to(input_before, turns[0])
+        bent += abs(angle_to(body_before, turns[3]))
+        travelled += abs(at[5] - place_before)
+        input_before, body_before, place_before = turns[0], turns[3], at[5]
+    if not abs(input_turn) < 2.0 * math.pi:
+        return -2.0
+    ratio = longest / shortest
+    over = max(reach / limits[MOST_REACH], ratio / limits[MOST_RATIO])
+    over = max(over, limits[SHORTEST_LINK] / shortest, longest / limits[LONGEST_LINK])
+    for k in range(7):
+        box = limits[FIXED_BOX:MOVING_BOX] if k in (Q2, J) else limits[MOVING_BOX:ROOM]
+        beyond = max(beyond, outside_of(joints[k], box))
+    over = max(over, 1.0) + beyond
+    if not (flattest >= limits[LEAST_SINE] and over <= 1.0):
+        return float(min(flattest, 0.999) / over)
+    excess = max(
+        (travelled - poses.needed[0]) / max(poses.needed[0], 1.0),
+        (bent - poses.needed[1]) / max(poses.needed[1], LITTLE_TURN),
+    )
+    return 1.0 + float(ease(abs(input_turn), max(excess, 0.0)) * quality(flattest, reach, ratio))

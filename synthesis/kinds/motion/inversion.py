@@ -1,0 +1,154 @@
+"""Stephenson II sixbars by inversion, compiled: what moves on the input link, as it is seen from the ground.
+
+The four links between input and ground of a Stephenson II are a triad, which no two circles close. Seen from its input
+link it is a Stephenson III: the links 3, 4 and 5 are a fourbar on the input link, and the ground is the second link of
+a dyad on its coupler. So it is driven by the link 3, which turns relative to the input, and closed by dyads; then all
+is turned so that the ground stands still. The kernel's joints are then
+
+    O₂ A B O₄    pin of link 3 on the input, and on link 4; pin of link 5 on link 4, and on the input
+    Q₁ J Q₂      pin of the output on link 4, and on the ground; pin of the input on the ground
+
+What says whether the input can drive it is the triad's transmission angle, between the output and the normal of the
+way on which link 4 pushes it (:mod:`kinematics.linkage.planar.triad_transmission`, by whose formula the core measures
+it; here the way is that about the pole of link 4 and the input). As long as it does not vanish, the input goes on
+where link 3 does.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.compiling import njit
+from synthesis.kinds.motion.chain_kernels import O2, O4, Q1, Q2, A, B, J
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+TURNED_OVER = 2.0
+"""The cosine that is told where the sine has another sign than in the first position."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _dot(u: complex, v: complex) -> float:
+    return u.real * v.real + u.imag * v.imag
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _cross(u: complex, v: complex) -> float:
+    return u.real * v.imag - u.imag * v.real
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _pushed(q: complex, o2: complex, a: complex, o4: complex, b: complex) -> complex:
+    """The direction in which the pin q of link 4 moves: at right angles to the way from the pole, where legs meet.
+
+    It is multiplied by the cross product of the legs, so that it is there where they are parallel.
+    """
+    one, two = a - o2, b - o4
+    # The pole is o2 + one · s with s = (o4 − o2) × two / (one × two).
+    from_pole = (q - o2) * _cross(one, two) - one * _cross(o4 - o2, two)
+    return from_pole * 1j
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def slant(q: complex, j: complex, o2: complex, a: complex, o4: complex, b: complex) -> tuple[float, float]:
+    """Cosine and signed sine of the transmission angle at the output; NaN where its pin cannot move."""
+    way, leg = _pushed(q, o2, a, o4, b), q - j
+    size = abs(way) * abs(leg)
+    return _cross(leg, way) / size, _dot(leg, way) / size
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def on_ground(z: Complex, start: complex, at: Complex, turns: Complex) -> float:
+    """Turns what stands on the input link so that the ground stands still.
+
+    Parameters
+    ----------
+    z : complex, shape (7,)
+        Joints in the first position.
+    start : complex
+        P there.
+    at : complex, shape (6,)
+        A, B, Q₁, Q₂, J and anything as the input link sees them; then A, B, Q₁, O₂, O₄ and P as the ground does.
+    turns : complex, shape (4,)
+        The second is the coupler's seen from the input link; then the first is how the input is turned, and the last
+        how the body is.
+
+    Returns
+    -------
+    float
+        The cosine of the transmission angle; beyond 1 where the linkage has turned over at a toggle.
+    """
+    _, first = slant(z[Q1], z[J], z[O2], z[A], z[O4], z[B])
+    cosine, sine = slant(at[2], at[4], z[O2], at[0], z[O4], at[1])
+    back = ((z[J] - z[Q2]) / (at[4] - at[3])) * (abs(at[4] - at[3]) / abs(z[J] - z[Q2]))
+    p = at[0] + turns[1] * (start - z[A])
+    at[0], at[1], at[2] = z[Q2] + back * (at[0] - z[Q2]), z[Q2] + back * (at[1] - z[Q2]), z[Q2] + back * (at[2] - z[Q2])
+    at[3], at[4], at[5] = z[Q2] + back * (z[O2] - z[Q2]), z[Q2] + back * (z[O4] - z[Q2]), z[Q2] + back * (p - z[Q2])
+    turns[0], turns[3] = back, back * turns[1]
+    return cosine if first * sine > 0.0 else TURNED_OVER
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def rates_on_ground(
+    z: Complex,
+    units: Complex,
+    start: complex,
+    at: Complex,
+    turns: Complex,
+    through: Real,
+    moving: Complex,
+    turning: Real,
+    bending: Real,
+) -> None:
+    """Turns rates as :func:`on_ground` turns places, which are to be those before; with them that of the cosine.
+
+    Parameters
+    ----------
+    z, start, at, turns
+        As there.
+    units : complex, shape (m, 7)
+        Rates of the joints in the first position, by each unknown.
+    through : float, shape (m,)
+        Rates of the coupler's angle.
+    moving : complex, shape (6, m)
+        Rates of ``at``, but of P.
+    turning, bending : float, shape (m,)
+        Filled: rates of the body's angle and of the cosine.
+    """
+    base = z[J] - z[Q2]
+    turned = (at[4] - at[3]) / base
+    back = turned.conjugate()
+    one, two, leg = at[0] - z[O2], at[1] - z[O4], at[2] - at[4]
+    between, crossed, along = z[O4] - z[O2], _cross(one, two), _cross(z[O4] - z[O2], two)
+    way = _pushed(at[2], z[O2], at[0], z[O4], at[1])
+    long, wide = abs(leg), abs(way)
+    cosine = _cross(leg, way) / (long * wide)
+    p = at[0] + turns[1] * (start - z[A])
+    for m in range(len(units)):
+        unit = units[m]
+        a, b, q, j = moving[0, m], moving[1, m], moving[2, m], moving[4, m]
+        one_rate, two_rate, leg_rate = a - unit[O2], b - unit[O4], q - j
+        crossed_rate = _cross(one_rate, two) + _cross(one, two_rate)
+        along_rate = _cross(unit[O4] - unit[O2], two) + _cross(between, two_rate)
+        from_pole = (q - unit[O2]) * crossed + (at[2] - z[O2]) * crossed_rate - one_rate * along - one * along_rate
+        way_rate = from_pole * 1j
+        bending[m] = (_cross(leg_rate, way) + _cross(leg, way_rate)) / (long * wide)
+        bending[m] -= cosine * (_dot(leg, leg_rate) / (long * long) + _dot(way, way_rate) / (wide * wide))
+        moved = (j - unit[Q2] - turned * (unit[J] - unit[Q2])) / base
+        spin = (moved * back).imag
+        body = a + 1j * through[m] * turns[1] * (start - z[A]) - turns[1] * unit[A]
+        moving[3, m] = _seen(z[O2], unit[O2], z[Q2], unit[Q2], back, spin)
+        moving[4, m] = _seen(z[O4], unit[O4], z[Q2], unit[Q2], back, spin)
+        moving[0, m] = _seen(at[0], a, z[Q2], unit[Q2], back, spin)
+        moving[1, m] = _seen(at[1], b, z[Q2], unit[Q2], back, spin)
+        moving[2, m] = _seen(at[2], q, z[Q2], unit[Q2], back, spin)
+        moving[5, m] = _seen(p, body, z[Q2], unit[Q2], back, spin)
+        turning[m] = through[m] - spin
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _seen(point: complex, rate: complex, pin: complex, pin_rate: complex, back: complex, spin: float) -> complex:
+    """Rate of a point as the ground sees it, which turns by ``spin`` seen from the input link."""
+    return pin_rate + back * (rate - pin_rate - 1j * spin * (point - pin))
