@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from service.parts.facets import facets
 from service.parts.isometric import ALONG, COSINE, SINE, TOWARD
-from service.parts.model import Assembly, Part, Placed
+from service.parts.model import Assembly, Placed
 from service.render.page.sheet import EDGE, FULL, TOP, caption, framed, sheet
 from service.render.page.svg import Box, Element, Viewport, element
 from service.render.page.symbols import scale_bar
@@ -38,6 +38,12 @@ DARKEST = 0.45
 
 BENT = 0.75
 """Cosine of the angle between two faces from which on the edge between them is drawn."""
+
+ROWS = 1 << 16
+"""Rows of triangles that are filled at once."""
+
+ROUNDING = 1e-9
+"""How far from a triangle a sample may be that lies on its edge, samples."""
 
 INK = np.array([38.0, 44.0, 51.0])
 
@@ -61,11 +67,12 @@ def painted_sheet(assembly: Assembly, title: str, at: float) -> str:
         Input at which it is shown, radians or millimetres along the slide.
     """
     parts: list[Element] = []
+    triangles, number = _standing(assembly, at)
     half = 0.5 * (FULL - 12.0)
     for n, words in enumerate(("From the front", "From behind")):
         left = EDGE + n * (half + 12.0)
         panel = Box(left, TOP, left + half, TOP + HEIGHT)
-        shot = painted(assembly, at, panel, behind=n == 1)
+        shot = _seen(assembly, triangles, number, panel, behind=n == 1)
         data = "data:image/png;base64," + base64.b64encode(shot.image).decode()
         image = element("image", x=panel.left, y=panel.low, width=panel.width, height=panel.height, href=data)
         bar, _ = scale_bar(Viewport(panel, 0j, 0j, shot.shown.scale), "mm")
@@ -76,9 +83,8 @@ def painted_sheet(assembly: Assembly, title: str, at: float) -> str:
     return sheet(title, words, f"An assembly of {len(assembly.parts)} parts from two sides.", parts, TOP + HEIGHT)
 
 
-def painted(assembly: Assembly, at: float, panel: Box, *, behind: bool = False) -> Shot:
-    """The assembly at an input, as large as a panel has room for."""
-    state = assembly.motion.at(np.array([at]))
+def _seen(assembly: Assembly, triangles: Real, number: NDArray[np.int64], panel: Box, *, behind: bool) -> Shot:
+    """The triangles of the parts of an assembly, as large as a panel has room for."""
     turn = -1.0 if behind else 1.0
     right, toward = turn * ALONG, turn * TOWARD
     axes = np.array(
@@ -88,23 +94,24 @@ def painted(assembly: Assembly, at: float, panel: Box, *, behind: bool = False) 
             (COSINE * toward.real, COSINE * toward.imag, SINE),
         ]
     )
-    solids, numbers = [], []
-    for n, part in enumerate(assembly.parts):
-        triangles = _standing(_surface(part), assembly.motion.placed(part.carrier, state)) @ axes.T
-        solids.append(triangles)
-        numbers.append(np.full(len(triangles), n))
-    triangles, number = np.concatenate(solids), np.concatenate(numbers)
+    triangles = triangles @ axes.T
     box = Box.around(triangles[:, :, 0].ravel() + 1j * triangles[:, :, 1].ravel())
     shown = Viewport.fit(box, panel, MARGIN, 22.0)
     colours = np.array([[int(part.colour[k : k + 2], 16) for k in (1, 3, 5)] for part in assembly.parts], float)
     return Shot(_png(_filled(triangles, number, colours, shown)), shown)
 
 
-def _surface(part: Part) -> Real:
-    return np.concatenate([facets(body, SAG) for body in part.bodies])
+def _standing(assembly: Assembly, at: float) -> tuple[Real, NDArray[np.int64]]:
+    """Triangles of all parts where they are at an input, shape (m, 3, 3), and the number of each one's part."""
+    state = assembly.motion.at(np.array([at]))
+    solids = []
+    for part in assembly.parts:
+        triangles = np.concatenate([facets(body, SAG) for body in part.bodies])
+        solids.append(_moved(triangles, assembly.motion.placed(part.carrier, state)))
+    return np.concatenate(solids), np.repeat(np.arange(len(solids)), [len(triangles) for triangles in solids])
 
 
-def _standing(triangles: Real, placed: Placed) -> Real:
+def _moved(triangles: Real, placed: Placed) -> Real:
     """Triangles of a part where it is."""
     turn, shift = (complex(np.ravel(values)[0]) for values in (placed.turn, placed.shift))
     plane = turn * (triangles[:, :, 0] + 1j * triangles[:, :, 1]) + shift
@@ -123,26 +130,8 @@ def _filled(triangles: Real, number: NDArray[np.int64], colours: Real, shown: Vi
     seen = normals[:, 2] > 1e-9 * length
     triangles, number, normals = triangles[seen], number[seen], normals[seen] / length[seen, None]
     points = shown.points(triangles[:, :, 0] + 1j * triangles[:, :, 1]) - complex(panel.left, panel.low)
-    x, y, z = FINE * points.real - 0.5, FINE * points.imag - 0.5, triangles[:, :, 2]
-    depth = np.full((height, width), -np.inf)
-    owner = np.full((height, width), -1)
-    for k in range(len(triangles)):
-        left, right = max(0, int(np.ceil(x[k].min()))), min(width - 1, int(x[k].max()))
-        low, high = max(0, int(np.ceil(y[k].min()))), min(height - 1, int(y[k].max()))
-        if right < left or high < low:
-            continue
-        (ax, bx, cx), (ay, by, cy), (az, bz, cz) = x[k], y[k], z[k]
-        whole = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
-        if whole == 0.0:
-            continue
-        px, py = np.arange(left, right + 1), np.arange(low, high + 1)[:, None]
-        u = ((px - ax) * (cy - ay) - (cx - ax) * (py - ay)) / whole
-        v = ((bx - ax) * (py - ay) - (px - ax) * (by - ay)) / whole
-        at = az + u * (bz - az) + v * (cz - az)
-        window = slice(low, high + 1), slice(left, right + 1)
-        nearer = (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1.0 + 1e-9) & (at > depth[window])
-        depth[window][nearer] = at[nearer]
-        owner[window][nearer] = k
+    corners = np.stack([FINE * points.real - 0.5, FINE * points.imag - 0.5, triangles[:, :, 2]], axis=-1)
+    owner = nearest(corners, width, height)
     lit = DARKEST + (1.0 - DARKEST) * np.clip(normals @ (LIGHT / np.linalg.norm(LIGHT)), 0.0, 1.0)
     paint = np.vstack([np.minimum(255.0, lit[:, None] * (colours[number] + 0.2 * (255.0 - colours[number]))),
                        np.full(3, 255.0)])  # fmt: skip
@@ -152,13 +141,67 @@ def _filled(triangles: Real, number: NDArray[np.int64], colours: Real, shown: Vi
     return np.asarray(np.round(picture.mean(axis=(1, 3))), np.uint8)
 
 
+def nearest(corners: Real, width: int, height: int) -> NDArray[np.int64]:
+    """Which triangle is the nearest at each sample, -1 where none is; shape (height, width).
+
+    Parameters
+    ----------
+    corners : ndarray, shape (m, 3, 3)
+        Column, row and how near, of triangles that are no lines.
+    """
+    depth, owner = np.full(height * width, -np.inf), np.full(height * width, -1)
+    x, y, z = np.moveaxis(corners, -1, 0)
+    (ax, bx, cx), (ay, by, cy), (az, bz, cz) = x.T, y.T, z.T
+    whole = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+    whole = np.where(whole == 0.0, np.inf, whole)  # a sliver is level
+    along = ((bz - az) * (cy - ay) - (cz - az) * (by - ay)) / whole
+    down = ((cz - az) * (bx - ax) - (bz - az) * (cx - ax)) / whole
+    first = np.maximum(np.ceil(y.min(axis=1)), 0.0).astype(int)
+    last = np.minimum(np.floor(y.max(axis=1)), height - 1.0).astype(int)
+    number, row = _counted(first, last)
+    for some in np.array_split(np.arange(len(row)), 1 + len(row) // ROWS):
+        k, at = number[some], row[some]
+        left, right = _span(x[k], y[k], at)
+        begin = np.maximum(np.ceil(left - ROUNDING), 0.0).astype(int)
+        end = np.minimum(np.floor(right + ROUNDING), width - 1.0).astype(int)
+        n, column = _counted(begin, end)
+        k, at = k[n], at[n]
+        near = az[k] + along[k] * (column - ax[k]) + down[k] * (at - ay[k])
+        place = at * width + column
+        nearer = near > depth[place]
+        k, near, place = k[nearer], near[nearer], place[nearer]
+        np.maximum.at(depth, place, near)
+        nearest = near == depth[place]
+        owner[place[nearest][::-1]] = k[nearest][::-1]
+    return owner.reshape(height, width)
+
+
+def _counted(first: NDArray[np.int64], last: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """All whole numbers of ranges, both ends among them, and before them the range that each is of."""
+    counts = np.maximum(last - first + 1, 0)
+    of = np.repeat(np.arange(len(counts)), counts)
+    return of, np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts - first, counts)
+
+
+def _span(x: Real, y: Real, row: NDArray[np.int64]) -> tuple[Real, Real]:
+    """From where to where rows lie in their triangles, whose corners have shape (n, 3)."""
+    ahead_x, ahead_y = np.roll(x, -1, axis=1), np.roll(y, -1, axis=1)
+    rise = ahead_y - y
+    share = (row[:, None] - y) / np.where(rise == 0.0, 1.0, rise)
+    met = (rise != 0.0) & (share >= 0.0) & (share <= 1.0)
+    at = x + share * (ahead_x - x)
+    return np.where(met, at, np.inf).min(axis=1), np.where(met, at, -np.inf).max(axis=1)
+
+
 def _lines(owner: NDArray[np.int64], part: NDArray[np.int64], normals: Real) -> NDArray[np.bool_]:
     """Where a pixel's neighbour shows another part, or a face that is bent against its own."""
     found = np.zeros(owner.shape, bool)
     for axis in (0, 1):
-        other = np.roll(owner, -1, axis)
-        bent = np.einsum("ijk,ijk->ij", normals[owner], normals[other]) < BENT
-        found |= (part[owner] != part[other]) | (bent & (owner >= 0) & (other >= 0))
+        ahead = np.roll(owner, -1, axis)
+        differ = owner != ahead
+        one, other = owner[differ], ahead[differ]
+        bent = np.einsum("ij,ij->i", normals[one], normals[other]) < BENT
+        found[differ] |= (part[one] != part[other]) | (bent & (one >= 0) & (other >= 0))
     return found
 
 

@@ -18,6 +18,7 @@ from service.parts.dxf import cutting
 from service.parts.gears.motion import TrainMotion, Turning
 from service.parts.model import Assembly, Carrier, Frame, Part
 from service.parts.overlaps import overlaps
+from service.parts.painted import nearest
 from service.parts.shapes import Disc, Loop, Region, area, extent, ring, ring_of, turned
 
 WAVE = 60
@@ -154,3 +155,17 @@ def test_parts_of_crossing_axes_meet_where_they_do(gap: float, meets: bool) -> N
     # The bar's corners are √104 = 10.198 from its axis, and the shaft leaves 10.2 and the gap.
     found = overlaps(Assembly(parts, motion, 1, 1, 1.0, 1.0), 720)
     assert [one.parts for one in found] == ([("part_0", "part_1")] if meets else [])
+
+
+def test_of_triangles_in_a_picture_the_nearest_is_seen() -> None:
+    """Sample by sample, each triangle by the shares that its corners have of it."""
+    corners = np.random.default_rng(5).uniform(-4.0, 30.0, (25, 3, 3))
+    rows, columns = 20, 24
+    found = nearest(corners, columns, rows)
+    for row in range(rows):
+        for column in range(columns):
+            flat = np.concatenate([corners[:, :, :2], np.ones((25, 3, 1))], axis=2)
+            shares = np.linalg.solve(np.swapaxes(flat, 1, 2), np.array([column, row, 1.0])[None, :, None])[:, :, 0]
+            near = np.where(shares.min(axis=1) >= 0.0, (shares * corners[:, :, 2]).sum(axis=1), -np.inf)
+            assert found[row, column] == (near.argmax() if near.max() > -np.inf else -1)
+    assert len(np.unique(found)) > 8
