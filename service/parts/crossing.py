@@ -98,7 +98,10 @@ class Surface:
     @cached_property
     def outermost(self) -> Real:
         """The points that lie farthest in each of many directions."""
-        return np.asarray(self.points[np.unique(np.argmax(self.points @ DIRECTIONS.T, axis=0))])
+        body = self._body
+        points = body.corners if isinstance(body, Mesh) else self.points
+        farthest = [int(np.argmax(points @ direction)) for direction in DIRECTIONS]
+        return np.asarray(points[np.unique(farthest)])
 
     @cached_property
     def bounds(self) -> tuple[Real, Real]:
