@@ -8,28 +8,34 @@ from service.parts.sheet import layers
 SPREAD = 1.2
 """What all spaces between layers are together, as a share of the size of the mechanism, or of its largest part."""
 
+COVERED = 0.4
+"""Space below a second base besides, which covers what is between the two, as a share of the size."""
+
 ALONG = 0.08
 """Between two parts on one of crossing shafts, as a share of the size of the mechanism."""
 
 LEAST = 1.2
-"""One of them in thicknesses of the thickest layer at least."""
+"""One of them in heights of the layer below it at least, which may be posts between two bases."""
 
 
 def lifts(assembly: Assembly) -> dict[str, float]:
     """Millimetres by which each part goes up, by its name, where the assembly is all apart.
 
-    Layers of plates and of what lies between them keep their order, with as much space between any two. Pins stand free
-    above them all; one with its head below hangs free beneath, as it is put in from there. Where axes cross, each part
-    goes along its own.
+    Layers of plates and of what lies between them keep their order. Pins stand free above them all; one with its
+    head below hangs free beneath, as it is put in from there. Where axes cross, each part goes along its own.
     """
     if not assembly.parallel:
         return _along_their_shafts(assembly)
     stacked = layers(assembly)
     size = max(assembly.size, *(part.length_and_width[0] for part in assembly.parts))
-    space = max(LEAST * max(layer.height for layer in stacked), SPREAD * size / len(stacked))
+    space = SPREAD * size / len(stacked)
     found: dict[str, float] = {}
-    for k, layer in enumerate(stacked):
-        found.update(dict.fromkeys((part.name for part in layer.parts), k * space))
+    lift = 0.0
+    for n, layer in enumerate(stacked):
+        if n > 0 and any(part.sort == "base" and part.planes[0] > 0 for part in layer.parts):
+            lift += COVERED * size
+        found.update(dict.fromkeys((part.name for part in layer.parts), lift))
+        lift += max(space, LEAST * layer.height)
     raised = [part for part in assembly.parts if part.name in found]
     low = min(part.low + found[part.name] for part in raised)
     high = max(part.high + found[part.name] for part in raised)
