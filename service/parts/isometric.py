@@ -46,8 +46,11 @@ LIGHT = cmath.exp(math.radians(-38.0) * 1j)
 BANDS = ((20.0, math.radians(15.0)), (7.0, math.radians(30.0)), (0.0, math.radians(45.0)))
 """Turn of the normal within one band, of arcs whose radius in pixels is larger than so much."""
 
-MANY, FINEST = 60, 0.3
+MANY, FINEST = 60, 0.5
 """Outlines with so many corners are drawn without those that change them by less than so many pixels."""
+
+LEAST = 0.5
+"""Height of a slab at least, pixels, where no piece is as thin."""
 
 THROUGH = 0.3
 """Opacity of a second base, where what is below it is to be seen."""
@@ -142,7 +145,7 @@ def _panel(
     shown = Viewport.fit(box, Box(panel.left, panel.low, panel.right - room, panel.high), MARGIN, 22.0)
     scene = _Scene(shown, see_through=not named)
     coarse = [piece._replace(region=_coarse(piece.region, FINEST / shown.scale)) for piece in pieces]
-    drawn = element("g", *(one for slab in slabs(coarse) for one in scene.drawn(slab)), **THIN)
+    drawn = element("g", *(one for slab in slabs(coarse, LEAST / shown.scale) for one in scene.drawn(slab)), **THIN)
     bar, _ = scale_bar(Viewport(panel, 0j, 0j, shown.scale), "mm")
     labels = _names(pieces, names, shown, panel.right - room - 12.0)
     return [framed(panel, "isometric"), caption(panel, words), drawn, *labels, bar]
@@ -196,23 +199,31 @@ def _moved(outline: Outline, placed: Placed) -> Outline:
     return outline._replace(corners=tuple(turn * corner + shift for corner in outline.corners))
 
 
-def slabs(pieces: Sequence[Piece]) -> Iterator[list[Piece]]:
-    """The pieces cut at all heights at which one begins or ends, from below."""
+def slabs(pieces: Sequence[Piece], least: float) -> Iterator[list[Piece]]:
+    """The pieces cut at all heights at which one begins or ends, from below.
+
+    Heights that are less than ``least`` apart are one, where no piece is as thin as that.
+    """
     size = max(piece.high for piece in pieces) - min(piece.low for piece in pieces)
+    near = 1e-6 * size
+    ends_of_thin = {height for piece in pieces if piece.high - piece.low <= least for height in (piece.low, piece.high)}
     heights: list[float] = []
     for height in sorted(z for piece in pieces for z in (piece.low, piece.high)):
-        if not heights or height - heights[-1] > 1e-6 * size:
+        if not heights or height - heights[-1] > (near if height in ends_of_thin else least):
             heights.append(height)
-    near = 1e-6 * size
+    levels = np.array(heights)
+
+    def level(height: float) -> float:
+        return heights[int(np.argmin(np.abs(levels - height)))]
+
+    snapped = [piece._replace(low=level(piece.low), high=level(piece.high)) for piece in pieces]
     for low, high in pairwise(heights):
-        yield [
-            _cut(piece, low, high, near) for piece in pieces if piece.low <= low + near and piece.high >= high - near
-        ]
+        yield [_cut(piece, low, high) for piece in snapped if piece.low <= low and piece.high >= high]
 
 
-def _cut(piece: Piece, low: float, high: float, near: float) -> Piece:
-    begins = piece.begins and abs(piece.low - low) <= near
-    ends = piece.ends and abs(piece.high - high) <= near
+def _cut(piece: Piece, low: float, high: float) -> Piece:
+    begins = piece.begins and piece.low == low
+    ends = piece.ends and piece.high == high
     return piece._replace(low=low, high=high, begins=begins, ends=ends)
 
 

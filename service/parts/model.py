@@ -186,7 +186,7 @@ class Part:
         """What is cut from the sheet: its widest prism."""
         return max((body.region for body in self.bodies), key=lambda region: area(region.outer))
 
-    @property
+    @cached_property
     def length_and_width(self) -> tuple[float, float]:
         """Extents along its length and across."""
         outer = self.region.outer

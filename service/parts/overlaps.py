@@ -146,6 +146,8 @@ def _radii(region: Region) -> tuple[float, float]:
     return max(inner, default=0.0), region.outer.radius
 
 
+ALL = slice(None)
+
 Carried = tuple[Carrier, Region]
 """A region and what it moves with."""
 
@@ -188,14 +190,18 @@ class _Moved:
 
     def _ring(self, carried: Carried, outline: Outline, *, beyond: bool, still: bool = False) -> NDArray[np.float64]:
         """An outline at each input, shape (n, m, 2), or at the first alone."""
-        placed, some = self._placed[carried[0]], slice(1 if still else None)
-        places = placed.turn[some, None] * ring_of(outline, beyond=beyond, sag=SAG) + placed.shift[some, None]
-        return np.stack([places.real, places.imag], axis=-1)
+        return self._turned(carried[0], ring_of(outline, beyond=beyond, sag=SAG), slice(1 if still else None))
+
+    def _turned(self, carrier: Carrier, places: NDArray[np.complex128], some: slice = ALL) -> NDArray[np.float64]:
+        """Places of a plane at some of the inputs, shape (n, m, 2)."""
+        placed = self._placed[carrier]
+        moved = placed.turn[some, None] * places + placed.shift[some, None]
+        return np.stack([moved.real, moved.imag], axis=-1)
 
     def _box(self, carried: Carried) -> NDArray[np.float64]:
         """Left, low, right and high of a region at each input, shape (n, 4)."""
         if carried not in self._boxes:
-            outer = self._ring(carried, carried[1].outer, beyond=True)
+            outer = self._turned(carried[0], _hull(ring_of(carried[1].outer, beyond=True, sag=SAG)))
             self._boxes[carried] = np.concatenate([outer.min(axis=1), outer.max(axis=1)], axis=1)
         return self._boxes[carried]
 
@@ -211,6 +217,11 @@ class _Moved:
             solid = shapely.polygons(outer, holes=np.stack(holes, axis=1)) if holes else shapely.polygons(outer)
             self._polygons[key] = solid
         return self._polygons[key]
+
+
+def _hull(ring: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """The corners of a polygon that can be the outermost in some direction."""
+    return np.asarray(shapely.get_coordinates(shapely.convex_hull(shapely.MultiPoint(_pairs(ring)))) @ (1.0, 1j))
 
 
 def _pairs(points: NDArray[np.complex128]) -> NDArray[np.float64]:
