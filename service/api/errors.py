@@ -139,6 +139,11 @@ def busy(with_what: str) -> Refusal:
     )
 
 
+def gone() -> Refusal:
+    """Nobody waits for the answer, which the log has all the same."""
+    return Refusal(499, "gone", "Gone", "The client has gone away.")
+
+
 def compiling() -> Refusal:
     """The first start after an installation is not at its end."""
     return Refusal(

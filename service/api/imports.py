@@ -8,15 +8,16 @@ from fastapi import APIRouter, Query, Request, Response
 
 from service.api import errors
 from service.api.body import BoundedRequest, foreign
-from service.api.errors import busy, invalid_drawing, invalid_request, malformed_drawing
+from service.api.errors import busy, gone, invalid_drawing, invalid_request, malformed_drawing
 from service.api.guard import GuardedRoute
 from service.api.replies import as_json
 from service.api.state import Readers
 from service.explained import pointer
 from service.imports import Imports
-from service.imports.desk import Busy, ImportDesk
+from service.imports.desk import ImportDesk
 from service.imports.limits import DEFAULT_POINTS, FEWEST, MOST_ASKED, PNG
 from service.imports.reader import Door
+from service.jobs.errands import Busy, Gone
 from service.outlines import DrawingUnit, ForeignFormat, Malformed, NoOutline, Unsuitable
 from service.outlines.limits import DEFAULT_TOLERANCE, FARTHEST
 from service.telemetry import span
@@ -53,19 +54,23 @@ async def taken(request: Request, types: tuple[str, ...]) -> tuple[bytes, str]:
     return await bounded.limited(request.app.state.settings.max_body_bytes), bounded.media_type
 
 
-async def answered(desk: ImportDesk, door: Door, types: tuple[str, ...], content: bytes, **asked: Any) -> Response:
+async def answered(
+    request: Request, desk: ImportDesk, door: Door, types: tuple[str, ...], content: bytes, **asked: Any
+) -> Response:
     """What a file gives, as the answer to a request.
 
     Raises
     ------
     Refusal
-        400, 415, 422 or 503: what is wrong with the file, or that its turn has not come.
+        400, 415, 422 or 503: what is wrong with the file, or that its turn has not come; 499 where nobody waits.
     """
     try:
         with span("drawing"):
-            return as_json(await desk.read(door, content, **asked))
+            return as_json(await desk.read(request.is_disconnected, door, content, **asked))
     except Busy:
         raise busy("files") from None
+    except Gone:
+        raise gone() from None
     except ForeignFormat as error:
         raise foreign(str(error), *types) from None
     except Malformed as error:
@@ -134,6 +139,7 @@ async def import_curves(
     if pixel_size is not None and not content.startswith(PNG):
         raise invalid_request([("/query/pixel_size", "Only a PNG picture has pixels.")])
     return await answered(
+        request,
         desk,
         "imports",
         TYPES,

@@ -57,4 +57,4 @@ async def read_outlines(
     blocks and uses are read where they stand. What gives no outline is told with the reason.
     """
     content, _ = await taken(request, TYPES)
-    return await answered(desk, "outlines", TYPES, content, tolerance=tolerance, length_unit=length_unit)
+    return await answered(request, desk, "outlines", TYPES, content, tolerance=tolerance, length_unit=length_unit)

@@ -11,16 +11,17 @@ from starlette.concurrency import run_in_threadpool
 
 from service.api import errors
 from service.api.designs import HEADERS, design_index, solved
-from service.api.errors import Refusal, busy, invalid_request, not_found
+from service.api.errors import Refusal, busy, gone, invalid_request, not_found
 from service.api.guard import GuardedRoute, Tenant
 from service.api.jobs import TAG
 from service.api.state import Bench, Desk
+from service.jobs.errands import Busy, GivenUp, Gone
 from service.jobs.schema import JobRow
 from service.parts.answer import AssemblyView
 from service.parts.extra import installed
 from service.parts.made import has_parts
 from service.parts.sizes import NEEDS_CAD, SOLID, AssemblyQuery, File, PartFile, PartsQuery, Refused, ViewQuery
-from service.parts.workshop import MAX_PARTS_S, Busy, GivenUp, Gone, Workshop, filled, part_filled
+from service.parts.workshop import MAX_PARTS_S, Workshop, filled, part_filled
 from service.telemetry import span
 
 router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRoute)
@@ -232,20 +233,12 @@ async def _answered(
 
 async def _made(request: Request, bench: Workshop, work: Callable[..., Any], *args: Any) -> bytes:
     """What the process makes, or has made of the same."""
-
-    async def make() -> bytes:
-        return await _making(request, bench, work, *args)
-
-    return await bench.kept(repr(args), make)
-
-
-async def _making(request: Request, bench: Workshop, work: Callable[..., Any], *args: Any) -> bytes:
     try:
-        made = await bench.call(request.is_disconnected, work, *args)
+        made = await bench.made(request.is_disconnected, work, *args)
     except Busy:
         raise busy("parts") from None
     except Gone:
-        raise Refusal(499, "gone", "Gone", "The client has gone away.") from None
+        raise gone() from None
     except GivenUp:
         raise _refused(
             f"The parts were given up: they took more than {MAX_PARTS_S:g} seconds, or more memory than a job may."

@@ -1,15 +1,16 @@
-"""What runs in a process that reads files: one after the other, each to its answer or to what is wrong with it.
+"""What runs in a process that reads files, each to its answer or to what is wrong with it.
 
 This module is imported by the server too, so it brings no library that reads files.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from multiprocessing.connection import Connection
-from typing import Any, Final, Literal
+from importlib import import_module
+from typing import Any, Literal
 
-import structlog
+from pydantic import BaseModel
 
 from service.jobs.confined import confine, limit_memory
 from service.logs import Format
@@ -17,12 +18,7 @@ from service.outlines import faults
 
 Door = Literal["imports", "outlines"]
 
-READY: Final = "ready"
-OUT_OF_MEMORY: Final = "out of memory"
-
 _FAULTS = {each.__name__: each for each in (faults.ForeignFormat, faults.Malformed, faults.Unsuitable)}
-
-log = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True)
@@ -46,31 +42,21 @@ class Fault:
         return _FAULTS[self.kind](self.message)
 
 
-def serve(pipe: Connection, server_pid: int, log_level: str, log_format: Format, memory_mb: int) -> None:
-    """Read files from a pipe until it is closed."""
+def prepare(server_pid: int, log_level: str, log_format: Format, memory_mb: int) -> None:
+    """Prepare the process: its end, its limits, its libraries."""
     confine(server_pid, log_level, log_format)
+    for library in ("service.imports.reading", "service.outlines.reading"):
+        import_module(library)
+    limit_memory(memory_mb)
+
+
+def read(door: Door, content: bytes, asked: dict[str, Any]) -> bytes | Fault:
+    """What a door answers to a file, as JSON, or what is wrong with the file."""
     from service.imports.reading import imports_of
     from service.outlines.reading import outlines_of
 
-    doors = {"imports": imports_of, "outlines": outlines_of}
-    limit_memory(memory_mb)
-    pipe.send(READY)
-    while True:
-        try:
-            door, content, asked = pipe.recv()
-        except EOFError:
-            return
-        pipe.send(_answered(doors[door], content, asked))
-
-
-def _answered(door: Any, content: bytes, asked: dict[str, Any]) -> bytes | str | Fault:
+    doors: dict[Door, Callable[..., BaseModel]] = {"imports": imports_of, "outlines": outlines_of}
     try:
-        answer: bytes = door(content, **asked).model_dump_json().encode()
+        return doors[door](content, **asked).model_dump_json().encode()
     except faults.DrawingError as error:
         return Fault.of(error)
-    except MemoryError:
-        return OUT_OF_MEMORY
-    except Exception as error:  # a defect: logged here with its trace, ReaderLost in the server, and so a 500
-        log.exception("a file could not be read")
-        return type(error).__name__
-    return answer

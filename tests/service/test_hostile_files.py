@@ -3,10 +3,8 @@
 import asyncio
 import functools
 import io
-import os
 import random
 import re
-import signal
 import struct
 import time
 import zlib
@@ -22,6 +20,7 @@ from service.outlines import DrawingError
 from service.outlines.faults import Malformed, NoOutline, Unsuitable
 from tests.service.drawn_files import dxf, page
 from tests.service.running import RunningServer, workers_of
+from tests.service.test_errands import never
 from tests.service.test_hostile_drawings import HOSTILE, everything, mutated
 from tests.service.test_imports import TABLES, blob, found, picture, read
 from tests.service.test_outlines import SHAPES
@@ -274,7 +273,7 @@ def test_500_changed_files_take_bounded_memory(alone):
 
 
 def asked(desk, content, door="imports"):
-    return asyncio.run(desk.read(door, content))
+    return asyncio.run(desk.read(never, door, content))
 
 
 @pytest.fixture
@@ -293,19 +292,13 @@ def test_a_file_that_takes_too_much_is_given_up_and_the_next_one_is_read(desk, m
     with pytest.raises(Unsuitable, match="more memory"):
         asked(desk, large)
     assert b'"length":9' in asked(desk, line)
-    with monkeypatch.context() as impatient:
-        impatient.setattr(desks, "READ_S", 1e-4)
-        with pytest.raises(Unsuitable, match="takes longer"):
-            asked(desk, page('<rect width="9" height="9"/>' * 900), "outlines")
-    assert b'"length":9' in asked(desk, line)
-    # One that is killed while it has nothing to read.
-    for hand in desk._hands:
-        if hand._process is not None:
-            os.kill(hand._process.pid, signal.SIGKILL)
-            hand._process.join()
-    assert b'"length":9' in asked(desk, line)
     for content, error in ((b"<svg", Malformed), (page("<text/>"), NoOutline)):
         with pytest.raises(DrawingError) as caught:
             asked(desk, content)
         assert type(caught.value) is error
     assert caught.value.reasons == (("text", "It is text; turn it into paths."),)
+    monkeypatch.setattr(desks, "READ_S", 1e-4)
+    impatient = ImportDesk("warning", "text")
+    with pytest.raises(Unsuitable, match="takes longer"):
+        asked(impatient, page('<rect width="9" height="9"/>' * 900), "outlines")
+    impatient.stop()

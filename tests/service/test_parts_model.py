@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import math
 import operator
-import time
+import os
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -26,9 +26,10 @@ from service.parts.package import package
 from service.parts.shapes import Disc, area, extent, ring_of, widened
 from service.parts.sheet import assembly_sheet, layers
 from service.parts.sizes import PartsQuery
-from service.parts.workshop import GivenUp, Gone, Lost, Workshop
+from service.parts.workshop import Workshop
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
+from tests.service.test_errands import never
 from tests.service.test_parts import MOTION, SLIDER
 
 PLACES = st.lists(st.tuples(st.integers(-9, 9), st.integers(-9, 9)), min_size=1, max_size=6)
@@ -173,72 +174,20 @@ def test_the_same_design_gives_the_same_files(monkeypatch: Any) -> None:
     assert first == second
 
 
-async def _never() -> bool:
-    return False
-
-
-async def _at_once() -> bool:
-    return True
-
-
-@pytest.fixture
-def bench(monkeypatch: Any) -> Any:
-    """A workshop whose process starts at once, as it loads nothing."""
-    monkeypatch.setattr(workshop, "_start", operator.itemgetter)
-    made = Workshop(memory_mb=100, timeout_s=1.0)
-    yield made
-    made.stop()
-
-
-def test_a_request_that_is_left_or_takes_too_long_ends_its_process(bench: Workshop) -> None:
-    async def all_of_it() -> None:
-        assert await bench.call(_never, math.hypot, 3.0, 4.0) == 5.0
-        began = time.monotonic()
-        with pytest.raises(Gone):
-            await bench.call(_at_once, time.sleep, 30.0)
-        with pytest.raises(GivenUp):
-            await bench.call(_never, time.sleep, 30.0)
-        assert await bench.call(_never, math.hypot, 3.0, 4.0) == 5.0
-        assert time.monotonic() - began < 25.0
-        with pytest.raises(ZeroDivisionError):
-            await bench.call(_never, operator.truediv, 1.0, 0.0)
-        with pytest.raises(RuntimeError, match="no running event loop"):  # a defect is not told as too slow
-            await bench.call(_never, asyncio.get_running_loop)
-
-    asyncio.run(all_of_it())
-
-
-def _no_process(*_settings: Any) -> None:
-    raise ImportError("a library is missing")
-
-
-def test_a_process_that_cannot_start_is_no_fault_of_the_parts(monkeypatch: Any) -> None:
-    monkeypatch.setattr(workshop, "_start", _no_process)
+def test_what_was_made_is_kept_until_there_is_too_much(monkeypatch: Any) -> None:
+    monkeypatch.setattr(workshop, "KEPT_BYTES", 10)
+    monkeypatch.setattr(workshop, "_prepare", operator.itemgetter)  # loads nothing
     bench = Workshop(memory_mb=100, timeout_s=1.0)
+
+    async def all_of_it() -> list[bytes]:
+        return [await bench.made(never, os.urandom, size) for size in (5, 4, 5, 3, 5, 4)]
+
     try:
-        with pytest.raises(Lost):
-            asyncio.run(bench.call(_never, math.hypot, 3.0, 4.0))
+        made = asyncio.run(all_of_it())
     finally:
         bench.stop()
-
-
-def test_what_was_made_is_kept_until_there_is_too_much(bench: Workshop, monkeypatch: Any) -> None:
-    monkeypatch.setattr(workshop, "KEPT_BYTES", 10)
-    calls = []
-
-    def making(name: str) -> Any:
-        async def make() -> bytes:
-            calls.append(name)
-            return b"12345"
-
-        return make
-
-    async def all_of_it() -> None:
-        for name in ("a", "b", "a", "c", "a", "b"):
-            assert await bench.kept(name, making(name)) == b"12345"
-
-    asyncio.run(all_of_it())
-    assert calls == ["a", "b", "c", "b"]
+    assert made[2] == made[0] == made[4]
+    assert made[5] != made[1]
 
 
 def test_the_input_has_the_colour_that_it_has_on_the_stage() -> None:
