@@ -9,8 +9,8 @@ from pydantic import BaseModel
 
 from synthesis.model.dimension import Dimension, dimensions
 
-PARTS = ("metrics", "mechanism")
-"""What of a design has numbers that people read."""
+PARTS = ("metrics", "mechanism", "springs")
+"""What of a design has numbers that people read; springs where a kind looks for them."""
 
 
 def measures(result: type[BaseModel]) -> dict[str, Dimension]:
@@ -25,7 +25,7 @@ def measures(result: type[BaseModel]) -> dict[str, Dimension]:
     """
     found: dict[str, set[Dimension]] = {}
     for design in _models(result.model_fields["designs"].annotation):
-        for part in PARTS:
+        for part in filter(design.model_fields.__contains__, PARTS):
             for model in _reached(design.model_fields[part].annotation, set()):
                 for name, dimension in dimensions(model).items():
                     found.setdefault(name, set()).add(dimension)

@@ -1,6 +1,6 @@
 /** A barrel cam: its groove, unrolled, passes the roller, which moves along the axis. */
 
-import { Turning } from "./cam.js";
+import { Cammed } from "./cam.js";
 import { svg } from "./dom.js";
 import { t } from "./messages.js";
 import { between } from "./player.js";
@@ -10,12 +10,12 @@ import { View } from "./view.js";
 
 /** @typedef {[number, number]} Point */
 
-export class Barrel extends Turning {
+export class Barrel extends Cammed {
   get label() {
     return t`The groove of the barrel, unrolled, passing the roller`;
   }
 
-  scene() {
+  drawn() {
     const {
       cylinder_radius: radius,
       follower,
@@ -76,7 +76,7 @@ export class Barrel extends Turning {
 
   /** @param {number} at @param {number} angle */
   put(at, angle) {
-    const height = Number(between(this.displacement ?? this.motion.follower.position, at));
+    const height = Number(between(this.displacement, at));
     this.groove.setAttribute("transform", `translate(${(-this.view.scale * this.turn * angle) / (2 * Math.PI)} 0)`);
     this.roller.setAttribute("cy", String(this.view.at(0, height)[1]));
   }

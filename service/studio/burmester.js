@@ -4,7 +4,7 @@ import * as api from "./api.js";
 import { el, shown, svg } from "./dom.js";
 import { Grip, led } from "./grip.js";
 import { t, term, translated } from "./messages.js";
-import { roomOf } from "./stage.js";
+import { roomOf, scene } from "./stage.js";
 import { View } from "./view.js";
 import { Zoom } from "./zoom.js";
 
@@ -47,21 +47,18 @@ export class Burmester {
     this.view = new View(/** @type {Point[]} */ (around), width, height, Math.min(90, 0.2 * Math.min(width, height)));
     this.dyads = SIDES.map(({ moving }) => this.nearest("circle_points", joints[moving]));
     this.lines = SIDES.map((_, k) => svg("line", { class: k ? "arm" : "arm input" }));
-    this.picture = svg(
-      "svg",
-      {
-        viewBox: `0 0 ${width} ${height}`,
-        class: "canvas drag",
-        role: "group",
-        "aria-label": t`Burmester's curves, pivots to be drawn along them`,
-      },
-      svg("rect", { class: "paper", width, height }),
-      ...this.branches.flatMap((branch) => [
-        svg("path", { class: "centre-points", d: this.view.path(branch.centre_points) + (branch.closed ? "Z" : "") }),
-        svg("path", { class: "circle-points", d: this.view.path(branch.circle_points) + (branch.closed ? "Z" : "") }),
-      ]),
-      ...positions.map((one, k) => this.position(one, k)),
-      ...this.lines,
+    this.picture = scene(
+      this.view,
+      t`Burmester's curves, pivots to be drawn along them`,
+      [
+        ...this.branches.flatMap((branch) => [
+          svg("path", { class: "centre-points", d: this.view.path(branch.centre_points) + (branch.closed ? "Z" : "") }),
+          svg("path", { class: "circle-points", d: this.view.path(branch.circle_points) + (branch.closed ? "Z" : "") }),
+        ]),
+        ...positions.map((one, k) => this.position(one, k)),
+        ...this.lines,
+      ],
+      { held: true },
     );
     this.handles = SIDES.flatMap((names, k) => [
       this.handle(k, "circle_points", names.moving),

@@ -4,11 +4,13 @@
  */
 
 import { el, shown, svg } from "./dom.js";
+import { beside, nothing } from "./figures.js";
 import { Gauge } from "./gauge.js";
 import { t } from "./messages.js";
-import { Player, between } from "./player.js";
-import { plots } from "./plots.js";
+import { between } from "./player.js";
 import { along } from "./quantities.js";
+import { scene } from "./stage.js";
+import { Turning } from "./turning.js";
 import { View } from "./view.js";
 
 /** @import { Merged, Problem, Schemas } from "./types/values.js" */
@@ -57,8 +59,8 @@ export function diagrams(mechanism, motion, problem) {
   ];
 }
 
-/** What a disc cam and a barrel have in common: clock, gauge and diagrams. */
-export class Turning {
+/** What a disc cam and a barrel have in common: gauge and diagrams. */
+export class Cammed extends Turning {
   /**
    * @param {import("./stage.js").Frame} frame
    * @param {Schemas["CamDesign"] | Schemas["BarrelCamDesign"]} design
@@ -66,12 +68,12 @@ export class Turning {
    * @param {Problem} problem
    */
   constructor(frame, design, motion, problem) {
-    this.size = frame.size();
+    super(frame, t`Cam`, motion.input_angle);
     /** @type {CamMotion} */
     this.motion = motion;
     /** @type {Cam} */
     this.mechanism = design.mechanism;
-    this.count = motion.input_angle.length;
+    this.problem = problem;
     // What the scene of each kind decides.
     this.view = new View([], ...this.size);
     this.sense = 1;
@@ -79,35 +81,15 @@ export class Turning {
     this.turn = 0;
     /** @type {number[]} */
     this.spin = [];
-    const scene = this.scene();
+    const plotted = diagrams(this.mechanism, motion, problem);
+    this.displacement = plotted[0].lines[""];
+    const drawn = this.drawn();
     // A flat face that only moves along has none.
     this.gauge = motion.pressure_angle.some((one) => Number(one) > 0.01)
       ? new Gauge(t`Pressure angle`, motion.pressure_angle, { limit: problem.limits?.pressure_angle, atMost: true })
       : null;
-    this.player = new Player({
-      count: this.count,
-      closed: true,
-      label: t`Cam`,
-      reading: (at) => this.reading(at),
-      show: (at) => this.show(at),
-    });
-    this.marks = plots(diagrams(this.mechanism, motion, problem), motion.input_angle, (at) => this.player.lead(at));
     this.facts = el("dl", { class: "facts" });
-    const [width, height] = this.size;
-    const picture = svg(
-      "svg",
-      { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": this.label },
-      svg("rect", { class: "paper", width, height }),
-      ...scene,
-    );
-    frame.fill({
-      picture,
-      clock: this.player.row,
-      beside: [this.gauge?.node, this.facts],
-      plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))],
-    });
-    this.displacement = diagrams(this.mechanism, motion, problem)[0].lines[""];
-    this.player.begin();
+    this.fill(scene(this.view, this.label, drawn), [this.gauge?.node, this.facts], plotted);
   }
 
   /** What the picture shows, in words. */
@@ -116,7 +98,7 @@ export class Turning {
   }
 
   /** @returns {Element[]} */
-  scene() {
+  drawn() {
     return [];
   }
 
@@ -128,20 +110,10 @@ export class Turning {
     const degrees = Number(between(this.motion.input_angle, at));
     this.put(at, (degrees * Math.PI) / 180);
     this.gauge?.show(between(this.motion.pressure_angle, at));
-    for (const mark of this.marks) mark.show(at);
-  }
-
-  /** @param {number} at */
-  reading(at) {
-    return `${shown(Math.round(10 * Number(between(this.motion.input_angle, at))) / 10)}°`;
-  }
-
-  stop() {
-    this.player.stop();
   }
 }
 
-export class Disc extends Turning {
+export class Disc extends Cammed {
   get disc() {
     return /** @type {Schemas["CamMechanism"]} */ (this.mechanism);
   }
@@ -150,7 +122,7 @@ export class Disc extends Turning {
     return /** @type {Schemas["CamAnalysis"]} */ (this.motion).contact;
   }
 
-  scene() {
+  drawn() {
     const { follower, profile, pitch_curve: pitch, outer_wall: wall, second } = this.disc;
     this.sense = this.mechanism.rotation === "cw" ? -1 : 1;
     this.radius = follower.roller_radius ?? 0;
@@ -334,9 +306,10 @@ export class Disc extends Turning {
   /** Displacement of the follower. @param {number} at */
   place(at) {
     const { s } = this.mechanism.program;
-    const value = Number(between(this.displacement ?? [0, 0], at));
+    const value = Number(between(this.displacement, at));
     const lift = Math.max(...s) - Math.min(...s);
-    return `${shown(Math.abs(value) < 1e-9 * lift ? 0 : Number(value.toPrecision(4)))}${this.swings ? "°" : ""}`;
+    const told = shown(nothing(value, lift) ? 0 : Number(value.toPrecision(4)));
+    return beside(told, this.swings ? "°" : String(this.problem.length_unit ?? "mm"));
   }
 
   /** A flat face through the contact, with what carries it. @param {Point} touching */

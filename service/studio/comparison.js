@@ -3,7 +3,7 @@
 import * as api from "./api.js";
 import { drawn, Linkage } from "./linkage.js";
 import { el, svg, words } from "./dom.js";
-import { dimensionRows, figure, figures } from "./figures.js";
+import { dimensionRows, figure, figures, typeOf } from "./figures.js";
 import { Mover } from "./mover.js";
 import { Frame } from "./stage.js";
 import { jointsAt } from "./sweep.js";
@@ -71,7 +71,7 @@ export class Comparison {
       shown.again();
       return;
     }
-    const frame = new Second(desk.other, t`Design ${this.n + 1}: ${words(design.mechanism.type)}`);
+    const frame = new Second(desk.other, t`Design ${this.n + 1}: ${typeOf(design)}`);
     const View = VIEWS[design.mechanism.type];
     this.moving = View
       ? new View(frame, design, moved, job.problem)

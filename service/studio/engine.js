@@ -2,126 +2,107 @@
 
 import { el, shown, svg } from "./dom.js";
 import { t } from "./messages.js";
-import { Player, between } from "./player.js";
+import { between } from "./player.js";
+import { scene } from "./stage.js";
+import { Turning } from "./turning.js";
+import { View } from "./view.js";
 
 /** @import { Schemas } from "./types/values.js" */
 
-/** Room above and below, pixels. */
-const EDGE = 24;
+/** From one cylinder to the next, and the bore, in radii of the crank. */
+const COLUMN = 2.5;
+const BORE = 1.5;
 
-export class Engine {
+/** How high a piston is, and how far the bore goes on above it at the top, in radii of the crank. */
+const PISTON = 0.6;
+const HEAD = 0.4;
+
+/** @typedef {[number, number]} Point */
+
+export class Engine extends Turning {
   /**
    * @param {import("./stage.js").Frame} frame
    * @param {Schemas["EngineDesign"]} design
    * @param {Schemas["EngineAnalysis"]} motion
    */
   constructor(frame, design, motion) {
-    const [width, height] = frame.size();
-    const { mechanism } = design;
+    super(frame, t`Crank`, motion.input_angle, { endless: true });
+    const { crank, rod, cylinders } = design.mechanism;
     this.motion = motion;
-    this.crank = mechanism.crank;
-    const count = mechanism.cylinders.length;
-    const column = width / count;
-    /** Pixels for a length unit. */
-    this.scale = Math.min((height - 2 * EDGE) / (mechanism.rod + 2.8 * this.crank), (0.9 * column) / (2 * this.crank));
-    // A single cylinder stands in the middle, and not at the top.
-    const top = Math.max(EDGE, 0.5 * (height - this.scale * (mechanism.rod + 2.8 * this.crank)));
-    this.low = top + this.scale * (mechanism.rod + 1.7 * this.crank);
-    this.picture = svg(
-      "svg",
-      { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The cylinders, turning` },
-      svg("rect", { class: "paper", width, height }),
+    this.crank = crank;
+    const side = ((COLUMN * (cylinders.length - 1) + 2) * crank) / 2;
+    const corners = /** @type {Point[]} */ ([
+      [-side, -1.5 * crank],
+      [side, rod + (1 + PISTON / 2 + HEAD) * crank],
+    ]);
+    this.view = new View(corners, ...this.size, 32);
+    this.drawings = cylinders.map((cylinder, /** @type {number} */ n) =>
+      this.column(cylinder, COLUMN * crank * (n - (cylinders.length - 1) / 2), rod),
     );
-    this.drawings = mechanism.cylinders.map((cylinder, /** @type {number} */ n) => {
-      const middle = column * (n + 0.5);
-      const half = 0.75 * this.scale * this.crank;
-      const crank = svg("path", { class: "link input" });
-      const rod = svg("path", { class: "link" });
-      const piston = svg("rect", {
-        class: "pin",
-        x: middle - half,
-        width: 2 * half,
-        height: 0.6 * this.scale * this.crank,
-      });
-      const foot = this.low - this.scale * (mechanism.rod - this.crank);
-      const walls = svg("path", {
-        class: "ground",
-        d: [middle - half, middle + half].map((wall) => `M${wall} ${top}V${foot}`).join(""),
-      });
-      this.picture.append(
-        svg(
-          "g",
-          {},
-          svg("title", {}, t`Cylinder ${cylinder.number}`),
-          walls,
-          rod,
-          crank,
-          piston,
-          svg("circle", { class: "pin", cx: middle, cy: this.low, r: 3.5 }),
-        ),
-      );
-      return { cylinder, middle, crank, rod, piston };
-    });
+    const picture = scene(
+      this.view,
+      t`The cylinders, turning`,
+      this.drawings.map((one) => one.node),
+    );
     const fires = design.firing.orders[0];
-    this.player = new Player({
-      count: motion.input_angle.length,
-      closed: true,
-      endless: true,
-      label: t`Crank`,
-      reading: (at) => `${shown(Math.round(10 * this.degrees(at)) / 10)}°`,
-      show: (at) => this.show(at),
-    });
-    frame.fill({
-      picture: this.picture,
-      clock: this.player.row,
-      beside: [
-        el(
-          "dl",
-          { class: "facts speeds" },
-          el("dt", {}, t`Firing order`),
-          el("dd", {}, fires.order.join("-")),
-          ...fires.order.flatMap((/** @type {number} */ number, /** @type {number} */ k) => [
-            el("dt", {}, t`Cylinder ${number}`),
-            el("dd", {}, `${shown(fires.angles[k])}°`),
-          ]),
-        ),
-        el(
-          "p",
-          { class: "note" },
-          t`The cylinders from the front to the back; each is seen with its own axis upwards.`,
-        ),
-      ],
-    });
-    this.player.begin();
+    this.fill(picture, [
+      el(
+        "dl",
+        { class: "facts speeds" },
+        el("dt", {}, t`Firing order`),
+        el("dd", {}, fires.order.join("-")),
+        ...fires.order.flatMap((/** @type {number} */ number, /** @type {number} */ k) => [
+          el("dt", {}, t`Cylinder ${number}`),
+          el("dd", {}, `${shown(fires.angles[k])}°`),
+        ]),
+      ),
+      el("p", { class: "note" }, t`The cylinders from the front to the back; each is seen with its own axis upwards.`),
+    ]);
   }
 
-  /** Crank angle, which goes on turn after turn. @param {number} at */
-  degrees(at) {
-    const last = this.motion.input_angle.length - 1;
-    const turns = Math.floor(at / last);
-    return 360 * turns + Number(between(this.motion.input_angle, at - turns * last));
+  /** @param {Schemas["EngineDesign"]["mechanism"]["cylinders"][number]} cylinder @param {number} x @param {number} rod */
+  column(cylinder, x, rod) {
+    const { view, crank: radius } = this;
+    const half = (BORE / 2) * radius;
+    const [u, v] = view.at(x, 0);
+    const [left, top] = view.at(x - half, rod + (1 + PISTON / 2 + HEAD) * radius);
+    const foot = view.at(x, rod - (1 + PISTON / 2) * radius)[1];
+    const right = 2 * u - left;
+    const [crank, link] = [svg("path", { class: "link input" }), svg("path", { class: "link" })];
+    const piston = svg("rect", { class: "pin", x: left, width: right - left, height: view.scale * PISTON * radius });
+    const pins = [0, 1].map(() => svg("circle", { class: "pin", r: 3.5 }));
+    const node = svg(
+      "g",
+      {},
+      svg("title", {}, t`Cylinder ${cylinder.number}`),
+      svg("path", { class: "bore", d: `M${left} ${foot}V${top}H${right}V${foot}` }),
+      piston,
+      link,
+      crank,
+      ...pins,
+      svg("circle", { class: "pin", cx: u, cy: v, r: 3.5 }),
+      svg("text", { class: "called", x: u, y: view.at(x, -1.35 * radius)[1] }, cylinder.number),
+    );
+    return { cylinder, x, node, crank, link, piston, pins };
   }
 
   /** @param {number} at */
   show(at) {
-    const last = this.motion.input_angle.length - 1;
-    const within = at - last * Math.floor(at / last);
-    const input = this.degrees(at);
-    this.drawings.forEach(({ cylinder, middle, crank, rod, piston }, /** @type {number} */ n) => {
+    const { view } = this;
+    const input = this.over(this.angles, at);
+    this.drawings.forEach(({ cylinder, x, crank, link, piston, pins }, /** @type {number} */ n) => {
       // Upwards is the cylinder's axis; to the left of it is left.
       const turn = ((input - cylinder.phase - cylinder.axis) * Math.PI) / 180;
-      const [u, v] = [
-        middle - this.scale * this.crank * Math.sin(turn),
-        this.low - this.scale * this.crank * Math.cos(turn),
-      ];
-      const top = this.low - this.scale * Number(between(this.motion.cylinders[n].place, within));
-      crank.setAttribute("d", `M${middle} ${this.low}L${u.toFixed(2)} ${v.toFixed(2)}`);
-      rod.setAttribute("d", `M${u.toFixed(2)} ${v.toFixed(2)}L${middle} ${top.toFixed(2)}`);
-      piston.setAttribute("y", (top - 0.3 * this.scale * this.crank).toFixed(2));
+      const throwAt = /** @type {Point} */ ([x - this.crank * Math.sin(turn), this.crank * Math.cos(turn)]);
+      const high = /** @type {Point} */ ([x, Number(between(this.motion.cylinders[n].place, this.within(at)))]);
+      crank.setAttribute("d", view.path([[x, 0], throwAt]));
+      link.setAttribute("d", view.path([throwAt, high]));
+      piston.setAttribute("y", view.at(x, high[1] + (PISTON / 2) * this.crank)[1].toFixed(2));
+      pins.forEach((pin, k) => {
+        const [u, v] = view.at(...(k ? high : throwAt));
+        pin.setAttribute("cx", u.toFixed(2));
+        pin.setAttribute("cy", v.toFixed(2));
+      });
     });
-  }
-
-  stop() {
-    this.player.stop();
   }
 }

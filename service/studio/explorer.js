@@ -9,7 +9,7 @@ import { Linkage, drawn } from "./linkage.js";
 import { Player, between } from "./player.js";
 import { beginnings } from "./beginnings.js";
 import { t } from "./messages.js";
-import { CLOCK, roomOf } from "./stage.js";
+import { CLOCK, roomOf, scene } from "./stage.js";
 import { View } from "./view.js";
 import { Zoom } from "./zoom.js";
 
@@ -48,22 +48,19 @@ export class Explorer {
     this.curve = svg("path", { class: "curve" });
     this.linkage = new Linkage(this.view, this.skeleton, { names: false });
     this.ghost = new Linkage(this.view, this.skeleton, { names: false, faint: true });
-    this.picture = svg(
-      "svg",
-      {
-        viewBox: `0 0 ${width} ${height}`,
-        class: "canvas drag",
-        role: "group",
-        "aria-label": t`The linkage, its pins to be dragged`,
-      },
-      svg("rect", { class: "paper", width, height }),
-      this.curve,
-      ...targets.map((one) => {
-        const [u, v] = this.view.at(one.x, one.y);
-        return svg("g", { class: "goal" }, svg("circle", { cx: u, cy: v, r: 5 }));
-      }),
-      this.ghost.node,
-      this.linkage.node,
+    this.picture = scene(
+      this.view,
+      t`The linkage, its pins to be dragged`,
+      [
+        this.curve,
+        ...targets.map((one) => {
+          const [u, v] = this.view.at(one.x, one.y);
+          return svg("g", { class: "goal" }, svg("circle", { cx: u, cy: v, r: 5 }));
+        }),
+        this.ghost.node,
+        this.linkage.node,
+      ],
+      { held: true },
     );
     this.handles = drawn(this.skeleton).map((name) => this.handle(name));
     this.picture.append(...this.handles.map(({ grip }) => grip.node));

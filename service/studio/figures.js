@@ -25,7 +25,15 @@ const FIRST = [
   "efficiency",
   "prime_radius",
   "max_pressure_angle",
+  "drive",
 ];
+
+/** What is measured against something else: of that rounding leaves it this much, which is nothing. */
+const AGAINST = /** @type {Record<string, string>} */ ({
+  drive: "unbalanced_drive",
+  rms_drive: "unbalanced_rms_drive",
+  entry_speed: "peak_velocity",
+});
 
 /**
  * The metrics that are plain numbers or words, the telling ones first.
@@ -33,11 +41,12 @@ const FIRST = [
  * @returns {[string, string | number | boolean][]}
  */
 export function figures(design) {
-  const all = Object.entries(design.metrics ?? {}).flatMap(([name, value]) =>
-    typeof value === "number" || typeof value === "string" || typeof value === "boolean"
-      ? [/** @type {[string, string | number | boolean]} */ ([name, value])]
-      : [],
-  );
+  const metrics = /** @type {Record<string, unknown>} */ (design.metrics ?? {});
+  const all = Object.entries(metrics).flatMap(([name, value]) => {
+    if (typeof value !== "number" && typeof value !== "string" && typeof value !== "boolean") return [];
+    const nil = typeof value === "number" && nothing(value, Number(metrics[AGAINST[name]]));
+    return [/** @type {[string, string | number | boolean]} */ ([name, nil ? 0 : value])];
+  });
   const rank = (/** @type {string} */ name) => (FIRST.includes(name) ? FIRST.indexOf(name) : FIRST.length);
   return all.sort(([a], [b]) => rank(a) - rank(b));
 }
@@ -52,7 +61,10 @@ const ROUNDING = 1e-9;
 
 /** Names of what measures by how much something is missed. */
 const MISSES =
-  /^(reaches|meets|keeps|reproduces)_|^(dials|ratio)$|(^|_)(residual|error)$|^(rms|max)_distance$|^sum_of_squares$/;
+  /^(reaches|meets|keeps|reproduces)_|^(dials|ratio)$|(^|_)(residual|error)$|^(rms|max|curve)_distance$|^sum_of_squares$|^rotation$|^value$/;
+
+/** A limit of a check that is no demand: it bounds what rounding may leave. */
+const TOLERANCE = 1e-6;
 
 /** What has no scale of its own, so that it says by itself whether it is rounding alone. */
 const BARE = [undefined, "angle", "percent"];
@@ -61,6 +73,11 @@ const BARE = [undefined, "angle", "percent"];
 export function brief(value) {
   if (!Number.isFinite(value) || Number.isInteger(value)) return shown(value);
   return shown(Math.abs(value) >= 10 ** DIGITS ? Math.round(value) : Number(value.toPrecision(DIGITS)));
+}
+
+/** Whether what is left of something is but the rounding of the computer. @param {number} left @param {number} of */
+export function nothing(left, of) {
+  return Math.abs(left) <= ROUNDING * Math.abs(of);
 }
 
 /**
@@ -92,8 +109,18 @@ export function figure(name, value, problem, size) {
   return { text: plain ? t`exact` : beside(brief(value), unit), title: beside(number(value), unit) };
 }
 
+/** The type of a design as a person reads it. @param {Partial<Design>} design */
+export function typeOf({ mechanism, springs }) {
+  if (mechanism?.type !== "skeleton") return words(String(mechanism?.type));
+  return springs?.length ? t`Sprung linkage` : t`Linkage`;
+}
+
+/** What is written short. @type {Record<string, string>} */
+const SHORT = { cw: t`clockwise`, ccw: t`counterclockwise` };
+
 /** @param {unknown} value @param {string} [unit] beside a number */
 export function text(value, unit = "") {
+  if (typeof value === "string" && value in SHORT) return SHORT[value];
   return typeof value === "number"
     ? beside(shown(value), unit)
     : typeof value === "boolean"
@@ -112,8 +139,8 @@ export function unitFor(name, problem) {
   return symbolOf(api.measures(problem.kind)[name], problem);
 }
 
-/** @param {string} number @param {string} unit */
-function beside(number, unit) {
+/** A number with its unit. @param {string} number @param {string} unit */
+export function beside(number, unit) {
   return `${number}${unit === "" || unit === "°" ? unit : ` ${unit}`}`;
 }
 
@@ -137,13 +164,16 @@ function measured(check, problem) {
   const value = Number(check.value);
   const unit = symbolOf(dimension ?? undefined, problem);
   const limit = typeof check.limit === "number" ? check.limit : null;
+  const rounded = limit !== null && Math.abs(limit) <= TOLERANCE && Math.abs(value) <= ROUNDING;
   const close = !passed || (limit !== null && brief(value) === brief(limit));
   const told = (/** @type {(value: number) => string} */ as) =>
     `${beside(as(value), unit)}${limit === null ? "" : `, ${t`limit ${beside(as(limit), unit)}`}`}`;
   return el(
     "span",
     { class: "note", title: told(number) },
-    passed && exact(name, value, dimension ?? undefined) ? ` ${t`exact`}` : ` ${told(close ? shown : brief)}`,
+    passed && (exact(name, value, dimension ?? undefined) || rounded)
+      ? ` ${t`exact`}`
+      : ` ${told(close ? shown : brief)}`,
   );
 }
 
@@ -242,7 +272,8 @@ export function made(design) {
  * @param {Problem} problem
  */
 export function dimensions(design, problem) {
-  return rowed(t`Dimensions`, dimensionRows(design, problem));
+  const rows = dimensionRows(design, problem);
+  return rows.length > 0 && rowed(t`Dimensions`, rows);
 }
 
 /**
@@ -271,6 +302,12 @@ export function dimensionRows(design, problem) {
     } else if (typeof value === "number") row(name, [value], unit);
     else if (value !== null) rows.push([name, { text: text(value), title: null }]);
   };
+  // Springs are numbered as they stand.
+  walk(
+    t`spring`,
+    (design.springs ?? []).map(({ number: _, ...spring }) => spring),
+    "",
+  );
   for (const [name, value] of Object.entries(design.mechanism ?? {}))
     if (!["type", "skeleton", "profile", "pitch_curve", "program", "outer_wall"].includes(name))
       walk(term(name), value, unitFor(name, problem));

@@ -2,76 +2,63 @@
 
 import { el, shown, svg } from "./dom.js";
 import { t } from "./messages.js";
-import { Player, between } from "./player.js";
+import { between } from "./player.js";
+import { scene } from "./stage.js";
+import { Turning } from "./turning.js";
+import { symbolOf } from "./units.js";
 import { View } from "./view.js";
 
-/** @import { Schemas } from "./types/values.js" */
+/** @import { Problem, Schemas } from "./types/values.js" */
 
 /** @typedef {{angle: number[], torque: number[], speed: number[]}} Course */
 
-export class Flywheel {
-  /** @param {import("./stage.js").Frame} frame @param {Schemas["FlywheelDesign"]} design */
-  constructor(frame, design) {
-    const [width, height] = frame.size();
+export class Flywheel extends Turning {
+  /**
+   * @param {import("./stage.js").Frame} frame
+   * @param {Schemas["FlywheelDesign"]} design
+   * @param {unknown} _motion which its course tells
+   * @param {Problem} problem
+   */
+  constructor(frame, design, _motion, problem) {
     const { mechanism, course } = design;
-    const { radius, inner_radius: inner } = mechanism;
     // Places of the player are equal times.
-    this.angles = turned(course);
-    this.speeds = inTime(course, this.angles, course.speed);
-    this.torques = inTime(course, this.angles, course.torque);
-    this.view = new View(
+    const angles = turned(course);
+    super(frame, t`Shaft`, angles);
+    const { radius, inner_radius: inner } = mechanism;
+    const [speed, torque] = [symbolOf("rotational speed", problem), symbolOf("torque", problem)];
+    this.told = [
+      { name: t`Speed`, unit: speed, series: inTime(course, angles, course.speed), said: el("dd", {}) },
+      { name: t`Torque`, unit: torque, series: inTime(course, angles, course.torque), said: el("dd", {}) },
+    ];
+    const view = new View(
       [
         [-radius, -radius],
         [radius, radius],
       ],
-      width,
-      height,
+      ...this.size,
       40,
     );
-    this.middle = this.view.at(0, 0);
+    this.middle = view.at(0, 0);
+    const [cx, cy] = this.middle;
     const circle = (/** @type {number} */ far, /** @type {string} */ name) =>
-      svg("circle", { class: name, cx: this.middle[0], cy: this.middle[1], r: this.view.scale * far });
+      svg("circle", { class: name, cx, cy, r: view.scale * far });
     this.spoke = svg("path", {
       class: "spoke",
-      d: `M${(this.view.scale * inner).toFixed(1)} 0H${(this.view.scale * radius).toFixed(1)}`,
+      d: `M${(view.scale * inner).toFixed(1)} 0H${(view.scale * radius).toFixed(1)}`,
     });
-    this.picture = svg(
-      "svg",
-      { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The flywheel, turning` },
-      svg("rect", { class: "paper", width, height }),
-      svg(
-        "g",
-        { class: "wheel t0" },
-        circle(radius, "teeth"),
-        inner > 0 && circle(inner, "hollow"),
-        this.spoke,
-        svg("circle", { class: "pin", cx: this.middle[0], cy: this.middle[1], r: 3.5 }),
-      ),
+    const wheel = svg(
+      "g",
+      { class: "wheel t0" },
+      circle(radius, "teeth"),
+      inner > 0 && circle(inner, "hollow"),
+      this.spoke,
+      svg("circle", { class: "pin", cx, cy, r: 3.5 }),
     );
-    this.speed = el("dd", {});
-    this.torque = el("dd", {});
-    this.player = new Player({
-      count: course.angle.length,
-      closed: true,
-      label: t`Shaft`,
-      reading: (at) => `${shown(Math.round(10 * Number(between(this.angles, at))) / 10)}°`,
-      show: (at) => this.show(at),
-    });
-    frame.fill({
-      picture: this.picture,
-      clock: this.player.row,
-      beside: [
-        el(
-          "dl",
-          { class: "facts speeds" },
-          el("dt", {}, t`Speed, rev/min`),
-          this.speed,
-          el("dt", {}, t`Torque`),
-          this.torque,
-        ),
-      ],
-    });
-    this.player.begin();
+    this.fill(
+      scene(view, t`The flywheel, turning`, [wheel]),
+      [el("dl", { class: "facts speeds" }, ...this.told.flatMap(({ name, said }) => [el("dt", {}, name), said]))],
+      this.told.map(({ name, unit, series }) => ({ title: unit ? `${name} (${unit})` : name, lines: { "": series } })),
+    );
   }
 
   /** @param {number} at */
@@ -81,12 +68,8 @@ export class Flywheel {
       "transform",
       `translate(${u.toFixed(2)} ${v.toFixed(2)}) rotate(${(-Number(between(this.angles, at))).toFixed(3)})`,
     );
-    this.speed.textContent = shown(Number(Number(between(this.speeds, at)).toPrecision(5)));
-    this.torque.textContent = shown(Number(Number(between(this.torques, at)).toPrecision(4)));
-  }
-
-  stop() {
-    this.player.stop();
+    for (const { unit, series, said } of this.told)
+      said.textContent = `${shown(Number(Number(between(series, at)).toPrecision(4)))} ${unit}`.trim();
   }
 }
 

@@ -102,7 +102,7 @@ export class ForceArrows {
     this.peak = Math.max(0, ...forces.map(peakOf));
     /** Pixels for a unit of force. */
     this.scale = this.peak > 0 ? (SHARE * view.height) / this.peak : 0;
-    this.beyond = this.reach(tracks);
+    this.extent = this.reach(tracks);
     /** @type {{force: Force, node: SVGElement, shaft: SVGElement, head: SVGElement}[]} */
     this.arrows = [];
     this.layer = svg("g", {});
@@ -121,20 +121,27 @@ export class ForceArrows {
     this.choose("");
   }
 
-  /** How far arrows reach beyond the picture, pixels. @param {Record<string, {x: Series, y: Series}>} tracks */
+  /**
+   * What the picture has to show with the arrows, pixels.
+   * @param {Record<string, {x: Series, y: Series}>} tracks
+   * @returns {import("./view.js").Box}
+   */
   reach(tracks) {
-    const { width, height } = this.view;
-    let most = 0;
+    const { x: west, y: north, width, height } = this.view.box;
+    const sides = [west, north, west + width, north + height];
     for (const { joint, x, y } of this.forces) {
       x.forEach((one, k) => {
         const [px, py] = [tracks[joint].x[k], tracks[joint].y[k]];
         if (one === null || px === null || py === null) return;
         const [u, v] = this.view.at(px, py);
         const [tip, top] = [u + this.scale * one, v - this.scale * Number(y[k])];
-        most = Math.max(most, -tip, tip - width, -top, top - height);
+        sides[0] = Math.min(sides[0], tip - HEAD[1]);
+        sides[1] = Math.min(sides[1], top - HEAD[1]);
+        sides[2] = Math.max(sides[2], tip + HEAD[1]);
+        sides[3] = Math.max(sides[3], top + HEAD[1]);
       });
     }
-    return most > 0 ? Math.ceil(most) + HEAD[1] : 0;
+    return { x: sides[0], y: sides[1], width: sides[2] - sides[0], height: sides[3] - sides[1] };
   }
 
   /** Draw the forces on one link, or one for each joint. @param {string} link */
@@ -161,12 +168,11 @@ export class ForceArrows {
 
   /** An arrow of a round number, and what it stands for. @param {string} unit */
   legend(unit) {
-    if (!this.peak)
-      return svg("text", { class: "force-scale", x: 12, y: this.view.height - 12 }, t`No joint bears a force.`);
+    const [x, y] = [this.extent.x + 12, this.extent.y + this.extent.height - 12];
+    if (!this.peak) return svg("text", { class: "force-scale", x, y }, t`No joint bears a force.`);
     const power = 10 ** Math.floor(Math.log10(this.peak));
     const value = power * ([5, 2, 1].find((one) => one * power <= this.peak) ?? 1);
     const length = this.scale * value;
-    const [x, y] = [16 - this.beyond, this.view.height + this.beyond - 16];
     const [shaft, head] = [svg("line", { class: "shaft-of-force" }), svg("path", { class: "head-of-force" })];
     draw(shaft, head, [x, y], [length, 0]);
     return svg(

@@ -116,13 +116,13 @@ export class Forces {
       answer.joints,
       (input) => this.placeAt(input),
     );
-    const { node, beyond } = this.arrows;
+    const { node, extent } = this.arrows;
     this.pictures
       .querySelector(".force-choice")
       ?.replaceChildren(el("label", { for: "force-on" }, "Arrows: forces on"), this.arrows.choice);
     mover.accompany({
       node,
-      beyond,
+      extent,
       show: (input, now) => {
         this.arrows?.show(input, now);
         this.show(input);

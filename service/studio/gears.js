@@ -3,14 +3,15 @@
 import * as api from "./api.js";
 import { el, shown, svg, words } from "./dom.js";
 import { t, term } from "./messages.js";
-import { Player, between } from "./player.js";
+import { scene } from "./stage.js";
 import { wheels } from "./trains.js";
+import { Turning } from "./turning.js";
 import { View } from "./view.js";
 import { drawn, place, radius } from "./wheels.js";
 
 /** @import { Design, Merged, Problem, Schemas, TrainMotion } from "./types/values.js" */
 
-export class Gears {
+export class Gears extends Turning {
   /**
    * @param {import("./stage.js").Frame} frame
    * @param {Design} design
@@ -18,46 +19,30 @@ export class Gears {
    * @param {Problem} problem
    */
   constructor(frame, design, motion, problem) {
-    this.size = frame.size();
-    const [width, height] = this.size;
+    super(frame, t`Input`, motion.input_angle, { endless: true });
     this.design = design;
     this.problem = problem;
     /** @type {Merged<TrainMotion>} */
     this.motion = motion;
     this.gone = new AbortController();
-    this.picture = svg("svg", {
-      viewBox: `0 0 ${width} ${height}`,
-      class: "canvas",
-      role: "img",
-      "aria-label": t`The gears, turning`,
-    });
     this.facts = el("dl", { class: "facts speeds" });
-    this.player = new Player({
-      count: motion.input_angle.length,
-      closed: true,
-      endless: true,
-      label: t`Input`,
-      reading: (at) => `${shown(Math.round(10 * this.degrees(at)) / 10)}°`,
-      show: (at) => this.show(at),
-    });
-    frame.fill({
-      picture: this.picture,
-      clock: this.player.row,
-      beside: [
-        this.engaging(),
-        this.facts,
-        el(
-          "p",
-          { class: "note" },
-          t`Circles are pitch circles. Each gear turns as fast as the analysis says, one turn of the input in four seconds at speed 1.`,
-        ),
-      ],
-    });
-    this.view = new View([], width, height);
-    this.build();
-    this.player.begin();
+    this.view = new View([], ...this.size);
+    /** @type {ReturnType<typeof drawn>[]} */
+    this.drawings = [];
+    /** @type {{wheel: import("./wheels.js").Wheel, line: SVGLineElement}[]} */
+    this.arms = [];
+    this.fill(this.build(), [
+      this.engaging(),
+      this.facts,
+      el(
+        "p",
+        { class: "note" },
+        t`Circles are pitch circles. Each gear turns as fast as the analysis says, one turn of the input in four seconds at speed 1.`,
+      ),
+    ]);
   }
 
+  /** Draw the gears of the motion as it is, and tell their speeds. */
   build() {
     const { mechanism } = this.design;
     const listed = wheels(mechanism, /** @type {TrainMotion} */ (this.motion), this.design, this.problem);
@@ -71,8 +56,7 @@ export class Gears {
         ]);
       }),
     );
-    const [width, height] = this.size;
-    const view = new View(corners, width, height, 40);
+    const view = new View(corners, ...this.size, 40);
     // Rings lie behind, and what is not engaged behind those.
     const order = [...listed].sort((one, other) => Number(other.internal ?? false) - Number(one.internal ?? false));
     this.drawings = order.map((wheel) => drawn(view, wheel));
@@ -81,12 +65,11 @@ export class Gears {
     );
     this.arms = arms.map((wheel) => ({ wheel, line: svg("line", { class: "arm" }) }));
     this.view = view;
-    this.picture.replaceChildren(
-      svg("rect", { class: "paper", width, height }),
+    this.facts.replaceChildren(...this.speeds().flatMap(([name, speed]) => [el("dt", {}, name), el("dd", {}, speed)]));
+    return scene(view, t`The gears, turning`, [
       ...this.drawings.map((one) => one.node),
       ...this.arms.map((one) => one.line),
-    );
-    this.facts.replaceChildren(...this.speeds().flatMap(([name, speed]) => [el("dt", {}, name), el("dd", {}, speed)]));
+    ]);
   }
 
   /** @returns {[string, string][]} */
@@ -143,22 +126,15 @@ export class Gears {
     });
     if (!found || this.gone.signal.aborted) return;
     this.motion = found;
-    this.build();
+    this.picture?.replaceChildren(...this.build().childNodes);
     this.show(this.player.at);
-  }
-
-  /** Input angle, which goes on turn after turn. @param {number} at */
-  degrees(at) {
-    const last = this.motion.input_angle.length - 1;
-    const turns = Math.floor(at / last);
-    return 360 * turns + Number(between(this.motion.input_angle, at - turns * last));
   }
 
   /** @param {number} at */
   show(at) {
-    const input = (this.degrees(at) * Math.PI) / 180;
-    for (const { turn } of this.drawings ?? []) turn(input);
-    for (const { wheel, line } of this.arms ?? []) {
+    const input = (this.over(this.angles, at) * Math.PI) / 180;
+    for (const { turn } of this.drawings) turn(input);
+    for (const { wheel, line } of this.arms) {
       const [[u, v], [x, y]] = [
         this.view.at(...(wheel.axis ?? /** @type {[number, number]} */ ([0, 0]))),
         this.view.at(...place(wheel, input)),
@@ -170,6 +146,6 @@ export class Gears {
 
   stop() {
     this.gone.abort();
-    this.player.stop();
+    super.stop();
   }
 }

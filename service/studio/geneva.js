@@ -2,8 +2,8 @@
 
 import { el, shown, svg } from "./dom.js";
 import { t } from "./messages.js";
-import { Player, between } from "./player.js";
-import { plots } from "./plots.js";
+import { scene } from "./stage.js";
+import { Turning } from "./turning.js";
 import { View } from "./view.js";
 
 /** @import { Merged, Schemas } from "./types/values.js" */
@@ -16,14 +16,14 @@ const BESIDE = 2.4;
 
 /** @typedef {[number, number]} Point */
 
-export class Geneva {
+export class Geneva extends Turning {
   /**
    * @param {import("./stage.js").Frame} frame
    * @param {Merged<Schemas["IndexingDesign"]>} design
    * @param {Schemas["GenevaAnalysis"]} motion
    */
   constructor(frame, design, motion) {
-    const [width, height] = frame.size();
+    super(frame, t`Crank`, motion.input_angle, { endless: true });
     const { mechanism } = design;
     this.motion = motion;
     const external = mechanism.type === "geneva_external";
@@ -61,8 +61,7 @@ export class Geneva {
         [centre + far, far],
         ...wide,
       ]),
-      width,
-      height,
+      ...this.size,
       40,
     );
     this.view = view;
@@ -70,19 +69,17 @@ export class Geneva {
     this.axes = [view.at(0, 0), view.at(centre, 0)];
     const [[u, v]] = this.axes;
     this.wheel = svg("path", { class: "teeth", d: `${view.path(wheel)}Z` });
+    const pins = rollers.map(([x, y]) => view.at(x + centre, y));
     this.crank = svg(
       "g",
       {},
       svg("path", { class: "teeth", d: `${view.path(disc.map(([x, y]) => /** @type {Point} */ ([x + centre, y])))}Z` }),
-      ...rollers.map(([x, y]) => {
-        const [across, down] = view.at(x + centre, y);
-        return svg("circle", { class: "pin", cx: across, cy: down, r: (view.scale * mechanism.roller_diameter) / 2 });
-      }),
+      svg("path", { class: "spoke", d: pins.map((pin) => `M${this.axes[1].join(" ")}L${pin.join(" ")}`).join("") }),
+      ...pins.map(([cx, cy]) =>
+        svg("circle", { class: "tyre", cx, cy, r: (view.scale * mechanism.roller_diameter) / 2 }),
+      ),
     );
-    const picture = svg(
-      "svg",
-      { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The Geneva drive, turning` },
-      svg("rect", { class: "paper", width, height }),
+    const picture = scene(view, t`The Geneva drive, turning`, [
       mechanism.ring_radius &&
         svg(
           "g",
@@ -93,49 +90,23 @@ export class Geneva {
       svg("g", { class: "wheel t1" }, this.crank),
       this.link && this.bars,
       ...this.axes.map(([cx, cy]) => svg("circle", { class: "pin", cx, cy, r: 3.5 })),
-    );
+    ]);
     this.angle = el("dd", {});
     this.state = el("dd", {});
-    this.player = new Player({
-      count: motion.input_angle.length,
-      closed: true,
-      endless: true,
-      label: t`Crank`,
-      reading: (at) => `${shown(Math.round(10 * this.over(motion.input_angle, at)) / 10)}°`,
-      show: (at) => this.show(at),
-    });
-    this.marks = plots(
+    this.fill(
+      picture,
+      [el("dl", { class: "facts speeds" }, el("dt", {}, t`Wheel`), this.angle, el("dt", {}, t`Motion`), this.state)],
       [
         { title: t`Wheel turned (°)`, lines: { "": motion.angle } },
         { title: t`Velocity v (rad by rad)`, lines: { "": motion.omega } },
         { title: t`Acceleration a (rad by rad²)`, lines: { "": motion.alpha } },
       ],
-      motion.input_angle,
-      (at) => this.player.lead(at),
     );
-    frame.fill({
-      picture,
-      clock: this.player.row,
-      beside: [
-        el("dl", { class: "facts speeds" }, el("dt", {}, t`Wheel`), this.angle, el("dt", {}, t`Motion`), this.state),
-      ],
-      plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))],
-    });
-    this.player.begin();
-  }
-
-  /** A value that grows turn after turn by as much as over one. @param {number[]} series @param {number} at */
-  over(series, at) {
-    const last = series.length - 1;
-    const turns = Math.floor(at / last);
-    return turns * (series[last] - series[0]) + Number(between(series, at - turns * last));
   }
 
   /** @param {number} at */
   show(at) {
     const { motion, begin, sense } = this;
-    const last = motion.input_angle.length - 1;
-    const within = at - last * Math.floor(at / last);
     const turned = this.over(motion.angle, at);
     const turns = [begin.wheel + sense * turned, begin.crank + this.over(motion.crank, at)];
     if (this.link)
@@ -152,12 +123,7 @@ export class Geneva {
       );
     });
     this.angle.textContent = `${shown(Math.round(10 * turned) / 10)}°`;
-    this.state.textContent = motion.moves[Math.round(within)] ? t`turns` : t`rests, locked`;
-    for (const mark of this.marks) mark.show(within);
-  }
-
-  stop() {
-    this.player.stop();
+    this.state.textContent = motion.moves[Math.round(this.within(at))] ? t`turns` : t`rests, locked`;
   }
 }
 

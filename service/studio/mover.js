@@ -12,6 +12,8 @@ import { plots } from "./plots.js";
 import { judged, moved, partName, parts } from "./quantities.js";
 import { RoomView } from "./room_view.js";
 import { Ruler } from "./ruler.js";
+import { scene } from "./stage.js";
+import { Springs, anchored, springsOf } from "./springs.js";
 import { Sweep, jointsAt, placeOf, rangeOf } from "./sweep.js";
 import { View } from "./view.js";
 
@@ -28,7 +30,7 @@ const PLANES = 300;
  * What goes with the motion: a layer of the picture that is told the input.
  * @typedef {object} Companion
  * @property {SVGElement} node
- * @property {number} beyond how far it reaches beyond the picture, pixels
+ * @property {import("./view.js").Box} extent what the picture has to show with it, pixels
  * @property {(input: number, now: import("./linkage.js").Places) => void} show
  */
 
@@ -54,6 +56,7 @@ export class Mover {
     this.room = new RoomView(problem, design.mechanism);
     const points = [
       ...around,
+      ...anchored(springsOf(design, problem)),
       ...this.room.extent,
       ...Object.keys(motion.joints).flatMap((joint) => this.track(joint)),
       ...this.targets.map((one) => /** @type {Point} */ ([one.x, one.y])),
@@ -103,6 +106,8 @@ export class Mover {
     this.companion = null;
     /** What is taken hold of around the pin of the input. @type {{name: string, hit: SVGElement} | null} */
     this.hold = null;
+    this.springs = new Springs(this.view, this.skeleton, springsOf(design, problem));
+    this.picture = this.drawn();
     this.build(design, problem);
     this.player.begin();
   }
@@ -113,25 +118,27 @@ export class Mover {
     return x.map((one, k) => (one === null ? [NaN, NaN] : [one, Number(y[k])]));
   }
 
-  /** @param {LinkedDesign} design @param {Problem} problem */
-  build(design, problem) {
+  /** Everything on the stage, one thing over the other. */
+  drawn() {
     const { view, skeleton } = this;
-    const [width, height] = this.size;
     const still = grounded(skeleton);
     const moving = drawn(skeleton).filter((name) => !still.includes(name));
-    this.picture = svg(
-      "svg",
-      { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The linkage in motion` },
-      svg("rect", { class: "paper", width, height }),
+    return scene(view, t`The linkage in motion`, [
       this.sweep.node,
       this.room.draw(view),
       this.circuits.node,
       ...moving.map((name) => svg("path", { class: name === "P" ? "curve" : "trail", d: view.path(this.track(name)) })),
       ...this.toggles(),
       ...this.targets.map((one, k) => this.target(one, k)),
+      this.springs.node,
       this.linkage.node,
-    );
-    this.drags(still);
+    ]);
+  }
+
+  /** @param {LinkedDesign} design @param {Problem} problem */
+  build(design, problem) {
+    const { view, skeleton } = this;
+    this.drags(grounded(skeleton));
     const ruler = new Ruler(this.picture, view, problem.length_unit ?? "mm", () => this.places());
     const force = plots(judged(this.motion, design, problem), this.motion.input_angle, (at) => this.player.lead(at));
     const box = el("div", { class: "plots" });
@@ -263,6 +270,7 @@ export class Mover {
       this.hold.hit.setAttribute("cx", String(u));
       this.hold.hit.setAttribute("cy", String(v));
     }
+    this.springs.show(now);
     this.room.show(now);
     this.planes?.show(now);
     this.circuits.show(between(this.motion.input_angle, at));
@@ -284,10 +292,12 @@ export class Mover {
     this.companion?.node.remove();
     this.companion = companion;
     if (companion) this.picture.append(companion.node);
-    const more = companion?.beyond ?? 0;
-    const frame = { x: -more, y: -more, width: this.size[0] + 2 * more, height: this.size[1] + 2 * more };
-    this.frame.zoom?.fit(frame);
-    for (const [name, value] of Object.entries(frame)) this.picture.firstElementChild.setAttribute(name, String(value));
+    const box = companion?.extent ?? this.view.box;
+    const [width, height] = this.size;
+    const more = Math.max(0, -box.x, box.x + box.width - width, -box.y, box.y + box.height - height);
+    // The view from the side stays in line with all of the picture.
+    const whole = { x: -more, y: -more, width: width + 2 * more, height: height + 2 * more };
+    this.frame.zoom?.fit(this.planes && companion ? whole : box);
     this.planes?.widen(more);
     this.show(this.player.at);
   }

@@ -41,11 +41,13 @@ const FEWEST = 8;
  * @property {number} [least] differences below it are rounding: what the quantity is measured by
  */
 
+/** A plot whose mark follows the motion. @typedef {{figure: HTMLElement, show: (at: number) => void}} Mark */
+
 /**
  * @param {Plotted[]} wanted @param {number[] | undefined} input degrees, one for each sample
  * @param {(at: number) => void} lead leads the motion to a sample
  * @param {string} [unit] of the input
- * @returns {{figure: HTMLElement, show: (at: number) => void}[]}
+ * @returns {Mark[]}
  */
 export function plots(wanted, input, lead, unit = "°") {
   return wanted
@@ -56,7 +58,7 @@ export function plots(wanted, input, lead, unit = "°") {
 /**
  * @param {Plotted} plotted @param {number[] | undefined} input @param {(at: number) => void} lead @param {string} unit
  * @param {Partial<Seen>} [seen]
- * @returns {{figure: HTMLElement, show: (at: number) => void}}
+ * @returns {Mark}
  */
 function plot(plotted, input, lead, unit, { whole = false, range: looked } = {}) {
   const { title, lines, limit, used, gaps, least = 0 } = plotted;

@@ -1,23 +1,24 @@
 /** A ratchet wheel that turns on under its pawls. */
 
-import { el, shown, svg } from "./dom.js";
+import { el, svg } from "./dom.js";
 import { t } from "./messages.js";
-import { Player, between } from "./player.js";
-import { plots } from "./plots.js";
+import { between } from "./player.js";
+import { scene } from "./stage.js";
+import { Turning } from "./turning.js";
 import { View } from "./view.js";
 
 /** @import { Schemas } from "./types/values.js" */
 
 /** @typedef {[number, number]} Point */
 
-export class Ratchet {
+export class Ratchet extends Turning {
   /**
    * @param {import("./stage.js").Frame} frame
    * @param {Schemas["RatchetDesign"]} design
    * @param {Schemas["RatchetAnalysis"]} motion
    */
   constructor(frame, design, motion) {
-    const [width, height] = frame.size();
+    super(frame, t`Wheel`, motion.input_angle);
     const { mechanism } = design;
     this.motion = motion;
     const teeth = /** @type {Point[]} */ (
@@ -25,7 +26,7 @@ export class Ratchet {
     );
     const radius = mechanism.wheel_radius;
     const pivots = mechanism.pawls.map((pawl) => pawl.pivot);
-    const view = new View([[-radius, -radius], [radius, radius], ...pivots], width, height, 40);
+    const view = new View([[-radius, -radius], [radius, radius], ...pivots], ...this.size, 40);
     this.axis = view.at(0, 0);
     this.wheel = svg("path", { class: "teeth", d: `${view.path(teeth)}Z` });
     this.pawls = mechanism.pawls.map((pawl) => {
@@ -35,42 +36,21 @@ export class Ratchet {
         bar: svg("path", { class: "link", d: view.path([pawl.pivot, over(pawl, mechanism.tooth_height), pawl.nose]) }),
       };
     });
-    const picture = svg(
-      "svg",
-      { viewBox: `0 0 ${width} ${height}`, class: "canvas", role: "img", "aria-label": t`The ratchet, turning` },
-      svg("rect", { class: "paper", width, height }),
+    const picture = scene(view, t`The ratchet, turning`, [
       svg("g", { class: "wheel t0" }, this.wheel),
       ...this.pawls.map((pawl) => pawl.bar),
       ...[this.axis, ...this.pawls.map((pawl) => pawl.at)].map(([cx, cy]) =>
         svg("circle", { class: "pin", cx, cy, r: 3.5 }),
       ),
+    ]);
+    const lifts = Object.fromEntries(
+      motion.pawls.map((pawl, /** @type {number} */ k) => [motion.pawls.length > 1 ? `${k + 1}` : "", pawl.lift]),
     );
-    this.player = new Player({
-      count: motion.input_angle.length,
-      closed: true,
-      label: t`Wheel`,
-      reading: (at) => `${shown(Math.round(10 * Number(between(motion.input_angle, at))) / 10)}°`,
-      show: (at) => this.show(at),
-    });
-    this.marks = plots(
-      [
-        {
-          title: t`Lift of pawls (°)`,
-          lines: Object.fromEntries(
-            motion.pawls.map((pawl, /** @type {number} */ k) => [motion.pawls.length > 1 ? `${k + 1}` : "", pawl.lift]),
-          ),
-        },
-      ],
-      motion.input_angle,
-      (at) => this.player.lead(at),
-    );
-    frame.fill({
+    this.fill(
       picture,
-      clock: this.player.row,
-      beside: [el("p", { class: "note" }, t`The wheel turns on; turning back it is held at the next stop.`)],
-      plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))],
-    });
-    this.player.begin();
+      [el("p", { class: "note" }, t`The wheel turns on; turning back it is held at the next stop.`)],
+      [{ title: t`Lift of pawls (°)`, lines: lifts }],
+    );
   }
 
   /** @param {number} at */
@@ -87,11 +67,6 @@ export class Ratchet {
         `rotate(${lift.toFixed(3)} ${pawl.at[0].toFixed(2)} ${pawl.at[1].toFixed(2)})`,
       );
     });
-    for (const mark of this.marks) mark.show(at);
-  }
-
-  stop() {
-    this.player.stop();
   }
 }
 

@@ -1,17 +1,21 @@
 /** A rotor that turns: its planes of correction with their masses, and the forces on its bearings beside it. */
 
 import { el, shown, svg } from "./dom.js";
+import { beside, nothing } from "./figures.js";
 import { t } from "./messages.js";
-import { Player, between } from "./player.js";
-import { plots } from "./plots.js";
+import { scene } from "./stage.js";
+import { Turning } from "./turning.js";
 import { symbolOf } from "./units.js";
+import { View } from "./view.js";
 
 /** @import { Problem, Schemas } from "./types/values.js" */
 
-/** Radius of a face as a share of the room that it has. */
-const RIM = 0.4;
+/** From one face to the next, in radii of a face. */
+const APART = 2.4;
 
-export class Rotor {
+/** @typedef {[number, number]} Point */
+
+export class Rotor extends Turning {
   /**
    * @param {import("./stage.js").Frame} frame
    * @param {Schemas["RotorDesign"]} design
@@ -19,61 +23,47 @@ export class Rotor {
    * @param {Problem} problem
    */
   constructor(frame, design, motion, problem) {
-    this.size = frame.size();
-    const [width, height] = this.size;
+    super(frame, t`Rotor`, motion.input_angle);
     const { mechanism, metrics } = design;
-    this.motion = motion;
-    this.player = new Player({
-      count: motion.input_angle.length,
-      closed: true,
-      label: t`Rotor`,
-      reading: (at) => `${shown(Math.round(10 * this.degrees(at)) / 10)}°`,
-      show: (at) => this.show(at),
-    });
-    this.faces = mechanism.planes.map((/** @type {number} */ _z, /** @type {number} */ n) => this.face(mechanism, n));
+    const count = mechanism.planes.length;
+    const side = (APART * (count - 1)) / 2 + 1;
+    const corners = /** @type {Point[]} */ ([
+      [-side, -1.3],
+      [side, 1],
+    ]);
+    this.view = new View(corners, ...this.size, 32);
+    this.faces = mechanism.planes.map((/** @type {number} */ z, /** @type {number} */ n) =>
+      this.face(mechanism, n, APART * (n - (count - 1) / 2), `z ${shown(z)} ${problem.length_unit}`),
+    );
     const names = [t`Before`, t`After`];
     const facts = (metrics.bearings ?? []).flatMap((bearing) =>
-      [bearing.before, bearing.after].flatMap((force, k) => [
+      [bearing.before, nothing(bearing.after, bearing.before) ? 0 : bearing.after].flatMap((force, k) => [
         el("dt", {}, `${names[k]}, ${t`bearing at ${shown(bearing.z)} ${problem.length_unit}`}`),
-        el("dd", {}, `${shown(Number(force.toPrecision(4)))} ${symbolOf("force", problem)}`),
+        el("dd", {}, beside(shown(Number(force.toPrecision(4))), symbolOf("force", problem))),
       ]),
-    );
-    const picture = svg(
-      "svg",
-      {
-        viewBox: `0 0 ${width} ${height}`,
-        class: "canvas",
-        role: "img",
-        "aria-label": t`The planes of correction, turning with the rotor`,
-      },
-      svg("rect", { class: "paper", width, height }),
-      ...this.faces.map((one) => one.node),
     );
     const lines = Object.fromEntries(
       motion.bearings.map((bearing, /** @type {number} */ n) => [t`bearing ${n + 1}`, bearing.force.x]),
     );
-    this.marks = motion.bearings.length
-      ? plots([{ title: t`Force on the bearings at 1 rad/s, along x`, lines, least: 1e-9 }], motion.input_angle, (at) =>
-          this.player.lead(at),
-        )
-      : [];
-    frame.fill({
-      picture,
-      clock: this.player.row,
-      beside: [
+    this.fill(
+      scene(
+        this.view,
+        t`The planes of correction, turning with the rotor`,
+        this.faces.map((one) => one.node),
+      ),
+      [
         el("dl", { class: "facts" }, ...facts),
         el("p", { class: "note" }, t`Filled: masses that are added. Open: masses that are taken away.`),
       ],
-      plots: [el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure))],
-    });
-    this.player.begin();
+      motion.bearings.length ? [{ title: t`Force on the bearings at 1 rad/s, along x`, lines, least: 1e-9 }] : [],
+    );
   }
 
-  /** @param {Schemas["RotorMechanism"]} mechanism @param {number} plane */
-  face(mechanism, plane) {
-    const [width, height] = this.size;
-    const room = width / mechanism.planes.length;
-    const [u, v, rim] = [room * (plane + 0.5), height / 2, RIM * Math.min(room, height)];
+  /** @param {Schemas["RotorMechanism"]} mechanism @param {number} plane @param {number} x @param {string} name */
+  face(mechanism, plane, x, name) {
+    const { view } = this;
+    const [u, v] = view.at(x, 0);
+    const rim = view.scale;
     const all = mechanism.corrections;
     const reach = Math.max(...all.map((one) => one.radius ?? one.unbalance), 1e-300);
     const heaviest = Math.max(...all.map((one) => one.unbalance), 1e-300);
@@ -83,33 +73,27 @@ export class Rotor {
         const far = (0.85 * rim * (one.radius ?? one.unbalance)) / reach;
         const angle = (one.angle * Math.PI) / 180;
         return svg("circle", {
-          class: one.removed ? "tyre" : "pin",
+          class: one.removed ? "tyre" : "added",
           cx: u + far * Math.cos(angle),
           cy: v - far * Math.sin(angle),
           r: 3 + 8 * Math.sqrt(one.unbalance / heaviest),
         });
       });
     const turning = svg("g", {}, svg("line", { class: "arm", x1: u, y1: v, x2: u + rim, y2: v }), ...marks);
-    return { node: svg("g", {}, svg("circle", { class: "link", cx: u, cy: v, r: rim }), turning), turning, u, v };
-  }
-
-  /** @param {number} at */
-  degrees(at) {
-    return Number(between(this.motion.input_angle, at));
+    const node = svg(
+      "g",
+      {},
+      svg("circle", { class: "link", cx: u, cy: v, r: rim }),
+      turning,
+      svg("circle", { class: "pin", cx: u, cy: v, r: 3.5 }),
+      svg("text", { class: "called", x: u, y: view.at(x, -1.2)[1] }, name),
+    );
+    return { node, turning, u, v };
   }
 
   /** @param {number} at */
   show(at) {
     for (const { turning, u, v } of this.faces)
-      turning.setAttribute("transform", `rotate(${-this.degrees(at)} ${u} ${v})`);
-    for (const mark of this.marks) mark.show(at);
-  }
-
-  pause() {
-    this.player.stop();
-  }
-
-  stop() {
-    this.player.stop();
+      turning.setAttribute("transform", `rotate(${-this.over(this.angles, at)} ${u} ${v})`);
   }
 }

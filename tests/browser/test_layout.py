@@ -194,6 +194,28 @@ def test_the_stage_is_brought_nearer_led_along_and_fitted(studio):
     assert links.evaluate("one => getComputedStyle(one).vectorEffect") == "non-scaling-stroke"
 
 
+def test_what_moves_fills_the_stage_of_another_window(own_studio):
+    """Something high in a wide window, which is then made narrow and high: its empty sides are not kept."""
+    page = own_studio.page
+    page.set_viewport_size({"width": 1920, "height": 700})
+    state(page, examples("spring_balancing")[0])
+    own_studio.solve()
+    page.wait_for_selector(".moving .springs .spring")
+    for size in ((1920, 700), (560, 1000)):
+        page.set_viewport_size({"width": size[0], "height": size[1]})
+        stage, way = (page.locator(f".moving .stage {part}").bounding_box() for part in (".canvas", ".trail"))
+        share = max(way["width"] / stage["width"], way["height"] / stage["height"])
+        assert share > 0.75, size
+    # The spring holds where the answer says, and goes with its lever.
+    assert page.inner_text("#design-title") == "Design 1: Sprung linkage"
+    page.keyboard.press("Home")
+    lever = page.locator(".moving .live .link.input")
+    coil, bar = page.locator(".moving .spring").bounding_box(), lever.bounding_box()
+    assert coil["x"] >= bar["x"] - 6
+    page.click("#tab-numbers")
+    assert "N/m" in page.inner_text("#numbers")
+
+
 def test_the_task_folds_away_where_there_is_little_room(own_studio):
     page = own_studio.page
     page.click("#mode-state")

@@ -14,6 +14,7 @@ from synthesis.registry import KINDS
         ("cam", "base_radius", "length"),
         ("gear_train", "centre_distance", "length"),
         ("engine", "rod", "length"),
+        ("spring_balancing", "rate", "stiffness"),
     ],
 )
 def test_a_number_measures_what_its_field_says(client, kind, name, dimension):
