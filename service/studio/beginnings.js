@@ -9,18 +9,42 @@ import { t } from "./messages.js";
 const POINTS = 24;
 
 /** @typedef {[number, number]} Point */
+/** @typedef {{text: string, statement: () => Problem, solved?: boolean}} Beginning solved at once */
 
 /**
  * @param {Problem} problem that the linkage answered
  * @param {Skeleton} skeleton
  * @param {LinkageAnalysis} motion over the cycle
  * @param {import("./mover.js").Target[]} targets
- * @returns {{text: string, statement: () => Problem}[]}
+ * @returns {Beginning[]}
  */
 export function beginnings(problem, skeleton, motion, targets) {
-  /** @type {{text: string, statement: () => Problem}[]} */
+  /** @type {Beginning[]} */
   const found = [];
-  const { O2, O4 } = skeleton.joints;
+  const { O2, O4, A, B, P } = skeleton.joints;
+  const free = problem.timing !== "prescribed" && !problem.stance && !problem.placement_free?.length;
+  if (
+    problem.kind === "path" &&
+    free &&
+    skeleton.links.length === 4 &&
+    !skeleton.slides?.length &&
+    O2 &&
+    A &&
+    B &&
+    O4 &&
+    P
+  )
+    found.push({
+      text: t`Optimise from here`,
+      solved: true,
+      statement: () => ({
+        ...problem,
+        method: "least_squares",
+        mechanism: "fourbar",
+        mechanisms: null,
+        start: { O2: rounded(O2), A: rounded(A), B: rounded(B), O4: rounded(O4), P: rounded(P) },
+      }),
+    });
   if (O2 && O4 && problem.kind === "motion") {
     const side = (/** @type {Partial<Schemas["DyadChoices"]> | undefined} */ choices, /** @type {Point} */ at) => ({
       dyad: choices?.dyad,

@@ -30,7 +30,7 @@ export class Shown {
    * @param {import("./desk.js").Desk} desk
    * @param {Solved} job
    * @param {number} n
-   * @param {(problem: Problem) => void} state begins another statement
+   * @param {(problem: Problem, solved?: boolean) => void} state begins another statement
    * @param {Moving | null} [before] what stands still on the stage until this design moves there
    */
   constructor(desk, job, n, state, before = null) {

@@ -33,9 +33,10 @@ export function curveOf(answer, skeleton) {
  * @param {LinkageAnalysis} answer of the analysis over a turn of its input
  * @param {Skeleton} skeleton
  * @param {{x: number, y: number}[]} targets
+ * @param {string} unit of lengths
  * @returns {Driven}
  */
-export function driven(answer, skeleton, targets) {
+export function driven(answer, skeleton, targets, unit) {
   const curve = curveOf(answer, skeleton);
   const angles = answer.transmission_angle.filter((/** @type {number | null} */ one) => one !== null);
   const least = angles.length ? Math.min(...angles) : null;
@@ -60,7 +61,7 @@ export function driven(answer, skeleton, targets) {
       [t`Input turns through`]: turns ? t`yes` : t`no`,
       [t`Least transmission angle`]: degrees(least),
       ...(missed.length
-        ? { [t`Farthest target from the curve`]: shown(Number(Math.max(...missed).toPrecision(3))) }
+        ? { [t`Farthest target from the curve`]: `${shown(Number(Math.max(...missed).toPrecision(3)))} ${unit}` }
         : {}),
       [t`Circuits`]: shown(answer.circuits.length),
     },

@@ -7,6 +7,7 @@ import { curveOf, driven } from "./driven.js";
 import { Grip, keyed, led } from "./grip.js";
 import { Linkage, drawn } from "./linkage.js";
 import { Player, between } from "./player.js";
+import { Sizes } from "./sizes.js";
 import { beginnings } from "./beginnings.js";
 import { t } from "./messages.js";
 import { CLOCK, roomOf, scene } from "./stage.js";
@@ -26,7 +27,7 @@ export class Explorer {
    * @param {Linked} mechanism with its skeleton
    * @param {Problem} problem
    * @param {import("./mover.js").Target[]} targets as demanded
-   * @param {(problem: Problem) => void} state called to begin a statement
+   * @param {(problem: Problem, solved?: boolean) => void} state called to begin a statement, and to solve it
    */
   constructor(board, place, mechanism, problem, targets, state) {
     const [width, height] = roomOf(board, CLOCK);
@@ -36,6 +37,9 @@ export class Explorer {
     /** @type {Record<string, Point>} */
     this.joints = this.skeleton.joints;
     this.anchors = anchors(this.skeleton);
+    const { P, ...others } = this.joints;
+    /** The joint on which P lies, where it is no point of its own. */
+    this.doubled = P && Object.keys(others).find((name) => others[name][0] === P[0] && others[name][1] === P[1]);
     this.targets = targets;
     this.state = state;
     this.asking = false;
@@ -72,6 +76,8 @@ export class Explorer {
       reading: (at) => this.reading(at),
       show: (at) => this.move(at),
     });
+    this.unit = problem.length_unit ?? "mm";
+    this.sizes = new Sizes(this.skeleton, this.unit, (places) => this.put(places));
     this.facts = el("dl", { class: "facts", "aria-live": "polite" });
     this.checks = el("ul", { class: "checks" });
     this.buttons = el("p", { class: "row" });
@@ -79,8 +85,9 @@ export class Explorer {
       el(
         "p",
         { class: "note" },
-        t`Drag a pin, or move it with the arrow keys: curve, motion and figures are those of the linkage as it is then.`,
+        t`Drag a pin, move it with the arrow keys, or type a dimension: curve, motion and figures are those of the linkage as it is then. What is held stays, whichever pin is dragged.`,
       ),
+      this.sizes.node,
       el("div", { class: "columns" }, this.facts, this.checks),
       this.buttons,
     );
@@ -92,14 +99,7 @@ export class Explorer {
   /** @param {string} name */
   handle(name) {
     const grip = new Grip({ name, dot: name === "P" ? "dot point" : "dot" });
-    const put = (/** @type {Point} */ at) => {
-      this.joints[name] = at;
-      const doubled = "P" in this.joints && !drawn(this.skeleton).includes("P") ? "P" : null;
-      if (doubled) this.joints.P = [...at];
-      this.carry();
-      this.draw();
-      this.ask();
-    };
+    const put = (/** @type {Point} */ at) => this.sizes.draw(name, at);
     let goesOn = false;
     led(grip.node, this.picture, this.view, {
       // While a pin is led the picture has that to follow; the motion goes on when it is let go.
@@ -114,6 +114,16 @@ export class Explorer {
     });
     keyed(grip.node, this.view, { moved: ([dx, dy]) => put([this.joints[name][0] + dx, this.joints[name][1] + dy]) });
     return { name, grip };
+  }
+
+  /** The joints have gone somewhere else. @param {Record<string, Point>} places */
+  put(places) {
+    Object.assign(this.joints, places);
+    const on = this.doubled;
+    if (on) this.joints.P = [...this.joints[on]];
+    this.carry();
+    this.draw();
+    this.ask();
   }
 
   /** Lines of slides go with the joints that they pass: turned about the pivot that they pass too, or shifted. */
@@ -178,7 +188,7 @@ export class Explorer {
   tell(answer) {
     this.motion = answer;
     this.curve.setAttribute("d", this.view.path(curveOf(answer, this.skeleton)));
-    const { facts, turns, least, grashof, missed } = driven(answer, this.skeleton, this.targets);
+    const { facts, turns, least, grashof, missed } = driven(answer, this.skeleton, this.targets, this.unit);
     renewed(this.facts, Object.entries(facts), ([name, value]) => [el("dt", {}, name), el("dd", {}, value)]);
     this.judge(turns, least, grashof, missed);
     const offered = () => beginnings(this.problem, this.skeleton, this.motion ?? answer, this.targets);
@@ -194,7 +204,7 @@ export class Explorer {
             onclick: () =>
               offered()
                 .filter((one) => one.text === text)
-                .forEach(({ statement }) => this.state(statement())),
+                .forEach(({ statement, solved }) => this.state(statement(), solved)),
           },
           text,
         ),
@@ -220,7 +230,7 @@ export class Explorer {
     // The curve is known at so many places only: nearer than their distance nothing can be told.
     if (missed.length)
       checks.push([
-        t`Passes the targets within ${shown(Number((0.01 * size).toPrecision(2)))}`,
+        t`Passes the targets within ${`${shown(Number((0.01 * size).toPrecision(2)))} ${this.unit}`}`,
         Math.max(...missed) <= 0.01 * size,
       ]);
     if (wanted.full_rotation) checks.push([t`Full rotation`, turns]);

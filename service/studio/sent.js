@@ -17,7 +17,7 @@ export class SentLinkage {
   /**
    * @param {import("./desk.js").Desk} desk
    * @param {import("./address.js").Sent} sent
-   * @param {(problem: Problem) => void} state begins another statement
+   * @param {(problem: Problem, solved?: boolean) => void} state begins another statement
    */
   constructor(desk, sent, state) {
     this.desk = desk;
@@ -50,7 +50,7 @@ export class SentLinkage {
     desk.shown = { mechanism, placement: sent.placed };
     desk.title.replaceChildren(named);
     this.moving = new Mover(desk.frame, { mechanism }, motion, problem, circuits);
-    const { facts } = driven(turn, mechanism.skeleton, demanded(problem, null));
+    const { facts } = driven(turn, mechanism.skeleton, demanded(problem, null), problem.length_unit ?? "mm");
     desk.numbers.replaceChildren(
       el(
         "p",

@@ -5,7 +5,8 @@ import { svg } from "./dom.js";
 /** @import { LinkedDesign, Problem, Schemas, Skeleton } from "./types/values.js" */
 
 /** @typedef {[number, number]} Point */
-/** A spring that pulls along a line; one that turns has no such ends. @typedef {[Schemas["SpringEnd"], Schemas["SpringEnd"]]} Ends */
+/** @typedef {Schemas["SpringEnd"]} End */
+/** Of a spring that pulls along a line; one that turns has none. @typedef {[End, End]} Ends */
 
 /** Turns of a coil, its half width, and the straight part at either end, pixels. */
 const TURNS = 6;
@@ -62,7 +63,7 @@ export class Springs {
 
   /**
    * Where a point of a link is: it goes with two joints of it.
-   * @param {Schemas["SpringEnd"]} end
+   * @param {End} end
    * @param {import("./linkage.js").Places} places
    * @returns {Point | null}
    */

@@ -188,11 +188,12 @@ function edited(parts) {
   if (answered === null) desk.stage.show("state");
 }
 
-/** Begin with another statement. @param {Problem} statement */
-function state(statement) {
+/** Begin with another statement. @param {Problem} statement @param {boolean} [solved] at once */
+function state(statement, solved = false) {
   vacate();
   begun(statement);
   desk.stage.show("state");
+  if (solved) solve();
 }
 
 /** Have another statement in the form and on the canvas. @param {Problem} statement */

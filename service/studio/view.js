@@ -27,7 +27,8 @@ export class View {
     this.width = width;
     this.height = height;
     /** What of the picture the points take with their margin, pixels: width and height about its middle. */
-    this.taken = size > 0 ? [east - west, north - south].map((one) => this.scale * one + 2 * margin) : [width, height];
+    this.taken =
+      size > 0 ? [east - west, north - south].map((one) => Math.round(this.scale * one + 2 * margin)) : [width, height];
     /** What coordinates snap to, length units; 0 where they do not. */
     this.snap = 0;
   }

@@ -147,3 +147,62 @@ def test_what_cannot_be_assembled_is_said(studio):
     # The browser itself reports an answer 422, where the linkage was refused on the way.
     assert [text for text in studio.wrong if "422" not in text] == []
     studio.wrong.clear()
+
+
+def sizes(page):
+    """The dimensions that the explorer lists, by their names."""
+    rows = page.locator(".sizes-of input[type=number]").evaluate_all(
+        "all => all.map(one => [one.getAttribute('aria-label'), one.valueAsNumber])"
+    )
+    return dict(rows)
+
+
+def type_in(page, name, value):
+    field = page.locator(f".sizes-of input[aria-label='{name}']")
+    field.fill(str(value))
+    field.press("Enter")
+
+
+def test_dimensions_are_typed_held_and_made_equal_and_the_fit_goes_on_from_there(studio, server):
+    page = studio.page
+    solved(studio, {**examples("path")[0], "rounds": 1, "max_designs": 1})
+    page.click("#tab-explore")
+    until(lambda: page.get_attribute("#exploring .curve", "d"), 30, "the curve")
+    first = sizes(page)
+    assert {"Ground O2–O4", "Input O2–A", "Coupler A–B", "Coupler A–P", "Coupler ∠BAP", "Output O4–B"} == set(first)
+    # One is typed, and the others stay.
+    wanted = round(1.03 * first["Coupler A–B"], 3)
+    type_in(page, "Coupler A–B", wanted)
+    until(lambda: sizes(page)["Coupler A–B"] == wanted, 10, "the dimension")
+    typed = sizes(page)
+    for name in set(first) - {"Coupler A–B"}:
+        assert typed[name] == pytest.approx(first[name], rel=1e-4), name
+    # What no linkage has is refused, and changes nothing.
+    type_in(page, "Output O4–B", 1000 * typed["Output O4–B"])
+    page.get_by_text("No linkage near this one has these dimensions together.").wait_for()
+    assert sizes(page) == typed
+    # Held, it stays while a pin is drawn; others do not.
+    page.get_by_label("Hold Coupler A–B").check()
+    grip = page.locator("#exploring .target:has(text:text-is('B'))")
+    grip.focus()
+    page.keyboard.press("ArrowUp")
+    drawn = sizes(page)
+    assert drawn["Coupler A–B"] == wanted
+    assert drawn["Output O4–B"] != typed["Output O4–B"]
+    # Equal, the two have one value from then on.
+    page.get_by_label("Coupler A–P equals").select_option(label="Coupler A–B")
+    assert sizes(page)["Coupler A–P"] == pytest.approx(wanted, rel=1e-5)
+    page.get_by_label("Hold Coupler A–B").uncheck()
+    type_in(page, "Coupler A–B", round(0.99 * wanted, 3))
+    assert sizes(page)["Coupler A–P"] == pytest.approx(round(0.99 * wanted, 3), rel=1e-5)
+    studio.screen("explore-dimensions")
+    begun = sizes(page)
+    before = page.url
+    page.get_by_role("button", name="Optimise from here").click()
+    until(lambda: page.url != before, 30, "the job")
+    studio.answered()
+    job = server.job(re.search(r"#job=(\w+)", page.url).group(1))
+    start = {name: complex(*at) for name, at in job["problem"]["start"].items()}
+    assert abs(start["B"] - start["A"]) == pytest.approx(begun["Coupler A–B"], rel=1e-4)
+    assert abs(start["P"] - start["A"]) == pytest.approx(begun["Coupler A–P"], rel=1e-4)
+    assert "from the start" in job["result"]["summary"]

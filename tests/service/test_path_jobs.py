@@ -4,8 +4,10 @@ import copy
 import math
 import re
 
+import numpy as np
 import pytest
 
+from kinematics.linkage.fourbar import OPEN, Fourbar, positions
 from synthesis.registry import examples
 from tests.service.running import SOON_S, until
 
@@ -106,3 +108,19 @@ def test_tolerances_for_some_points_alone_are_refused(client):
     answer = client.post("/v1/jobs", json={"problem": {"kind": "path", "method": "least_squares", "points": points}})
     assert answer.status_code == 422
     assert [error["path"] for error in answer.json()["errors"]] == ["/problem/points/0/tolerance"]
+
+
+def test_a_fit_begins_at_a_linkage_that_is_stated(client):
+    planted = Fourbar(1.0 - 2.0j, 7.0 + 1.0j, 2.0, 6.0, 5.0, 3.0 + 2.0j)
+    way = positions(planted, np.linspace(0.3, 4.0, 12), OPEN)
+    points = [{"x": z.real, "y": z.imag} for z in way.p]
+    joints = {"O2": 1.0 - 2.0j, "A": way.a[3], "B": way.b[3], "O4": 7.0 + 1.0j, "P": way.p[3]}
+    start = {name: [1.04 * z.real, z.imag] for name, z in joints.items()}
+    problem = {"kind": "path", "points": points, "method": "least_squares", "start": start}
+    job = client.post("/v1/jobs", json={"problem": problem}, headers={"Prefer": "wait=30"}).json()
+    (design,) = job["result"]["designs"]
+    assert design["metrics"]["max_distance"] < 1e-6
+    assert design["mechanism"]["links"]["input"] == pytest.approx(2.0, abs=1e-5)
+    refused = client.post("/v1/jobs", json={"problem": {**problem, "method": "auto"}})
+    assert refused.status_code == 422
+    assert [fault["path"] for fault in refused.json()["errors"]] == ["/problem/method"]

@@ -11,6 +11,7 @@ from synthesis.dispatch import solve
 from synthesis.fit.chart import natural
 from synthesis.fit.demands import CHANGE_POINT, FAMILY, GIVEN, LIMITS, LINKS, MOVING, SIGN, margins
 from synthesis.kinds.path.limits import SETTING
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism, to_point
 from synthesis.registry import parse_problem
 from tests.campaign import sampled
 from tests.oracles.fourbar_sweep import coupler_points, least_sum_in_order
@@ -324,3 +325,36 @@ def test_cognates_of_an_answer_pass_the_same_points():
         if one.full_rotation:
             swept = coupler_points(one.mechanism, np.linspace(0.0, 360.0, 20001))
             assert max(np.abs(swept - z).min() for z in own) < 1e-2
+
+
+def standing(linkage, turn, scale):
+    """The joints of a linkage in one position, all links but the ground larger by a scale."""
+    a, b, c = (scale * length for length in (linkage.input, linkage.coupler, linkage.output))
+    larger = Fourbar(linkage.input_pivot, linkage.output_pivot, a, b, c, scale * linkage.coupler_point)
+    now = positions(larger, np.array([turn]), OPEN)
+    pivots = complex(linkage.input_pivot), complex(linkage.output_pivot)
+    return FourbarConfiguration(pivots[0], complex(now.a[0]), complex(now.b[0]), pivots[1], complex(now.p[0]))
+
+
+@pytest.mark.parametrize("demands", [{}, {"full_rotation": True}, {"min_transmission_angle": 30.0}])
+def test_a_fit_that_begins_at_a_linkage_ends_at_the_minimum_beside_it(demands):
+    points = positions(CRANK_ROCKER, np.linspace(0.3, 4.0, 12), OPEN).p
+    begun = standing(CRANK_ROCKER, 1.0, 1.05)
+    start = dict(zip(("O2", "A", "B", "O4", "P"), map(to_point, begun), strict=True))
+    result = fit(points, start=start, constraints=demands)
+    best = result.designs[0]
+    assert "from the start" in result.summary
+    assert not result.search.complete
+    before = least_sum_in_order(fourbar_mechanism(begun), points)
+    after = least_sum_in_order(best.mechanism, points)
+    assert best.metrics.sum_of_squares <= after
+    assert after < 1e-2 * before
+    assert abs(complex(*best.mechanism.fixed_pivots.input) - begun.o2) < 2.0, "it is the one beside the start"
+
+
+def test_what_a_start_cannot_be_stated_beside_is_refused():
+    start = {"O2": [0, 0], "A": [0, 0], "B": [3, 1], "O4": [4, 0], "P": [2, 2]}
+    points = listed(np.exp(1j * np.arange(12.0)))
+    for path, changes in (("/method", {}), ("/start", {"method": "least_squares"})):
+        problem = parse_problem({"kind": "path", "points": points, "start": start, **changes})
+        assert [fault.path for fault in problem.contradictions()] == [path]

@@ -3367,6 +3367,7 @@ export interface components {
             gear_ratio?: number | null;
             mechanisms?: "auto" | (("fourbar" | "slider_crank" | "geared_fivebar") | ("watt_1" | "stephenson_1" | "stephenson_3"))[] | null;
             stance?: components["schemas"]["Stance"] | null;
+            start?: components["schemas"]["StartFourbar"] | null;
             fixed_pivots?: components["schemas"]["PathPivots"];
             rounds?: number;
         };
@@ -4314,6 +4315,28 @@ export interface components {
                 number,
                 number
             ][];
+        };
+        StartFourbar: {
+            O2: [
+                number,
+                number
+            ];
+            A: [
+                number,
+                number
+            ];
+            B: [
+                number,
+                number
+            ];
+            O4: [
+                number,
+                number
+            ];
+            P: [
+                number,
+                number
+            ];
         };
         StatedBody: {
             mass?: number | null;

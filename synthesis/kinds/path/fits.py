@@ -2,7 +2,7 @@
 
 Least squares looks at the points alone, and a linkage that is nearest there may go anywhere between them. Where the
 nearest do (:mod:`synthesis.kinds.path.nearness`), linkages whose whole curves have the shape of the points' course are
-fitted too (:mod:`synthesis.kinds.path.curve_match`).
+fitted too (:mod:`synthesis.kinds.path.curve_match`). Where a start is stated, the fit descends from that alone.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from synthesis.kinds.path.curve_match import fitted_by_shape, stanced_by_points
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.harvest import Harvest
 from synthesis.kinds.path.nearness import ERROR_TOLERANCE, FAR, NEARER, error_of, least_error, steady
-from synthesis.kinds.path.point_fit import Candidate, fitted, mechanism_of, point_task
+from synthesis.kinds.path.point_fit import Candidate, descended_from, fitted, mechanism_of, point_task
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification import verify_path
 from synthesis.model.kind import Progress, part_of
@@ -47,7 +47,10 @@ def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
 
     fits = _Fits(problem, apart=SAME_FIT)
     first, second = part_of(progress, 0.0, FIRST_PART), part_of(progress, FIRST_PART, 1.0)
-    minima = fitted(problem, task, np.random.default_rng(problem.seed), first)
+    if problem.start is not None:
+        minima = descended_from(problem.start.configuration, problem, task)
+    else:
+        minima = fitted(problem, task, np.random.default_rng(problem.seed), first)
     fits.sift(
         reported(minima, first, (0.9, 1.0), "driving linkage {next} of {all}"),
         verified,
@@ -55,7 +58,7 @@ def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
     )
     if problem.stance is not None:
         fits.sift(stanced_by_points(problem, minima, task), driven)
-    if not problem.prescribed and fits.astray():
+    if problem.start is None and not problem.prescribed and fits.astray():
         linkages = fitted_by_shape(problem, second)
         fits.sift(reported(linkages, second, (0.8, 1.0), "driving linkage {next} of {all}"), driven)
     kept = steady(fits.passed, problem)
@@ -114,6 +117,8 @@ class _Fits(Harvest):
         else:
             rejected = self.listed() or "none"
             text = f"None of {self.candidates} fitted linkages satisfies all demands (rejected: {rejected})."
+        if self.problem.start is not None:
+            return text + " Least squares descends from the start that is stated; elsewhere a nearer linkage may exist."
         return text + " Least squares descends from many starts; a nearer linkage may exist that none of them leads to."
 
 

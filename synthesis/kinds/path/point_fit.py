@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, DOUBLE_ROCKER, FOURBAR, UNKNOWNS
+from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, DOUBLE_ROCKER, FOURBAR, POINT, UNKNOWNS, from_lengths
 from synthesis.fit.demands import FAMILY, SIGN
 from synthesis.kinds.path.curve_families import joints_of
 from synthesis.kinds.path.curve_limits import all_broken
@@ -23,6 +23,7 @@ from synthesis.kinds.path.held import held
 from synthesis.kinds.path.limits import SETTING, Usable, limits_of, room_of, setting_of, zoned
 from synthesis.kinds.path.point_rows import path_rows
 from synthesis.kinds.path.point_starts import (
+    CLASS_MARGIN,
     COUPLER,
     DRAWS,
     FAR_DYAD,
@@ -31,6 +32,7 @@ from synthesis.kinds.path.point_starts import (
     along,
     free_starts,
     kicked,
+    reassign,
     timed_starts,
 )
 from synthesis.kinds.path.problem import PathProblem
@@ -177,6 +179,9 @@ def warm_up() -> None:
             mechanism = mechanism_of(Candidate(x, state, 0.0, Status.STEP_LIMIT, setting, 1), task)
             if mechanism is not None:
                 verify_path(problem, mechanism)
+    begun = FourbarConfiguration(0j, 0.4 + 0.3j, 2.0 + 1.5j, 2.0 + 0j, 1.0 + 1.5j)
+    nearly = PathProblem.model_validate({"kind": "path", "method": "least_squares", "points": points})
+    descended_from(begun, nearly, point_task(nearly))
     roomy = PathProblem.model_validate({"kind": "path", "points": points, "space": {"box": [[-3, -3], [3, 3]]}})
     task, rng = point_task(roomy), np.random.default_rng(0)
     room_starts(roomy, task.rows[:, 0] + 1j * task.rows[:, 1], task.origin, task.size, CRANK_ROCKER, rng, 4, 64)
@@ -239,6 +244,37 @@ def fitted(
         again.sort(key=lambda candidate: candidate.cost)
         minima += _all_held(_distinct(again, AGAIN), task, thinned, lambda share: progress(0.9, "refining fits"))
     return sorted(minima, key=lambda candidate: candidate.cost)
+
+
+def descended_from(start: FourbarConfiguration, problem: PathProblem, task: PointTask) -> list[Candidate]:
+    """The minima within the limits that a linkage leads to, least first; a class that is asked for is put on first.
+
+    Where any class will do, the descent may leave that of the start: there is one minimum then.
+    """
+    thinned, rows = _thinned(task), _thinned(task).rows
+    joints = [(joint - task.origin) / task.size for joint in start]
+    o2, a, b, o4, p = joints
+    lengths = np.abs([o4 - o2, a - o2, b - a, b - o4])
+    sign = math.copysign(1.0, ((o4 - a).conjugate() * (b - a)).imag)
+    ground, arm = o4 - o2, (p - a) * abs(b - a) / (b - a)
+    found = []
+    wanted = families(problem)
+    for family in [FOURBAR] if FOURBAR in wanted else wanted:
+        setting = zoned(setting_of(problem, task.origin, task.size, sign=sign, family=family))
+        population = _empty(1, UNKNOWNS[FOURBAR], len(rows), limits_of(setting))
+        x, angles = population.starts[0], population.states[0, : len(rows)]
+        x[:2], x[2] = (o2.real, o2.imag), math.atan2(ground.imag, ground.real)
+        x[POINT:] = arm.real, arm.imag
+        angles[:] = float(np.angle((a - o2) / ground))
+        if not from_lengths(lengths, family, CLASS_MARGIN, x):
+            continue
+        population.costs[0] = reassign(x, rows, setting, angles)
+        for _, steps, tolerance in THINNING:
+            _descend(population, rows, setting, steps, tolerance)
+        kept = _best(population, 1)
+        found += [Candidate(*row, setting, 1) for row in zip(*kept, strict=True)]
+    held = _all_held(found, task, thinned, lambda share: None)
+    return sorted(held, key=lambda candidate: candidate.cost)
 
 
 def _all_held(

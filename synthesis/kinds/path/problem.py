@@ -13,6 +13,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from synthesis.kinds.path.stated_mechanisms import SIXBARS, Mechanisms, Simple, Sixbar, lacking, of_types, simple_of
 from synthesis.kinds.path.stated_stance import Stance, faults_of_stance
+from synthesis.kinds.path.stated_start import StartFourbar, faults_of_start
 from synthesis.model.dimension import LENGTH
 from synthesis.model.linkage_statement import Constraints, LinkageProblem, Region
 from synthesis.model.manufacture import Held, Made, kept_pivots
@@ -232,6 +233,10 @@ class PathProblem(LinkageProblem):
         default=None,
         description="For legs: a part of the path that is straight, and gone with constant speed if wanted.",
     )
+    start: StartFourbar | None = Field(
+        default=None,
+        description="For least_squares: the fit descends from this fourbar alone, and none are drawn.",
+    )
     fixed_pivots: PathPivots = PathPivots()
     constraints: PathConstraints = PathConstraints()
     rounds: Annotated[Count, Field(ge=1, le=20)] = Field(
@@ -354,6 +359,7 @@ class PathProblem(LinkageProblem):
             *self._mechanism(),
             *self._closed(),
             *faults_of_stance(self),
+            *faults_of_start(self),
             *self.contradicting_demands(),
         ]
 
