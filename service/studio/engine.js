@@ -18,6 +18,7 @@ const PISTON = 0.6;
 const HEAD = 0.4;
 
 /** @typedef {[number, number]} Point */
+/** @typedef {Schemas["EngineDesign"]["mechanism"]["cylinders"][number]} Cylinder */
 
 export class Engine extends Turning {
   /**
@@ -60,7 +61,7 @@ export class Engine extends Turning {
     ]);
   }
 
-  /** @param {Schemas["EngineDesign"]["mechanism"]["cylinders"][number]} cylinder @param {number} x @param {number} rod */
+  /** @param {Cylinder} cylinder @param {number} x @param {number} rod */
   column(cylinder, x, rod) {
     const { view, crank: radius } = this;
     const half = (BORE / 2) * radius;

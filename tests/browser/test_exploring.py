@@ -190,7 +190,7 @@ def test_dimensions_are_typed_held_and_made_equal_and_the_fit_goes_on_from_there
     assert drawn["Coupler A–B"] == wanted
     assert drawn["Output O4–B"] != typed["Output O4–B"]
     # Equal, the two have one value from then on.
-    page.get_by_label("Coupler A–P equals").select_option(label="Coupler A–B")
+    page.get_by_label("Coupler A–P equals").select_option(label="A–B")
     assert sizes(page)["Coupler A–P"] == pytest.approx(wanted, rel=1e-5)
     page.get_by_label("Hold Coupler A–B").uncheck()
     type_in(page, "Coupler A–B", round(0.99 * wanted, 3))
