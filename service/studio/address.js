@@ -50,7 +50,7 @@ export async function sentIn(fragment, kinds) {
   if (fragment.length > MOST)
     throw new Unreadable(t`The address is longer than ${MOST} characters, which no statement needs.`);
   const text = await unpacked(fragment.slice(MARK.length));
-  /** @type {any} */
+  /** Anything: whoever made the address may have written what they liked. @type {any} */
   let told;
   try {
     told = JSON.parse(text);

@@ -36,7 +36,7 @@ function furnished(element, attributes, children) {
  * @param {string} tag
  * @param {Attributes} [attributes]
  * @param {...Child} children
- * @returns {any}
+ * @returns {any} of the type that the tag has, which no type says of a text
  */
 export function el(tag, attributes = {}, ...children) {
   return furnished(document.createElement(tag), attributes, children);
@@ -47,7 +47,7 @@ export function el(tag, attributes = {}, ...children) {
  * @param {string} tag
  * @param {Attributes} [attributes]
  * @param {...Child} children
- * @returns {any}
+ * @returns {any} likewise
  */
 export function svg(tag, attributes = {}, ...children) {
   return furnished(document.createElementNS(SVG, tag), attributes, children);
@@ -56,7 +56,7 @@ export function svg(tag, attributes = {}, ...children) {
 /**
  * The element of the page with this id.
  * @param {string} id
- * @returns {any}
+ * @returns {any} likewise
  */
 export function byId(id) {
   const found = document.getElementById(id);

@@ -54,7 +54,7 @@ function newest(texts) {
   return texts.slice(from + 1);
 }
 
-/** @param {string} name @returns {any} */
+/** Anything: another version of the page may have kept it. @param {string} name @returns {any} */
 function read(name) {
   try {
     return JSON.parse(lasting.read(name) ?? "null");

@@ -378,7 +378,7 @@ function group(sheet, schema, name, note, path, always, owner, set, inside) {
   return details;
 }
 
-/** @param {any} value */
+/** @param {unknown} value */
 function empty(value) {
   return value !== undefined && value !== null && typeof value === "object" && Object.keys(value).length === 0;
 }

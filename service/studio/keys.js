@@ -71,24 +71,31 @@ function busy(target) {
   return taken !== null && taken.getClientRects().length > 0;
 }
 
-/** The first of some elements that is shown. @param {string} selector @returns {any} */
+/** The first of some elements that is shown. @param {string} selector @returns {HTMLElement | null} */
 export function visible(selector) {
-  return [...document.querySelectorAll(selector)].find((one) => one.getClientRects().length) ?? null;
+  const all = /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll(selector));
+  return [...all].find((one) => one.getClientRects().length) ?? null;
+}
+
+/** The scrubber that is shown. */
+function scrubber() {
+  const slider = visible(".player input[type=range]");
+  return slider instanceof HTMLInputElement ? slider : null;
 }
 
 /** Degrees on, or back, on the scrubber that is shown. @param {number} by share of a step of a degree */
 export function scrub(by) {
-  const slider = visible(".player input[type=range]");
+  const slider = scrubber();
   if (!slider) return;
-  const step = slider.max / 360;
-  slider.value = String(Math.min(slider.max, Math.max(0, slider.valueAsNumber + by * step)));
+  const most = Number(slider.max);
+  slider.value = String(Math.min(most, Math.max(0, slider.valueAsNumber + (by * most) / 360)));
   slider.dispatchEvent(new Event("input"));
 }
 
 /** Lead the motion that is shown to a share of its way. @param {number} share */
 export function scrubTo(share) {
-  const slider = visible(".player input[type=range]");
+  const slider = scrubber();
   if (!slider) return;
-  slider.value = String(share * slider.max);
+  slider.value = String(share * Number(slider.max));
   slider.dispatchEvent(new Event("input"));
 }

@@ -374,7 +374,7 @@ export class LoadEditor {
     }
   }
 
-  /** @param {any} error */
+  /** @param {unknown} error */
   tell(error) {
     if (error instanceof Refused && error.errors.length) {
       // That a speed is missing is said of the block as a whole.
@@ -383,7 +383,8 @@ export class LoadEditor {
         message: error.message,
         errors: error.errors.map(({ path, detail }) => ({ path: path === "/dynamics" ? speed : path, detail })),
       });
-    } else if (error.name !== "AbortError") this.faults.replaceChildren(el("p", { class: "error" }, error.message));
+    } else if (error instanceof Error && error.name !== "AbortError")
+      this.faults.replaceChildren(el("p", { class: "error" }, error.message));
     if (this.answered)
       this.faults.append(el("p", { class: "note" }, t`The forces below are those of what was stated before.`));
   }

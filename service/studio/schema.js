@@ -235,7 +235,7 @@ function misfitIn(value, schema, root, path) {
   return null;
 }
 
-/** What JSON calls it. @param {any} value */
+/** What JSON calls it. @param {unknown} value */
 function formOf(value) {
   return value === null ? "null" : Array.isArray(value) ? "array" : typeof value;
 }

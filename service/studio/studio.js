@@ -70,7 +70,7 @@ const undo = new Undo(
 
 const backdrop = new Backdrop(() => fitted());
 
-/** @param {any} error */
+/** @param {unknown} error */
 function tell(error) {
   byId("status").textContent = error instanceof Error ? error.message : String(error ?? "");
 }
@@ -478,6 +478,7 @@ function fitted() {
   if (kinds.length) show({ form: false, json: false });
 }
 
+/** @type {Keys} */
 const keys = new Keys([
   {
     keys: ["Ctrl+Enter"],

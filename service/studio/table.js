@@ -159,7 +159,7 @@ function optionAt(sheet, item, row) {
   return options.length > 1 ? optionOf(options, row) : options[0];
 }
 
-/** @param {any} value */
+/** @param {unknown} value */
 function structured(value) {
   return typeof value === "object" && value !== null;
 }
