@@ -48,7 +48,7 @@ def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
     fits = _Fits(problem, apart=SAME_FIT)
     first, second = part_of(progress, 0.0, FIRST_PART), part_of(progress, FIRST_PART, 1.0)
     if problem.start is not None:
-        minima = descended_from(problem.start.configuration, problem, task)
+        minima = descended_from(FourbarConfiguration(*problem.start.joints), problem, task)
     else:
         minima = fitted(problem, task, np.random.default_rng(problem.seed), first)
     fits.sift(

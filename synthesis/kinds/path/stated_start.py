@@ -6,7 +6,6 @@ from typing import Any
 
 from pydantic import Field
 
-from synthesis.model.linkages import FourbarConfiguration, to_complex
 from synthesis.model.statement import Contradiction, Point, Statement
 
 MIN_SHARE = 1e-6
@@ -23,9 +22,17 @@ class StartFourbar(Statement):
     P: Point = Field(description="The point of the coupler that is guided.")
 
     @property
-    def configuration(self) -> FourbarConfiguration:
-        """The joints as complex numbers."""
-        return FourbarConfiguration(*(to_complex(joint) for joint in (self.O2, self.A, self.B, self.O4, self.P)))
+    def joints(self) -> tuple[complex, complex, complex, complex, complex]:
+        """O2, A, B, O4 and P as complex numbers."""
+        o2, a, b, o4, p = (complex(*joint) for joint in (self.O2, self.A, self.B, self.O4, self.P))
+        return o2, a, b, o4, p
+
+    @property
+    def is_linkage(self) -> bool:
+        """Whether every link has a length."""
+        o2, a, b, o4, _ = self.joints
+        lengths = abs(a - o2), abs(b - a), abs(o4 - b), abs(o4 - o2)
+        return min(lengths) > MIN_SHARE * max(lengths)
 
 
 def faults_of_start(problem: Any) -> list[Contradiction]:
@@ -41,6 +48,6 @@ def faults_of_start(problem: Any) -> list[Contradiction]:
     ):
         if excluded:
             return [Contradiction(path, detail)]
-    if not start.configuration.has_no_link_below(MIN_SHARE):
+    if not start.is_linkage:
         return [Contradiction("/start", "a link has no length; its two joints must differ")]
     return []
