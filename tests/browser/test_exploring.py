@@ -199,7 +199,7 @@ def test_dimensions_are_typed_held_and_made_equal_and_the_fit_goes_on_from_there
     begun = sizes(page)
     before = page.url
     page.get_by_role("button", name="Optimise from here").click()
-    until(lambda: page.url != before, 30, "the job")
+    until(lambda: page.evaluate("location.href") != before, 30, "the job")
     studio.answered()
     job = server.job(re.search(r"#job=(\w+)", page.url).group(1))
     start = {name: complex(*at) for name, at in job["problem"]["start"].items()}

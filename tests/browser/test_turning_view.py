@@ -72,7 +72,9 @@ def test_the_follower_touches_the_turning_cam(studio, server, kind):
         if kind.endswith("roller"):
             u, v, _ = placed(page, ".roller")
             assert math.dist((u, v), touch) == pytest.approx(float(page.get_attribute(".tyre", "r")), abs=0.5)
-        told = number(page.inner_text(".beside .facts dd"))
+        reading = page.inner_text(".beside .facts dd")
+        assert reading.endswith(" mm" if kind.startswith("translating") else "°")
+        told = number(reading.removesuffix(" mm"))
         assert told == pytest.approx(motion["follower"]["position"][degrees], rel=2e-3, abs=0.02)
         if kind != "translating_flat":
             shown = number(page.inner_text(".gauge .reading"))
