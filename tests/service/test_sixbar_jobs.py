@@ -279,7 +279,9 @@ def test_types_of_two_dyads_alone(client, types):
     ],
 )
 def test_the_chain_is_kept_as_it_is_stated(client, chain):
-    designs = passed(answered(client, mechanisms=list(SIXBARS), chain=chain))
+    body = answered(client, mechanisms=list(SIXBARS), chain=chain)
+    assert "Stephenson II sixbars were not looked for beside chain." in body["result"]["summary"]
+    designs = passed(body)
     assert designs
     for design in designs:
         skeleton = design["mechanism"]["skeleton"]

@@ -42,16 +42,24 @@ def solve_types(problem: MotionProblem, two_dyads: Solve, progress: Progress) ->
     part = problem.of_two_dyads
     answer: MotionResult = simplest_first(
         None if part is None else partial(two_dyads, part),
-        partial(solve_sixbars, problem, problem.sixbars) if problem.sixbars else None,
+        partial(_sixbars, problem) if problem.sixbars else None,
         partial(_stands_alone, problem),
         partial(_nearer if problem.fitted else joined, problem),
         progress,
-        not_looked_for(lacking(problem)) if problem.mechanisms == "auto" else "",
+        not_looked_for(lacking(problem)) if problem.mechanisms == "auto" else _told_of_unclassed(problem),
     )
-    if problem.unclassed:
-        told = f"Stephenson II sixbars were not looked for beside {problem.unclassed}."
-        return answer.model_copy(update={"summary": f"{answer.summary} {told}"})
     return answer
+
+
+def _sixbars(problem: MotionProblem, progress: Progress) -> MotionResult:
+    """The answer of the sixbars that can have what is demanded; which cannot is told."""
+    found = solve_sixbars(problem, problem.sixbars, progress)
+    told = _told_of_unclassed(problem)
+    return found.model_copy(update={"summary": f"{found.summary} {told}"}) if told else found
+
+
+def _told_of_unclassed(problem: MotionProblem) -> str:
+    return f"Stephenson II sixbars were not looked for beside {problem.unclassed}." if problem.unclassed else ""
 
 
 def _stands_alone(problem: MotionProblem, design: LinkageDesign) -> bool:
