@@ -1,4 +1,4 @@
-"""How much of a campaign is run: a share of its random cases, the first by seed, and every twelfth of its listed ones.
+"""How much of a campaign is run: a share of its random cases, the first by seed, and one of 24 of its listed ones.
 
 With ``--campaign-share 1`` it is all of them.
 """
@@ -15,7 +15,7 @@ import pytest
 DEFAULT_SHARE = 0.05
 """Of random cases. Those left out are of the same sorts."""
 
-LISTED = 12
+LISTED = 24
 """One of so many listed cases of a test is run; the others, too, are of the same sorts."""
 
 _share = DEFAULT_SHARE
@@ -48,7 +48,7 @@ def sampled(cases: int) -> int:
 
 
 def thinned(items: Iterable[pytest.Item]) -> tuple[list[pytest.Item], list[pytest.Item]]:
-    """Tests to be run, and those left out: every twelfth case that a test has in the campaign, unless all are run."""
+    """Tests to be run, and those left out: one of 24 cases that a test has in the campaign, unless all are run."""
     kept: list[pytest.Item] = []
     left_out: list[pytest.Item] = []
     seen: Counter[str] = Counter()
