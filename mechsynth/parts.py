@@ -105,6 +105,7 @@ from synthesis.kinds.path.problem import (
     PathPoint,
 )
 from synthesis.kinds.path.stated_stance import Stance
+from synthesis.kinds.path.stated_start import StartFourbar
 from synthesis.kinds.planetary_train.problem import PlanetaryTeeth
 from synthesis.kinds.quick_return.problem import RockerPosition
 from synthesis.kinds.spring_balancing.problem import Holding
@@ -284,6 +285,7 @@ __all__ = [
     "StageRatio",
     "StageTeethRange",
     "Stance",
+    "StartFourbar",
     "StatedBody",
     "StatedCouplerPoint",
     "StatedCrank",
