@@ -139,7 +139,6 @@ REFUSED: dict[Key, tuple[Row, str]] = {
 
 NEVER: tuple[Key, ...] = (
     ("motion", "geared_fivebar"),
-    ("motion", "stephenson_2"),
     ("path", "inverted_slider_crank"),
     ("path", "watt_2"),
     ("path", "stephenson_2"),
