@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import asyncio
 import hashlib
+import pickle
 import queue
 import threading
 import time
@@ -183,7 +184,7 @@ class _Hand(threading.Thread):
                 continue
             try:
                 errand.future.set_result(self._done(errand))
-            except Exception as error:  # raised where the answer is awaited, as the future has it
+            except Exception as error:  # whatever it is: the future raises it in the request, and the thread goes on
                 errand.future.set_exception(error)
         self._end()
 
@@ -288,7 +289,16 @@ def _serve(pipe: Connection, prepare: Callable[..., None], settings: tuple[Any, 
             answer = False, work(*args)
         except MemoryError:
             answer = True, MemoryError()
-        except Exception as error:  # a defect: logged here with its trace, raised in the server, and so a 500
+        except Exception as error:  # whatever it is: told with its trace here, and raised in the server, a 500 there
             log.exception("an errand has failed", work=work.__name__)
-            answer = True, error
+            answer = True, _sendable(error)
         pipe.send(answer)
+
+
+def _sendable(error: Exception) -> Exception:
+    """An exception as it is, or by its words where a pipe cannot carry it: the process would end, as without memory."""
+    try:
+        pickle.loads(pickle.dumps(error))
+    except (TypeError, AttributeError, ValueError, pickle.PickleError):
+        return RuntimeError(f"{type(error).__name__}: {error}")
+    return error

@@ -25,6 +25,18 @@ async def at_once() -> bool:
     return True
 
 
+class Awkward(Exception):
+    """One that no pipe brings back."""
+
+    def __init__(self, what: str, count: int) -> None:
+        super().__init__(what)
+        self.count = count
+
+
+def raises_awkwardly() -> None:
+    raise Awkward("a broken wheel", 3)
+
+
 @pytest.fixture
 def errands() -> Any:
     """Of a process that starts at once, as it loads nothing."""
@@ -53,6 +65,19 @@ def test_an_errand_that_is_left_or_takes_too_long_ends_its_process(errands: Erra
         assert await errands.call(never, os.getpid) != pid
 
     asyncio.run(all_of_it())
+
+
+def test_what_no_pipe_carries_is_raised_by_its_words_and_not_taken_for_a_lack_of_memory() -> None:
+    made = Errands("errands", operator.itemgetter, (0,), limit_s=20.0)
+
+    async def all_of_it() -> None:
+        with pytest.raises(RuntimeError, match="Awkward: a broken wheel"):
+            await made.call(never, raises_awkwardly)
+
+    try:
+        asyncio.run(all_of_it())
+    finally:
+        made.stop()
 
 
 def test_a_process_that_dies_idle_is_replaced(errands: Errands) -> None:
