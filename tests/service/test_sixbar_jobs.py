@@ -458,7 +458,7 @@ def test_positions_without_a_crank_have_no_stephenson_2(client):
     positions = on_a_way(np.random.default_rng(9))
     result = answered(client, positions=positions, mechanisms=["stephenson_2"])["result"]
     assert not result["designs"]
-    assert "there is none that meets these positions" in result["summary"]
+    assert "none was found that meets these positions" in result["summary"]
     # By another route: no descent on the pins of a crank arrives, from wherever it begins.
     at = np.array([complex(p["x"], p["y"]) for p in positions]) / 100.0
     turns = np.exp(1j * np.radians([p["angle"] - positions[0]["angle"] for p in positions]))
@@ -471,3 +471,10 @@ def test_positions_without_a_crank_have_no_stephenson_2(client):
     met = [least_squares(unequal, start, xtol=1e-14, ftol=1e-14, gtol=1e-14) for start in starts]
     # A crank without length, and one that is as long as can be, meet all positions nearly.
     assert min(one.cost for one in met if 1e-3 < np.abs(one.x).max() < 100.0) > 1e-12
+
+
+def test_a_body_that_turns_about_one_point_has_many_cranks_and_is_carried(client):
+    positions = [{"x": 5.0, "y": 5.0, "angle": 12.0 * k} for k in range(5)]
+    designs = passed(answered(client, positions=positions, mechanisms=["stephenson_2"], max_designs=1))
+    (design,) = designs
+    assert all(target["point_residual"] < 1e-7 and target["angle_residual"] < 1e-7 for target in design["targets"])

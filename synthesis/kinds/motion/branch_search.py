@@ -32,6 +32,9 @@ DRAWN = 4, 4, 3, 1, 1, 1, 1, 2
 FIRST_POSES = 64
 """Places of the body in a first position that has a tolerance, every other one as demanded."""
 
+REPEATED = 1e-9
+"""Least singular value of the conditions on a crank beside the greatest, below which they repeat one another."""
+
 WITHIN = 0.98
 """Share of a tolerance that is used."""
 
@@ -58,6 +61,7 @@ class BranchSearch:
         self, problem: MotionProblem, task: MotionTask, target: Demanded, wanted: NDArray[np.bool_], limits: Real
     ) -> None:
         exactly = len(target.held) == kernels.POSITIONS and bool(target.held.all())
+        exactly = exactly and not _many_cranks(task)
         self.cranks = _cranks(task) if exactly else np.empty((0, 2), np.complex128)
         drawn = np.where(wanted, DRAWN, 0)
         if exactly and not len(self.cranks):
@@ -101,6 +105,20 @@ class BranchSearch:
             found = found.beside(ends.best(np.arange(n)))
             pool.costs[:] = np.inf
         return found
+
+
+def _many_cranks(task: MotionTask) -> bool:
+    """Whether conditions on a crank repeat one another, as of a body that turns about one point.
+
+    :func:`dyads` tells none then.
+
+    With O on the ground and A on the body in the first position, |r A + c − O|² = |A − O|² is linear in A, O and A Ō.
+    """
+    r = task.turns[1:]
+    c = task.points[1:] - r * task.points[0]
+    on_a = 2.0 * c.conj() * r
+    rows = np.stack([on_a.real, -on_a.imag, -2 * c.real, -2 * c.imag, -2 * (r - 1).real, 2 * r.imag, abs(c) ** 2])
+    return bool(np.linalg.matrix_rank(rows, tol=REPEATED * np.linalg.norm(rows, 2)) < len(r))
 
 
 def _cranks(task: MotionTask) -> NDArray[np.complex128]:

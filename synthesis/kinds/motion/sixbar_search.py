@@ -71,7 +71,7 @@ ATTEMPTS_IN_ROOM = 150
 CLASSES = "any", "crank_rocker", "double_crank", "double_rocker", "non_grashof"
 """As the kernel numbers them."""
 
-NO_CRANK = "A Stephenson II has a crank between body and ground, and there is none that meets these positions"
+NO_CRANK = "A Stephenson II has a crank between body and ground, and none was found that meets these positions"
 """What is said where none is looked for."""
 
 EVERYWHERE = np.array([-np.inf, np.inf, -np.inf, np.inf])
