@@ -336,7 +336,7 @@ TOLERATED = {
     "max_designs": 3,
 }
 ASIDE = {"polygon": [[-700.0, -500.0], [-600.0, -500.0], [-600.0, 900.0], [-700.0, 900.0]]}
-BESIDE = {
+WITH_MORE = {
     "tolerances": TOLERATED,
     "tolerances, first too": {
         **TOLERATED,
@@ -364,11 +364,11 @@ BESIDE = {
 
 
 @pytest.mark.parametrize(
-    "name", further(BESIDE, ["tolerances and a slider", "slider", "constraints", "layout", "four positions"])
+    "name", further(WITH_MORE, ["tolerances and a slider", "slider", "constraints", "layout", "four positions"])
 )
 def test_a_room_is_kept_beside_other_demands(client, name):
     space = {"obstacles": [ASIDE], "clearance": 5.0, "link_width": 10.0, "body": {"outline": LEAF}}
-    job = finished(client, with_space(BESIDE[name], **space))
+    job = finished(client, with_space(WITH_MORE[name], **space))
     assert job["status"] == "succeeded", job["error"]
     designs = job["result"]["designs"]
     assert designs, job["result"]["summary"]
@@ -376,7 +376,7 @@ def test_a_room_is_kept_beside_other_demands(client, name):
         checks = {check["name"]: check for check in design["verification"]["checks"]}
         assert design["verification"]["passed"]
         assert checks["obstacles"]["limit"] == 5.0
-        shapes = swept_shapes(design, space, BESIDE[name])
+        shapes = swept_shapes(design, space, WITH_MORE[name])
         nearest = shapely.distance(shapes, geometry(ASIDE)).min()
         size = float(np.abs(np.array(list(joints_of(design).values()))).max())
         assert nearest - 2e-3 * size <= checks["obstacles"]["value"] <= nearest + 1e-6 * size

@@ -215,13 +215,13 @@ EVENLY = {"points": [2, 4], "speed": "constant", "speed_tolerance": 0.4}
 
 START = {"O2": [1.1, -2.0], "A": [1.6, -0.1], "B": [4.4, 5.2], "O4": [7.1, 1.0], "P": [1.3, 3.5]}
 FIVE_POINTS = ((1.21, 1.77), (1.4, 2.9), (1.17, 3.51), (0.56, 3.55), (-0.15, 3.09))
-FITTED = {
+FITTED_PATH = {
     "timing": "free",
     "method": "least_squares",
     "points": [{"x": x, "y": y} for x, y in FIVE_POINTS],
     "max_designs": 1,
 }
-FROM_START = {**FITTED, "start": START}
+FROM_START = {**FITTED_PATH, "start": START}
 """Many fourbars meet five points: a fit ends at one near its start."""
 
 PATH_ROWS: dict[str, Any] = {
@@ -257,7 +257,7 @@ PATH_ROWS: dict[str, Any] = {
     "fixed_pivots.input": Row([-12.0, 0.0], {"points": TIMED[:3], "fixed_pivots": {"input": [-10.0, 0.0]}}),
     "fixed_pivots.output": Row([42.0, 10.0], {"points": TIMED[:4], "fixed_pivots": {"output": [40.0, 10.0]}}),
     "rounds": Row(2, {**UNTIMED, "fixed_pivots": {}}),
-    "start": Row(START, FITTED),
+    "start": Row(START, FITTED_PATH),
     "start.O2": Row([1.3, -2.1], FROM_START),
     "start.A": Row([1.8, -0.2], FROM_START),
     "start.B": Row([4.6, 5.1], FROM_START),
