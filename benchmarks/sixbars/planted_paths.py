@@ -27,7 +27,7 @@ TASKS = 100
 SAMPLES, DENSE, FINE = 24, 240, 28_800
 LEAST, WIDEST = 15.0, 10.0
 NEAR = 1e-3
-TYPES = ["watt_1", "stephenson_1", "stephenson_3"]
+TYPES = ["watt_1", "stephenson_1", "stephenson_3", "stephenson_2"]
 
 Complex = NDArray[np.complex128]
 

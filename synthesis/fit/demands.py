@@ -49,7 +49,10 @@ DEMANDS = 28
 EQUATIONS = 4
 """Number of margins, the last ones, that must be zero: coordinates of given pivots."""
 
-LIMITS = 8 + 12 + 8 + 4 + 8 + 8 + 3 + EQUATIONS
+PIVOTS = 8 + 12
+"""The first margin of the fixed pivots' boxes."""
+
+LIMITS = PIVOTS + 8 + 4 + 8 + 8 + 3 + EQUATIONS
 """Margins: lengths, pairs of them, sides of the fixed pivots' boxes, of P's and of the moving pivots', transmission,
 Grashof, given pivots."""
 

@@ -40,6 +40,10 @@ Complex = NDArray[np.complex128]
 GROUND, CRANK, COUPLER, ROCKER = range(4)
 """Links that C and D lie on."""
 
+INPUT = 4
+"""In place of the holder: the fourbar stands on the input link, and E D is the ground, of a Stephenson II
+(:mod:`synthesis.fit.inverted_curve`); the carrier is then the link that P is on."""
+
 C, D, DYAD, P = 7, 9, 11, 13
 """Where the pins, the logarithms of the dyad's lengths, and P stand in the unknowns."""
 
@@ -48,19 +52,19 @@ UNKNOWNS = 15
 
 
 @njit(**OPTIONS)
-def _turn_of(f: complex, change: complex, per: float) -> float:
+def turn_of(f: complex, change: complex, per: float) -> float:
     """The turn that keeps |F| while F changes otherwise."""
     return -(f.real * change.real + f.imag * change.imag) / per
 
 
 @njit(**OPTIONS)
-def _across(along: complex, change: complex) -> float:
+def across(along: complex, change: complex) -> float:
     """The part of a change across a direction."""
     return along.real * change.imag - along.imag * change.real
 
 
 @njit(**OPTIONS)
-def _fourbar(x: Real, lengths: Real, sign: float, crank: complex, ground: complex) -> tuple[bool, complex, complex]:
+def fourbar(x: Real, lengths: Real, sign: float, crank: complex, ground: complex) -> tuple[bool, complex, complex]:
     """Whether the fourbar closes, and the unit vectors of coupler and rocker."""
     base = scaled(ground, lengths[0]) - scaled(crank, lengths[1])
     closes, along = two_bars(base, lengths[2], lengths[3], sign)
@@ -68,7 +72,7 @@ def _fourbar(x: Real, lengths: Real, sign: float, crank: complex, ground: comple
 
 
 @njit(**OPTIONS)
-def _pin(
+def pin(
     frame: int,
     local: complex,
     o2: complex,
@@ -98,13 +102,13 @@ def joints(
     ``sign`` and ``side`` are the assemblies of the fourbar's dyad and of C–E–D.
     """
     o2, ground, crank = complex(x[0], x[1]), unit(x[2]), unit(theta)
-    closes, along, out = _fourbar(x, lengths, sign, crank, ground)
+    closes, along, out = fourbar(x, lengths, sign, crank, ground)
     if not closes:
         return False
     places[0] = o2 + scaled(crank, lengths[1])
     places[1] = places[0] + scaled(along, lengths[2])
-    places[2] = _pin(carrier, complex(x[C], x[C + 1]), o2, lengths, ground, crank, along, out)
-    places[3] = _pin(holder, complex(x[D], x[D + 1]), o2, lengths, ground, crank, along, out)
+    places[2] = pin(carrier, complex(x[C], x[C + 1]), o2, lengths, ground, crank, along, out)
+    places[3] = pin(holder, complex(x[D], x[D + 1]), o2, lengths, ground, crank, along, out)
     first = math.exp(x[DYAD])
     joined, v = two_bars(places[3] - places[2], first, math.exp(x[DYAD + 1]), side)
     places[4] = places[2] + scaled(v, first)
@@ -113,7 +117,7 @@ def joints(
 
 
 @njit(**OPTIONS)
-def _pin_velocity(
+def pin_velocity(
     frame: int, local: complex, arm: complex, along: complex, out: complex, turn: float, swing: float, crank: complex
 ) -> complex:
     """A pin's derivative by the crank angle, from those of coupler and rocker."""
@@ -133,24 +137,24 @@ def velocity(
 ) -> tuple[bool, complex, complex]:
     """Whether a sixbar closes, P, and P's derivative by the crank angle."""
     o2, ground, crank = complex(x[0], x[1]), unit(x[2]), unit(theta)
-    closes, along, out = _fourbar(x, lengths, sign, crank, ground)
+    closes, along, out = fourbar(x, lengths, sign, crank, ground)
     if not closes:
         return False, 0j, 0j
     arm, bar, f = scaled(crank, lengths[1]), scaled(along, lengths[2]), scaled(out, lengths[3])
     g, moved = turned(bar), turned(arm)
-    turn = _turn_of(f, moved, f.real * g.real + f.imag * g.imag)
-    swing = _across(out, moved + scaled(g, turn)) / lengths[3]
+    turn = turn_of(f, moved, f.real * g.real + f.imag * g.imag)
+    swing = across(out, moved + scaled(g, turn)) / lengths[3]
     local_c, local_d = complex(x[C], x[C + 1]), complex(x[D], x[D + 1])
-    c = _pin(carrier, local_c, o2, lengths, ground, crank, along, out)
-    base = _pin(holder, local_d, o2, lengths, ground, crank, along, out) - c
+    c = pin(carrier, local_c, o2, lengths, ground, crank, along, out)
+    base = pin(holder, local_d, o2, lengths, ground, crank, along, out) - c
     first = math.exp(x[DYAD])
     closes, v = two_bars(base, first, math.exp(x[DYAD + 1]), side)
     if not closes:
         return False, 0j, 0j
-    by_c = _pin_velocity(carrier, local_c, arm, along, out, turn, swing, crank)
-    by_d = _pin_velocity(holder, local_d, arm, along, out, turn, swing, crank)
+    by_c = pin_velocity(carrier, local_c, arm, along, out, turn, swing, crank)
+    by_d = pin_velocity(holder, local_d, arm, along, out, turn, swing, crank)
     f, g = scaled(v, first) - base, turned(scaled(v, first))
-    spin = _turn_of(f, by_c - by_d, f.real * g.real + f.imag * g.imag)
+    spin = turn_of(f, by_c - by_d, f.real * g.real + f.imag * g.imag)
     reach = complex(x[P], x[P + 1]) * v
     return True, c + reach, by_c + scaled(turned(reach), spin)
 
@@ -187,7 +191,7 @@ def _pin_with_slopes(
             by[3 + k] += scaled(ground, chart[0, k])
         by[UNKNOWNS] = scaled(swung, swing[UNKNOWNS])
     by[at], by[at + 1] = direction, turned(direction)
-    place: complex = _pin(frame, local, o2, lengths, ground, crank, along, out)
+    place: complex = pin(frame, local, o2, lengths, ground, crank, along, out)
     return place
 
 
@@ -201,7 +205,7 @@ def pins_with_slopes(
     ``turns`` (2, 16) gets those of the directions of coupler and rocker.
     """
     ground, crank = unit(x[2]), unit(theta)
-    closes, along, out = _fourbar(x, lengths, sign, crank, ground)
+    closes, along, out = fourbar(x, lengths, sign, crank, ground)
     if not closes:
         return False, 0j, 0j
     turn, swing = turns[0], turns[1]
@@ -210,15 +214,15 @@ def pins_with_slopes(
     per = f.real * g.real + f.imag * g.imag
     over = 1.0 / lengths[3]
     moved = -turned(scaled(ground, lengths[0]))
-    turn[2] = _turn_of(f, moved, per)
-    swing[2] = _across(out, moved + scaled(g, turn[2])) * over
+    turn[2] = turn_of(f, moved, per)
+    swing[2] = across(out, moved + scaled(g, turn[2])) * over
     moved = turned(arm)
-    turn[UNKNOWNS] = _turn_of(f, moved, per)
-    swing[UNKNOWNS] = _across(out, moved + scaled(g, turn[UNKNOWNS])) * over
+    turn[UNKNOWNS] = turn_of(f, moved, per)
+    swing[UNKNOWNS] = across(out, moved + scaled(g, turn[UNKNOWNS])) * over
     for k in range(4):
         moved = scaled(crank, chart[1, k]) - scaled(ground, chart[0, k]) + scaled(along, chart[2, k])
-        turn[3 + k] = _turn_of(f, moved, per) + lengths[3] * chart[3, k] / per
-        swing[3 + k] = _across(out, moved + scaled(g, turn[3 + k])) * over
+        turn[3 + k] = turn_of(f, moved, per) + lengths[3] * chart[3, k] / per
+        swing[3 + k] = across(out, moved + scaled(g, turn[3 + k])) * over
     c = _pin_with_slopes(carrier, C, x, lengths, chart, ground, crank, along, out, turn, swing, by_c)
     d = _pin_with_slopes(holder, D, x, lengths, chart, ground, crank, along, out, turn, swing, by_d)
     return True, c, d
@@ -237,8 +241,8 @@ def point_with_slopes(
     f, g, swung = bar - (d - c), turned(bar), turned(reach)
     per = f.real * g.real + f.imag * g.imag
     for k in range(UNKNOWNS + 1):
-        slopes[k] = by_c[k] + scaled(swung, _turn_of(f, by_c[k] - by_d[k], per))
-    slopes[DYAD] = scaled(swung, _turn_of(f, bar, per))
+        slopes[k] = by_c[k] + scaled(swung, turn_of(f, by_c[k] - by_d[k], per))
+    slopes[DYAD] = scaled(swung, turn_of(f, bar, per))
     slopes[DYAD + 1] = scaled(swung, second * second / per)
     slopes[P], slopes[P + 1] = v, turned(v)
     return True, c + reach

@@ -10,13 +10,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Literal, TypeVar
 
-from synthesis.model.linkage_statement import LinkageProblem
+from synthesis.model.linkage_statement import Constraints, LinkageProblem
 from synthesis.model.statement import Contradiction
 
 Name = TypeVar("Name", bound=str)
 
 Auto = Literal["auto"]
 """The simplest type that meets the demands; others beside it where they are clearly better."""
+
+
+UNCLASSED: Literal["stephenson_2"] = "stephenson_2"
+"""The sixbar whose links make no fourbar O2 A B O4, and whose input is driven by no other closure than a triad."""
 
 
 def named_among(stated: Auto | Sequence[str] | None, every: Sequence[Name]) -> tuple[Name, ...]:
@@ -42,8 +46,28 @@ def refused(
 
 def not_looked_for(lacking: Iterable[Contradiction]) -> str:
     """What is said where ``auto`` has no sixbars, by the fields that they cannot keep."""
-    fields = ", ".join(dict.fromkeys(fault.path.strip("/").replace("/", ".") for fault in lacking))
-    return f"Sixbars were not looked for: they cannot keep {fields}."
+    return f"Sixbars were not looked for: they cannot keep {_fields(lacking)}."
+
+
+def without_unclassed(named: Sequence[Name], beyond: Iterable[Contradiction]) -> tuple[Name, ...]:
+    """The sixbars that are looked for where :data:`UNCLASSED` is left out beside what is beyond it."""
+    left_out = any(True for _ in beyond)
+    return tuple(name for name in named if not (left_out and name == UNCLASSED))
+
+
+def told_of_unclassed(named: Sequence[Name], beyond: Iterable[Contradiction]) -> str:
+    """What is said where :data:`UNCLASSED` is among the types and left out, by the fields; else nothing."""
+    fields = _fields(beyond) if UNCLASSED in named else ""
+    return f"Stephenson II sixbars were not looked for beside {fields}." if fields else ""
+
+
+def no_class(limits: Constraints) -> list[Contradiction]:
+    """The refusal of a class of :data:`UNCLASSED`."""
+    return limits.of_another_class((), "classifies the fourbar O2 A B O4, which a Stephenson II sixbar does not have")
+
+
+def _fields(faults: Iterable[Contradiction]) -> str:
+    return ", ".join(dict.fromkeys(fault.path.strip("/").replace("/", ".") for fault in faults))
 
 
 def beside_sixbars(problem: LinkageProblem) -> Iterator[Contradiction]:

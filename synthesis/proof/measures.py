@@ -215,3 +215,10 @@ def barker_of(mechanism: Mechanism, *joints: str) -> BarkerClass:
     """Grashof's class and Barker's code of the fourbar with the joints O2, A, B, O4, or others in that order."""
     o2, a, b, o4 = (complex(mechanism.joints[name]) for name in joints or ("O2", "A", "B", "O4"))
     return barker_class(Fourbar(o2, o4, abs(a - o2), abs(b - a), abs(b - o4)))
+
+
+def barker_within(mechanism: Mechanism) -> BarkerClass | None:
+    """The class of the fourbar O2 A B O4 within a linkage; None where links do not join these, as of Stephenson II."""
+    sides = ({"O2", "A"}, {"A", "B"}, {"B", "O4"}, {"O4", "O2"})
+    joined = all(any(side <= set(joints) for joints in mechanism.links.values()) for side in sides)
+    return barker_of(mechanism) if joined else None

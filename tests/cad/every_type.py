@@ -22,6 +22,7 @@ from tests.service.test_sixbar_paths import TASK as SIXBAR_PATH
 Key = tuple[str, str]
 """A kind of problem and a type of mechanism."""
 
+UNCLASSED_PATH = {**SIXBAR_PATH, "constraints": {}}
 QUICK = {"kind": "quick_return", "time_ratio": 1.4, "max_designs": 1}
 TURNS = {"output": {"type": "rocker", "swing": 40.0}}
 SLIDES = {"output": {"type": "slider", "stroke": 40.0}}
@@ -76,6 +77,7 @@ MADE: dict[Key, Row] = {
     ),
     ("path", "watt_1"): _sixbar(SIXBAR_PATH, "watt_1"),
     ("path", "stephenson_1"): _sixbar(OPEN_PATH, "stephenson_1")._replace(query={"scale": 2.0}),
+    ("path", "stephenson_2"): _sixbar(UNCLASSED_PATH, "stephenson_2"),
     ("path", "stephenson_3"): _sixbar(SIXBAR_PATH, "stephenson_3"),
     ("quick_return", "fourbar"): _quick("fourbar", swing=60.0, scale=2.5),
     ("quick_return", "slider_crank"): _quick("offset_slider_crank", stroke=100.0),
@@ -141,7 +143,6 @@ NEVER: tuple[Key, ...] = (
     ("motion", "geared_fivebar"),
     ("path", "inverted_slider_crank"),
     ("path", "watt_2"),
-    ("path", "stephenson_2"),
     ("function", "watt_1"),
     ("function", "stephenson_1"),
 )

@@ -22,7 +22,7 @@ from tests.service.scripted_server import INSTANT
 
 TURN = np.linspace(0.0, 2.0 * np.pi, 36, endpoint=False)
 EIGHT = 40.0 * np.sin(TURN) + 25.0j * np.sin(2.0 * TURN) + 10.0 + 5.0j
-SIXBARS = "watt_1", "stephenson_1", "stephenson_3"
+SIXBARS = "watt_1", "stephenson_1", "stephenson_2", "stephenson_3"
 
 
 def listed(points) -> list[dict[str, float]]:
@@ -74,25 +74,35 @@ def both_ways(curve, points) -> float:
     return math.sqrt(0.5 * (np.mean(forth**2) + (back**2 * steps).sum() / steps.sum()))
 
 
+def least_pushed(design, met) -> float:
+    """The transmission angle at the output, degrees, by the forces at all pins."""
+    loops = Loops(design["mechanism"]["skeleton"])
+    return min(loops.pushed(places, "output") for places in met.places)
+
+
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize("kind", further(SIXBARS, ["stephenson_3"]))
 def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
-    body = answered(client, mechanisms=[kind])
+    unclassed = kind == "stephenson_2"
+    body = answered(client, mechanisms=[kind], **({"constraints": {}} if unclassed else {}))
     designs = passed(body)
     assert len(designs) == 2
     for design in designs[:1]:
         met, metrics = once_round(design), design["metrics"]
         assert design["mechanism"]["type"] == kind
-        assert metrics["grashof"] == "crank_rocker"
+        assert metrics["grashof"] == (None if unclassed else "crank_rocker")
         assert both_ways(met.points, EIGHT) == pytest.approx(metrics["both_way_rms"], rel=0.05)
         assert metrics["both_way_rms"] < 0.01 * SIZE
         on = next(link for link in design["mechanism"]["skeleton"]["links"] if "P" in link["joints"])
         assert on["name"] == design["point_link"]
         assert not {"O2", "O4", "O6"} & set(on["joints"])
-        at = {"coupler": "B", "link_5": "D" if kind == "stephenson_3" else "E"}
+        at = {"output": "E"} if unclassed else {"coupler": "B", "link_5": "D" if kind == "stephenson_3" else "E"}
         assert metrics["transmission_angles"].keys() == at.keys()
         for link, angle in metrics["transmission_angles"].items():
-            seen = min(value for (joint, *two), value in met.angles.items() if joint == at[link] and link in two)
+            if unclassed:
+                seen = least_pushed(design, met)
+            else:
+                seen = min(value for (joint, *two), value in met.angles.items() if joint == at[link] and link in two)
             assert seen == pytest.approx(angle, abs=0.05)
         assert metrics["min_transmission_angle"] >= 20.0
         assert metrics["link_ratio"] <= 10.0 + 1e-6
@@ -107,7 +117,8 @@ def test_every_type_is_solved_proved_drawn_and_driven(client, kind):
 
 @pytest.mark.campaign
 @pytest.mark.timeout(300)
-def test_all_demands_are_kept_together(client):
+@pytest.mark.parametrize("kind", ["stephenson_3", "stephenson_2"])
+def test_all_demands_are_kept_together(client, kind):
     box, region = [[-90.0, -80.0], [110.0, 120.0]], {"x": [-80.0, 60.0], "y": [-70.0, 100.0]}
     limits = {
         "grashof": "crank_rocker",
@@ -118,7 +129,9 @@ def test_all_demands_are_kept_together(client):
         "input_pivot_region": {"x": [-80.0, 20.0], "y": [-70.0, 100.0]},
     }
     room = {"box": box, "link_width": 6.0}
-    designs = passed(answered(client, constraints=limits, space=room, max_designs=1))
+    if kind == "stephenson_2":
+        limits.pop("grashof")
+    designs = passed(answered(client, mechanisms=[kind], constraints=limits, space=room, max_designs=1))
     assert designs
     for design in designs:
         met = once_round(design)
@@ -131,15 +144,20 @@ def test_all_demands_are_kept_together(client):
         lengths = design["mechanism"]["links"].values()
         assert 12.0 <= min(lengths) <= max(lengths) <= 150.0
         assert max(lengths) <= 7.0 * min(lengths)
-        assert min(met.angles[key] for key in met.angles if key[0] in ("B", "D") and "ground" not in key) >= 27.9
+        if kind == "stephenson_2":
+            assert least_pushed(design, met) >= 27.9
+        else:
+            assert min(met.angles[key] for key in met.angles if key[0] in ("B", "D") and "ground" not in key) >= 27.9
         assert met.points.real.min() >= -87.0
         assert met.points.real.max() <= 107.0
         names = {check["name"] for check in design["verification"]["checks"]}
         assert {"box", "transmission_angle", "link_ratio", "shortest_link", "fixed_pivot_region"} <= names
 
 
-def test_points_are_met_exactly_in_order(client):
-    designs = passed(answered(client, points=listed(FEW), method="auto", closed=False))
+@pytest.mark.parametrize(("kind", "limits"), [("stephenson_3", TASK["constraints"]), ("stephenson_2", {})])
+def test_points_are_met_exactly_in_order(client, kind, limits):
+    stated = {"points": listed(FEW), "method": "auto", "closed": False, "constraints": limits}
+    designs = passed(answered(client, mechanisms=[kind], **stated))
     assert designs
     for design in designs:
         inputs = np.radians([target["input_angle"] for target in design["targets"]])
@@ -270,6 +288,16 @@ def test_sixbars_that_meet_the_points_stand_before_a_slider_crank_that_is_fitted
     assert f"with P on {designs[0]['point_link']}, which meets the points" in result["summary"]
 
 
+@pytest.mark.campaign
+@pytest.mark.timeout(300)
+def test_a_type_without_a_class_is_left_out_beside_one(client):
+    result = answered(client, mechanisms=["stephenson_2", "stephenson_3"], max_designs=1)["result"]
+    assert "Stephenson II sixbars were not looked for beside constraints.grashof." in result["summary"]
+    assert {design["mechanism"]["type"] for design in result["designs"]} == {"stephenson_3"}
+    alone = answered(client, max_designs=1)["result"]
+    assert result["designs"] == alone["designs"]
+
+
 def test_auto_takes_the_fourbar_where_one_is_near_and_sound(client):
     known = Fourbar(0j, 60.0 + 0j, 20.0, 55.0, 45.0, 30.0 + 20.0j)
     points = positions(known, np.array([0.3, 0.8, 1.3, 1.8, 2.3])).p
@@ -392,6 +420,9 @@ def test_what_names_no_type_is_refused(scripted, mechanisms, paths):
         ({"mechanisms": ["fourbar", "slider_crank"], "fixed_pivots": {"output": [1.0, 2.0]}, "constraints": {}},
          "/fixed_pivots/output", {}),
         ({"method": "auto", "timing": "prescribed", "closed": False, "points": TIMED}, "/timing", {}),
+        ({"mechanisms": ["stephenson_2"]}, "/constraints/grashof", {}),
+        ({"mechanisms": ["stephenson_2"], "constraints": {}, "stance": {"points": [2, 4], "flatness": 3.0}},
+         "/stance", {}),
     ],
 )  # fmt: skip
 def test_what_types_cannot_be_asked_is_refused_at_its_field_and_is_none_without_them(scripted, stated, path, of_one):

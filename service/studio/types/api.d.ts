@@ -3365,7 +3365,7 @@ export interface components {
             /** @enum {string} */
             mechanism?: "fourbar" | "slider_crank" | "geared_fivebar";
             gear_ratio?: number | null;
-            mechanisms?: "auto" | (("fourbar" | "slider_crank" | "geared_fivebar") | ("watt_1" | "stephenson_1" | "stephenson_3"))[] | null;
+            mechanisms?: "auto" | (("fourbar" | "slider_crank" | "geared_fivebar") | ("watt_1" | "stephenson_1" | "stephenson_2" | "stephenson_3"))[] | null;
             stance?: components["schemas"]["Stance"] | null;
             start?: components["schemas"]["StartFourbar"] | null;
             fixed_pivots?: components["schemas"]["PathPivots"];

@@ -18,12 +18,12 @@ from synthesis.kinds.function.order import error_of, ordered
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.sixbar_build import built
 from synthesis.kinds.function.sixbar_search import SixbarSearch
-from synthesis.kinds.function.stated_mechanisms import lacking
+from synthesis.kinds.function.stated_mechanisms import SIXBARS, lacking
 from synthesis.kinds.function.task import function_task
 from synthesis.kinds.function.verification import verify_function
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.sixbars import IN_WORDS
-from synthesis.model.stated_types import not_looked_for
+from synthesis.model.stated_types import looked_for, no_class, not_looked_for, told_of_unclassed
 from synthesis.outcome.sifting import DEFECTS, LENGTHS, OUTRANKED, Sifting
 from synthesis.outcome.simplest import (
     HALF,
@@ -44,9 +44,6 @@ degree of 50."""
 ATTEMPTS = 6
 """Sixbars that are verified at most, for each design wanted."""
 
-DROPPED = "A Stephenson II sixbar was not looked for: it has no fourbar O2 A B O4, which grashof classifies."
-"""What is said where a class is demanded."""
-
 REASONS = DEFECTS | LENGTHS | {"covers_range": "branch_defect", "dials": "reversed_link"}
 """Why a design was rejected, by the check that it failed; other checks go by their own name."""
 
@@ -66,19 +63,23 @@ def solve_types(problem: FunctionProblem, simple: Solve, progress: Progress) -> 
     part = problem.of_simple
     answer: FunctionResult = simplest_first(
         None if part is None else partial(simple, part),
-        partial(_told_of_dropped, problem) if problem.sixbars else None,
+        partial(_sixbars, problem) if problem.sixbars else None,
         lambda design: part is not None and transmits(problem, design) and _well(part, design),
         partial(joined, problem if part is None else part),
         progress,
-        DROPPED if problem.dropped else not_looked_for(lacking(problem)) if problem.mechanisms == "auto" else "",
+        _told_of_dropped(problem) or (not_looked_for(lacking(problem)) if problem.mechanisms == "auto" else ""),
     )
     return answer
 
 
-def _told_of_dropped(problem: FunctionProblem, progress: Progress) -> FunctionResult:
+def _sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResult:
     """The answer of the sixbars that can have what is demanded; which cannot is told."""
-    found = solve_sixbars(problem.of_sixbars, progress)
-    return found.model_copy(update={"summary": f"{found.summary} {DROPPED}"}) if problem.dropped else found
+    found, told = solve_sixbars(problem.of_sixbars, progress), _told_of_dropped(problem)
+    return found.model_copy(update={"summary": f"{found.summary} {told}"}) if told else found
+
+
+def _told_of_dropped(problem: FunctionProblem) -> str:
+    return told_of_unclassed(looked_for(problem.mechanisms, SIXBARS, lacking(problem)), no_class(problem.constraints))
 
 
 def _well(problem: FunctionProblem, design: FunctionDesign) -> bool:

@@ -28,7 +28,7 @@ from kinematics.linkage.slider_crank import range as slider_range
 from synthesis.model.linkage_answer import FourbarMechanism, SixbarMechanism, SliderCrankMechanism
 from synthesis.model.linkages import driven_fourbar, to_complex
 from synthesis.proof.closer import GRID, least_angles
-from synthesis.proof.measures import TURNS_THROUGH, barker_of
+from synthesis.proof.measures import TURNS_THROUGH, barker_within
 from synthesis.proof.on_branch import OnBranch
 from synthesis.proof.rebuilt import rebuilt
 
@@ -158,7 +158,7 @@ class _Sixbar(Drive):
         self.frame = 0.0
         self.full = own.full
         self.dyads = () if design.type == "stephenson_2" else ("coupler", "link_5")
-        self.barker = None if design.type == "stephenson_2" else barker_of(mechanism)
+        self.barker = barker_within(mechanism)
 
     def _near(self, angles: Real | float) -> Real:
         """Input angles without the full turns between the first of them and the reference."""

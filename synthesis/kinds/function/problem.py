@@ -11,11 +11,11 @@ import numpy as np
 from pydantic import ConfigDict, Field
 
 from synthesis.kinds.function.functions import FunctionStatement, Real
-from synthesis.kinds.function.stated_mechanisms import SIXBARS, UNCLASSED, Mechanisms, Sixbar, lacking, of_types
+from synthesis.kinds.function.stated_mechanisms import SIXBARS, Mechanisms, Sixbar, lacking, of_types
 from synthesis.model.dimension import ANGLE, OUTPUT
 from synthesis.model.linkage_statement import Constraints, LinkageProblem
 from synthesis.model.manufacture import Held, Made, kept_pivots
-from synthesis.model.stated_types import looked_for
+from synthesis.model.stated_types import looked_for, no_class, without_unclassed
 from synthesis.model.statement import (
     ABSURD,
     Contradiction,
@@ -226,13 +226,7 @@ class FunctionProblem(LinkageProblem):
     @property
     def sixbars(self) -> tuple[Sixbar, ...]:
         """The types of sixbars that are looked for."""
-        named = looked_for(self.mechanisms, SIXBARS, lacking(self))
-        return named if self.constraints.grashof == "any" else tuple(name for name in named if name != UNCLASSED)
-
-    @property
-    def dropped(self) -> bool:
-        """Whether a type of sixbars is not looked for because a class is demanded, which it does not have."""
-        return len(self.sixbars) < len(looked_for(self.mechanisms, SIXBARS, lacking(self)))
+        return without_unclassed(looked_for(self.mechanisms, SIXBARS, lacking(self)), no_class(self.constraints))
 
     @property
     def of_simple(self) -> FunctionProblem | None:

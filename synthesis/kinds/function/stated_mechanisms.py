@@ -7,18 +7,13 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field
 
-from synthesis.model.stated_types import Auto, beside_sixbars, refused
+from synthesis.model.stated_types import UNCLASSED, Auto, beside_sixbars, no_class, refused
 from synthesis.model.statement import Contradiction
 
 Sixbar = Literal["watt_2", "stephenson_2", "stephenson_3"]
 """Sixbars whose output is no fourbar's: in Watt I and Stephenson I sixbars, a fourbar drives it."""
 
 SIXBARS: tuple[Sixbar, ...] = get_args(Sixbar)
-
-UNCLASSED: Sixbar = "stephenson_2"
-"""The type whose links make no fourbar O2 A B O4."""
-
-NO_FOURBAR = "classifies the fourbar O2 A B O4, which a Stephenson II sixbar does not have"
 
 Mechanisms = Auto | Annotated[list[Literal["fourbar", "slider_crank"] | Sixbar], Field(min_length=1, max_length=5)]
 """Types by their names, or the simplest that does."""
@@ -43,5 +38,5 @@ def of_types(problem: Any) -> list[Contradiction]:
             "the output of a slider_crank is a length, that of all others an angle: name it alone, in mechanism too"
         )
         return [Contradiction("/mechanisms", detail)]
-    unclassed = problem.constraints.of_another_class((), NO_FOURBAR) if set(stated) == {UNCLASSED} else []
+    unclassed = no_class(problem.constraints) if set(stated) == {UNCLASSED} else []
     return [*unclassed, *refused(stated, problem.sixbars, lacking(problem))]

@@ -14,11 +14,11 @@ from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.nearness import error_of, order_of
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sixbar_search import solve_sixbars
-from synthesis.kinds.motion.stated_mechanisms import lacking
+from synthesis.kinds.motion.stated_mechanisms import SIXBARS, beyond_unclassed, lacking
 from synthesis.kinds.motion.stated_positions import MOST_HELD
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import LinkageDesign
-from synthesis.model.stated_types import not_looked_for
+from synthesis.model.stated_types import looked_for, not_looked_for, told_of_unclassed
 from synthesis.outcome.simplest import HALF, as_one, offered_beside, passing, simplest_first, told_of_offered, transmits
 
 Solve = Callable[[MotionProblem, Progress], MotionResult]
@@ -59,7 +59,7 @@ def _sixbars(problem: MotionProblem, progress: Progress) -> MotionResult:
 
 
 def _told_of_unclassed(problem: MotionProblem) -> str:
-    return f"Stephenson II sixbars were not looked for beside {problem.unclassed}." if problem.unclassed else ""
+    return told_of_unclassed(looked_for(problem.mechanisms, SIXBARS, lacking(problem)), beyond_unclassed(problem))
 
 
 def _stands_alone(problem: MotionProblem, design: LinkageDesign) -> bool:

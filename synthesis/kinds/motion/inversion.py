@@ -8,10 +8,7 @@ is turned so that the ground stands still. The kernel's joints are then
     O₂ A B O₄    pin of link 3 on the input, and on link 4; pin of link 5 on link 4, and on the input
     Q₁ J Q₂      pin of the output on link 4, and on the ground; pin of the input on the ground
 
-What says whether the input can drive it is the triad's transmission angle, between the output and the normal of the
-way on which link 4 pushes it (:mod:`kinematics.linkage.planar.triad_transmission`, by whose formula the core measures
-it; here the way is that about the pole of link 4 and the input). As long as it does not vanish, the input goes on
-where link 3 does.
+What says whether the input can drive it is how slantwise link 4 pushes the output (:mod:`synthesis.fit.triad_slant`).
 """
 
 from __future__ import annotations
@@ -20,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.compiling import njit
+from synthesis.fit.triad_slant import pushed, pushed_rate, slant, slant_rate
 from synthesis.kinds.motion.chain_kernels import O2, O4, Q1, Q2, A, B, J
 
 Real = NDArray[np.float64]
@@ -27,36 +25,6 @@ Complex = NDArray[np.complex128]
 
 TURNED_OVER = 2.0
 """The cosine that is told where the sine has another sign than in the first position."""
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _dot(u: complex, v: complex) -> float:
-    return u.real * v.real + u.imag * v.imag
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _cross(u: complex, v: complex) -> float:
-    return u.real * v.imag - u.imag * v.real
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _pushed(q: complex, o2: complex, a: complex, o4: complex, b: complex) -> complex:
-    """The direction in which the pin q of link 4 moves: at right angles to the way from the pole, where legs meet.
-
-    It is multiplied by the cross product of the legs, so that it is there where they are parallel.
-    """
-    one, two = a - o2, b - o4
-    # The pole is o2 + one · s with s = (o4 − o2) × two / (one × two).
-    from_pole = (q - o2) * _cross(one, two) - one * _cross(o4 - o2, two)
-    return from_pole * 1j
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def slant(q: complex, j: complex, o2: complex, a: complex, o4: complex, b: complex) -> tuple[float, float]:
-    """Cosine and signed sine of the transmission angle at the output; NaN where its pin cannot move."""
-    way, leg = _pushed(q, o2, a, o4, b), q - j
-    size = abs(way) * abs(leg)
-    return _cross(leg, way) / size, _dot(leg, way) / size
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -120,22 +88,13 @@ def rates_on_ground(
     base = z[J] - z[Q2]
     turned = (at[4] - at[3]) / base
     back = turned.conjugate()
-    one, two, leg = at[0] - z[O2], at[1] - z[O4], at[2] - at[4]
-    between, crossed, along = z[O4] - z[O2], _cross(one, two), _cross(z[O4] - z[O2], two)
-    way = _pushed(at[2], z[O2], at[0], z[O4], at[1])
-    long, wide = abs(leg), abs(way)
-    cosine = _cross(leg, way) / (long * wide)
+    leg, way = at[2] - at[4], pushed(at[2], z[O2], at[0], z[O4], at[1])
     p = at[0] + turns[1] * (start - z[A])
     for m in range(len(units)):
         unit = units[m]
         a, b, q, j = moving[0, m], moving[1, m], moving[2, m], moving[4, m]
-        one_rate, two_rate, leg_rate = a - unit[O2], b - unit[O4], q - j
-        crossed_rate = _cross(one_rate, two) + _cross(one, two_rate)
-        along_rate = _cross(unit[O4] - unit[O2], two) + _cross(between, two_rate)
-        from_pole = (q - unit[O2]) * crossed + (at[2] - z[O2]) * crossed_rate - one_rate * along - one * along_rate
-        way_rate = from_pole * 1j
-        bending[m] = (_cross(leg_rate, way) + _cross(leg, way_rate)) / (long * wide)
-        bending[m] -= cosine * (_dot(leg, leg_rate) / (long * long) + _dot(way, way_rate) / (wide * wide))
+        by_way = pushed_rate(at[2], z[O2], at[0], z[O4], at[1], q, unit[O2], a, unit[O4], b)
+        bending[m] = slant_rate(leg, way, q - j, by_way)
         moved = (j - unit[Q2] - turned * (unit[J] - unit[Q2])) / base
         spin = (moved * back).imag
         body = a + 1j * through[m] * turns[1] * (start - z[A]) - turns[1] * unit[A]

@@ -13,7 +13,6 @@ from synthesis.kinds.motion.contradictions import contradictions_of
 from synthesis.kinds.motion.stated_dyads import DriverDyad, DyadChoices, GroundLine
 from synthesis.kinds.motion.stated_mechanisms import (
     SIXBARS,
-    UNCLASSED,
     Chain,
     Mechanisms,
     Sixbar,
@@ -23,7 +22,7 @@ from synthesis.kinds.motion.stated_mechanisms import (
 from synthesis.kinds.motion.stated_positions import MOST_HELD, MOST_OF_SIXBARS, Position, Tolerance
 from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.model.manufacture import Held, Made, kept_pivots
-from synthesis.model.stated_types import looked_for
+from synthesis.model.stated_types import looked_for, without_unclassed
 from synthesis.model.statement import Contradiction, Flag
 
 LEAST_TOLERANCE = 1e-12
@@ -205,15 +204,7 @@ class MotionProblem(LinkageProblem):
     @property
     def sixbars(self) -> tuple[Sixbar, ...]:
         """The types of sixbars that are looked for."""
-        named = looked_for(self.mechanisms, SIXBARS, lacking(self))
-        return tuple(name for name in named if name != UNCLASSED) if self.unclassed else named
-
-    @property
-    def unclassed(self) -> str:
-        """The fields for which a type of sixbars is not looked for that was wanted."""
-        if UNCLASSED not in looked_for(self.mechanisms, SIXBARS, lacking(self)):
-            return ""
-        return ", ".join(fault.path.strip("/").replace("/", ".") for fault in beyond_unclassed(self))
+        return without_unclassed(looked_for(self.mechanisms, SIXBARS, lacking(self)), beyond_unclassed(self))
 
     @property
     def of_two_dyads(self) -> MotionProblem | None:

@@ -20,7 +20,7 @@ from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.nearness import error_of, order_of
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sixbar_makes import MAKES, Found
-from synthesis.kinds.motion.stated_mechanisms import UNCLASSED, Sixbar
+from synthesis.kinds.motion.stated_mechanisms import Sixbar
 from synthesis.kinds.motion.stated_positions import MOST_HELD
 from synthesis.kinds.motion.task import MotionTask, motion_task
 from synthesis.kinds.motion.verification import verify
@@ -28,6 +28,7 @@ from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import LinkageDesign, SixbarMechanism
 from synthesis.model.linkage_statement import Region
 from synthesis.model.sixbars import sixbar_mechanism
+from synthesis.model.stated_types import UNCLASSED
 from synthesis.outcome.ranking import distinct
 from synthesis.outcome.sifting import DEFECTS, Sifting
 from synthesis.outcome.simplest import SOUND

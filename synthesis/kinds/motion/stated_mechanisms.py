@@ -10,16 +10,13 @@ from pydantic import Field
 
 from synthesis.kinds.motion.stated_dyads import whole_point
 from synthesis.kinds.motion.stated_positions import MOST_HELD, MOST_OF_SIXBARS
-from synthesis.model.stated_types import Auto, beside_sixbars, named_among, refused
+from synthesis.model.stated_types import UNCLASSED, Auto, beside_sixbars, named_among, no_class, refused
 from synthesis.model.statement import Contradiction, PartialPoint, PositiveLength, Statement
 
 Sixbar = Literal["watt_1", "stephenson_1", "stephenson_2", "stephenson_3"]
 """Sixbars that carry a body by a link that a fourbar alone does not move."""
 
 SIXBARS: tuple[Sixbar, ...] = get_args(Sixbar)
-
-UNCLASSED: Sixbar = "stephenson_2"
-"""The type whose links make no fourbar O2 A B O4, and whose input is driven by no other closure than a triad."""
 
 Mechanisms = Auto | Annotated[list[Literal["fourbar", "slider_crank"] | Sixbar], Field(min_length=1, max_length=6)]
 """Types by their names, or the simplest that does."""
@@ -90,9 +87,7 @@ def lacking(problem: Any) -> Iterator[Contradiction]:
 
 def beyond_unclassed(problem: Any) -> Iterator[Contradiction]:
     """What is stated that a Stephenson II sixbar cannot keep, or is not looked for with."""
-    yield from problem.constraints.of_another_class(
-        (), "classifies the fourbar O2 A B O4, which a Stephenson II sixbar does not have"
-    )
+    yield from no_class(problem.constraints)
     if problem.constraints.full_rotation:
         yield Contradiction(
             "/constraints/full_rotation", "is not looked for in Stephenson II sixbars; drop the demand, or name others"

@@ -24,7 +24,6 @@ from synthesis.kinds.motion.checks import Driven, Side, linkage_design
 from synthesis.kinds.motion.closest import SAME_MISS, as_near, closest_inputs
 from synthesis.kinds.motion.demanded import Complex, Demanded, Real
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.kinds.motion.stated_mechanisms import UNCLASSED
 from synthesis.model.answer import Check
 from synthesis.model.linkage_answer import (
     InvertedSliderCrankMechanism,
@@ -38,7 +37,7 @@ from synthesis.proof.carried import Carried, carried, ease
 from synthesis.proof.checks import CHOICE_KEPT, tolerated
 from synthesis.proof.closer import GRID, least_angles
 from synthesis.proof.constraints import within_zone
-from synthesis.proof.measures import barker_of, link_lengths, measured, reach_of
+from synthesis.proof.measures import barker_within, link_lengths, measured, reach_of
 from synthesis.proof.on_branch import OnBranch
 from synthesis.proof.rebuilt import rebuilt
 from synthesis.proof.space import BODY_POINT, carrier
@@ -111,7 +110,7 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
         target.size,
         least_angles(bodies[own].at, np.linspace(*used, GRID)) if same_branch else {},
         np.array(list(joints.values())),
-        barker=barker_of(mechanism) if isinstance(design, SixbarMechanism) and design.type != UNCLASSED else None,
+        barker=barker_within(mechanism) if isinstance(design, SixbarMechanism) else None,
         same_branch=same_branch,
         visits_in_order=way.in_order,
         full_rotation=here.full,

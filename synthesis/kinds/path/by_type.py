@@ -16,9 +16,9 @@ from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.nearness import error_of, least_error, meets_the_points, order_of
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.sixbar_search import best_sixbar, solve_sixbars
-from synthesis.kinds.path.stated_mechanisms import NAMES, Simple, lacking, simple_of
+from synthesis.kinds.path.stated_mechanisms import NAMES, SIXBARS, Simple, beyond_unclassed, lacking, simple_of
 from synthesis.model.kind import Progress, part_of
-from synthesis.model.stated_types import not_looked_for
+from synthesis.model.stated_types import looked_for, not_looked_for, told_of_unclassed
 from synthesis.outcome.simplest import HALF, as_one, offered_beside, passing, told_of_offered, transmits
 
 Solve = Callable[[PathProblem, Progress], PathResult]
@@ -55,6 +55,9 @@ def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> Path
     told = "" if problem.listed_later else best_sixbar(problem, result.designs)
     if problem.mechanisms == "auto" and not problem.sixbars:
         told = f" {not_looked_for(lacking(problem))}"
+    elif problem.mechanisms != "auto":
+        named = looked_for(problem.mechanisms, SIXBARS, lacking(problem))
+        told += f" {told_of_unclassed(named, beyond_unclassed(problem))}".rstrip()
     return result.model_copy(update={"summary": f"{result.summary}{told}"})
 
 

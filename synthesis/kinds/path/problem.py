@@ -11,13 +11,22 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, Field, model_validator
 
-from synthesis.kinds.path.stated_mechanisms import SIXBARS, Mechanisms, Simple, Sixbar, lacking, of_types, simple_of
+from synthesis.kinds.path.stated_mechanisms import (
+    SIXBARS,
+    Mechanisms,
+    Simple,
+    Sixbar,
+    beyond_unclassed,
+    lacking,
+    of_types,
+    simple_of,
+)
 from synthesis.kinds.path.stated_stance import Stance, faults_of_stance
 from synthesis.kinds.path.stated_start import StartFourbar, faults_of_start
 from synthesis.model.dimension import LENGTH
 from synthesis.model.linkage_statement import Constraints, LinkageProblem, Region
 from synthesis.model.manufacture import Held, Made, kept_pivots
-from synthesis.model.stated_types import looked_for
+from synthesis.model.stated_types import UNCLASSED, looked_for, without_unclassed
 from synthesis.model.statement import (
     Contradiction,
     Coordinate,
@@ -252,8 +261,11 @@ class PathProblem(LinkageProblem):
 
     @property
     def sixbars(self) -> tuple[Sixbar, ...]:
-        """The types of sixbars that are looked for."""
-        return looked_for(self.mechanisms, SIXBARS, lacking(self))
+        """The types of sixbars that are looked for; ``auto`` has no Stephenson II."""
+        named = looked_for(self.mechanisms, SIXBARS, lacking(self))
+        if self.mechanisms == "auto":
+            return tuple(name for name in named if name != UNCLASSED)
+        return without_unclassed(named, beyond_unclassed(self))
 
     def of_type(self, name: Simple) -> PathProblem:
         """The problem of one of the types with one closure, as it is stated without ``mechanisms``."""

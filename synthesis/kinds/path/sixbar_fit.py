@@ -1,19 +1,22 @@
 """Descents of sixbars to a curve on all of their dimensions: softly under the demands at first, then with these held.
 
-The rows are those of :mod:`synthesis.kinds.path.sixbar_rows`; the methods are Levenberg and Marquardt's
-(:mod:`synthesis.numerics.levenberg`) and multipliers (:mod:`synthesis.numerics.augmented_lagrangian`).
+The rows are those of :mod:`synthesis.kinds.path.sixbar_rows`, or of :mod:`synthesis.kinds.path.inverted_rows`; the
+methods are Levenberg and Marquardt's (:mod:`synthesis.numerics.levenberg`) and multipliers
+(:mod:`synthesis.numerics.augmented_lagrangian`).
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.fit.demands import BOXES, CHANGE_POINT, COSINE, DEMANDS, FAMILY, RATIO, SIGN, WHOLE
+from synthesis.fit.sixbar_curve import INPUT
 from synthesis.kinds.path.curve_limits import curve_setting
+from synthesis.kinds.path.inverted_rows import inverted_rows
 from synthesis.kinds.path.limits import MIN_GRASHOF
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.sixbar_rows import (
@@ -119,6 +122,7 @@ def descended(
     states = np.concatenate([theta, np.zeros((len(x), limits))], axis=1)
     multipliers = np.zeros(limits + 1)
     multipliers[limits] = SOFT_WEIGHT
+    kernel = _rows_of(fits.form)
 
     def work(some: slice) -> None:
         for k in range(*some.indices(len(x))):
@@ -126,7 +130,7 @@ def descended(
             one[SIGN], one[SIDE] = fits.signs[k]
             row = slice(k, k + 1)
             descend_each(
-                sixbar_rows, x[row], rows, one, multipliers, states[row], rows_of(len(points), one), steps,
+                kernel, x[row], rows, one, multipliers, states[row], rows_of(len(points), one), steps,
                 tolerance, cost[row], statuses[row],
             )  # fmt: skip
 
@@ -143,7 +147,7 @@ def held(
     ``stance`` is one of the points' rows, of :func:`synthesis.kinds.path.stance_fit.stance_spec`.
     """
     rows, stated = _posed(fits.form, points, weights, setting, back, turns)
-    kernel, first, more = (sixbar_rows, 0, 0) if stance is None else (sixbar_stance_rows, STANCE, MARGINS)
+    kernel, first, more = (_rows_of(fits.form), 0, 0) if stance is None else (sixbar_stance_rows, STANCE, MARGINS)
     limits, most = margins_of(stated) + more, rows_of(len(points), stated) + more
     stated = stated if stance is None else np.concatenate([stance, stated])
     x, cost = fits.x.copy(), np.full(len(fits.x), math.inf)
@@ -165,6 +169,11 @@ def held(
 
 HELD_WEIGHT, HELD_WITHIN = 100.0, 1e-3
 """Weight of held demands in the first descent; and by how much, in their own units, one may be missed."""
+
+
+def _rows_of(form: Form) -> Any:
+    """The kernel of a form's rows."""
+    return inverted_rows if form.holder == INPUT else sixbar_rows
 
 
 def _posed(form: Form, points: Complex, weights: Real, setting: Real, back: int, turns: int) -> tuple[Real, Real]:

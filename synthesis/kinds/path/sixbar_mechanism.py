@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.fit.chart import natural
-from synthesis.fit.sixbar_curve import COUPLER, CRANK, GROUND, ROCKER, joints
+from synthesis.fit.inverted_curve import A0, B0, PIN, POINT, SHOWN, A, B, inverted_joints
+from synthesis.fit.sixbar_curve import COUPLER, CRANK, DYAD, GROUND, INPUT, ROCKER, joints
 from synthesis.kinds.path.sixbar_shapes import Form
 from synthesis.model.linkage_answer import SixbarMechanism
 from synthesis.model.sixbars import sixbar_mechanism
@@ -17,6 +18,9 @@ Real = NDArray[np.float64]
 
 MIN_LINK = 1e-6
 """Pins of one link that are nearer to one another than this share of the task's size make no link."""
+
+BESIDE_INPUT = {CRANK: "link_3", COUPLER: "link_4", ROCKER: "link_5"}
+"""The links of a Stephenson II that P may be on, by their names in answers."""
 
 TERNARY = {CRANK: "input", COUPLER: "coupler", ROCKER: "output"}
 """The links that carry or hold a dyad, by their names in answers."""
@@ -31,6 +35,8 @@ def fitted_sixbar(
     """
     lengths, places = np.empty(4), np.empty(6, np.complex128)
     natural(form.family, x, lengths, np.empty((4, 4)))
+    if form.holder == INPUT:
+        return _inverted(kind, form, x, lengths, signs, theta, centre, size)
     if not joints(x, lengths, *_assembled(form, signs), theta, places):
         return None
     o2 = complex(x[0], x[1])
@@ -46,6 +52,29 @@ def fitted_sixbar(
         links[TERNARY[form.holder]].append("D")
         links |= {"link_5": ["C", "E", "P"], "link_6": ["D", "E"]}
     links[TERNARY[form.carrier]].append("C")
+    return _made(kind, at, links, centre, size)
+
+
+def _inverted(
+    kind: str, form: Form, x: Real, lengths: Real, signs: Real, theta: float, centre: complex, size: float
+) -> SixbarMechanism | None:
+    """The same of a Stephenson II, with its link 3 at θ beside the input."""
+    shown = np.empty(SHOWN, np.complex128)
+    if not inverted_joints(x, lengths, float(signs[0]), form.carrier, float(signs[1]), theta, shown)[0]:
+        return None
+    o2 = complex(x[0], x[1])
+    at = {"A": shown[A0], "B": shown[A], "C": shown[B0], "D": shown[B], "E": shown[PIN], "P": shown[POINT]}
+    at |= {"O2": o2, "O4": o2 + np.exp(x[DYAD + 1] + 1j * x[2])}
+    links: dict[str, Any] = {"ground": ["O2", "O4"], "input": ["O2", "A", "C"], "link_3": ["A", "B"]}
+    links |= {"link_4": ["B", "D", "E"], "link_5": ["C", "D"], "output": ["O4", "E"]}
+    links[BESIDE_INPUT[form.carrier]].append("P")
+    return _made(kind, at, links, centre, size)
+
+
+def _made(
+    kind: str, at: dict[str, complex], links: dict[str, list[str]], centre: complex, size: float
+) -> SixbarMechanism | None:
+    """The sixbar as an answer; None where a link has no length."""
     made = sixbar_mechanism(
         kind,
         {name: complex(centre + size * place) for name, place in at.items()},

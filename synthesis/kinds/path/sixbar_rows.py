@@ -197,6 +197,16 @@ def _joint_with_slopes(
 
 
 @njit(**OPTIONS)
+def settling_step(gap: complex, moved: complex) -> float:
+    """The step of the angle towards where P is nearest to a point that it misses by ``gap``; 0 where P rests."""
+    square = moved.real * moved.real + moved.imag * moved.imag
+    if square < SPEED_FLOOR * SPEED_FLOOR:
+        return 0.0
+    step = -(moved.real * gap.real + moved.imag * gap.imag) / square
+    return min(max(step, -MAX_TURN_STEP), MAX_TURN_STEP)
+
+
+@njit(**OPTIONS)
 def _settled(x: Real, lengths: Real, setting: Real, z: complex, angle: float) -> float:
     """The crank angle brought nearer to where P is nearest to z; NaN beyond a toggle."""
     sign, side = setting[SIGN], setting[SIDE]
@@ -205,11 +215,7 @@ def _settled(x: Real, lengths: Real, setting: Real, z: complex, angle: float) ->
         closes, p, moved = velocity(x, lengths, sign, carrier, holder, side, angle)
         if not closes:
             return math.nan
-        gap, square = p - z, moved.real * moved.real + moved.imag * moved.imag
-        if square < SPEED_FLOOR * SPEED_FLOOR:
-            break
-        step = -(moved.real * gap.real + moved.imag * gap.imag) / square
-        step = min(max(step, -MAX_TURN_STEP), MAX_TURN_STEP)
+        step = settling_step(p - z, moved)
         angle += step
         if abs(step) < TURN_TOLERANCE:
             break
@@ -232,6 +238,39 @@ def nearest_side(p: complex, points: Real) -> complex:
         if far < least:
             least, best = far, off
     return best
+
+
+@njit(**OPTIONS)
+def rows_of_point(gap: complex, slopes: Complex, root: float, m: int, residuals: Real, jacobian: Real) -> None:
+    """The rows m and m + 1 of a point that P misses by ``gap``: along P's way, and across it.
+
+    ``slopes`` are P's, by the unknowns and last by the angle that drives; ``root`` is the square root of the weight.
+    """
+    along = slopes[UNKNOWNS]
+    speed = abs(along)
+    if speed < SPEED_FLOOR:
+        along, across = 1.0 + 0j, 1j
+        for j in range(UNKNOWNS):
+            jacobian[m, j] = root * slopes[j].real
+    else:
+        along = along / speed
+        across = complex(-along.imag, along.real)
+        jacobian[m] = 0.0
+    residuals[m] = root * (gap.real * along.real + gap.imag * along.imag)
+    residuals[m + 1] = root * (gap.real * across.real + gap.imag * across.imag)
+    for j in range(UNKNOWNS):
+        jacobian[m + 1, j] = root * (slopes[j].real * across.real + slopes[j].imag * across.imag)
+
+
+@njit(**OPTIONS)
+def row_of_back(off: complex, slopes: Complex, weight: float, m: int, residuals: Real, jacobian: Real) -> None:
+    """The row m of a place of the curve that is off the polyline by a vector."""
+    far = abs(off)
+    residuals[m] = weight * far
+    jacobian[m] = 0.0
+    if far > 0.0:
+        for j in range(UNKNOWNS):
+            jacobian[m, j] = weight / far * (off.real * slopes[j].real + off.imag * slopes[j].imag)
 
 
 @njit(ROWS, **OPTIONS)
@@ -266,20 +305,7 @@ def sixbar_rows(
         closes, p = point_with_slopes(x, side, c, d, by_c, by_d, slopes)
         if not closes:
             return -1
-        gap, along = p - z, slopes[UNKNOWNS]
-        speed = abs(along)
-        if speed < SPEED_FLOOR:
-            along, across = 1.0 + 0j, 1j
-            for j in range(UNKNOWNS):
-                jacobian[m, j] = root * slopes[j].real
-        else:
-            along = along / speed
-            across = complex(-along.imag, along.real)
-            jacobian[m] = 0.0
-        residuals[m] = root * (gap.real * along.real + gap.imag * along.imag)
-        residuals[m + 1] = root * (gap.real * across.real + gap.imag * across.imag)
-        for j in range(UNKNOWNS):
-            jacobian[m + 1, j] = root * (slopes[j].real * across.real + slopes[j].imag * across.imag)
+        rows_of_point(p - z, slopes, root, m, residuals, jacobian)
         m += 2
     steps, limits = int(setting[STEPS]), margins_of(setting)
     values, gradients = state[n:], np.empty((limits, UNKNOWNS))
@@ -318,12 +344,6 @@ def sixbar_rows(
             gradients[number] = -gradients[number + 1]
         if back:
             point_with_slopes(x, side, c, d, by_c, by_d, slopes)
-            off = nearest_side(places[5], points)
-            far = abs(off)
-            residuals[m] = setting[BACK] * far
-            jacobian[m] = 0.0
-            if far > 0.0:
-                for j in range(UNKNOWNS):
-                    jacobian[m, j] = setting[BACK] / far * (off.real * slopes[j].real + off.imag * slopes[j].imag)
+            row_of_back(nearest_side(places[5], points), slopes, setting[BACK], m, residuals, jacobian)
             m += 1
     return limit_rows(values, gradients, EQUATIONS, multipliers, residuals, jacobian, m)

@@ -100,11 +100,12 @@ def warm_up() -> None:
     stated = {"points": [{"x": z.real, "y": z.imag} for z in circle], "mechanisms": ["stephenson_3"]}
     problem = PathProblem.model_validate({"kind": "path", "method": "curve_match", "closed": True, **stated})
     setting = sixbar_setting(problem, 0j, 1.0, SOUND, MOST_UNEVEN)
-    form = FORMS["stephenson_3"][0]
-    alike = alike_sixbars(form, circle, True, 256, 2, np.random.default_rng(0))
-    fits = Fits(form, alike.x, alike.signs, alike.theta, np.zeros(len(alike.x)))
-    fits = descended(fits, circle, np.ones(SHAPE_POINTS), setting, steps=2)
-    held(fits, circle, np.ones(SHAPE_POINTS), setting, back=SHAPE_POINTS, turns=SHAPE_POINTS, rounds=1, steps=2)
+    for kind in ("stephenson_3", "stephenson_2"):
+        form = FORMS[kind][0]
+        alike = alike_sixbars(form, circle, True, 256, 2, np.random.default_rng(0))
+        fits = Fits(form, alike.x, alike.signs, alike.theta, np.zeros(len(alike.x)))
+        fits = descended(fits, circle, np.ones(SHAPE_POINTS), setting, steps=2)
+        held(fits, circle, np.ones(SHAPE_POINTS), setting, back=SHAPE_POINTS, turns=SHAPE_POINTS, rounds=1, steps=2)
 
 
 def _solved(problem: PathProblem, progress: Progress) -> PathResult:

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from kinematics.compiling import njit
 from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, natural
-from synthesis.fit.sixbar_curve import COUPLER, CRANK, DYAD, GROUND, ROCKER, UNKNOWNS, C, D, P, joints
+from synthesis.fit.sixbar_curve import COUPLER, CRANK, DYAD, GROUND, INPUT, ROCKER, UNKNOWNS, C, D, P, joints
+from synthesis.kinds.path import inverted_shapes
 from synthesis.kinds.path.curve_candidates import draw
 from synthesis.kinds.path.curve_shapes import (
     CHUNK,
@@ -71,9 +72,12 @@ FORMS: dict[str, tuple[Form, ...]] = {
     "stephenson_1": tuple(
         Form(family, *pair) for family in (CRANK_ROCKER, DOUBLE_CRANK) for pair in ((CRANK, ROCKER), (ROCKER, CRANK))
     ),
+    "stephenson_2": tuple(
+        Form(family, carrier, INPUT) for family in (CRANK_ROCKER, DOUBLE_CRANK) for carrier in (COUPLER, CRANK, ROCKER)
+    ),
     "stephenson_3": tuple(Form(family, COUPLER, GROUND) for family in (CRANK_ROCKER, DOUBLE_CRANK)),
 }
-"""The builds of each type; P is always on the dyad's link at the carrier."""
+"""The builds of each type; P is on the dyad's link at the carrier, or of a Stephenson II on the carrier itself."""
 
 FAMILIES = {
     "any": (CRANK_ROCKER, DOUBLE_CRANK),
@@ -201,14 +205,21 @@ def alike_sixbars(
     """
     shape = target - target.mean()
     shape /= np.linalg.norm(shape)
-    x, signs, tried = _drawn(form, count, rng)
+    inverted = form.holder == INPUT
+    if inverted:
+        x, signs, tried = inverted_shapes.drawn(form.family, form.carrier, count, TRIED, rng)
+    else:
+        x, signs, tried = _drawn(form, count, rng)
     rho, where = np.full(count, -1.0), np.zeros((count, 3), np.int64)
 
     def compare(first: int) -> tuple[NDArray[np.int64], Likeness] | None:
         rows = slice(first, min(first + CHUNK, count))
         curves = np.empty((rows.stop - first, SWEEP_STEPS), np.complex128)
         good = np.empty(len(curves), np.bool_)
-        _swept(*form, x[rows], signs[rows], tried[rows], curves, good)
+        if inverted:
+            inverted_shapes.swept(*form[:2], LEAST_ANGLE, x[rows], signs[rows], tried[rows], curves, good)
+        else:
+            _swept(*form, x[rows], signs[rows], tried[rows], curves, good)
         chosen = np.flatnonzero(good)
         if not len(chosen):
             return None
@@ -225,7 +236,11 @@ def alike_sixbars(
     order = order[rho[order] > 0.0]
     chosen_x, chosen_signs = x[order], signs[order]
     theta, marks = np.empty((len(order), SHAPE_POINTS)), np.empty((len(order), 6), np.complex128)
-    _place_each(*form, np.array(WINDOW_LENGTHS), where[order], target, closed, chosen_x, chosen_signs, theta, marks)
+    windows, places = np.array(WINDOW_LENGTHS), where[order]
+    if inverted:
+        inverted_shapes.place_each(*form[:2], windows, places, target, closed, chosen_x, chosen_signs, theta, marks)
+    else:
+        _place_each(*form, windows, places, target, closed, chosen_x, chosen_signs, theta, marks)
     span = np.abs(marks[:, :5] - target.mean()).max(axis=1)
     near = np.flatnonzero(np.isfinite(span) & (span <= MAX_OVERSIZE * longest))
     kept = near[distinct(marks[near], keep, SAME_START * (np.ptp(target.real) + np.ptp(target.imag)))]

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field
 
-from synthesis.model.stated_types import Auto, beside_sixbars, named_among, refused
+from synthesis.model.stated_types import UNCLASSED, Auto, beside_sixbars, named_among, no_class, refused
 from synthesis.model.statement import Contradiction
 
 Simple = Literal["fourbar", "slider_crank", "geared_fivebar"]
@@ -15,12 +15,12 @@ Simple = Literal["fourbar", "slider_crank", "geared_fivebar"]
 
 SIMPLE: tuple[Simple, ...] = get_args(Simple)
 
-Sixbar = Literal["watt_1", "stephenson_1", "stephenson_3"]
+Sixbar = Literal["watt_1", "stephenson_1", "stephenson_2", "stephenson_3"]
 """Sixbars with a point on a link that is not joined to the ground, and not moved by a fourbar alone."""
 
 SIXBARS: tuple[Sixbar, ...] = get_args(Sixbar)
 
-Mechanisms = Auto | Annotated[list[Simple | Sixbar], Field(min_length=1, max_length=6)]
+Mechanisms = Auto | Annotated[list[Simple | Sixbar], Field(min_length=1, max_length=7)]
 """Types by their names, or the simplest that does."""
 
 NAMES = {"fourbar": "fourbar", "slider_crank": "slider-crank", "geared_fivebar": "geared fivebar", "sixbar": "sixbar"}
@@ -44,7 +44,8 @@ def of_types(problem: Any) -> list[Contradiction]:
         listed.append(Contradiction("/mechanism", "names one type beside mechanisms, which names all; leave it out"))
     if problem.gear_ratio is not None and "geared_fivebar" not in simple_of(stated):
         listed.append(Contradiction("/gear_ratio", "no mechanism that is looked for has gears"))
-    return listed + refused(stated, SIXBARS, lacking(problem))
+    listed += refused(stated, SIXBARS, lacking(problem))
+    return listed + (list(beyond_unclassed(problem)) if named_among(stated, SIXBARS) == (UNCLASSED,) else [])
 
 
 def lacking(problem: Any) -> Iterator[Contradiction]:
@@ -59,3 +60,10 @@ def lacking(problem: Any) -> Iterator[Contradiction]:
             yield Contradiction(path, "is not for sixbars; leave it out, or take the sixbars out of mechanisms")
     yield from limits.of_another_class(TURNING, "sixbars are looked for whose crank turns through")
     yield from beside_sixbars(problem)
+
+
+def beyond_unclassed(problem: Any) -> Iterator[Contradiction]:
+    """What is stated that a Stephenson II sixbar cannot keep, or is not looked for with."""
+    yield from no_class(problem.constraints)
+    if problem.stance is not None:
+        yield Contradiction("/stance", "is not looked for in Stephenson II sixbars; name others, or leave it out")

@@ -21,7 +21,7 @@ from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification import AtPoints, Way, path_design
 from synthesis.model.linkage_answer import GearedFivebarMechanism, SixbarMechanism, SliderCrankMechanism
 from synthesis.proof.closer import GRID, least_angles
-from synthesis.proof.measures import barker_of, fixed_pivots, link_lengths, measured, reach_of
+from synthesis.proof.measures import barker_within, fixed_pivots, link_lengths, measured, reach_of
 from synthesis.proof.on_branch import OnBranch
 from synthesis.proof.rebuilt import rebuilt
 from synthesis.proof.space import BODY_POINT
@@ -74,7 +74,7 @@ def verify_traced(problem: PathProblem, design: TracedMechanism) -> PathDesign |
         problem.task_size,
         least_angles(driven.at, np.linspace(*used, GRID)),
         np.concatenate(list(joints.values())),
-        barker=barker_of(mechanism) if isinstance(design, SixbarMechanism) else None,
+        barker=barker_within(mechanism) if isinstance(design, SixbarMechanism) else None,
         same_branch=True,
         visits_in_order=bool(np.all(steps >= 0.0) or np.all(steps <= 0.0)) and bool(np.ptp(inputs) > 0.0),
         full_rotation=here.full,

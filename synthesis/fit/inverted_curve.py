@@ -1,0 +1,239 @@
+"""Curves that Stephenson II sixbars draw, by inversion, with their slopes in every dimension.
+
+Seen from its input link a Stephenson II is a Stephenson III: links 3, 4 and 5 are a fourbar on the input, and the
+ground is the link E D of a dyad C–E–D, C on link 4, E and D the fixed pivots of output and input. So it is driven by
+link 3 as it turns beside the input, and then turned so that the ground stands still. The fifteen unknowns are those of
+:mod:`synthesis.fit.sixbar_curve`, with another meaning of some:
+
+* the first three are the input's fixed pivot, O2, and the direction from it to the output's, O4;
+* A₀, in which link 3 turns on the input, is the origin of the input's frame, and its real axis goes to B₀, in which
+  link 5 turns on it; D, the place of O2, is in that frame, C in that of link 4 (origin A, real axis to B);
+* ln r₁ and ln r₂ are of the output and of the ground;
+* P is in the frame of link 3 (origin A₀, axis to A), 4, or 5 (origin B₀, axis to B).
+
+θ is the angle of link 3 in the input's frame. The kinds of links are named as in that module: the crank is link 3, the
+coupler link 4, the rocker link 5.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.compiling import njit
+from synthesis.fit.chart import OPTIONS
+from synthesis.fit.coupler_curve import scaled, turned, two_bars, unit
+from synthesis.fit.sixbar_curve import (
+    COUPLER,
+    CRANK,
+    DYAD,
+    ROCKER,
+    UNKNOWNS,
+    C,
+    D,
+    P,
+    across,
+    fourbar,
+    pin,
+    pin_velocity,
+    pins_with_slopes,
+    turn_of,
+)
+from synthesis.fit.triad_slant import cross, dot, pushed, pushed_rate, slant, slant_rate
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+A0, A, B, B0, PIN, POINT, PIVOT = range(7)
+"""Joints: pin of link 3 on the input and on link 4; of link 5 on link 4 and on the input; of the output on link 4; P;
+and the output's fixed pivot."""
+
+SHOWN = 6
+"""How many of them move on the ground: all but the last."""
+
+
+@njit(**OPTIONS)
+def inverted_joints(
+    x: Real, lengths: Real, sign: float, carrier: int, side: float, theta: float, places: Complex
+) -> tuple[bool, float, float]:
+    """Whether a Stephenson II closes with link 3 at θ, and the cosine and sine of the angle at which it is pushed.
+
+    Parameters
+    ----------
+    x, lengths : float, shapes (15,) and (4,)
+        Unknowns, and lengths of the fourbar on the input.
+    sign, side : float
+        Assemblies of the fourbar's dyad and of C–E–D.
+    carrier : int
+        The link that P is on.
+    theta : float
+        Radians.
+    places : complex, shape (SHOWN,)
+        Filled: the joints, as the ground sees them.
+    """
+    crank = unit(theta)
+    closes, along, out = fourbar(x, lengths, sign, crank, 1.0 + 0j)
+    if not closes:
+        return False, 0.0, 0.0
+    a, pivot, d = scaled(crank, lengths[1]), complex(lengths[0], 0.0), complex(x[D], x[D + 1])
+    b, c = a + scaled(along, lengths[2]), a + complex(x[C], x[C + 1]) * along
+    first, second = math.exp(x[DYAD]), math.exp(x[DYAD + 1])
+    closes, v = two_bars(d - c, first, second, side)
+    if not closes:
+        return False, 0.0, 0.0
+    e = c + scaled(v, first)
+    p = pin(carrier, complex(x[P], x[P + 1]), 0j, lengths, 1.0 + 0j, crank, along, out)
+    back = unit(x[2]) * scaled((e - d).conjugate(), 1.0 / second)
+    o2 = complex(x[0], x[1])
+    places[A0], places[A], places[B] = o2 - back * d, o2 + back * (a - d), o2 + back * (b - d)
+    places[B0], places[PIN], places[POINT] = o2 + back * (pivot - d), o2 + back * (c - d), o2 + back * (p - d)
+    cosine, sine = slant(c, e, 0j, a, pivot, b)
+    return True, cosine, sine
+
+
+@njit(**OPTIONS)
+def inverted_velocity(
+    x: Real, lengths: Real, sign: float, carrier: int, side: float, theta: float
+) -> tuple[bool, complex, complex]:
+    """Whether a Stephenson II closes, P, and P's derivative by θ, as the ground sees them."""
+    crank = unit(theta)
+    closes, along, out = fourbar(x, lengths, sign, crank, 1.0 + 0j)
+    if not closes:
+        return False, 0j, 0j
+    arm, f, g = scaled(crank, lengths[1]), scaled(out, lengths[3]), turned(scaled(along, lengths[2]))
+    moved = turned(arm)
+    turn = turn_of(f, moved, dot(f, g))
+    swing = across(out, moved + scaled(g, turn)) / lengths[3]
+    local_c, local_p, d = complex(x[C], x[C + 1]), complex(x[P], x[P + 1]), complex(x[D], x[D + 1])
+    c = arm + local_c * along
+    first, second = math.exp(x[DYAD]), math.exp(x[DYAD + 1])
+    closes, v = two_bars(d - c, first, second, side)
+    if not closes:
+        return False, 0j, 0j
+    by_c = pin_velocity(COUPLER, local_c, arm, along, out, turn, swing, crank)
+    bar = scaled(v, first)
+    g = turned(bar)
+    f = bar - (d - c)
+    by_e = by_c + scaled(g, turn_of(f, by_c, dot(f, g)))
+    spin = cross(f, by_e) / (second * second)
+    p = pin(carrier, local_p, 0j, lengths, 1.0 + 0j, crank, along, out) - d
+    by_p = pin_velocity(carrier, local_p, arm, along, out, turn, swing, crank)
+    back = unit(x[2]) * scaled(f.conjugate(), 1.0 / second)
+    return True, complex(x[0], x[1]) + back * p, back * (by_p - scaled(turned(p), spin))
+
+
+@njit(**OPTIONS)
+def inverted_slopes(
+    x: Real, lengths: Real, chart: Real, sign: float, carrier: int, side: float, theta: float, turns: Real,
+    places: Complex, by: Complex,
+) -> bool:  # fmt: skip
+    """Whether a Stephenson II closes; the joints and their derivatives as the *input* sees them.
+
+    Parameters
+    ----------
+    x, lengths, sign, carrier, side, theta
+        As of :func:`inverted_joints`.
+    chart : float, shape (4, 4)
+        Slopes of the lengths (:func:`synthesis.fit.chart.natural`).
+    turns : float, shape (3, 16)
+        Filled: derivatives of the angles of link 4, of link 5, and of the ground.
+    places, by : complex, shapes (7,) and (7, 16)
+        Filled: all joints, and their derivatives by the unknowns and, last, by θ; those by the first three vanish.
+    """
+    here = x.copy()
+    here[:3] = 0.0
+    closes, c, d = pins_with_slopes(here, lengths, chart, sign, COUPLER, 0, theta, turns[:2], by[PIN], by[PIVOT])
+    if not closes:
+        return False
+    first, second = math.exp(x[DYAD]), math.exp(x[DYAD + 1])
+    closes, v = two_bars(d - c, first, second, side)
+    if not closes:
+        return False
+    crank = unit(theta)
+    _, along, out = fourbar(here, lengths, sign, crank, 1.0 + 0j)
+    by[:] = 0.0
+    turns[:, :3] = 0.0
+    turn, swing, spin = turns[0], turns[1], turns[2]
+    places[A0], places[A], places[B0] = 0j, scaled(crank, lengths[1]), complex(lengths[0], 0.0)
+    bar, local, point = scaled(along, lengths[2]), complex(x[C], x[C + 1]), complex(x[P], x[P + 1])
+    places[B], places[PIN] = places[A] + bar, c
+    places[POINT] = pin(carrier, point, 0j, lengths, 1.0 + 0j, crank, along, out)
+    link = scaled(v, first)
+    f, g = link - (d - c), turned(link)
+    per = dot(f, g)
+    places[PIVOT] = c + link
+    for k in range(4):
+        by[A, 3 + k] = scaled(crank, chart[1, k])
+        by[B0, 3 + k] = complex(chart[0, k], 0.0)
+    by[A, UNKNOWNS] = turned(places[A])
+    swung = turned(local * along)
+    for k in range(3, UNKNOWNS + 1):
+        by[B, k] = by[A, k] + scaled(turned(bar), turn[k])
+        by[PIN, k] = by[A, k] + scaled(swung, turn[k])
+    for k in range(4):
+        by[B, 3 + k] += scaled(along, chart[2, k])
+    by[PIN, C], by[PIN, C + 1] = along, turned(along)
+    direction = crank
+    if carrier == CRANK:
+        by[POINT, UNKNOWNS] = turned(point * crank)
+    elif carrier == COUPLER:
+        direction = along
+        for k in range(3, UNKNOWNS + 1):
+            by[POINT, k] = by[A, k] + scaled(turned(point * along), turn[k])
+    elif carrier == ROCKER:
+        direction = out
+        for k in range(3, UNKNOWNS + 1):
+            by[POINT, k] = by[B0, k] + scaled(turned(point * out), swing[k])
+    by[POINT, P], by[POINT, P + 1] = direction, turned(direction)
+    for k in range(3, UNKNOWNS + 1):
+        apart = by[PIN, k]
+        if k == D:
+            apart -= 1.0
+        elif k == D + 1:
+            apart -= 1j
+        rate = turn_of(f, apart, per)
+        if k == DYAD:
+            rate = turn_of(f, link, per)
+            by[PIVOT, k] = link
+        elif k == DYAD + 1:
+            rate = second * second / per
+        by[PIVOT, k] += by[PIN, k] + scaled(g, rate)
+        apart = by[PIVOT, k]
+        if k == D:
+            apart -= 1.0
+        elif k == D + 1:
+            apart -= 1j
+        spin[k] = cross(f, apart) / (second * second)
+    return True
+
+
+@njit(**OPTIONS)
+def seen_from_ground(x: Real, joint: int, turns: Real, places: Complex, by: Complex, slopes: Complex) -> complex:
+    """A joint as the ground sees it, and its derivatives (16,), from what :func:`inverted_slopes` fills."""
+    d, spin = complex(x[D], x[D + 1]), turns[2]
+    back = unit(x[2]) * scaled((places[PIVOT] - d).conjugate(), math.exp(-x[DYAD + 1]))
+    here = places[joint] - d
+    across_it = turned(here)
+    for k in range(3, UNKNOWNS + 1):
+        slopes[k] = by[joint, k] - scaled(across_it, spin[k])
+    slopes[D] -= 1.0
+    slopes[D + 1] -= 1j
+    for k in range(3, UNKNOWNS + 1):
+        slopes[k] = back * slopes[k]
+    slopes[0], slopes[1], slopes[2] = 1.0 + 0j, 1j, turned(back * here)
+    seen: complex = complex(x[0], x[1]) + back * here
+    return seen
+
+
+@njit(**OPTIONS)
+def slant_with_slopes(places: Complex, by: Complex, row: Real) -> float:
+    """The cosine of the angle at which the output is pushed, and its derivatives by the unknowns (15,)."""
+    q, j, o2, a, o4, b = places[PIN], places[PIVOT], places[A0], places[A], places[B0], places[B]
+    leg, way = q - j, pushed(q, o2, a, o4, b)
+    for k in range(UNKNOWNS):
+        by_way = pushed_rate(q, o2, a, o4, b, by[PIN, k], by[A0, k], by[A, k], by[B0, k], by[B, k])
+        row[k] = slant_rate(leg, way, by[PIN, k] - by[PIVOT, k], by_way)
+    cosine: float = cross(leg, way) / (abs(leg) * abs(way))
+    return cosine

@@ -1,0 +1,190 @@
+"""Residuals of a Stephenson II that guides a point along a curve, both ways, and its demands as margins.
+
+The unknowns and the motion are those of :mod:`synthesis.fit.inverted_curve`; the rows of points, the way back, and the
+margins of lengths, their ratios and the box are those of other sixbars (:mod:`synthesis.kinds.path.sixbar_rows`), in
+the same places. Instead of the cosines of two dyads it is that of the triad, the slant at which its output is pushed,
+which is kept from above and from below. What turns over on its way is refused: its input would turn back.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.compiling import njit
+from synthesis.fit.chart import OPTIONS, natural
+from synthesis.fit.demands import BOXES, COSINE, EQUATIONS, FAMILY, GIVEN, LIMITS, MOVING, PIVOTS, SIGN, margins
+from synthesis.fit.inverted_curve import (
+    PIVOT,
+    POINT,
+    SHOWN,
+    inverted_joints,
+    inverted_slopes,
+    inverted_velocity,
+    seen_from_ground,
+    slant_with_slopes,
+)
+from synthesis.fit.sixbar_curve import COUPLER, DYAD, GROUND, UNKNOWNS
+from synthesis.kinds.path.sixbar_rows import (
+    AT_STEP,
+    BACK,
+    CARRIER,
+    HOLDER,
+    ROOM,
+    SETTLING,
+    SIDE,
+    STEPS,
+    TURN_TOLERANCE,
+    margins_of,
+    nearest_side,
+    own_margins,
+    row_of_back,
+    rows_of_point,
+    settling_step,
+)
+from synthesis.numerics.augmented_lagrangian import limit_rows
+from synthesis.numerics.levenberg import ROWS
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+@njit(**OPTIONS)
+def _settled(x: Real, lengths: Real, setting: Real, z: complex, angle: float) -> float:
+    """The angle of link 3 brought nearer to where P is nearest to z; NaN beyond a toggle."""
+    sign, side, carrier = setting[SIGN], setting[SIDE], int(setting[CARRIER])
+    for _ in range(SETTLING):
+        closes, p, moved = inverted_velocity(x, lengths, sign, carrier, side, angle)
+        if not closes:
+            return math.nan
+        step = settling_step(p - z, moved)
+        angle += step
+        if abs(step) < TURN_TOLERANCE:
+            break
+    return angle
+
+
+@njit(**OPTIONS)
+def _of_links(x: Real, lengths: Real, chart: Real, setting: Real, multipliers: Real, values: Real, rows: Real) -> int:
+    """Margins of lengths and ratios, as those of a Stephenson III on the input; the number of the next margin."""
+    here, stated = x.copy(), setting.copy()
+    here[:3] = 0.0
+    stated[CARRIER], stated[HOLDER], stated[COSINE] = COUPLER, GROUND, np.inf
+    for edge in range(8):
+        stated[BOXES + edge] = -np.inf if edge % 2 == 0 else np.inf
+    for edge in range(4):
+        stated[MOVING + edge] = -np.inf if edge % 2 == 0 else np.inf
+        stated[GIVEN + edge] = np.nan
+    number: int = own_margins(here, lengths, chart, stated, multipliers, values, rows)
+    first, still = len(values) - LIMITS, np.zeros(UNKNOWNS)
+    margins(here, lengths, chart, np.zeros(2), still, stated, values[first:], rows[first:])
+    for k in range(len(values)):
+        if k < number or k >= first:
+            rows[k, :3] = 0.0
+    return number
+
+
+@njit(**OPTIONS)
+def _of_pivots(x: Real, setting: Real, values: Real, rows: Real) -> None:
+    """Margins of the boxes and the given coordinates of O2 and O4, into a fourbar's places."""
+    first = len(values) - LIMITS
+    ground, cosine, sine = math.exp(x[DYAD + 1]), math.cos(x[2]), math.sin(x[2])
+    by = np.zeros(UNKNOWNS)
+    for pivot in range(2):
+        for axis in range(2):
+            by[:] = 0.0
+            by[axis] = 1.0
+            place = x[axis]
+            if pivot == 1:
+                along, across = (cosine, -sine) if axis == 0 else (sine, cosine)
+                place += ground * along
+                by[2], by[DYAD + 1] = ground * across, ground * along
+            for side in range(2):
+                limit, toward = setting[BOXES + 4 * pivot + 2 * axis + side], 1.0 if side == 0 else -1.0
+                if abs(limit) < np.inf:
+                    number = first + PIVOTS + 4 * pivot + 2 * axis + side
+                    values[number] = toward * (place - limit)
+                    rows[number] = toward * by
+            given = setting[GIVEN + 2 * pivot + axis]
+            if not math.isnan(given):
+                number = len(values) - EQUATIONS + 2 * pivot + axis
+                values[number] = place - given
+                rows[number] = by
+
+
+@njit(ROWS, **OPTIONS)
+def inverted_rows(
+    x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
+) -> int:
+    """Rows for the descent of :mod:`synthesis.numerics.levenberg`; −1 where it does not close, or turns over.
+
+    ``points`` (n, 4): x and y, nothing, and the square root of the weight. ``state``: angles of link 3 at the points,
+    then margins.
+    """
+    n = len(points)
+    lengths, chart = np.empty(4), np.zeros((4, 4))
+    natural(int(setting[FAMILY]), x, lengths, chart)
+    sign, side, carrier = setting[SIGN], setting[SIDE], int(setting[CARRIER])
+    if not (np.abs(x[3:7]).max() < 30.0 and max(abs(x[DYAD]), abs(x[DYAD + 1])) < 30.0):
+        return -1
+    turns, slopes = np.zeros((3, UNKNOWNS + 1)), np.empty(UNKNOWNS + 1, np.complex128)
+    joints, by = np.empty(PIVOT + 1, np.complex128), np.empty((PIVOT + 1, UNKNOWNS + 1), np.complex128)
+    m = 0
+    for i in range(n):
+        z, root = complex(points[i, 0], points[i, 1]), points[i, 3]
+        angle = _settled(x, lengths, setting, z, state[i])
+        if math.isnan(angle):
+            return -1
+        state[i] = angle
+        if not inverted_slopes(x, lengths, chart, sign, carrier, side, angle, turns, joints, by):
+            return -1
+        p = seen_from_ground(x, POINT, turns, joints, by, slopes)
+        rows_of_point(p - z, slopes, root, m, residuals, jacobian)
+        m += 2
+    steps, limits = int(setting[STEPS]), margins_of(setting)
+    values, gradients = state[n:], np.empty((limits, UNKNOWNS))
+    values[:] = np.inf
+    first = _of_links(x, lengths, chart, setting, multipliers, values, gradients)
+    _of_pivots(x, setting, values, gradients)
+    weight, places, hand = multipliers[limits], np.empty(SHOWN, np.complex128), 0.0
+    for k in range(steps):
+        angle, back = 2.0 * math.pi * k / steps, setting[BACK] > 0.0
+        number = first + AT_STEP * k
+        closes, cosine, sine = inverted_joints(x, lengths, sign, carrier, side, angle, places)
+        if not closes or hand * sine < 0.0:
+            return -1
+        hand = sine
+        values[number], values[number + 1] = setting[COSINE] - cosine, setting[COSINE] + cosine
+        loaded = values[number] < multipliers[number] / weight or values[number + 1] < multipliers[number + 1] / weight
+        pressed = False
+        for edge in range(4):
+            limit, toward = setting[ROOM + edge], 1.0 if edge % 2 == 0 else -1.0
+            values[number + 2 + edge] = np.inf
+            for joint in range(SHOWN):
+                at = places[joint].real if edge < 2 else places[joint].imag
+                values[number + 2 + edge] = min(values[number + 2 + edge], toward * (at - limit))
+            pressed |= values[number + 2 + edge] < multipliers[number + 2 + edge] / weight
+        if not (loaded or back or pressed):
+            continue
+        inverted_slopes(x, lengths, chart, sign, carrier, side, angle, turns, joints, by)
+        if loaded:
+            slant_with_slopes(joints, by, gradients[number + 1])
+            gradients[number] = -gradients[number + 1]
+        for edge in range(4):
+            if not values[number + 2 + edge] < multipliers[number + 2 + edge] / weight:
+                continue
+            limit, toward = setting[ROOM + edge], 1.0 if edge % 2 == 0 else -1.0
+            for joint in range(SHOWN):
+                at = places[joint].real if edge < 2 else places[joint].imag
+                if toward * (at - limit) > values[number + 2 + edge]:
+                    continue
+                seen_from_ground(x, joint, turns, joints, by, slopes)
+                for j in range(UNKNOWNS):
+                    gradients[number + 2 + edge, j] = toward * (slopes[j].real if edge < 2 else slopes[j].imag)
+        if back:
+            seen_from_ground(x, POINT, turns, joints, by, slopes)
+            row_of_back(nearest_side(places[POINT], points), slopes, setting[BACK], m, residuals, jacobian)
+            m += 1
+    return limit_rows(values, gradients, EQUATIONS, multipliers, residuals, jacobian, m)

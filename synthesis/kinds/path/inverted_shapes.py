@@ -1,0 +1,134 @@
+"""Stephenson II sixbars drawn at random, swept and placed on a target, for :mod:`synthesis.kinds.path.sixbar_shapes`.
+
+Seen from the input link (:mod:`synthesis.fit.inverted_curve`) the pin C of link 4 goes round the input's fixed pivot D
+once while link 3 turns once, so that the input turns once beside the ground. So D is drawn within the curve of C, then
+lengths of output and ground of several that are tried, the first with which the output is pushed at
+:data:`~synthesis.kinds.path.sixbar_shapes.LEAST_ANGLE` and more over the whole turn.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.compiling import njit
+from synthesis.fit.chart import CRANK_ROCKER, natural
+from synthesis.fit.inverted_curve import POINT, SHOWN, inverted_joints
+from synthesis.fit.sixbar_curve import COUPLER, CRANK, DYAD, UNKNOWNS, C, D, P, joints
+from synthesis.kinds.path.curve_candidates import draw
+from synthesis.kinds.path.curve_shapes import SWEEP_STEPS, laid, turned_onto
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+ASIDE = 0.6
+"""How far D is drawn from the middle of C's curve at most, as a share of its mean distance from there."""
+
+
+def drawn(family: int, carrier: int, count: int, tried: int, rng: np.random.Generator) -> tuple[Real, Real, Real]:
+    """Unknowns, signs, and lengths to be tried (count, tried, 2); D is a direction and share still."""
+    x = np.zeros((count, UNKNOWNS))
+    x[:, 3:7] = draw(family, count, 0.0, int(rng.integers(2**31))).x[:, 3:7]
+    half = 0.5 * np.exp(x[:, 4:7])
+    # Of a crank-rocker link 3 is shortest, of a double-crank the input; their length is 1.
+    coupler, rocker = 1.0 + half[:, 0] + half[:, 1], 1.0 + half[:, 0] + half[:, 2]
+    crank = np.ones(count) if family == CRANK_ROCKER else 1.0 + half[:, 1] + half[:, 2]
+    for at, size in ((C, coupler), (P, {CRANK: crank, COUPLER: coupler}.get(carrier, rocker))):
+        reach = np.exp(rng.uniform(np.log(0.15), np.log(3.0), count))
+        pin = size * (0.5 + reach * np.exp(2j * np.pi * rng.uniform(size=count)))
+        x[:, at], x[:, at + 1] = pin.real, pin.imag
+    aside = ASIDE * np.sqrt(rng.uniform(size=count)) * np.exp(2j * np.pi * rng.uniform(size=count))
+    x[:, D], x[:, D + 1] = aside.real, aside.imag
+    signs = np.stack([np.ones(count), rng.choice([-1.0, 1.0], count)], axis=1)
+    return x, signs, np.exp(rng.uniform(np.log(0.25), np.log(3.0), (count, tried, 2)))
+
+
+@njit(cache=True, nogil=True)
+def swept(
+    family: int, carrier: int, least_angle: float, x: Real, signs: Real, tried: Real, curves: Complex,
+    good: NDArray[np.bool_],
+) -> None:  # fmt: skip
+    """D is placed, lengths of output and ground are chosen among those tried, and all is swept."""
+    n, steps = curves.shape
+    lengths, chart = np.empty(4), np.zeros((4, 4))
+    places, shown, pin = np.empty(6, np.complex128), np.empty(SHOWN, np.complex128), np.empty(steps, np.complex128)
+    most = math.cos(math.radians(least_angle))
+    for i in range(n):
+        good[i] = False
+        natural(family, x[i], lengths, chart)
+        aside = complex(x[i, D], x[i, D + 1])
+        x[i, DYAD] = x[i, DYAD + 1] = 20.0
+        for k in range(steps):
+            joints(x[i], lengths, signs[i, 0], COUPLER, 0, 1.0, 2.0 * math.pi * k / steps, places)
+            pin[k] = places[2]
+        middle = pin.mean()
+        pivot = middle + aside * np.abs(pin - middle).mean()
+        x[i, D], x[i, D + 1] = pivot.real, pivot.imag
+        around = 0.0
+        for k in range(steps):
+            around += cmath.phase((pin[(k + 1) % steps] - pivot) / (pin[k] - pivot))
+        if abs(abs(around) - 2.0 * math.pi) > 1.0:
+            continue
+        far = np.abs(pin - pivot)
+        least, greatest = far.min(), far.max()
+        for t in range(tried.shape[1]):
+            first, second = greatest * tried[i, t, 0], greatest * tried[i, t, 1]
+            if abs(first - second) >= least or first + second <= greatest:
+                continue
+            x[i, DYAD], x[i, DYAD + 1] = math.log(first), math.log(second)
+            hand, sound = 0.0, True
+            for k in range(steps):
+                angle = 2.0 * math.pi * k / steps
+                closes, cosine, sine = inverted_joints(x[i], lengths, signs[i, 0], carrier, signs[i, 1], angle, shown)
+                if not (closes and abs(cosine) <= most and hand * sine >= 0.0):
+                    sound = False
+                    break
+                hand, curves[i, k] = sine, shown[POINT]
+            if sound:
+                good[i] = True
+                break
+
+
+@njit(cache=True, nogil=True)
+def place_each(
+    family: int, carrier: int, windows: Real, where: NDArray[np.int64], target: Complex, closed: bool, x: Real,
+    signs: Real, at: Real, marks: Complex,
+) -> None:  # fmt: skip
+    """Every sixbar put on the target in place; angles of link 3 at its points, and the joints at the first."""
+    lengths, chart = np.empty(4), np.zeros((4, 4))
+    curve, theta = np.empty(SWEEP_STEPS, np.complex128), np.empty(SWEEP_STEPS)
+    middle, places = target.mean(), np.empty(SHOWN, np.complex128)
+    for i in range(len(x)):
+        natural(family, x[i], lengths, chart)
+        for k in range(SWEEP_STEPS):
+            theta[k] = 2.0 * math.pi * k / SWEEP_STEPS
+            inverted_joints(x[i], lengths, signs[i, 0], carrier, signs[i, 1], theta[k], places)
+            curve[k] = places[POINT]
+        z, angles, mirrored = laid(curve, theta, True, 2.0 * math.pi, where[i], windows, closed, len(target))
+        if mirrored:
+            for k in (1, 2, C + 1, D + 1, P + 1):
+                x[i, k] = -x[i, k]
+            signs[i, 0], signs[i, 1] = -signs[i, 0], -signs[i, 1]
+        here = z.mean()
+        alpha = turned_onto(z, here, target)
+        _moved(alpha, middle - alpha * here, x[i])
+        at[i] = angles
+        natural(family, x[i], lengths, chart)
+        inverted_joints(x[i], lengths, signs[i, 0], carrier, signs[i, 1], at[i, 0], places)
+        marks[i] = places
+
+
+@njit(cache=True, nogil=True)
+def _moved(alpha: complex, beta: complex, x: Real) -> None:
+    """A sixbar under z → αz + β, in place; the angles of link 3 beside the input stay."""
+    size = abs(alpha)
+    o2 = alpha * complex(x[0], x[1]) + beta
+    x[0], x[1] = o2.real, o2.imag
+    x[2] += cmath.phase(alpha)
+    x[3:7] += math.log(size)
+    x[DYAD : DYAD + 2] += math.log(size)
+    for at in (C, D, P):
+        x[at : at + 2] *= size
