@@ -45,6 +45,11 @@ PICTURES: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = {
         {"kind": "quick_return", "mechanism": "crank_shaper", "time_ratio": 1.4, "stroke": 100.0, "length_unit": "mm"},
         {},
     ),
+    "whitworth": (
+        "A Whitworth quick return, cut from sheet",
+        {"kind": "quick_return", "mechanism": "whitworth", "time_ratio": 1.8, "stroke": 100.0, "length_unit": "mm"},
+        {},
+    ),
     "planetary": (
         "Planetary train 1:4",
         {

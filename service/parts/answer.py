@@ -175,7 +175,10 @@ class AssemblyView(BaseModel):
     length_unit: Literal["mm"] = "mm"
     unit: float = Field(description="Millimetres to a length unit of the design, as large as it is built.")
     scale: float = Field(description="How much larger than the design it is built.")
-    planes: int = Field(description="Of moving links; the base is plane 0, and a second one lies above them.")
+    planes: int = Field(
+        description="How many have moving links; the base is plane 0, and a second one lies above them, or amid them "
+        "where a link is two plates on either side of it."
+    )
     bases: int = Field(description="1, or 2 where the shafts stand between two.")
     low: float = Field(description="Height of the lowest face, of parts whose plane is that of the assembly.")
     high: float = Field(description="Height of their uppermost face.")

@@ -2,7 +2,8 @@
 
 Plane k, a plate thick, lies from k pitches less a thickness to k pitches; the base is plane 0. On a pin lie, from
 below: its head or a retaining ring, the plates that it joins with washers or a spacer in every gap between them, and a
-cap or another ring. The second base, where there is one, is above all planes.
+cap or another ring. The second base, where there is one, is above all planes, or amid them where a link is divided: its
+two plates, and the input that is then between the bases, are keyed to their shafts.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from kinematics.linkage.layout import Division, Piece, pieces
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from service.parts.bodies import Prism
 from service.parts.colours import BASE_COLOUR, BLOCK_COLOUR, LINK_COLOURS
@@ -25,6 +27,7 @@ from service.parts.linkage_motion import LinkageMotion
 from service.parts.model import Assembly, Carrier, Part, plain
 from service.parts.shapes import Disc, Loop, Outline, Region, ring, widened
 from service.parts.sizes import WALL, Sizes
+from service.parts.stack import STUB
 
 ONE_PLACE = 1e-9
 """Distance as a share of the mechanism's size below which joints of one link lie on each other."""
@@ -34,15 +37,29 @@ CORNER_INPUTS = 361
 
 
 class Planes(NamedTuple):
-    """Where links and pins lie: planes of links from 1, and the lowest and the highest of each pin by its joint."""
+    """Where plates and pins lie.
 
-    links: Mapping[str, int]
+    Attributes
+    ----------
+    plates : mapping of str to int
+        Planes of links, of the two plates of a divided one, and of gears, from 1.
+    pins : mapping of str to pair of int
+        The lowest and the highest plane of each pin by its joint.
+    bases : tuple of int
+        Plane 0, and that of the second base.
+    division : Division, optional
+        Of a link that is two plates on either side of the second base.
+    """
+
+    plates: Mapping[str, int]
     pins: Mapping[str, tuple[int, int]]
+    bases: tuple[int, ...]
+    division: Division | None = None
 
     @property
-    def highest(self) -> int:
-        """The highest plane of a moving link."""
-        return max(self.links.values())
+    def moving(self) -> int:
+        """How many planes have moving links."""
+        return len({*self.plates.values()})
 
 
 class Cut(NamedTuple):
@@ -72,7 +89,6 @@ def assembled(
     motion : LinkageMotion
         In millimetres.
     planes : Planes
-        With ``highest + 1`` for the second base.
     slots : sequence of Slot
         Of each slide.
     wheels : sequence of PairWheel
@@ -85,7 +101,8 @@ def assembled(
     parts = (
         *builder.plates(), *builder.gears(), *builder.blocks(), *builder.bases(motion), *builder.on_pins(),
     )  # fmt: skip
-    return Assembly(parts, motion, planes.highest, builder.sides, unit, scale, _notes(wheels))
+    notes = (*_notes(wheels), *builder.notes())
+    return Assembly(parts, motion, planes.moving, len(planes.bases), unit, scale, notes)
 
 
 def _notes(wheels: Sequence[PairWheel]) -> tuple[str, ...]:
@@ -110,15 +127,51 @@ class _Builder:
     ) -> None:
         self._mechanism, self._planes, self._slots, self._sizes = mechanism, planes, slots, sizes
         self._wheels = wheels
+        self._pieces = pieces(mechanism, planes.division)
         self._shafts = {wheel.joint: wheel.link for wheel in wheels if wheel.joint is not None}
+        if planes.division is not None:
+            self._shafts[planes.division.pivot] = planes.division.link
         self._at = {name: complex(z) for name, z in mechanism.joints.items()}
         self._at |= {wheel.name: wheel.centre for wheel in wheels if wheel.joint is None}
         size = max(abs(z - w) for z, w in combinations(self._at.values(), 2))
         self._key = key_for(sizes.pin)
         self._near = ONE_PLACE * size
         self._groups = {joint: self._place(joint) for joint in planes.pins}
-        self.sides = 2 if any(high > planes.highest for _, high in planes.pins.values()) else 1
         self._posts: dict[str, complex] = {}
+        self._across = 1.0 + 0.0j
+        self._driven = self._input_shaft()
+        if self._driven is not None:
+            self._shafts[self._driven] = mechanism.input
+
+    def _input_shaft(self) -> str | None:
+        """The joint of the input's shaft, where the input is out of reach between two bases and alone on it."""
+        division, mechanism = self._planes.division, self._mechanism
+        if division is None or mechanism.input not in division.inside:
+            return None
+        held = [joint for joint in mechanism.links[mechanism.input] if joint in mechanism.links[GROUND]]
+        alone = [
+            joint
+            for joint, group in self._groups.items()
+            if group & {*held} and sum(bool(piece.joints & group) for piece in self._pieces) == 1
+        ]
+        return next((joint for joint in alone if self._planes.pins[joint][0] == 0), None)
+
+    def notes(self) -> list[str]:
+        """What is to be said of a divided link, and of how it is driven."""
+        division = self._planes.division
+        if division is None:
+            return []
+        told = [
+            f"Link {division.link} is two plates, one on either side of the second base. Keys join both to the shaft "
+            f"{division.pivot}, which turns in that base, so that they move as one; the lower plate is put on the "
+            "shaft before that base is laid over it."
+        ]
+        if self._driven is not None:
+            told.append(
+                f"A key joins the input to the shaft {self._driven}, which is put in from above and stands out below "
+                "the base, to be driven."
+            )
+        return told
 
     def _place(self, joint: str) -> set[str]:
         """The joints that have one pin with this: of one link, and in one place."""
@@ -145,25 +198,26 @@ class _Builder:
         """The moving links, the input first."""
         moving = [link for link in self._mechanism.links if link != GROUND]
         moving.sort(key=lambda link: link != self._mechanism.input)
-        return [self._link(link, LINK_COLOURS[n % len(LINK_COLOURS)]) for n, link in enumerate(moving)]
+        colours = {link: LINK_COLOURS[n % len(LINK_COLOURS)] for n, link in enumerate(moving)}
+        ordered = sorted(self._pieces, key=lambda piece: moving.index(piece.link))
+        return [self._link(piece, colours[piece.link]) for piece in ordered]
 
-    def _link(self, link: str, colour: str) -> Part:
-        listed = self._mechanism.links[link]
-        slots = [slot for slot in self._slots if slot.link == link]
+    def _link(self, piece: Piece, colour: str) -> Part:
+        listed = [joint for joint in self._mechanism.links[piece.link] if joint in piece.joints]
+        slots = [slot for slot in self._slots if slot.link == piece.link and slot.joint in piece.joints]
         points = [self._at[joint] for joint in listed]
+        reached = points[1:]
         for slot in slots:
             points += self._slot_ends(slot)
         outer = widened(points, 0.5 * self._sizes.width)
-        region = Region(outer, tuple(cut.outline for cut in self.cuts(link)))
-        first, *others = listed
-        far = max(others, key=lambda name: abs(self._at[name] - self._at[first]))
-        direction = self._at[far] - self._at[first]
-        plane = self._planes.links[link]
+        region = Region(outer, tuple(cut.outline for cut in self.cuts(piece)))
+        direction = max((z - points[0] for z in reached or points), key=abs)
+        plane = self._planes.plates[piece.name]
         return Part(
-            name=f"link_{plain(link)}",
-            described=link.replace("_", " "),
+            name=f"link_{plain(piece.name)}",
+            described=piece.name.replace("_", " "),
             sort="link",
-            carrier=Carrier(link, first),
+            carrier=Carrier(piece.link, self._mechanism.links[piece.link][0]),
             bodies=(Prism(region, *self._level(plane)),),
             along=direction / abs(direction),
             planes=(plane, plane),
@@ -171,23 +225,23 @@ class _Builder:
             colour=colour,
         )
 
-    def cuts(self, link: str) -> list[Cut]:
-        """Holes of the pins of a link, of points of it that no pin holds, and its slots."""
+    def cuts(self, piece: Piece) -> list[Cut]:
+        """Holes of the pins of a plate, of points of it that no pin holds, and its slots."""
         radius = 0.5 * self._sizes.hole
-        own = set(self._mechanism.links[link])
+        own = {joint for joint in self._mechanism.links[piece.link] if joint in piece.joints}
         cuts = [
             Cut(self._hole(self._at[next(iter(own & group))], self._keyed(joint) is not None), joint)
             for joint, group in self._groups.items()
             if own & group
         ]
         for slot in self._slots:
-            if slot.link == link:
+            if slot.link == piece.link and slot.joint in piece.joints:
                 wide = 0.5 * self._sizes.block[1] + self._sizes.clearance
                 cuts.append(Cut(widened(self._slot_ends(slot), wide), slot.joint))
         pinned = {joint for group in self._groups.values() for joint in group}
         spare = radius + WALL * self._sizes.pin
-        for joint in self._mechanism.links[link]:
-            if joint not in pinned and link != GROUND:
+        for joint in self._mechanism.links[piece.link]:
+            if joint in own and joint not in pinned:
                 place = self._at[joint]
                 if all(_distance(place, cut.outline) >= spare for cut in cuts):
                     cuts.append(Cut(Disc(place, radius), joint))
@@ -200,7 +254,7 @@ class _Builder:
         return Disc(place, 0.5 * self._sizes.hole)
 
     def _keyed(self, joint: str) -> str | None:
-        """The link that is keyed to the pin at a joint: with a gear on its shaft."""
+        """The link that is keyed to the pin at a joint: with a gear on its shaft, divided, or driven by it."""
         return next((self._shafts[one] for one in self._groups[joint] if one in self._shafts), None)
 
     def gears(self) -> list[Part]:
@@ -208,7 +262,7 @@ class _Builder:
         found = []
         for n, wheel in enumerate(self._wheels, len(self._mechanism.links) - 1):
             teeth = toothed(wheel.gear, wheel.centre, wheel.tooth_at, play=0.5 * self._sizes.clearance)
-            plane = self._planes.links[wheel.name]
+            plane = self._planes.plates[wheel.name]
             found.append(
                 Part(
                     name=plain(wheel.name),
@@ -259,115 +313,125 @@ class _Builder:
     def _block_planes(self, slot: Slot) -> list[int]:
         """The planes in which a joint has a block: that of the link with the slot, or those of the bases it reaches."""
         if slot.link != GROUND:
-            return [self._planes.links[slot.link]]
+            return [
+                self._planes.plates[piece.name]
+                for piece in self._pieces
+                if piece.link == slot.link and slot.joint in piece.joints
+            ]
         reach = next(reach for joint, reach in self._planes.pins.items() if slot.joint in self._groups[joint])
-        return [plane for plane in (0, self._planes.highest + 1) if plane in reach]
+        return [plane for plane in self._planes.bases if plane in reach]
 
     # Bases
 
     def bases(self, motion: LinkageMotion) -> list[Part]:
         """The base, and the second one with the posts between."""
-        grounded = {joint: reach for joint, reach in self._planes.pins.items() if self._stands(joint)}
-        points = [self._at[joint] for joint in grounded if not self._slides_on_ground(joint)]
-        for slot in self._slots:
-            if slot.link == GROUND:
-                points += self._slot_ends(slot)
-        if self.sides == 2:
+        if len(self._planes.bases) == 2:
             self._posts = self._corners(motion)
-            points += self._posts.values()
-        outer = widened(points, 0.5 * self._sizes.width)
-        names = {0: "base"} | ({self._planes.highest + 1: "second_base"} if self.sides == 2 else {})
-        return [self._base(name, plane, outer, self._held(grounded, plane)) for plane, name in names.items()]
+        names = dict(zip(self._planes.bases, ("base", "second_base"), strict=False))
+        return [self._base(name, plane) for plane, name in names.items()]
 
     def _corners(self, motion: LinkageMotion) -> dict[str, complex]:
-        """Places of four posts beyond everything that moves."""
+        """Places of four posts beyond everything that moves between the bases.
+
+        They stand in the direction of a slot of a second base that something is above, on either side of it.
+        """
         driven = motion.at(motion.inputs(CORNER_INPUTS))
+        second = self._planes.bases[1]
         swept = []
-        for link, listed in self._mechanism.links.items():
-            points = [self._at[joint] for joint in listed]
-            points += [end for slot in self._slots if slot.link == link for end in self._slot_ends(slot)]
-            if points:
-                placed = motion.placed(Carrier(link, None if link == GROUND else listed[0]), driven)
+        for piece in self._pieces:
+            if self._planes.plates[piece.name] < second:
+                points = [self._at[joint] for joint in self._mechanism.links[piece.link] if joint in piece.joints]
+                slots = [slot for slot in self._slots if slot.link == piece.link and slot.joint in piece.joints]
+                points += [end for slot in slots for end in self._slot_ends(slot)]
+                placed = motion.placed(Carrier(piece.link, self._mechanism.links[piece.link][0]), driven)
                 swept += [placed.turn * z + placed.shift for z in points]
-        places = np.concatenate(swept)
+        above = {one for joint, group in self._groups.items() if self._planes.pins[joint][0] == second for one in group}
+        still = [self._at[joint] for joint in self._mechanism.links[GROUND] if joint not in above]
+        for slot in self._slots:
+            if slot.link == GROUND and slot.joint not in above:
+                still += self._slot_ends(slot)
+            elif slot.link == GROUND:
+                self._across = slot.direction
+        places = np.concatenate([*swept, np.array(still)]) / self._across
         places = places[np.isfinite(places)]
         # Half a plate, half a post, a block where it reaches beyond its plate, and as much again as parts keep apart.
         room = 0.5 * (self._sizes.width + self._sizes.collar) + self._sizes.block[0] + 2.0 * self._sizes.apart
         left, right = float(places.real.min()) - room, float(places.real.max()) + room
         low, high = float(places.imag.min()) - room, float(places.imag.max()) + room
         corners = (complex(left, low), complex(right, low), complex(right, high), complex(left, high))
-        return {f"post_{n + 1}": place for n, place in enumerate(corners)}
-
-    def _stands(self, joint: str) -> bool:
-        """Whether a pin stands on a base, fixed or with its block."""
-        reach = self._planes.pins[joint]
-        return reach[0] == 0 or reach[1] > self._planes.highest
+        return {f"post_{n + 1}": self._across * place for n, place in enumerate(corners)}
 
     def _slides_on_ground(self, joint: str) -> bool:
         return any(slot.link == GROUND and slot.joint in self._groups[joint] for slot in self._slots)
 
-    def _held(self, grounded: Mapping[str, tuple[int, int]], plane: int) -> list[complex]:
+    def _held(self, plane: int) -> list[complex]:
         """Places of the holes in a base."""
         shafts = [
             self._at[joint]
-            for joint, (low, high) in grounded.items()
+            for joint, (low, high) in self._planes.pins.items()
             if low <= plane <= high and not self._slides_on_ground(joint)
         ]
         return [*shafts, *self._posts.values()]
 
-    def _base(self, name: str, plane: int, outer: Outline, holes: Sequence[complex]) -> Part:
+    def _base(self, name: str, plane: int) -> Part:
         _, width = self._sizes.block
-        slots = [slot for slot in self._slots if plane in self._block_planes(slot)]
+        holes = self._held(plane)
+        slots = [slot for slot in self._slots if slot.link == GROUND and plane in self._block_planes(slot)]
+        points = holes + [end for slot in slots for end in self._slot_ends(slot)]
+        outer = widened(points, 0.5 * self._sizes.width)
         cuts: list[Outline] = [Disc(place, 0.5 * self._sizes.hole) for place in holes]
         cuts += [widened(self._slot_ends(slot), 0.5 * width + self._sizes.clearance) for slot in slots]
         low, high = self._level(plane)
         prisms = [Prism(Region(outer, tuple(cuts)), low, high)]
         if self._sizes.process == "print":
             prisms += self._bosses(plane, low, high)
-        points = list(holes) + [end for slot in slots for end in self._slot_ends(slot)]
         return Part(
             name=name,
             described=name.replace("_", " "),
             sort="base",
             carrier=Carrier(GROUND, None),
             bodies=tuple(prisms),
-            along=_longest(points) if self.sides == 1 else 1.0 + 0.0j,
+            along=_longest(points) if len(self._planes.bases) == 1 else self._across,
             planes=(plane, plane),
             material=MATERIALS[self._sizes.process][0],
             colour=BASE_COLOUR,
         )
 
     def _bosses(self, plane: int, low: float, high: float) -> list[Prism]:
-        """What a printed base has around its shafts, up to the nearest plate, or down to it."""
+        """What a printed base has around its shafts, up to the nearest plate; or down to it where none is above."""
         prisms = []
         for joint in self._planes.pins:
             levels = self._levels(joint)
             if self._slides_on_ground(joint) or plane not in levels:
                 continue
             boss = ring(self._at[joint], 0.5 * self._sizes.collar, 0.5 * self._sizes.hole)
-            if plane == 0:
-                prisms.append(Prism(boss, high, self._level(levels[1])[0] - self._sizes.play))
-            elif len(levels) > 1:
-                prisms.append(Prism(boss, self._level(levels[-2])[1] + self._sizes.play, low))
+            for lower, upper in pairwise(levels):
+                if lower == plane:
+                    prisms.append(Prism(boss, high, self._level(upper)[0] - self._sizes.play))
+                elif upper == plane and self._bossed(lower, upper):
+                    prisms.append(Prism(boss, self._level(lower)[1] + self._sizes.play, low))
         return prisms
+
+    def _bossed(self, lower: int, upper: int) -> bool:
+        """Whether a boss of a printed base fills the gap between two planes: on one side of each base."""
+        hanging = upper in self._planes.bases and upper > max(self._planes.plates.values())
+        return lower in self._planes.bases or hanging
 
     # What stands on pins
 
     def _levels(self, joint: str) -> list[int]:
         """The planes of what a pin joins, bases and blocks among them, from below."""
         group = self._groups[joint]
-        links = {link for link, listed in self._mechanism.links.items() if group & set(listed) and link != GROUND}
-        links |= {slot.link for slot in self._slots if slot.joint in group and slot.link != GROUND}
         low, high = self._planes.pins[joint]
-        levels = {self._planes.links[link] for link in links}
+        levels = {self._planes.plates[piece.name] for piece in self._pieces if piece.joints & group}
         levels |= self._on_shaft(joint)
-        levels |= {plane for plane in (0, self._planes.highest + 1) if plane in (low, high)}
+        levels |= {plane for plane in self._planes.bases if low <= plane <= high}
         return sorted(levels)
 
     def _on_shaft(self, joint: str) -> set[int]:
         """Planes of gears on the pin at a joint."""
         group = self._groups[joint]
-        return {self._planes.links[wheel.name] for wheel in self._wheels if (wheel.joint or wheel.name) in group}
+        return {self._planes.plates[wheel.name] for wheel in self._wheels if (wheel.joint or wheel.name) in group}
 
     def on_pins(self) -> list[Part]:
         """Pins, and what holds and parts the plates on them."""
@@ -377,32 +441,35 @@ class _Builder:
             spans = list(pairwise(levels))
             if self._sizes.process == "print" and not self._slides_on_ground(joint):
                 # A printed base has bosses there.
-                spans = [(a, b) for a, b in spans if a != 0 and b <= self._planes.highest]
+                spans = [span for span in spans if not self._bossed(*span)]
             link = self._keyed(joint)
             if link is None:
                 carrier = Carrier(GROUND, None if joint not in self._mechanism.joints else joint)
                 parts += self._pin(plain(joint), f"pin {joint}", carrier, self._at[joint], levels, spans)
                 continue
-            keyed = sorted({self._planes.links[link], *self._on_shaft(joint)})
+            own = {self._planes.plates[piece.name] for piece in self._pieces if piece.link == link}
+            keyed = sorted(own | self._on_shaft(joint))
             parts += self._pin(
-                plain(joint), f"shaft {joint}", Carrier(link, joint), self._at[joint], levels, spans, keyed
-            )
+                plain(joint), f"shaft {joint}", Carrier(link, joint), self._at[joint], levels, spans, keyed,
+                driven=joint == self._driven,
+            )  # fmt: skip
         for name, place in self._posts.items():
-            levels = [0, self._planes.highest + 1]
+            levels = [*self._planes.bases]
             spans = [(levels[0], levels[1])]
             parts += self._pin(name, name.replace("_", " "), Carrier(GROUND, None), place, levels, spans)
         return parts
 
     def _pin(
         self, name: str, described: str, carrier: Carrier, place: complex, levels: Sequence[int],
-        spans: Sequence[tuple[int, int]], keyed: Sequence[int] = (),
+        spans: Sequence[tuple[int, int]], keyed: Sequence[int] = (), *, driven: bool = False,
     ) -> list[Part]:  # fmt: skip
         """A pin through its planes, with what fills the gaps between them, and keys in those that turn with it."""
         ends = self._level(levels[0])[0], self._level(levels[-1])[1]
         section = Region(keyed_shaft(place, self._sizes.pin, self._key))
         seats = [Prism(section, *self._level(plane)) for plane in keyed]
         parts = held_pin(
-            name, described, carrier, place, ends, (levels[0], levels[-1]), self._sizes, seats=seats
+            name, described, carrier, place, ends, (levels[0], levels[-1]), self._sizes, seats=seats,
+            stub=STUB * self._sizes.pin if driven else 0.0, upside_down=driven,
         )  # fmt: skip
         parts += [self._key_in(name, carrier, place, plane) for plane in keyed]
         for span in spans:

@@ -3,12 +3,15 @@
 The planes of :mod:`kinematics.linkage.layout` are found with everything that stands on a pin as wide as its collar, so
 that washers, heads and rings have their room too. What comes of it is then looked at by :mod:`service.parts.overlaps`,
 which knows nothing of planes; an assembly that it finds fault with is not given.
+
+A mechanism that no planes can part, however thin its links are, has one of them divided: two plates on one shaft, on
+either side of a base.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations
 from typing import Any, Literal
@@ -16,9 +19,9 @@ from typing import Any, Literal
 import numpy as np
 
 from kinematics.errors import MechanismError
-from kinematics.linkage.layout import Layout, laid_out
+from kinematics.linkage.layout import Division, divisions, laid_out, laid_out_divided
 from kinematics.linkage.planar.branches import cycle
-from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from service.parts.building import Planes, Slot, assembled, keyway_reach
 from service.parts.fitting import Fitting, Trial, fault_of
 from service.parts.geared import pair_wheels
@@ -37,6 +40,10 @@ TRAVELLED = 2881
 
 PIN_SHARE, PIN_OF_LINK = 0.04, 0.35
 """The thickest pin that is tried where none is stated: shares of the mechanism's size and of its shortest link."""
+
+THINNEST = 1e-4
+"""Width of links that are as thin as any, as a share of the mechanism's size: those on the thinnest pins in the
+largest assembly are hardly thinner."""
 
 Shafts = Literal["one_side", "both_sides"]
 
@@ -57,7 +64,17 @@ def linkage_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     NotMade
         Where the mechanism cannot be driven, no gears have its ratio, or there is no room for such parts.
     """
-    return _Linkage(design, problem, query).assembly()
+    linkage = _Linkage(design, problem, query)
+    ways = linkage.divisions()
+    if not ways:
+        return linkage.assembly()
+    if query.shafts is not None:
+        link = ways[0].link
+        raise NotMade(
+            "The mechanism cannot be built in planes on one base, nor between two. Where this is left out, its link "
+            f"{link} is two plates on one shaft, on either side of the second base.", "/query/shafts",
+        )  # fmt: skip
+    return _Divided(design, problem, query, ways).assembly()
 
 
 class _Linkage(Fitting):
@@ -75,23 +92,44 @@ class _Linkage(Fitting):
         self._low, self._high, self._closed = _range(mechanism, design, over)
         places = [complex(z) for z in mechanism.joints.values()]
         size = max(abs(z - w) for z, w in combinations(places, 2))
-        self._shortest = min(
-            (
-                length
-                for listed in mechanism.links.values()
-                for one, other in combinations(listed, 2)
-                if (length := abs(complex(mechanism.joints[one] - mechanism.joints[other]))) > 1e-9 * size
-            ),
-            default=size,
-        )
         super().__init__(query, MILLIMETRES[problem.length_unit], size)
+
+    def divisions(self) -> list[Division]:
+        """The ways to divide a link with which it can be built, where it cannot be with all of them whole."""
+        ways = divisions(self._mechanism)
+        if not ways:
+            return []
+        width = THINNEST * self._size
+        pin, gap = 0.5 * width, 0.1 * width
+        mechanism, low, high = self._mechanism, self._low, self._high
+        try:
+            for through in (False, True):
+                whole = laid_out(
+                    mechanism, low, high, link_width=width, pin_diameter=pin, gap=gap, through=through, whole=True
+                )
+                if not whole.clashes:
+                    return []
+            return [
+                way
+                for way in ways
+                if not laid_out_divided(mechanism, low, high, way, link_width=width, pin_diameter=pin, gap=gap).clashes
+            ]
+        except MechanismError:
+            return []
 
     # Sizes
 
     @property
     def most(self) -> float:
         """Shares of the mechanism's size and of its shortest link."""
-        return min(PIN_SHARE * self._size, PIN_OF_LINK * self._shortest)
+        return min(PIN_SHARE * self._size, PIN_OF_LINK * self._shortest([*self._mechanism.links]))
+
+    def _shortest(self, links: Sequence[str]) -> float:
+        """The least distance of two joints of a link."""
+        at = {name: complex(z) for name, z in self._mechanism.joints.items()}
+        pairs = (pair for link in links for pair in combinations(self._mechanism.links[link], 2))
+        lengths = (abs(at[one] - at[other]) for one, other in pairs)
+        return min((length for length in lengths if length > 1e-9 * self._size), default=self._size)
 
     def opening(self, sizes: Sizes) -> tuple[float, str]:
         """Slots of slides are wider than holes."""
@@ -161,20 +199,79 @@ class _Linkage(Fitting):
         except MechanismError as error:
             return Trial(None, str(error))
         if layout.clashes:
-            return Trial(None, self._clashing(layout))
-        planes = Planes(layout.planes, layout.pins)
+            return Trial(None, self._clashing(layout.clashes[0].parts, layout.clashes[0].at))
+        above = max(layout.planes.values()) + 1
+        bases = (0, above) if any(high == above for _, high in layout.pins.values()) else (0,)
+        planes = Planes(layout.planes, layout.pins, bases)
         assembly = assembled(motion, planes, _slots(motion), wheels, sizes, factor, scale)
-        fault = fault_of(assembly, sizes)
-        return Trial(None, fault) if fault else Trial(assembly, "")
+        return _looked_at(assembly, sizes)
 
-    def _clashing(self, layout: Layout) -> str:
-        one, other = layout.clashes[0].parts
-        return f"no planes keep {one} and {other} apart at {self._input(layout.clashes[0].at)}"
+    def _clashing(self, parts: tuple[str, str], at: float) -> str:
+        one, other = parts
+        return f"no planes keep {one} and {other} apart at {self._input(at)}"
 
     def _input(self, at: float) -> str:
         if self._mechanism.driven_by_slide:
             return f"the input's place {at:.4g}"
         return f"an input angle of {math.degrees(at):.1f}°"
+
+
+class _Divided(_Linkage):
+    """A linkage of which one link is two plates on either side of a base, in one of some ways."""
+
+    def __init__(self, design: Any, problem: Any, query: PartsQuery, ways: Sequence[Division]) -> None:
+        super().__init__(design, problem, query)
+        self._ways = ways
+
+    @property
+    def most(self) -> float:
+        """The same of moving links: fixed pivots that are near each other are not in one base."""
+        moving = [link for link in self._mechanism.links if link != GROUND]
+        return min(PIN_SHARE * self._size, PIN_OF_LINK * self._shortest(moving))
+
+    def opening(self, sizes: Sizes) -> tuple[float, str]:
+        """Slots of slides, and keyways."""
+        return max(super().opening(sizes), (2.0 * keyway_reach(sizes), "keyed shafts"))
+
+    def tried(self, sizes: Sizes, scale: float) -> Trial:
+        """The assembly in these sizes, in the first way that can be built."""
+        trials = []
+        for way in self._ways:
+            trial = self._in(way, sizes, scale)
+            if trial.assembly is not None:
+                return trial
+            trials.append(trial)
+        return trials[0]
+
+    def _in(self, way: Division, sizes: Sizes, scale: float) -> Trial:
+        factor = self._unit * scale
+        mechanism = _scaled(self._mechanism, factor)
+        larger = factor if mechanism.driven_by_slide else 1.0
+        motion = LinkageMotion(mechanism, larger * self._low, larger * self._high, self._closed)
+        length, width = sizes.block
+        try:
+            layout = laid_out_divided(
+                mechanism,
+                motion.low,
+                motion.high,
+                way,
+                link_width=sizes.width,
+                pin_diameter=sizes.collar,
+                gap=sizes.apart,
+                slot_ends=0.5 * (length - width),
+            )
+        except MechanismError as error:
+            return Trial(None, str(error))
+        if layout.clashes:
+            return Trial(None, self._clashing(layout.clashes[0].parts, layout.clashes[0].at))
+        planes = Planes(layout.planes, layout.pins, (0, layout.base), way)
+        return _looked_at(assembled(motion, planes, _slots(motion), (), sizes, factor, scale), sizes)
+
+
+def _looked_at(assembly: Assembly, sizes: Sizes) -> Trial:
+    """The assembly, or what is wrong with it."""
+    fault = fault_of(assembly, sizes)
+    return Trial(None, fault) if fault else Trial(assembly, "")
 
 
 def _range(mechanism: Mechanism, design: Any, over: str | None) -> tuple[float, float, bool]:

@@ -206,7 +206,7 @@ class Assembly:
     Attributes
     ----------
     planes : int
-        Of moving links; the base is plane 0, and a second one is above them all.
+        How many have moving links; the base is plane 0, and a second one is above them all, or amid them.
     sides : 1 or 2
         Bases that hold the shafts.
     unit : float
@@ -243,6 +243,13 @@ class Assembly:
             for name, frame in placed.items()
             if frame is not None
         }
+
+    def plane_name(self, plane: int) -> str:
+        """What a plane is called: a base, or by its number."""
+        if plane == 0:
+            return "base"
+        based = any(part.sort == "base" and part.planes[0] == plane for part in self.parts)
+        return "second base" if based else f"plane {plane}"
 
     @property
     def parallel(self) -> bool:

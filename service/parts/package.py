@@ -140,15 +140,9 @@ def _order(assembly: Assembly, plates: dict[int, list[str]]) -> list[str]:
                 "Spacers fill the gaps on the shafts; assembly.svg shows where they lie."]  # fmt: skip
     return [
         f"Put together from below{_thickness(assembly)}:",
-        *(f"  {_plane(plane, assembly)}: {', '.join(names)}" for plane, names in sorted(plates.items())),
+        *(f"  {assembly.plane_name(plane)}: {', '.join(names)}" for plane, names in sorted(plates.items())),
         "Washers and spacers fill the gaps between the planes; assembly.svg shows where they lie.",
     ]
-
-
-def _plane(plane: int, assembly: Assembly) -> str:
-    if plane == 0:
-        return "base"
-    return "second base" if plane > assembly.planes else f"plane {plane}"
 
 
 def _thickness(assembly: Assembly) -> str:

@@ -108,15 +108,9 @@ def layers(assembly: Assembly) -> list[Layer]:
         found.setdefault((plane, gap), []).append(part)
     made = []
     for (plane, gap), parts in sorted(found.items()):
-        name = "" if gap else _plane_name(plane, assembly)
+        name = "" if gap else assembly.plane_name(plane)
         made.append(Layer(name, tuple(parts), min(part.low for part in parts)))
     return made
-
-
-def _plane_name(plane: int, assembly: Assembly) -> str:
-    if plane == 0:
-        return "base"
-    return "second base" if plane > assembly.planes else f"plane {plane}"
 
 
 def direction_of_view(assembly: Assembly) -> complex:
@@ -159,7 +153,7 @@ def _side_view(assembly: Assembly, top: float) -> tuple[list[Element], float]:
             base = y + scale * height
             tops[pin.name] = base
             drawn += _pin(pin, x, base, scale)
-            drawn.append(text(x, base - scale * (pin.high - pin.low) - 4.0, pin.described.removeprefix("pin "), SMALL,
+            drawn.append(text(x, base - scale * (pin.high - pin.low) - 4.0, _called(pin), SMALL,
                               text_anchor="middle", fill=INK))  # fmt: skip
         y += scale * height
     ends: dict[complex, float] = {}
@@ -287,19 +281,20 @@ def _plan(assembly: Assembly, top: float) -> tuple[list[Element], float]:
             element("path", d=d, fill=part.colour, fill_opacity=opacity, fill_rule="evenodd", stroke=INK,
                     stroke_width=0.7, data_part=part.name)
         )  # fmt: skip
-    names = []
+    names: list[Element] = []
+    taken: list[Box] = []
     for part in assembly.parts:
-        if part.sort == "pin" and (part.described.startswith("pin ") or part.described.endswith("shaft")):
-            at = view.point(_centre(part))
-            words = part.described.removeprefix("pin ")
+        if part.sort == "pin" and (_called(part) != part.described or part.described.endswith("shaft")):
+            at, words = view.point(_centre(part)), _called(part)
             radius = 0.5 * view.scale * part.length_and_width[0]
-            beside = at + complex(radius + 6.0, -radius - 4.0)
-            width = text_width(words, 11.5)
+            box = _beside(at, radius, text_width(words, 11.5), taken)
+            taken.append(box)
             names.append(
-                element("rect", x=beside.real - 2.0, y=beside.imag - 10.0, width=width + 4.0, height=13.0, fill="#fff",
-                        fill_opacity=0.8)
-            )  # fmt: skip
-            names.append(text(beside.real, beside.imag, words, 11.5, fill=INK, font_weight="bold"))
+                element(
+                    "rect", x=box.left, y=box.low, width=box.width, height=box.height, fill="#fff", fill_opacity=0.8
+                )
+            )
+            names.append(text(box.left + 2.0, box.high - 3.0, words, 11.5, fill=INK, font_weight="bold"))
     bar, _ = scale_bar(view, "mm")
     return [
         framed(panel, "above"),
@@ -308,6 +303,30 @@ def _plan(assembly: Assembly, top: float) -> tuple[list[Element], float]:
         *names,
         bar,
     ], panel.high
+
+
+def _called(pin: Part) -> str:
+    """A pin or shaft by its joint where it has one: a shaft of something has none."""
+    named = pin.described.startswith(("pin ", "shaft ")) and not pin.described.startswith("shaft of ")
+    return pin.described.partition(" ")[2] if named else pin.described
+
+
+def _beside(at: complex, radius: float, width: float, taken: Sequence[Box]) -> Box:
+    """Where a name stands beside a pin: above it on the right, or at the next corner that is free."""
+    beyond = radius + 4.0
+    corners = [
+        Box(left, low, left + width + 4.0, low + 13.0)
+        for left, low in (
+            (at.real + beyond, at.imag - beyond - 10.0), (at.real - beyond - width - 4.0, at.imag - beyond - 10.0),
+            (at.real - beyond - width - 4.0, at.imag + beyond - 3.0), (at.real + beyond, at.imag + beyond - 3.0),
+        )
+    ]  # fmt: skip
+    free = (box for box in corners if not any(_share(box, other) for other in taken))
+    return next(free, corners[0])
+
+
+def _share(one: Box, other: Box) -> bool:
+    return one.left < other.right and other.left < one.right and one.low < other.high and other.low < one.high
 
 
 def _path(outline: Outline, view: Viewport) -> str:

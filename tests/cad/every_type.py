@@ -82,6 +82,7 @@ MADE: dict[Key, Row] = {
     ("quick_return", "fourbar"): _quick("fourbar", swing=60.0, scale=2.5),
     ("quick_return", "slider_crank"): _quick("offset_slider_crank", stroke=100.0),
     ("quick_return", "crank_shaper"): _quick("crank_shaper", stroke=100.0),
+    ("quick_return", "whitworth"): _quick("whitworth", stroke=100.0),
     ("quick_return", "drag_link_rocker"): _quick("drag_link_rocker", swing=60.0, scale=7.0),
     ("quick_return", "drag_link_slider"): _quick("drag_link_slider", stroke=100.0),
     ("straight_line", "fourbar"): Row({**LINE, "max_designs": 1}),
@@ -130,8 +131,6 @@ STAGES: dict[Key, Row] = {
 """Trains whose shafts are not parallel, which have the type of all trains: by the type of their stage."""
 
 REFUSED: dict[Key, tuple[Row, str]] = {
-    # Its crank goes round the pivot of the lever, whose coupler passes over both shafts.
-    ("quick_return", "whitworth"): (_quick("whitworth", stroke=100.0), "the mechanism cannot be built in planes"),
     ("gearbox", "gearbox"): (_example("gearbox", "gearbox"), "its gears are shifted along their shafts"),
     ("balancing", "rotor"): (_example("balancing", "rotor"), "no parts of this type of mechanism"),
     ("flywheel", "flywheel"): (_example("flywheel", "flywheel"), "no parts of this type of mechanism"),

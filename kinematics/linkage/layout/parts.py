@@ -8,6 +8,7 @@
 * A *gear* is a disc of its pitch radius about the pivot of its link, a plate of its own, keyed to that link by the
   shaft of the pivot. Gears that turn the same way have an idler between them, as large as the smaller of the two.
 * Joints of one link that lie on each other have one pin, and fixed pivots that do one shaft.
+* A *divided* link is two plates, one on either side of a base, on the one shaft of its fixed pivot.
 """
 
 from __future__ import annotations
@@ -31,6 +32,36 @@ GRID = 1441
 
 ONE_PLACE = 1e-9
 """Distance as a share of the mechanism's size below which joints lie on each other: one pin."""
+
+
+class Division(NamedTuple):
+    """A link that is made of two plates, both keyed to its shaft, which turns in a base between them.
+
+    Attributes
+    ----------
+    link : str
+        That has a fixed pivot of its own.
+    pivot : str
+        The joint of the shaft.
+    lower, upper : frozenset of str
+        Joints of either plate, those of blocks in its slots among them; the pivot is in both.
+    inside : frozenset of str
+        The other links that lie below that base.
+    """
+
+    link: str
+    pivot: str
+    lower: frozenset[str]
+    upper: frozenset[str]
+    inside: frozenset[str]
+
+
+class Piece(NamedTuple):
+    """A link, or one of the two plates of a divided one; ``joints`` are its own and those of blocks in its slots."""
+
+    name: str
+    link: str
+    joints: frozenset[str]
 
 
 class Plate(NamedTuple):
@@ -93,6 +124,7 @@ def parts_of(
     high: float,
     slot_ends: float = 0.0,
     addendum: float = 0.0,
+    division: Division | None = None,
 ) -> Parts:
     """The parts of one design.
 
@@ -109,6 +141,8 @@ def parts_of(
         How much farther than its joint goes a slot of a link reaches at either end.
     addendum : float
         How far the teeth of gears reach beyond their pitch circles.
+    division : Division, optional
+        Of a link that is made of two plates.
 
     Raises
     ------
@@ -118,22 +152,23 @@ def parts_of(
     travel = _travel(mechanism, low, high)
     size = max(abs(complex(z) - complex(w)) for z, w in combinations(mechanism.joints.values(), 2))
     moving = [link for link in mechanism.links if link != GROUND]
+    own = pieces(mechanism, division)
     plates = []
-    for link in moving:
-        points = [complex(mechanism.joints[joint]) for joint in mechanism.links[link]]
+    for name, link, joints in own:
+        points = [complex(mechanism.joints[joint]) for joint in mechanism.links[link] if joint in joints]
         for slide, ends in zip(mechanism.slides, travel, strict=True):
-            if slide.link == link:
+            if slide.link == link and slide.joint in joints:
                 reach = ends[0] - slot_ends, ends[1] + slot_ends
                 points += [complex(slide.point) + end * complex(np.exp(1j * slide.angle)) for end in reach]
-        plates.append(Plate(link, link, Part(link, _hull(points, ONE_PLACE * size), 0.5 * link_width)))
+        plates.append(Plate(name, link, Part(link, _hull(points, ONE_PLACE * size), 0.5 * link_width)))
     pins = []
     shafts: dict[str, set[int]] = {}
     meshes = []
     for n, gear in enumerate(mechanism.gears):
         number = f" {n + 1}" if len(mechanism.gears) > 1 else ""
         mesh = []
-        for joint, name, link, place, radius in gear_discs(mechanism, gear):
-            disc = Part(GROUND, np.array([place]), radius + addendum)
+        for joint, name, link, centre, radius in gear_discs(mechanism, gear):
+            disc = Part(GROUND, np.array([centre]), radius + addendum)
             mesh.append(len(plates))
             if joint is None:
                 pins.append(
@@ -143,14 +178,13 @@ def parts_of(
                 shafts.setdefault(joint, set()).add(len(plates))
             plates.append(Plate(f"{name}{number}", link, disc))
         meshes.append(tuple(mesh))
-    for joints in _places(mechanism, ONE_PLACE * size):
-        links = {link for link, listed in mechanism.links.items() if joints & set(listed)}
-        links |= {slide.link for slide in mechanism.slides if slide.joint in joints}
-        joined = {n for n, link in enumerate(moving) if link in links}
-        joined |= {plate for joint in joints for plate in shafts.get(joint, ())}
-        grounded = GROUND in links
+    ground = joints_of(mechanism, GROUND)
+    for place in places(mechanism):
+        joined = {n for n, piece in enumerate(own) if piece.joints & place}
+        joined |= {plate for joint in place for plate in shafts.get(joint, ())}
+        grounded = bool(ground & place)
         if joined and len(joined) + grounded > 1:
-            joint = next(name for name in mechanism.joints if name in joints)
+            joint = next(name for name in mechanism.joints if name in place)
             carrier = next(link for link in (GROUND, *moving) if joint in mechanism.links.get(link, ()))
             disc = Part(carrier, np.array([complex(mechanism.joints[joint])]), 0.5 * pin_diameter)
             pins.append(Pin(joint, frozenset(joined), grounded, disc))
@@ -174,17 +208,41 @@ def _least(values: Real) -> float:
     return float(at - 0.125 * (after - before) ** 2 / bend) if bend > 0.0 else float(at)
 
 
-def _places(mechanism: Mechanism, near: float) -> list[set[str]]:
-    """Joints, those of one link that lie on each other together."""
-    places = [{joint} for joint in mechanism.joints]
+def joints_of(mechanism: Mechanism, link: str) -> frozenset[str]:
+    """The joints of a link, and of the blocks in its slots."""
+    return frozenset(mechanism.links[link]) | {slide.joint for slide in mechanism.slides if slide.link == link}
+
+
+def pieces(mechanism: Mechanism, division: Division | None = None) -> list[Piece]:
+    """The plates of the moving links: one of each, and two of a divided one."""
+    found = []
+    for link in mechanism.links:
+        if division is not None and link == division.link:
+            found += [
+                Piece(name, link, own) for name, own in zip(halves(link), (division.lower, division.upper), strict=True)
+            ]
+        elif link != GROUND:
+            found.append(Piece(link, link, joints_of(mechanism, link)))
+    return found
+
+
+def halves(link: str) -> tuple[str, str]:
+    """The names of the two plates of a divided link."""
+    return f"lower {link}", f"upper {link}"
+
+
+def places(mechanism: Mechanism) -> list[set[str]]:
+    """Joints, those of one link that lie on each other together: where a pin may stand."""
+    near = ONE_PLACE * max(abs(complex(z) - complex(w)) for z, w in combinations(mechanism.joints.values(), 2))
+    found = [{joint} for joint in mechanism.joints]
     for listed in mechanism.links.values():
         for one, other in combinations(listed, 2):
             if abs(complex(mechanism.joints[one]) - complex(mechanism.joints[other])) <= near:
-                first, second = (next(place for place in places if joint in place) for joint in (one, other))
+                first, second = (next(place for place in found if joint in place) for joint in (one, other))
                 if first is not second:
-                    places.remove(second)
+                    found.remove(second)
                     first |= second
-    return places
+    return found
 
 
 def gear_discs(mechanism: Mechanism, gear: GearPair) -> list[GearDisc]:

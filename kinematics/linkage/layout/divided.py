@@ -1,0 +1,253 @@
+"""A linkage on both sides of a base: one of its links is two plates on a shaft that turns in that base.
+
+Where a crank goes all the way round the fixed pivot of a link whose coupler passes over both shafts, as in a Whitworth
+quick return, every plane is in the way of some shaft. The link is then *divided*: a plate below a second base and one
+above it, both keyed to one shaft through it. From below there are
+
+* the base, plane 0;
+* the planes *inside*, between the two bases: the lower plate, and the links that are joined to it;
+* the second base, which bears the shaft;
+* the planes above it: the upper plate, and the links that are joined to that.
+
+What is inside is kept from what is above by the base itself. A shaft of an inside link stands on the first base or
+hangs from the second, whichever is better, and one above stands on the second; a slide on the ground is a slot in
+that base. Each side is arranged in the fewest planes by :mod:`~kinematics.linkage.layout.planes`, for every choice of
+bases.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations, product
+from typing import NamedTuple
+
+from kinematics.linkage.clearance import swept
+from kinematics.linkage.layout.parts import Division, Parts, halves, joints_of, parts_of, places
+from kinematics.linkage.layout.planes import Spindle, in_the_way, reach, stacked
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+
+
+class Meeting(NamedTuple):
+    """Two parts that come too near, by their names, and an input at which they do."""
+
+    parts: tuple[str, str]
+    at: float
+
+
+@dataclass(frozen=True)
+class DividedLayout:
+    """A linkage in planes on both sides of a base.
+
+    Attributes
+    ----------
+    planes : dict of str to int
+        Of each plate, from 1; those of the divided link are named by :func:`~kinematics.linkage.layout.parts.halves`.
+    pins : dict of str to pair of int
+        The lowest and the highest plane that each pin joins, by its joint.
+    base : int
+        The plane of the second base.
+    clashes : list of Meeting
+        What these planes do not part; empty where it can be built.
+    """
+
+    planes: dict[str, int]
+    pins: dict[str, tuple[int, int]]
+    base: int
+    clashes: list[Meeting]
+
+
+def divisions(mechanism: Mechanism) -> list[Division]:
+    """The ways in which one link of a mechanism can be divided; none of one with gears.
+
+    A link can be where it alone has a fixed pivot, and what is joined to it falls apart into groups that hang together
+    by it and by the ground alone. Each group lies wholly on one side.
+    """
+    if mechanism.gears:
+        return []
+    taken, found = set(mechanism.links), []
+    ground, pinned = joints_of(mechanism, GROUND), places(mechanism)
+    for link in mechanism.links:
+        pivots = [place for place in pinned if place & ground and place & joints_of(mechanism, link)]
+        if link == GROUND or len(pivots) != 1 or taken & {*halves(link)}:
+            continue
+        others = [other for other in mechanism.links if other not in (GROUND, link)]
+        own, (pivot,) = joints_of(mechanism, link), pivots
+        if any(joints_of(mechanism, other) & pivot for other in others):
+            continue
+        groups = _groups({other: _held(mechanism, other, pinned) for other in others})
+        joined = [
+            frozenset().union(*(place & own for place in pinned if any(place & joints_of(mechanism, k) for k in group)))
+            for group in groups
+        ]
+        if len(groups) < 2 or not all(joined):
+            continue
+        for inside in product((False, True), repeat=len(groups)):
+            if not all(inside) and any(inside):
+                lower = frozenset().union(*(joints for joints, below in zip(joined, inside, strict=True) if below))
+                links = frozenset().union(*(group for group, below in zip(groups, inside, strict=True) if below))
+                joint = next(name for name in mechanism.links[link] if name in pivot)
+                held = pivot & own
+                found.append(Division(link, joint, lower | held, (own - lower) | held, links))
+    return found
+
+
+def _held(mechanism: Mechanism, link: str, pinned: Sequence[set[str]]) -> frozenset[str]:
+    """All joints that have a pin with those of a link."""
+    return frozenset().union(*(place for place in pinned if place & joints_of(mechanism, link)))
+
+
+def _groups(held: dict[str, frozenset[str]]) -> list[frozenset[str]]:
+    """Links that pins join, directly or by one another."""
+    groups: list[frozenset[str]] = []
+    for link in held:
+        near = [group for group in groups if any(held[link] & held[other] for other in group)]
+        groups = [group for group in groups if group not in near] + [frozenset({link}).union(*near)]
+    return groups
+
+
+def laid_out_divided(
+    mechanism: Mechanism,
+    low: float,
+    high: float,
+    division: Division,
+    *,
+    link_width: float,
+    pin_diameter: float,
+    gap: float,
+    slot_ends: float = 0.0,
+) -> DividedLayout:
+    """Lay a linkage out on both sides of a base.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        A single design, of shape ().
+    low, high : float
+        Least and greatest input of the motion, radians or positions along the input slide; the mechanism can be
+        assembled at all between them.
+    division : Division
+        One of :func:`divisions`.
+    link_width, pin_diameter, gap : float
+        Length units; the pin is not wider than the link.
+    slot_ends : float
+        How much farther than its joint goes a slot of a link reaches at either end.
+
+    Raises
+    ------
+    DimensionError
+        For more plates on one side than can be arranged.
+    """
+    parts = parts_of(mechanism, link_width, pin_diameter, low, high, slot_ends, division=division)
+    lower, _ = halves(division.link)
+    below = {n for n, plate in enumerate(parts.plates) if plate.name == lower or plate.link in division.inside}
+    met = _met(mechanism, parts, below, low, high, gap)
+    free = [n for n, pin in enumerate(parts.pins) if pin.grounded and pin.plates <= below]
+    ways = [
+        _Way(parts, below, dict(zip(free, hung, strict=True)), met) for hung in product((False, True), repeat=len(free))
+    ]
+    best = min(ways, key=lambda way: way.merit)
+    names = [plate.name for plate in parts.plates] + [pin.name for pin in parts.pins]
+    return DividedLayout(
+        {plate.name: plane for plate, plane in zip(parts.plates, best.planes, strict=True)},
+        {pin.joint: reached for pin, reached in zip(parts.pins, best.reaches, strict=True)},
+        best.base,
+        [Meeting((names[one], names[other]), at) for one, other, at in best.clashes],
+    )
+
+
+_Met = Sequence[tuple[int, int, float]]
+"""Parts that come too near, plates before pins, by their numbers in one list; and an input at which they do."""
+
+
+def _met(mechanism: Mechanism, parts: Parts, below: set[int], low: float, high: float, gap: float) -> _Met:
+    """What comes too near, of plates and pins that no pin joins and that may be on one side of the base."""
+    plates, pins = parts.plates, parts.pins
+    count = len(plates)
+    joined = {pair for pin in pins for pair in combinations(sorted(pin.plates), 2)}
+    pairs = [(k, n) for k, n in combinations(range(count), 2) if (k, n) not in joined and (k in below) == (n in below)]
+    pairs += [
+        (k, count + n)
+        for n, pin in enumerate(pins)
+        for k in range(count)
+        if k not in pin.plates and any((k in below) == (other in below) for other in pin.plates)
+    ]
+    pairs += [
+        (count + n, count + m)
+        for n, m in combinations(range(len(pins)), 2)
+        if pins[n].plates & pins[m].plates or (pins[n].grounded and pins[m].grounded)
+    ]
+    outlines = [plate.outline for plate in plates] + [pin.outline for pin in pins]
+    results = swept(mechanism, outlines, pairs, low, high, gap, nearest="none")
+    return [(*pair, result.at) for pair, result in zip(pairs, results, strict=True) if not result.keeps]
+
+
+class _Way:
+    """The best planes of both sides with a choice of bases for the shafts inside: ``hung`` from the second one."""
+
+    def __init__(self, parts: Parts, below: set[int], hung: dict[int, bool], met: _Met) -> None:
+        self._parts, self._hung, self._met = parts, hung, met
+        self._count = len(parts.plates)
+        sides = sorted(below), sorted(set(range(self._count)) - below)
+        self._side = {plate: side for side, plates in enumerate(sides) for plate in plates}
+        self._own = {plate: n for plates in sides for n, plate in enumerate(plates)}
+        self._spindles = [[self._spindle(n, side) for n in range(len(parts.pins))] for side in (0, 1)]
+        self._planes = [self._stacked(side, plates) for side, plates in enumerate(sides)]
+        self.base = max(self._planes[0]) + 1
+        self.planes = [
+            self._planes[side][self._own[plate]] + side * self.base for plate, side in sorted(self._side.items())
+        ]
+        self.reaches = [self._reach(n) for n in range(len(parts.pins))]
+        self.clashes = [pair for pair in met if not self._parted(*pair[:2])]
+
+    @property
+    def merit(self) -> tuple[int, int, int]:
+        """What clashes, the planes, and those that pins reach through; less is better."""
+        return len(self.clashes), max(self.planes), sum(high - low for low, high in self.reaches)
+
+    def _stacked(self, side: int, plates: Sequence[int]) -> tuple[int, ...]:
+        pairs = [pair[:2] for pair in self._met if pair[1] < self._count]
+        pairs += [pair for pin in self._parts.pins for pair in combinations(sorted(pin.plates), 2)]
+        apart = [(self._own[k], self._own[n]) for k, n in pairs if self._side[k] == self._side[n] == side]
+        spindles = [spindle for spindle in self._spindles[side] if spindle is not None]
+        return stacked(len(plates), apart, spindles)
+
+    def _spindle(self, number: int, side: int) -> Spindle | None:
+        """What of a pin is on one side of the second base; None where nothing is."""
+        pin = self._parts.pins[number]
+        plates = frozenset(self._own[plate] for plate in pin.plates if self._side[plate] == side)
+        if not plates:
+            return None
+        meets = frozenset(
+            self._own[plate]
+            for plate, other, _ in self._met
+            if other == self._count + number and plate < self._count and self._side[plate] == side
+        )
+        bases = self._bases(number)
+        return Spindle(plates, meets, below=side in bases, above=side == 0 and 1 in bases)
+
+    def _bases(self, number: int) -> set[int]:
+        """Those that hold a pin: 0 for the first, 1 for the second."""
+        if not self._parts.pins[number].grounded:
+            return set()
+        return {0} if self._hung.get(number) is False else {1}
+
+    def _reach(self, number: int) -> tuple[int, int]:
+        ends = [
+            side * self.base + plane
+            for side in (0, 1)
+            if (spindle := self._spindles[side][number]) is not None
+            for plane in reach(self._planes[side], spindle)
+        ]
+        return min(ends), max(ends)
+
+    def _parted(self, one: int, other: int) -> bool:
+        """Whether two parts that come too near are kept from each other."""
+        if other < self._count:
+            return True
+        if one >= self._count:
+            n, m = one - self._count, other - self._count
+            return not (self._parts.pins[n].plates & self._parts.pins[m].plates or self._bases(n) & self._bases(m))
+        side = self._side[one]
+        spindle = self._spindles[side][other - self._count]
+        return spindle is None or not in_the_way(self._planes[side], spindle, self._own[one])
