@@ -136,12 +136,15 @@ class Tapered(NamedTuple):
     Attributes
     ----------
     section : Region
-        The cone of these lines at the height ``at``, and the holes.
+        The cone of these lines at the height ``at``, a loop, and one hole around the axis, within the planes of both
+        ends.
     profile : tuple of complex
         Six corners of the half section of the body of revolution, radius + i · height: on the axis, where the teeth end
         inwards, where they end outwards; and the same at the upper end, from there back to the axis.
     apex, at : float
         Heights; nothing of the body is as high as the apex.
+    teeth : int
+        How many times the same corners and edges come, one after the other, around the loop.
     centre : complex
     """
 
@@ -149,6 +152,7 @@ class Tapered(NamedTuple):
     profile: tuple[complex, ...]
     apex: float
     at: float
+    teeth: int
     centre: complex = 0j
 
     @property
@@ -196,7 +200,7 @@ class Tapered(NamedTuple):
 
     @property
     def mesh(self) -> Mesh:
-        """Its surface in triangles, arcs as polygons within :data:`SHOWN`; it is to have one hole, around its axis."""
+        """Its surface in triangles, arcs as polygons within :data:`SHOWN`."""
         _, inner, *_, upper, _ = self.profile
         places = ring_of(self.section.outer, beyond=False, sag=SHOWN)
         turns = (places - self.centre) / np.abs(places - self.centre)

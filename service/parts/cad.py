@@ -38,6 +38,9 @@ BEYOND = 0.05
 ONE_CORNER = 1e-6
 """Millimetres within which corners of neighbouring faces are one."""
 
+SQUARE = 1e-7
+"""Cosine up to which two directions are at a right angle."""
+
 MADE_AT = "2000-01-01T00:00:00"
 """Stands in STEP files as the time of their making, which a design does not have."""
 
@@ -241,22 +244,80 @@ def _piece(body: Body) -> Any:
 
 
 def _tapered(body: Tapered) -> Any:
-    """The body of revolution within the cone to the apex, its holes cut."""
+    """One pitch of the teeth, its faces copied around the axis, and discs at both ends with a tube where the bore is.
+
+    The shell is sewn of these and made of as few faces as it can be.
+    """
+    import build123d as b3d
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeSolid, BRepBuilderAPI_Sewing
+    from OCP.BRepLib import BRepLib
+    from OCP.TopoDS import TopoDS
+
+    _, inner, *_, upper, _ = body.profile
+    (bore,) = body.section.holes
+    pitch = 360.0 / body.teeth
+    sewing = BRepBuilderAPI_Sewing(ONE_CORNER)
+    faces = _pitch(body)
+    for k in range(body.teeth):
+        turn = b3d.Location((0.0, 0.0, 0.0), (0.0, 0.0, k * pitch))
+        for face in faces:
+            sewing.Add(face.wrapped.Moved(turn.wrapped))
+    first = _starts_at(body)
+    for end in (inner, upper):
+        plane = b3d.Plane((0.0, 0.0, end.imag))
+        arcs = [
+            b3d.Edge.make_circle(end.real, plane, first + k * pitch, first + (k + 1) * pitch) for k in range(body.teeth)
+        ]
+        sewing.Add(b3d.Face(b3d.Wire(arcs), [_wire(bore).moved(_up(end.imag))]).wrapped)
+    plug = b3d.extrude(_face(Region(bore)), amount=upper.imag - inner.imag, dir=(0, 0, 1)).moved(_up(inner.imag))
+    for side in plug.faces().sort_by(b3d.Axis.Z)[1:-1]:
+        sewing.Add(side.wrapped)
+    sewing.Perform()
+    closed = BRepBuilderAPI_MakeSolid(TopoDS.Shell(sewing.SewedShape())).Solid()
+    BRepLib.OrientClosedSolid_s(closed)
+    return b3d.Solid(closed).clean().moved(b3d.Location((body.centre.real, body.centre.imag, 0.0)))
+
+
+def _pitch(body: Tapered) -> list[Any]:
+    """The faces of one pitch about the origin, without those of its ends: of a sector of the body of revolution within
+    a sector of the cone to the apex."""
     import build123d as b3d
 
+    outline = body.section.outer
+    assert isinstance(outline, Loop)
+    count = len(outline.corners) // body.teeth
+    # From the beginning of the first pitch to that of the second, and to the axis.
+    corners = (*(z - body.centre for z in outline.corners[: count + 1]), 0j)
+    sector = Loop(corners, (*outline.bulges[:count], 0.0, 0.0))
     # A little beyond both ends, so that no face of the cone lies in one of the body's.
     beyond = BEYOND * (body.high - body.low)
     wires = []
     for height in (body.low - beyond, body.high + beyond):
-        scale = float(body.scale(np.array(height)))
-        wires.append(_wire(larger(body.section.outer, scale, body.centre)).moved(_up(height)))
-    cone = b3d.Solid.make_loft(wires, ruled=True)
-    (whole,) = _piece(Turned(body.profile, body.centre)).intersect(cone).solids()
-    for hole in body.section.holes:
-        whole = whole.cut(
-            b3d.extrude(_face(Region(hole)), amount=body.high - body.low, dir=(0, 0, 1)).moved(_up(body.low))
+        wires.append(_wire(larger(sector, float(body.scale(np.array(height))), 0j)).moved(_up(height)))
+    half_section = b3d.Face(b3d.Wire.make_polygon([(z.real, 0.0, z.imag) for z in body.profile]))
+    turned = b3d.Solid.revolve(half_section, 360.0 / body.teeth, b3d.Axis.Z)
+    turned = turned.moved(b3d.Location((0.0, 0.0, 0.0), (0.0, 0.0, _starts_at(body))))
+    (whole,) = turned.intersect(b3d.Solid.make_loft(wires, ruled=True)).solids()
+    ends = [np.exp(1j * (np.radians(_starts_at(body)) + k * 2.0 * np.pi / body.teeth)) for k in (0, 1)]
+
+    def cut(face: Any) -> bool:
+        """Whether it lies across the axis, or goes from there to one of the ends of the pitch."""
+        if not face.is_planar:
+            return False
+        away = face.normal_at()
+        level = complex(away.X, away.Y)
+        return abs(level) < SQUARE or (
+            abs(away.Z) < SQUARE and any(abs((end.conjugate() * level).real) < SQUARE for end in ends)
         )
-    return whole
+
+    return [face for face in whole.faces() if not cut(face)]
+
+
+def _starts_at(body: Tapered) -> float:
+    """Where the first pitch begins, degrees."""
+    outline = body.section.outer
+    assert isinstance(outline, Loop)
+    return float(np.degrees(np.angle(outline.corners[0] - body.centre)))
 
 
 def _carved(body: Carved) -> Any:

@@ -126,7 +126,7 @@ def test_a_cone_to_an_apex_is_as_large_as_its_frustum_and_its_surface_is_closed(
     square = Loop((half - 1j * half, half + 1j * half, -half + 1j * half, -half - 1j * half), (0.0,) * 4)
     wide = 20.0
     profile = (low * 1j, 3.0 + low * 1j, wide + low * 1j, wide + high * 1j, 3.0 + high * 1j, high * 1j)
-    body = Tapered(Region(square, (Disc(0j, 1.0),)), profile, apex=0.0, at=10.0)
+    body = Tapered(Region(square, (Disc(0j, 1.0),)), profile, apex=0.0, at=10.0, teeth=4)
     areas = [(2.0 * half * height / 10.0) ** 2 for height in (low, high)]
     frustum = (high - low) / 3.0 * (areas[0] + areas[1] + math.sqrt(areas[0] * areas[1]))
     assert body.volume == pytest.approx(frustum - math.pi * (high - low), rel=1e-3)

@@ -217,7 +217,10 @@ class _Pair:
             outline = [z.conjugate() for z in reversed(outline)]
         hub = Region(Disc(0j, min(rim.real, (0.5 + WALL_OF_HUB) * sizes.pin + key_for(sizes.pin).in_hub)), (bore,))
         low, high = sorted((way * back, way * end))
-        bodies: tuple[Body, ...] = (Tapered(Region(teeth, (bore,)), tuple(outline), 0.0, at), Prism(hub, low, high))
+        bodies: tuple[Body, ...] = (
+            Tapered(Region(teeth, (bore,)), tuple(outline), 0.0, at, blank.teeth),
+            Prism(hub, low, high),
+        )
         role = "driven" if number else "driver"
         return Part(
             f"gear_1_{role}", f"bevel gear, {role}, {blank.teeth} teeth", "gear", axle.carrier, bodies, 1.0 + 0.0j,

@@ -47,7 +47,7 @@ def toothed(gear: Gear, centre: complex, tooth_at: float, helix_angle: float = 0
 
 
 def bevel_toothed(virtual: Gear, teeth: int, cone: float, at: float, tooth_at: float, play: float = 0.0) -> Loop:
-    """The outline of bevel teeth in a plane at right angles to the axis, about 0.
+    """The outline of bevel teeth in a plane at right angles to the axis, about 0: the same corners in every pitch.
 
     Tredgold's approximation: the profile of the spur gear that the developed back cone shows is laid back on the cone,
     and goes from there in straight lines to the apex (Norton, Design of Machinery, Sec. 9.5).
@@ -71,15 +71,15 @@ def bevel_toothed(virtual: Gear, teeth: int, cone: float, at: float, tooth_at: f
     angles = cone + np.arctan((np.abs(half) - virtual.pitch_radius) / distance)
     # As long on the pitch circle as on the back cone's.
     turned = np.angle(half) / math.cos(cone)
-    chain = fitted(at * np.tan(angles) * np.exp(1j * turned))
-    return _around(chain, teeth, 0j, tooth_at, at * math.tan(cone))
+    space = _space(fitted(at * np.tan(angles) * np.exp(1j * turned)), at * math.tan(cone))
+    pitch = 2.0 * math.pi / teeth
+    turns = [complex(np.exp(1j * (tooth_at + (k + 0.5) * pitch))) for k in range(teeth)]
+    return Loop(tuple(turn * z for turn in turns for z in space.corners[:-1]), tuple(space.bulges) * teeth)
 
 
 def _around(half: Chain, teeth: int, centre: complex, tooth_at: float, pitch_radius: float) -> Loop:
     """All teeth from half of a space about 0, from its middle to that of a tip."""
-    # From the middle of a tooth through a space to the middle of the next.
-    space = half.reversed().mirrored().then(half)
-    space = space.joined(len(half.corners) - 1, 0j, NEAR_AXIS * pitch_radius)
+    space = _space(half, pitch_radius)
     pitch = 2.0 * math.pi / teeth
     around = Chain([space.corners[0]], [])
     for k in range(teeth):
@@ -91,6 +91,12 @@ def _around(half: Chain, teeth: int, centre: complex, tooth_at: float, pitch_rad
             around = around.joined(at, 0j, NEAR_AXIS * pitch_radius)
     turn = complex(np.exp(1j * (tooth_at + 0.5 * pitch)))
     return Loop(tuple(centre + turn * z for z in around.corners[:-1]), tuple(around.bulges))
+
+
+def _space(half: Chain, pitch_radius: float) -> Chain:
+    """From the middle of a tooth through a space to the middle of the next."""
+    space = half.reversed().mirrored().then(half)
+    return space.joined(len(half.corners) - 1, 0j, NEAR_AXIS * pitch_radius)
 
 
 def _half(gear: Gear, helix_angle: float, play: float) -> Complex:
