@@ -4,7 +4,7 @@ import * as api from "./api.js";
 import { Choosing } from "./choosing.js";
 import { el } from "./dom.js";
 import { Shown } from "./design.js";
-import { foreign, t, term, translated } from "./messages.js";
+import { foreign, readable, t, term, translated } from "./messages.js";
 import { missed } from "./misses.js";
 import { Strip } from "./strip.js";
 
@@ -71,8 +71,8 @@ export function answer(place, desk, job, state, solve) {
       { class: "known", tabindex: 0, role: "group", "aria-label": t`What is known` },
       el("p", { class: "warn outdated" }, t`Answers to an earlier statement.`),
       count,
-      el("p", { class: "summary", lang: foreign(summary) }, translated(summary)),
-      el("p", { class: "note" }, known(search, designs.length)),
+      ...known(search, designs.length, summary),
+      el("p", { class: "note summary", lang: foreign(summary) }, readable(translated(summary))),
     ),
     row.node,
   );
@@ -101,18 +101,24 @@ export function further(by) {
   if (next !== undefined) strip?.select(next);
 }
 
+/** Show what moves as large as there is room now, where it stands. */
+export function fitted() {
+  chosen?.fitted();
+}
+
 /** Pin the chosen design, or take its pin away. */
 export function pin() {
   if (strip && strip.chosen >= 0) strip.pin(strip.chosen);
 }
 
 /**
- * What the search has shown, in a sentence.
+ * What the search has shown, in a sentence, and what it has left out, where the summary does not tell that.
  * @param {Partial<Result["search"]> | undefined} search
  * @param {number} found
+ * @param {string} summary
  */
-function known(search, found) {
-  if (!search) return "";
+function known(search, found, summary) {
+  if (!search) return [];
   const counted = Object.entries(search.rejected ?? {})
     .filter(([, n]) => n)
     .map(([why, n]) => `${term(why)} ${n}`);
@@ -123,5 +129,9 @@ function known(search, found) {
     : found
       ? t`Not complete: there may be others.`
       : t`None found; that is no proof that none exists.`;
-  return `${sure} ${counted.length ? t`Left out: ${counted.join(", ")}.` : ""}`;
+  const told = counted.length > 0 && !summary.includes("Rejected:");
+  return [
+    el("p", { class: "verdict" }, sure),
+    told && el("p", { class: "note" }, t`Left out: ${counted.join(", ")}.`),
+  ].filter((one) => one !== false);
 }

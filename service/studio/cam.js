@@ -36,18 +36,20 @@ export function diagrams(mechanism, motion, problem) {
   const over = (/** @type {"s" | "v" | "a" | "j"} */ name) =>
     along(angles, [...program[name], program[name][0]], motion.input_angle);
   const swings = mechanism.follower.type.startsWith("oscillating");
-  const unit = swings ? "°" : problem.length_unit;
+  const unit = problem.length_unit;
+  const rate = swings ? "rad" : unit;
   const titles = {
-    s: t`Displacement s (${unit})`,
-    v: t`Velocity v (by rad)`,
-    a: t`Acceleration a (by rad²)`,
-    j: t`Jerk j (by rad³)`,
+    s: t`Displacement s (${swings ? "°" : unit})`,
+    v: t`Velocity v (${rate}/rad)`,
+    a: t`Acceleration a (${rate}/rad²)`,
+    j: t`Jerk j (${rate}/rad³)`,
   };
   const lift = Math.max(...program.s) - Math.min(...program.s);
   return [
     .../** @type {const} */ (["s", "v", "a", "j"]).map((name) => ({
       title: titles[name],
       lines: { "": over(name) },
+      values: program[name],
       least: lift,
     })),
     {

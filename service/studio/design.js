@@ -98,7 +98,7 @@ export class Shown {
         { class: "columns" },
         checks(design, job.problem),
         table(t`Quantities`, figures(design), job.problem),
-        ...made(design),
+        ...made(design, job.problem),
         dimensions(design, job.problem),
       ),
     ];
@@ -165,6 +165,19 @@ export class Shown {
     this.forces?.attach(this.mover);
     if (this.desk.stage.mode !== "watch") this.moving.pause?.();
     this.told();
+  }
+
+  /** Show what moves in the room that there is now, at the place where it is. */
+  fitted() {
+    const before = this.moving?.player;
+    if (!before) return;
+    const { at, playing, range } = before;
+    if (range) return;
+    this.again();
+    const { player } = this.moving ?? {};
+    if (player === before) return;
+    player?.lead(at);
+    if (playing) player?.play();
   }
 
   /** The design in motion, where it is a linkage whose motion is shown. */
@@ -258,7 +271,7 @@ export class Shown {
               this.moving?.pause?.();
               this.leaveExplorer();
               stage.show("explore");
-              this.explorer = new Explorer(
+              this.explorer = this.desk.explorer = new Explorer(
                 exploring,
                 explore,
                 /** @type {Linked} */ (mechanism),
@@ -367,7 +380,7 @@ export class Shown {
 
   leaveExplorer() {
     this.explorer?.stop();
-    this.explorer = null;
+    this.explorer = this.desk.explorer = null;
   }
 
   leave() {

@@ -11,6 +11,8 @@ export class Desk {
   constructor() {
     /** The design that is shown, if one is. @type {{mechanism: Mechanism, placement?: unknown} | null} */
     this.shown = null;
+    /** The linkage that is explored, if one is. @type {import("./explorer.js").Explorer | null} */
+    this.explorer = null;
     this.stage = new Stage();
     this.drawer = new Drawer(byId("design"), byId("tabs"));
     this.title = byId("design-title");

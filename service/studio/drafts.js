@@ -12,13 +12,15 @@ const NAME = "mechsynth.draft";
 /** How much of the steps is kept, characters: statements of the usual size by the dozen. */
 const STEPS = 60_000;
 
-/** @typedef {{problem: Problem, label: string}} Draft */
+/** @typedef {{problem: Problem, label: string, job: string}} Draft `job` has the answers beside which it was edited */
 /** @typedef {import("./undo.js").Steps} Steps */
 
 /** The last statement of a kind, where one was left. @param {string} kind @returns {Draft | null} */
 export function draftOf(kind) {
   const draft = read(`${NAME}.${kind}`);
-  return draft?.problem?.kind === kind ? { problem: draft.problem, label: String(draft.label ?? "") } : null;
+  return draft?.problem?.kind === kind
+    ? { problem: draft.problem, label: String(draft.label ?? ""), job: String(draft.job ?? "") }
+    : null;
 }
 
 /** The kind of the statement that was edited last; empty where there is none. */
@@ -35,9 +37,12 @@ export function lastSteps() {
   return { past: texts(past), future: texts(future) };
 }
 
-/** @param {Problem} problem @param {string} label @param {Steps} steps */
-export function keepDraft(problem, label, { past, future }) {
-  lasting.write(`${NAME}.${problem.kind}`, JSON.stringify({ problem, label }));
+/**
+ * @param {Problem} problem @param {string} label @param {Steps} steps
+ * @param {string} job whose answers stand beside it; empty where there are none
+ */
+export function keepDraft(problem, label, { past, future }, job) {
+  lasting.write(`${NAME}.${problem.kind}`, JSON.stringify({ problem, label, job }));
   lasting.write(NAME, JSON.stringify({ kind: problem.kind, past: newest(past), future: newest(future) }));
 }
 

@@ -21,6 +21,19 @@ export function curveOf(answer, skeleton) {
 }
 
 /**
+ * How far a target is from the line between two samples of the curve; infinitely where one of them is not reached.
+ * @param {{x: number, y: number}} target
+ * @param {Point} from
+ * @param {Point} to
+ */
+function away({ x, y }, [px, py], [qx, qy]) {
+  const [dx, dy] = [qx - px, qy - py];
+  const share = Math.min(1, Math.max(0, ((x - px) * dx + (y - py) * dy) / (dx * dx + dy * dy || 1)));
+  const far = Math.hypot(px + share * dx - x, py + share * dy - y);
+  return Number.isNaN(far) ? Infinity : far;
+}
+
+/**
  * @typedef {object} Driven
  * @property {Record<string, string>} facts
  * @property {boolean} turns whether the input turns through
@@ -43,10 +56,7 @@ export function driven(answer, skeleton, targets, unit) {
   const missed =
     "P" in skeleton.joints
       ? targets.map((target) =>
-          curve.reduce(
-            (nearest, [px, py]) => (px === px ? Math.min(nearest, Math.hypot(px - target.x, py - target.y)) : nearest),
-            Infinity,
-          ),
+          curve.slice(1).reduce((least, to, k) => Math.min(least, away(target, curve[k], to)), Infinity),
         )
       : [];
   const turns = answer.valid.every(Boolean);

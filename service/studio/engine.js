@@ -7,7 +7,7 @@ import { scene } from "./stage.js";
 import { Turning } from "./turning.js";
 import { View } from "./view.js";
 
-/** @import { Schemas } from "./types/values.js" */
+/** @import { Problem, Schemas } from "./types/values.js" */
 
 /** From one cylinder to the next, and the bore, in radii of the crank. */
 const COLUMN = 2.5;
@@ -25,8 +25,9 @@ export class Engine extends Turning {
    * @param {import("./stage.js").Frame} frame
    * @param {Schemas["EngineDesign"]} design
    * @param {Schemas["EngineAnalysis"]} motion
+   * @param {Problem} problem
    */
-  constructor(frame, design, motion) {
+  constructor(frame, design, motion, problem) {
     super(frame, t`Crank`, motion.input_angle, { endless: true });
     const { crank, rod, cylinders } = design.mechanism;
     this.motion = motion;
@@ -46,19 +47,37 @@ export class Engine extends Turning {
       this.drawings.map((one) => one.node),
     );
     const fires = design.firing.orders[0];
-    this.fill(picture, [
-      el(
-        "dl",
-        { class: "facts speeds" },
-        el("dt", {}, t`Firing order`),
-        el("dd", {}, fires.order.join("-")),
-        ...fires.order.flatMap((/** @type {number} */ number, /** @type {number} */ k) => [
-          el("dt", {}, t`Cylinder ${number}`),
-          el("dd", {}, `${shown(fires.angles[k])}°`),
-        ]),
-      ),
-      el("p", { class: "note" }, t`The cylinders from the front to the back; each is seen with its own axis upwards.`),
-    ]);
+    this.fill(
+      picture,
+      [
+        el(
+          "dl",
+          { class: "facts speeds" },
+          el("dt", {}, t`Firing order`),
+          el("dd", {}, fires.order.join("-")),
+          ...fires.order.flatMap((/** @type {number} */ number, /** @type {number} */ k) => [
+            el("dt", {}, t`Cylinder ${number}`),
+            el("dd", {}, `${shown(fires.angles[k])}°`),
+          ]),
+        ),
+        el(
+          "p",
+          { class: "note" },
+          t`The cylinders from the front to the back; each is seen with its own axis upwards.`,
+        ),
+      ],
+      this.plotted(problem.length_unit ?? "mm"),
+    );
+  }
+
+  /** How the piston of the first cylinder moves; the others move as it does, later. @param {string} unit */
+  plotted(unit) {
+    const { place, velocity, acceleration } = this.motion.cylinders[0];
+    return [
+      { title: t`Piston 1 above the crank (${unit})`, lines: { "": place } },
+      { title: t`Velocity of piston 1 (${unit}/rad)`, lines: { "": velocity }, least: this.crank },
+      { title: t`Acceleration of piston 1 (${unit}/rad²)`, lines: { "": acceleration }, least: this.crank },
+    ];
   }
 
   /** @param {Cylinder} cylinder @param {number} x @param {number} rod */

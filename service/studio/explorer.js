@@ -18,6 +18,9 @@ import { Zoom } from "./zoom.js";
 
 const STEPS = 180;
 
+/** What follows so soon is the same step: a pin that is dragged. */
+const BURST_MS = 700;
+
 /** @typedef {[number, number]} Point */
 
 export class Explorer {
@@ -32,6 +35,7 @@ export class Explorer {
   constructor(board, place, mechanism, problem, targets, state) {
     const [width, height] = roomOf(board, CLOCK);
     this.type = mechanism.type;
+    this.unit = problem.length_unit ?? "mm";
     this.problem = problem;
     this.skeleton = structuredClone(mechanism.skeleton);
     /** @type {Record<string, Point>} */
@@ -47,6 +51,20 @@ export class Explorer {
     /** @type {LinkageAnalysis | null} */
     this.motion = null;
     this.gone = new AbortController();
+    /** Where the joints were, the oldest step first, and where they have been taken back from. */
+    this.past = /** @type {Record<string, Point>[]} */ ([]);
+    this.future = /** @type {Record<string, Point>[]} */ ([]);
+    this.noted = -Infinity;
+    const step = (/** @type {string} */ name, /** @type {string} */ text, /** @type {() => void} */ act) =>
+      el(
+        "button",
+        { type: "button", class: "small", disabled: true, title: name, "aria-label": name, onclick: act },
+        text,
+      );
+    this.steps = {
+      back: step(t`Undo the last change of the linkage`, "↶", () => this.undo()),
+      forth: step(t`Do it again`, "↷", () => this.redo()),
+    };
     const around = Object.values(this.joints).concat(targets.map((one) => [one.x, one.y]));
     this.view = new View(around, width, height, Math.min(110, 0.2 * Math.min(width, height)));
     this.curve = svg("path", { class: "curve" });
@@ -76,8 +94,7 @@ export class Explorer {
       reading: (at) => this.reading(at),
       show: (at) => this.move(at),
     });
-    this.unit = problem.length_unit ?? "mm";
-    this.sizes = new Sizes(this.skeleton, this.unit, (places) => this.put(places));
+    this.sizes = new Sizes(this.skeleton, this.unit, (places, apart) => this.put(places, apart));
     this.facts = el("dl", { class: "facts", "aria-live": "polite" });
     this.checks = el("ul", { class: "checks" });
     this.buttons = el("p", { class: "row" });
@@ -87,6 +104,7 @@ export class Explorer {
         { class: "note" },
         t`Drag a pin, move it with the arrow keys, or type a dimension: curve, motion and figures are those of the linkage as it is then. What is held stays, whichever pin is dragged.`,
       ),
+      el("p", { class: "row" }, this.steps.back, this.steps.forth),
       this.sizes.node,
       el("div", { class: "columns" }, this.facts, this.checks),
       this.buttons,
@@ -116,9 +134,47 @@ export class Explorer {
     return { name, grip };
   }
 
-  /** The joints have gone somewhere else. @param {Record<string, Point>} places */
-  put(places) {
+  /**
+   * The joints have gone somewhere else.
+   * @param {Record<string, Point>} places
+   * @param {boolean} apart whether that is a step of its own
+   */
+  put(places, apart) {
+    const now = performance.now();
+    if (apart || now - this.noted > BURST_MS) {
+      this.past.push(structuredClone(this.joints));
+      this.future = [];
+    }
+    this.noted = apart ? -Infinity : now;
+    this.place(places);
+  }
+
+  /** Take the last step back. @returns {boolean} whether there was one */
+  undo() {
+    return this.go(this.past, this.future);
+  }
+
+  /** Do it again. @returns {boolean} whether there was one */
+  redo() {
+    return this.go(this.future, this.past);
+  }
+
+  /** @param {Record<string, Point>[]} from @param {Record<string, Point>[]} to */
+  go(from, to) {
+    const places = from.pop();
+    if (!places) return false;
+    to.push(structuredClone(this.joints));
+    this.noted = -Infinity;
+    this.sizes.take(places);
+    this.place(places);
+    return true;
+  }
+
+  /** @param {Record<string, Point>} places */
+  place(places) {
     Object.assign(this.joints, places);
+    this.steps.back.disabled = !this.past.length;
+    this.steps.forth.disabled = !this.future.length;
     const on = this.doubled;
     if (on) this.joints.P = [...this.joints[on]];
     this.carry();
@@ -274,7 +330,8 @@ export class Explorer {
   /** @param {number} at */
   reading(at) {
     const input = this.motion && between(this.motion.input_angle, Math.min(at, this.motion.input_angle.length - 1));
-    return input === null ? "–" : `${shown(Math.round(10 * input) / 10)}${stands(this.skeleton) === null ? "" : "°"}`;
+    const unit = stands(this.skeleton) === null ? ` ${this.unit}` : "°";
+    return input === null ? "–" : `${shown(Math.round(10 * input) / 10)}${unit}`;
   }
 
   stop() {

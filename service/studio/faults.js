@@ -46,6 +46,7 @@ export function tell(form, list, refusal) {
       place.control.setAttribute("aria-describedby", said.id);
       place.control.title = fault.detail;
     }
+    place.control.closest(".table.brief")?.classList.remove("brief");
     for (let above = place.control.closest("details"); above; above = above.parentElement?.closest("details") ?? null)
       above.open = true;
     first ??= place.control;

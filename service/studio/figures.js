@@ -238,32 +238,41 @@ function rowed(title, rows) {
 /**
  * What becomes of a design as a shop makes it: nothing where the problem does not ask.
  * @param {Partial<Design>} design
+ * @param {Problem} problem whose units stand beside the numbers
  * @returns {HTMLElement[]}
  */
-export function made(design) {
+export function made(design, problem) {
   const told = design.manufacture;
   if (!told) return [];
   const share = design.metrics?.yield;
   const { worst_case: worst, cost } = told;
-  /** @type {[string, unknown][]} */
+  const [length, angle] = [symbolOf("length", problem), symbolOf("angle", problem)];
+  /** @type {[string, unknown, string?][]} */
   const rows = [
     [t`yield`, share?.value],
     [t`yield, at least`, share?.low],
     [t`yield, at most`, share?.high],
-    [t`worst error`, worst?.max_error],
-    [t`worst angle error, °`, worst?.max_angle_error],
+    [t`worst error`, worst?.max_error, length],
+    [t`worst angle error`, worst?.max_angle_error, angle],
     [t`tolerances that matter`, told.matter?.join(", ") || undefined],
     [t`rounding cost, rms residual`, cost?.rms_residual],
-    [t`rounding cost, error`, cost?.max_error],
+    [t`rounding cost, error`, cost?.max_error, length],
     [t`remark`, translated(told.remark ?? "") || undefined],
     ...Object.entries(told.dimensions ?? {}).map(
-      ([name, value]) => /** @type {[string, unknown]} */ ([t`made: ${name.split(".").map(term).join(" ")}`, value]),
+      ([name, value]) =>
+        /** @type {[string, unknown, string]} */ ([t`made: ${name.split(".").map(term).join(" ")}`, value, length]),
     ),
   ];
+  const stated = rows.filter(([, value]) => value !== undefined && value !== null);
   return [
-    table(
+    rowed(
       t`As it is made`,
-      rows.filter(([, value]) => value !== undefined && value !== null),
+      stated.map(([name, value, unit = ""]) => [
+        name,
+        typeof value === "number"
+          ? { text: beside(brief(value), unit), title: beside(number(value), unit) }
+          : { text: text(value), title: null },
+      ]),
     ),
   ];
 }

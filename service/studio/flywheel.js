@@ -27,8 +27,20 @@ export class Flywheel extends Turning {
     const { radius, inner_radius: inner } = mechanism;
     const [speed, torque] = [symbolOf("rotational speed", problem), symbolOf("torque", problem)];
     this.told = [
-      { name: t`Speed`, unit: speed, series: inTime(course, angles, course.speed), said: el("dd", {}) },
-      { name: t`Torque`, unit: torque, series: inTime(course, angles, course.torque), said: el("dd", {}) },
+      {
+        name: t`Speed`,
+        unit: speed,
+        values: course.speed,
+        series: inTime(course, angles, course.speed),
+        said: el("dd", {}),
+      },
+      {
+        name: t`Torque`,
+        unit: torque,
+        values: course.torque,
+        series: inTime(course, angles, course.torque),
+        said: el("dd", {}),
+      },
     ];
     const view = new View(
       [
@@ -57,7 +69,11 @@ export class Flywheel extends Turning {
     this.fill(
       scene(view, t`The flywheel, turning`, [wheel]),
       [el("dl", { class: "facts speeds" }, ...this.told.flatMap(({ name, said }) => [el("dt", {}, name), said]))],
-      this.told.map(({ name, unit, series }) => ({ title: unit ? `${name} (${unit})` : name, lines: { "": series } })),
+      this.told.map(({ name, unit, values, series }) => ({
+        title: unit ? `${name} (${unit})` : name,
+        lines: { "": series },
+        values,
+      })),
     );
   }
 

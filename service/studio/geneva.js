@@ -98,8 +98,8 @@ export class Geneva extends Turning {
       [el("dl", { class: "facts speeds" }, el("dt", {}, t`Wheel`), this.angle, el("dt", {}, t`Motion`), this.state)],
       [
         { title: t`Wheel turned (°)`, lines: { "": motion.angle } },
-        { title: t`Velocity v (rad by rad)`, lines: { "": motion.omega } },
-        { title: t`Acceleration a (rad by rad²)`, lines: { "": motion.alpha } },
+        { title: t`Velocity v (${"rad"}/rad)`, lines: { "": motion.omega } },
+        { title: t`Acceleration a (${"rad"}/rad²)`, lines: { "": motion.alpha } },
       ],
     );
   }

@@ -108,7 +108,17 @@ export function foreign(text) {
 
 /** The first paragraph of a description, as prose. @param {string | undefined} description */
 export function prose(description = "") {
-  return translated(description.split("\n\n")[0].replaceAll("`", "").replaceAll("\n", " "));
+  const said = translated(description.split("\n\n")[0].replaceAll("`", "").replaceAll("\n", " "));
+  // Names of fields, as they stand at them.
+  return said.replace(/\b[a-z]{2,}(_[a-z]+)+\b/g, (name) => term(name));
+}
+
+/** A text of the service with powers of ten as the page writes them: 2.34e-06 is 2.34·10⁻⁶. @param {string} text */
+export function readable(text) {
+  return text.replace(/(\d)e([+-])0*(\d+)\b/g, (_, digit, sign, power) => {
+    const raised = [...power].map((one) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(one)]).join("");
+    return `${digit}·10${sign === "-" ? "⁻" : ""}${raised}`;
+  });
 }
 
 /** `min_transmission_angle` as it stands within a sentence: `min transmission angle`. @param {string} name */

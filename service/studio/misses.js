@@ -1,7 +1,7 @@
 /** What comes nearest where no design satisfies all demands, and the same problem with what is within reach. */
 
 import { el, shown, words } from "./dom.js";
-import { amount, unitFor } from "./figures.js";
+import { amount, beside, unitFor } from "./figures.js";
 import { t, term } from "./messages.js";
 import { thumbnail } from "./thumbnail.js";
 
@@ -81,8 +81,9 @@ export function missed(miss, problem, solve) {
       .flat()
       .map((one) => shown(Number(Number(one).toPrecision(4))))
       .join(AND);
-  const unit = (/** @type {string} */ name) => (name.includes("angle") ? "°" : "");
-  const within = Object.entries(reachable).map(([name, value]) => `${term(name)} ${short(value)}${unit(name)}`);
+  const within = Object.entries(reachable).map(
+    ([name, value]) => `${term(name)} ${beside(short(value), unitOf(name, problem))}`,
+  );
   return el(
     "section",
     { id: "miss" },
@@ -176,8 +177,13 @@ function reached(problem, name, value) {
   }
   const limit = at(problem, path);
   if (typeof limit !== "number" || typeof value !== "number") return null;
-  const unit = unitFor(name, problem) || (name.includes("angle") ? "°" : "");
-  return limited(path, check ?? name, value, value > limit, `${shown(rounded(value, value > limit))}${unit}`);
+  const told = beside(shown(rounded(value, value > limit)), unitOf(name, problem));
+  return limited(path, check ?? name, value, value > limit, told);
+}
+
+/** The unit of what is reached. @param {string} name @param {Problem} problem */
+function unitOf(name, problem) {
+  return unitFor(name, problem) || (name.includes("angle") ? "°" : "");
 }
 
 /**

@@ -51,6 +51,9 @@ export class Mover {
     this.motion = motion;
     this.skeleton = design.mechanism.skeleton;
     this.count = motion.input_angle.length;
+    this.unit = problem.length_unit ?? "mm";
+    /** Whether a slide drives. */
+    this.slides = this.skeleton.links.every((link) => link.name !== this.skeleton.input_link);
     this.targets = demanded(problem, design);
     const name = telling(this.skeleton);
     this.room = new RoomView(problem, design.mechanism);
@@ -139,15 +142,16 @@ export class Mover {
   build(design, problem) {
     const { view, skeleton } = this;
     this.drags(grounded(skeleton));
-    const ruler = new Ruler(this.picture, view, problem.length_unit ?? "mm", () => this.places());
-    const force = plots(judged(this.motion, design, problem), this.motion.input_angle, (at) => this.player.lead(at));
+    const { slides, unit } = this;
+    const along = slides ? ` ${unit}` : "°";
+    const ruler = new Ruler(this.picture, view, unit, () => this.places());
+    const plotted = (/** @type {import("./plots.js").Plotted[]} */ wanted) =>
+      plots(wanted, this.motion.input_angle, (at) => this.player.lead(at), along);
+    const force = plotted(judged(this.motion, design, problem));
     const box = el("div", { class: "plots" });
     const choices = parts(this.motion, skeleton);
     const choose = (/** @type {string} */ part) => {
-      this.marks = [
-        ...force,
-        ...plots(moved(this.motion, part), this.motion.input_angle, (at) => this.player.lead(at)),
-      ];
+      this.marks = [...force, ...plotted(moved(this.motion, part, unit, slides))];
       box.replaceChildren(...this.marks.map((mark) => mark.figure));
       for (const mark of this.marks) mark.show(this.player.at);
     };
@@ -168,7 +172,13 @@ export class Mover {
           { class: "row" },
           el("label", { for: "part" }, t`Plots of`),
           pick,
-          el("span", { class: "note" }, t`Rates are by the radian of the input; click in a plot to go there.`),
+          el(
+            "span",
+            { class: "note" },
+            slides
+              ? t`Rates are by the way of the input; click in a plot to go there.`
+              : t`Rates are by the radian of the input; click in a plot to go there.`,
+          ),
         ),
         box,
       ],
@@ -305,8 +315,7 @@ export class Mover {
   /** @param {number} at */
   reading(at) {
     const input = Number(between(this.motion.input_angle, at));
-    const sliding = this.skeleton.links.every((link) => link.name !== this.skeleton.input_link);
-    return `${shown(Math.round(10 * input) / 10)}${sliding ? "" : "°"}`;
+    return `${shown(Math.round(10 * input) / 10)}${this.slides ? ` ${this.unit}` : "°"}`;
   }
 
   pause() {

@@ -39,6 +39,7 @@ const FEWEST = 8;
  * @property {boolean[]} [used] samples in the range that matters
  * @property {boolean[]} [gaps] samples at which the quantity is not determined
  * @property {number} [least] differences below it are rounding: what the quantity is measured by
+ * @property {number[]} [values] all that is known of the quantity, where the samples are taken from between them
  */
 
 /** A plot whose mark follows the motion. @typedef {{figure: HTMLElement, show: (at: number) => void}} Mark */
@@ -61,12 +62,13 @@ export function plots(wanted, input, lead, unit = "°") {
  * @returns {Mark}
  */
 function plot(plotted, input, lead, unit, { whole = false, range: looked } = {}) {
-  const { title, lines, limit, used, gaps, least = 0 } = plotted;
+  const { title, lines, limit, used, gaps, least = 0, values = [] } = plotted;
   const samples = Object.values(lines)[0].length - 1;
   const [start, end] = looked ?? [0, samples];
   const part = (/** @type {Series} */ series) => series.map((one, k) => (k < start || k > end ? null : one));
   const all = Object.values(lines).map(part);
-  const known = /** @type {number[]} */ (all.flat().filter(Number.isFinite));
+  // A peak between two samples is one of the whole.
+  const known = /** @type {number[]} */ ([...all.flat(), ...(looked ? [] : values)].filter(Number.isFinite));
   const extremes = [known.reduce((a, b) => Math.min(a, b)), known.reduce((a, b) => Math.max(a, b))];
   const calm = middle(known, extremes);
   const telling = whole ? extremes : calm;

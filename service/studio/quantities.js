@@ -38,9 +38,12 @@ export function partName(part) {
  * Position, velocity and acceleration of a part, by the radian (or length unit) of the input.
  * @param {LinkageAnalysis} motion
  * @param {string} part
+ * @param {string} unit of lengths
+ * @param {boolean} slides whether the input slides, so that rates are by a length
  * @returns {Plotted[]}
  */
-export function moved(motion, part) {
+export function moved(motion, part, unit, slides) {
+  const per = slides ? unit : "rad";
   const [kind, ...rest] = part.split(" ");
   const name = rest.join(" ");
   const what = kind !== "link" ? name : term(name);
@@ -48,25 +51,33 @@ export function moved(motion, part) {
     const { x, y, vx, vy, ax, ay } = motion.joints[name];
     const size = extent(x, y);
     return [
-      { title: t`Position of ${what}`, lines: { x, y }, least: size },
-      { title: t`Velocity of ${what}`, lines: { [t`total`]: length(vx, vy), x: vx, y: vy }, least: size },
-      { title: t`Acceleration of ${what}`, lines: { [t`total`]: length(ax, ay), x: ax, y: ay }, least: size },
+      { title: t`Position of ${what} (${unit})`, lines: { x, y }, least: size },
+      {
+        title: t`Velocity of ${what} (${unit}/${per})`,
+        lines: { [t`total`]: length(vx, vy), x: vx, y: vy },
+        least: size,
+      },
+      {
+        title: t`Acceleration of ${what} (${unit}/${per}²)`,
+        lines: { [t`total`]: length(ax, ay), x: ax, y: ay },
+        least: size,
+      },
     ];
   }
   if (kind === "slide") {
     const { position, velocity, acceleration } = motion.slides[name];
     const size = extent(position, position);
     return [
-      { title: t`Position of ${what} on its line`, lines: { "": position }, least: size },
-      { title: t`Velocity of ${what}`, lines: { "": velocity }, least: size },
-      { title: t`Acceleration of ${what}`, lines: { "": acceleration }, least: size },
+      { title: t`Position of ${what} on its line (${unit})`, lines: { "": position }, least: size },
+      { title: t`Velocity of ${what} (${unit}/${per})`, lines: { "": velocity }, least: size },
+      { title: t`Acceleration of ${what} (${unit}/${per}²)`, lines: { "": acceleration }, least: size },
     ];
   }
   const { angle, omega, alpha } = motion.links[name];
   return [
     { title: t`Angle of ${what} (°)`, lines: { "": angle }, least: 180 },
-    { title: t`Angular velocity of ${what}`, lines: { "": omega }, least: 1 },
-    { title: t`Angular acceleration of ${what}`, lines: { "": alpha }, least: 1 },
+    { title: t`Angular velocity of ${what} (rad/${per})`, lines: { "": omega }, least: 1 },
+    { title: t`Angular acceleration of ${what} (rad/${per}²)`, lines: { "": alpha }, least: 1 },
   ];
 }
 
@@ -80,8 +91,13 @@ export function moved(motion, part) {
 export function judged(motion, design, problem) {
   /** @type {Plotted[]} */
   const found = [];
-  const error = errorCurve(design);
-  if (error) found.push({ title: error.title, lines: { "": along(error.at, error.values, motion.input_angle) } });
+  const error = errorCurve(design, problem.length_unit ?? "mm");
+  if (error)
+    found.push({
+      title: error.title,
+      lines: { "": along(error.at, error.values, motion.input_angle) },
+      values: error.values,
+    });
   const used = usedRange(design, motion.input_angle);
   found.push({
     title: t`Transmission angle (°)`,
@@ -119,13 +135,14 @@ function usedRange(design, inputs) {
 /**
  * Structural error as the answer has it.
  * @param {Partial<Design>} design
+ * @param {string} unit of lengths
  * @returns {{title: string, at: number[], values: number[]} | null}
  */
-function errorCurve(design) {
+function errorCurve(design, unit) {
   const structural = design.structural_error;
   if (structural?.curve) {
     return {
-      title: t`Structural error (${structural.unit === "degrees" ? "°" : t`length`})`,
+      title: t`Structural error (${structural.unit === "degrees" ? "°" : unit})`,
       at: structural.curve.input_angle,
       values: structural.curve.error,
     };

@@ -45,6 +45,11 @@ export class Rotor extends Turning {
     const lines = Object.fromEntries(
       motion.bearings.map((bearing, /** @type {number} */ n) => [t`bearing ${n + 1}`, bearing.force.x]),
     );
+    // By what there was is measured whether anything is left, at the speed of the motion.
+    const speed = (Number(problem.rpm) * Math.PI) / 30;
+    const least = Math.max(...(metrics.bearings ?? []).map((one) => one.before / speed ** 2), 1e-9);
+    const unit = symbolOf("force", problem);
+    const title = t`Force on the bearings at 1 rad/s, along x`;
     this.fill(
       scene(
         this.view,
@@ -55,7 +60,7 @@ export class Rotor extends Turning {
         el("dl", { class: "facts" }, ...facts),
         el("p", { class: "note" }, t`Filled: masses that are added. Open: masses that are taken away.`),
       ],
-      motion.bearings.length ? [{ title: t`Force on the bearings at 1 rad/s, along x`, lines, least: 1e-9 }] : [],
+      motion.bearings.length ? [{ title: unit ? `${title} (${unit})` : title, lines, least }] : [],
     );
   }
 

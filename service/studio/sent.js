@@ -68,7 +68,7 @@ export class SentLinkage {
       opened: () => {
         this.moving?.pause();
         desk.stage.show("explore");
-        this.explorer = new Explorer(
+        this.explorer = desk.explorer = new Explorer(
           desk.exploring,
           desk.explore,
           mechanism,
@@ -79,7 +79,7 @@ export class SentLinkage {
       },
       closed: () => {
         this.explorer?.stop();
-        this.explorer = null;
+        this.explorer = desk.explorer = null;
         desk.exploring.replaceChildren();
         if (desk.stage.mode === "explore") desk.stage.show("watch");
       },
@@ -92,6 +92,7 @@ export class SentLinkage {
     this.gone.abort();
     if (!this.moving) return;
     this.desk.drawer.on("explore", null);
+    this.desk.explorer = null;
     this.moving.stop();
     this.desk.clear();
     this.desk.stage.offer(false);

@@ -18,7 +18,8 @@ export class Sizes {
   /**
    * @param {Skeleton} skeleton
    * @param {string} unit of lengths
-   * @param {(places: Joints) => void} moved told where the joints have gone
+   * @param {(places: Joints, apart: boolean) => void} moved told where the joints have gone, and whether that is a step
+   *   of its own
    */
   constructor(skeleton, unit, moved) {
     this.still = grounded(skeleton);
@@ -107,7 +108,7 @@ export class Sizes {
     }));
     // The ground itself is changed at its further pivots.
     const grounds = dimension.link === "ground";
-    this.put(settled(this.places, demands, grounds ? this.still.slice(0, 1) : this.still));
+    this.put(settled(this.places, demands, grounds ? this.still.slice(0, 1) : this.still), true);
   }
 
   /** A dimension gets the value of another one. @param {number} k */
@@ -122,13 +123,20 @@ export class Sizes {
     this.put(settled({ ...this.places, [name]: at }, this.demands, still));
   }
 
-  /** @param {Joints | null} found */
-  put(found) {
+  /** The joints stand elsewhere, whatever is held. @param {Joints} places */
+  take(places) {
+    this.told.textContent = "";
+    this.places = { ...this.places, ...places };
+    this.show(this.places);
+  }
+
+  /** @param {Joints | null} found @param {boolean} [apart] whether it is a step of its own */
+  put(found, apart = false) {
     this.told.textContent = found ? "" : t`No linkage near this one has these dimensions together.`;
     if (!found) return this.show(this.places);
     this.places = found;
     this.show(found);
-    this.moved(found);
+    this.moved(found, apart);
   }
 
   /** @param {Joints} places */

@@ -151,11 +151,16 @@ function vacate() {
   if (holds(location.hash)) window.history.pushState(null, "", location.pathname);
 }
 
+/** The job in the address; empty where there is none. */
+function asked() {
+  return /^#job=([0-9A-Z]{26})$/.exec(location.hash)?.[1] ?? "";
+}
+
 /** Keep the statement as it is now, unless the service has it as an example. */
 function drafted() {
   const now = spelt(problem);
   if (examples().some((one) => spelt(one) === now)) forgetDraft(problem.kind);
-  else keepDraft(problem, byId("label").value, undo.steps);
+  else keepDraft(problem, byId("label").value, undo.steps, answered === null ? "" : asked());
 }
 
 /** Go on with the statement that was left, or begin with the example. @param {string} of */
@@ -335,13 +340,27 @@ async function unpack() {
   }
 }
 
-/** Show what the address names: a job with its problem, its progress and its answer, or what has been sent. */
-async function restore() {
+/**
+ * What had been edited of the statement of a job, beside its answers, is as it was left.
+ * @param {string} job
+ */
+function editedBeside(job) {
+  const draft = draftOf(problem.kind);
+  const { schema } = kind();
+  if (draft?.job === job && misfit(draft.problem, schema, schema) === null && spelt(draft.problem) !== spelt(problem))
+    begun(draft.problem);
+}
+
+/**
+ * Show what the address names: a job with its problem, its progress and its answer, or what has been sent.
+ * @param {boolean} [reloaded] whether the page has just been opened
+ */
+async function restore(reloaded = false) {
   if (holds(location.hash)) {
     tell("");
     return unpack();
   }
-  const id = /^#job=([0-9A-Z]{26})$/.exec(location.hash)?.[1];
+  const id = asked();
   if (!id) return;
   tell("");
   running.leave(byId("progress"));
@@ -350,6 +369,7 @@ async function restore() {
     let job = await api.job(id);
     if (posted.id !== id) state(job.problem);
     answered = posted.id === id ? posted.problem : structuredClone(problem);
+    if (reloaded) editedBeside(id);
     compare();
     byId("label").value = job.label ?? "";
     if (["queued", "running"].includes(job.status)) {
@@ -430,7 +450,7 @@ async function begin() {
   resume(last || kinds[0].kind);
   if (last) undo.resume(lastSteps());
   history.load().catch(tell);
-  await restore();
+  await restore(true);
 }
 
 fields.addEventListener("submit", (/** @type {Event} */ event) => {
@@ -470,12 +490,18 @@ function folded() {
 /** Fold the task away, or show it: in a narrow window it takes a third of the stage's room. @param {boolean} open */
 function unfold(open) {
   byId("fold").setAttribute("aria-expanded", String(open));
-  fitted();
+  resized();
 }
 
 /** Draw what is stated as large as there is room now. */
 function fitted() {
   if (kinds.length) show({ form: false, json: false });
+}
+
+/** The window, or what lies beside the stage, has another size. */
+function resized() {
+  fitted();
+  answers.fitted();
 }
 
 /** @type {Keys} */
@@ -489,8 +515,20 @@ const keys = new Keys([
       if (!byId("solve").disabled) solve();
     },
   },
-  { keys: ["Ctrl+z"], shown: t`Ctrl Z`, text: t`Undo`, everywhere: true, act: () => undo.undo() },
-  { keys: ["Ctrl+Shift+z", "Ctrl+y"], shown: t`Ctrl Shift Z`, text: t`Redo`, everywhere: true, act: () => undo.redo() },
+  {
+    keys: ["Ctrl+z"],
+    shown: t`Ctrl Z`,
+    text: t`Undo`,
+    everywhere: true,
+    act: () => desk.explorer?.undo() || undo.undo(),
+  },
+  {
+    keys: ["Ctrl+Shift+z", "Ctrl+y"],
+    shown: t`Ctrl Shift Z`,
+    text: t`Redo`,
+    everywhere: true,
+    act: () => desk.explorer?.redo() || undo.redo(),
+  },
   { keys: [" "], shown: t`Space`, text: t`Play and pause`, act: () => visible(".player button")?.click() },
   { keys: ["ArrowLeft"], shown: t`← or →`, text: t`One degree back or on; ten with Shift`, act: () => scrub(-1) },
   { keys: ["ArrowRight"], shown: "", text: "", act: () => scrub(1) },
@@ -563,11 +601,11 @@ byId("language").replaceChildren(
   ),
 );
 byId("language").addEventListener("change", () => choose(byId("language").value));
-window.addEventListener("hashchange", restore);
+window.addEventListener("hashchange", () => restore());
 let resizing = 0;
 window.addEventListener("resize", () => {
   clearTimeout(resizing);
-  resizing = setTimeout(fitted, RESIZED_MS);
+  resizing = setTimeout(resized, RESIZED_MS);
 });
 byId("label").addEventListener("input", () => {
   if (draftOf(problem.kind)) drafted();

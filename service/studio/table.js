@@ -8,6 +8,17 @@ import { unitOf } from "./units.js";
 
 /** @typedef {import("./schema.js").Schema} Schema */
 
+/** Columns that stay at least where others are folded away. */
+const FEWEST = 2;
+
+/** Tables of which all columns have been asked for. @type {Set<string>} */
+const wide = new Set();
+
+/** Whether nobody has stated a value. @param {unknown} value */
+function empty(value) {
+  return value === undefined || value === null || value === false;
+}
+
 /**
  * @param {import("./form.js").Sheet} sheet @param {Schema} item schema of a row @param {any[]} rows changed in place
  * @param {string} path JSON pointer of the list
@@ -15,12 +26,18 @@ import { unitOf } from "./units.js";
  */
 export function table(sheet, item, rows, path, count) {
   const heads = columns(item, sheet.root);
+  const seldom = heads.filter((head) => !head.required && rows.every((row) => empty(row[head.name])));
+  // One column alone says too little of a row.
+  const folded = heads.length - seldom.length >= FEWEST ? seldom : [];
+  const kept = (/** @type {{name: string}} */ head) => (folded.some((one) => one.name === head.name) ? "seldom" : null);
   const line = (/** @type {Record<string, unknown>} */ row, /** @type {number} */ k) => [
     el(
       "tr",
       {},
       el("th", { scope: "row" }, k + 1),
-      ...heads.map((head) => el("td", {}, cell(sheet, head, row, `${path}/${k}/${head.name}`, k, item))),
+      ...heads.map((head) =>
+        el("td", { class: kept(head) }, cell(sheet, head, row, `${path}/${k}/${head.name}`, k, item)),
+      ),
       el(
         "td",
         { class: "acts" },
@@ -64,9 +81,10 @@ export function table(sheet, item, rows, path, count) {
     );
     sheet.rebuild();
   };
+  const columned = `${sheet.problem.kind}${path}`;
   const view = el(
     "div",
-    { class: "table", onpaste },
+    { class: folded.length && !wide.has(columned) ? "table brief" : "table", onpaste },
     el(
       "table",
       {},
@@ -80,7 +98,7 @@ export function table(sheet, item, rows, path, count) {
           ...heads.map((head) =>
             el(
               "th",
-              { scope: "col", title: prose(head.schema.description) },
+              { scope: "col", class: kept(head), title: prose(head.schema.description) },
               words(head.name),
               unitOf(head.schema, sheet.problem) &&
                 el("span", { class: "unit" }, ` (${unitOf(head.schema, sheet.problem)})`),
@@ -106,6 +124,21 @@ export function table(sheet, item, rows, path, count) {
             },
           },
           t`Add a row`,
+        ),
+      folded.length > 0 &&
+        el(
+          "button",
+          {
+            type: "button",
+            class: "small more-columns",
+            onclick: () => {
+              wide.add(columned);
+              view.classList.remove("brief");
+              const first = `${path}/0/${folded[0].name}`;
+              /** @type {HTMLElement | null} */ (view.querySelector(`[data-path="${CSS.escape(first)}"]`))?.focus();
+            },
+          },
+          t`With ${folded.map((head) => term(head.name)).join(", ")}`,
         ),
       el("span", { class: "note" }, t`Paste rows from a spreadsheet into any cell.`),
     ),

@@ -22,6 +22,9 @@ import { Zoom } from "./zoom.js";
 /** Height of the tools below a canvas, pixels. */
 const TOOLS = 117;
 
+/** The same of a row of buttons that stands without a picture. */
+const BUTTONS = 49;
+
 const ARM = 44;
 
 /** What angles snap to, degrees. */
@@ -61,7 +64,8 @@ export function canvas(place, problem, roomy, changed, backdrop) {
   const graph = problem.kind === "function";
   const grip = place.contains(document.activeElement) ? document.activeElement?.getAttribute("data-grip") : null;
   const both = graph && roomy && found && (found.handles.length > 0 || found.add);
-  const [width, height] = roomOf(place, TOOLS);
+  const buttons = graph && roomy && found && !both;
+  const [width, height] = roomOf(place, TOOLS + (buttons ? BUTTONS : 0));
   /** @type {[number, number]} */
   const size = [both ? width / 2 : width, height];
   place.replaceChildren(

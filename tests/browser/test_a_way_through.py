@@ -131,8 +131,8 @@ def test_a_lid_is_drawn_solved_compared_changed_taken_home_and_sent(studio, chro
     page.click("#tab-plots")
     extremes = {
         "Transmission angle (°)": [motion["transmission_angle"]],
-        "Position of P": [motion["joints"]["P"][c] for c in ("x", "y")],
-        "Velocity of P": [
+        "Position of P (mm)": [motion["joints"]["P"][c] for c in ("x", "y")],
+        "Velocity of P (mm/rad)": [
             [math.hypot(*two) for two in zip(*known(motion, "vx", "vy"), strict=True)],
             *known(motion, "vx", "vy"),
         ],
@@ -147,6 +147,7 @@ def test_a_lid_is_drawn_solved_compared_changed_taken_home_and_sent(studio, chro
     page.click("#tab-explore")
     until(lambda: page.locator("#explore dd").count() == 5, 30, "the figures")
     before = page.inner_text("#explore .facts")
+    untouched = lengths(page)
     x, y = hand.middle("#exploring .target:has(text:text-is('A')) .dot")
     hand.drag((x, y), (x + 12, y - 8))
     until(
@@ -167,6 +168,22 @@ def test_a_lid_is_drawn_solved_compared_changed_taken_home_and_sent(studio, chro
     # At a toggle it is nothing, and the samples stop a little before.
     toggles = said["Input turns through"] == "no"
     assert least - 0.2 <= number(said["Least transmission angle"]) <= least + (25.0 if toggles else 1.0)
+    # One length is typed: it alone changes, and that is undone, as the drag before it is.
+    dragged = lengths(page)
+    field = page.locator(".sizes-of input[aria-label='Coupler A–B']")
+    field.fill(str(round(1.04 * dragged["Coupler A–B"], 3)))
+    field.press("Enter")
+    typed = lengths(page)
+    assert typed["Coupler A–B"] == pytest.approx(1.04 * dragged["Coupler A–B"], rel=1e-3)
+    for name in set(typed) - {"Coupler A–B"}:
+        assert typed[name] == pytest.approx(dragged[name], rel=1e-4), name
+    page.keyboard.press("Control+z")
+    assert lengths(page) == dragged
+    page.keyboard.press("Control+Shift+Z")
+    assert lengths(page) == typed
+    page.get_by_role("button", name="Undo the last change of the linkage").click()
+    page.get_by_role("button", name="Undo the last change of the linkage").click()
+    assert lengths(page) == untouched
     # It begins a statement, and that is undone.
     drawn = stated(page)
     page.get_by_role("button", name="Begin a statement with these fixed pivots").click()
@@ -204,6 +221,15 @@ def test_a_lid_is_drawn_solved_compared_changed_taken_home_and_sent(studio, chro
         assert curves[0] == curves[1]
     finally:
         other.close()
+
+
+def lengths(page):
+    """The dimensions that the explorer lists."""
+    return dict(
+        page.locator(".sizes-of input[type=number]").evaluate_all(
+            "all => all.map(one => [one.getAttribute('aria-label'), one.valueAsNumber])"
+        )
+    )
 
 
 def known(motion, *names):

@@ -17,6 +17,7 @@ from playwright.sync_api import TimeoutError
 
 from service.parts.extra import installed
 from synthesis.registry import KINDS
+from tests.browser.numbers import told_as_answered
 from tests.browser.test_studio import drawn, stated, unfold, written
 from tests.service.running import until
 
@@ -201,6 +202,7 @@ def test_each_kind_is_stated_solved_moves_and_is_taken_home(studio, kind):
         before = picture_now(page)
         until(lambda: picture_now(page) != before, 30, "another frame")
     studio.screen(f"kind-{kind}")
+    told_as_answered(page, kind)
     job = page.url.rpartition("=")[2]
     design = json.loads(taken(page, "JSON").read_text())["result"]["designs"][0]
     offered = [one.inner_text() for one in page.locator("#downloads button").all()]
