@@ -83,8 +83,8 @@ class PartsQuery(BaseModel):
     shafts: Literal["one_side", "both_sides"] | None = Field(
         default=None,
         description="Whether shafts stand on one base, or between two; if left out as the problem states, or on one "
-        "where that can be built. Where neither can be, and this is left out, one link is two plates on a shaft through "
-        "the second base.",
+        "where that can be built. Where neither can be, and this is left out, one link is two plates on a shaft "
+        "through the second base.",
     )
     over: Literal["cycle", "used"] | None = Field(
         default=None,
