@@ -105,7 +105,7 @@ SHARE := 0.03
 
 campaign: $(STAMP) $(MULTIBODY) chromium
 	$(BIN)/pytest -m "campaign and not browser and not cad" --campaign-share $(SHARE) $(SPREAD) $(shell grep -rlE campaign tests --include='test_*.py' --exclude-dir=cad)
-	$(BIN)/pytest -m "campaign and browser" --campaign-share $(SHARE) tests/browser/test_layout.py
+	$(BIN)/pytest -m "campaign and browser" --campaign-share $(SHARE) tests/browser
 
 fuzz: $(STAMP)
 	$(BIN)/pytest -m fuzz -s

@@ -101,11 +101,6 @@ export function further(by) {
   if (next !== undefined) strip?.select(next);
 }
 
-/** Show what moves as large as there is room now, where it stands. */
-export function fitted() {
-  chosen?.fitted();
-}
-
 /** Pin the chosen design, or take its pin away. */
 export function pin() {
   if (strip && strip.chosen >= 0) strip.pin(strip.chosen);

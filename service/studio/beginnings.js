@@ -16,9 +16,10 @@ const POINTS = 24;
  * @param {Skeleton} skeleton
  * @param {LinkageAnalysis} motion over the cycle
  * @param {import("./mover.js").Target[]} targets
+ * @param {boolean} held whether dimensions are held, which a fit does not know
  * @returns {Beginning[]}
  */
-export function beginnings(problem, skeleton, motion, targets) {
+export function beginnings(problem, skeleton, motion, targets, held) {
   /** @type {Beginning[]} */
   const found = [];
   const { O2, O4, A, B, P } = skeleton.joints;
@@ -35,7 +36,7 @@ export function beginnings(problem, skeleton, motion, targets) {
     P
   )
     found.push({
-      text: t`Optimise from here`,
+      text: held ? t`Optimise from here, what is held let go` : t`Optimise from here`,
       solved: true,
       statement: () => ({
         ...problem,

@@ -167,19 +167,6 @@ export class Shown {
     this.told();
   }
 
-  /** Show what moves in the room that there is now, at the place where it is. */
-  fitted() {
-    const before = this.moving?.player;
-    if (!before) return;
-    const { at, playing, range } = before;
-    if (range) return;
-    this.again();
-    const { player } = this.moving ?? {};
-    if (player === before) return;
-    player?.lead(at);
-    if (playing) player?.play();
-  }
-
   /** The design in motion, where it is a linkage whose motion is shown. */
   get mover() {
     return this.moving instanceof Mover && !this.forced.hidden ? this.moving : null;

@@ -94,7 +94,12 @@ export class Explorer {
       reading: (at) => this.reading(at),
       show: (at) => this.move(at),
     });
-    this.sizes = new Sizes(this.skeleton, this.unit, (places, apart) => this.put(places, apart));
+    this.sizes = new Sizes(
+      this.skeleton,
+      this.unit,
+      (places, apart) => this.put(places, apart),
+      () => this.offer(),
+    );
     this.facts = el("dl", { class: "facts", "aria-live": "polite" });
     this.checks = el("ul", { class: "checks" });
     this.buttons = el("p", { class: "row" });
@@ -247,7 +252,16 @@ export class Explorer {
     const { facts, turns, least, grashof, missed } = driven(answer, this.skeleton, this.targets, this.unit);
     renewed(this.facts, Object.entries(facts), ([name, value]) => [el("dt", {}, name), el("dd", {}, value)]);
     this.judge(turns, least, grashof, missed);
-    const offered = () => beginnings(this.problem, this.skeleton, this.motion ?? answer, this.targets);
+    this.offer();
+    this.move(this.player.at);
+  }
+
+  /** Buttons of the statements that begin with the linkage as it is. */
+  offer() {
+    const { motion } = this;
+    if (!motion) return;
+    const held = this.sizes.demands.length > 0;
+    const offered = () => beginnings(this.problem, this.skeleton, this.motion ?? motion, this.targets, held);
     renewed(
       this.buttons,
       offered().map(({ text }) => text),
@@ -266,7 +280,6 @@ export class Explorer {
         ),
       ],
     );
-    this.move(this.player.at);
   }
 
   /**

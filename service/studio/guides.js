@@ -81,7 +81,7 @@ export const GUIDES = [
         at: "#freehand",
         tab: "task",
         stage: "state",
-        text: t`The path of a foot: flat below, lifted above. Switch “Draw freehand” on and draw your own, back to where it began.`,
+        text: t`The path of a foot: flat below, lifted above. Switch “Draw freehand” on and draw your own, back to where it began; or move its points by the arrow keys.`,
         done: ({ problem, before }) => differs(problem.points, before.points),
       },
       SOLVE,

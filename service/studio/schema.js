@@ -235,6 +235,33 @@ function misfitIn(value, schema, root, path) {
   return null;
 }
 
+/**
+ * A value without what states but its default, which the service writes out.
+ * @param {any} value @param {Schema} schema @param {Schema} root @returns {any}
+ */
+export function withoutDefaults(value, schema, root) {
+  const form = formOf(value);
+  const options = alternatives(schema, root).filter((one) => one.type === form);
+  if (!options.length) return value;
+  if (form === "array") {
+    const inside = (/** @type {number} */ k) => options[0].prefixItems?.[k] ?? options[0].items;
+    return value.map((/** @type {any} */ one, /** @type {number} */ k) =>
+      inside(k) ? withoutDefaults(one, inside(k), root) : one,
+    );
+  }
+  if (form !== "object") return value;
+  const { properties = {}, additionalProperties } =
+    options.length > 1 && options.every((one) => one.properties) ? optionOf(options, value) : options[0];
+  return Object.fromEntries(
+    Object.entries(value).flatMap(([name, inner]) => {
+      const of = properties[name] ?? additionalProperties;
+      if (typeof of !== "object") return [[name, inner]];
+      const plain = JSON.stringify(resolved(of, root).default);
+      return plain === JSON.stringify(inner) ? [] : [[name, withoutDefaults(inner, of, root)]];
+    }),
+  );
+}
+
 /** What JSON calls it. @param {unknown} value */
 function formOf(value) {
   return value === null ? "null" : Array.isArray(value) ? "array" : typeof value;

@@ -20,10 +20,12 @@ export class Sizes {
    * @param {string} unit of lengths
    * @param {(places: Joints, apart: boolean) => void} moved told where the joints have gone, and whether that is a step
    *   of its own
+   * @param {() => void} bound told when something else is held or equal
    */
-  constructor(skeleton, unit, moved) {
+  constructor(skeleton, unit, moved, bound) {
     this.still = grounded(skeleton);
     this.moved = moved;
+    this.bound = bound;
     /** @type {Joints} */
     this.places = skeleton.joints;
     const all = dimensionsOf(skeleton);
@@ -70,7 +72,7 @@ export class Sizes {
       "aria-label": name,
       onchange: () => this.type(k, field.valueAsNumber),
     });
-    const held = el("input", { type: "checkbox", "aria-label": t`Hold ${name}` });
+    const held = el("input", { type: "checkbox", "aria-label": t`Hold ${name}`, onchange: () => this.bound() });
     const alike = all.flatMap((one, n) =>
       n !== k && one.joints.length === dimension.joints.length ? [{ one, n }] : [],
     );
@@ -114,6 +116,7 @@ export class Sizes {
   /** A dimension gets the value of another one. @param {number} k */
   equate(k) {
     const { same } = this.rows[k];
+    this.bound();
     if (same.value) this.type(k, valueOf(this.rows[Number(same.value)].dimension, this.places));
   }
 

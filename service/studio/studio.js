@@ -18,7 +18,7 @@ import { Link } from "./link.js";
 import { choose, language, languages, prose, t, translatePage, translated } from "./messages.js";
 import { Opening } from "./opening.js";
 import * as running from "./run.js";
-import { misfit } from "./schema.js";
+import { misfit, withoutDefaults } from "./schema.js";
 import { SentLinkage } from "./sent.js";
 import { canvas } from "./targets.js";
 import { Undo } from "./undo.js";
@@ -129,12 +129,14 @@ function compare() {
 }
 
 /**
- * A statement in one spelling: fields in order, without the empty groups in which the form has room for fields.
+ * A statement in one spelling: fields in order, without defaults, which the service writes out, and without the empty
+ * groups in which the form has room for fields.
  * @param {Problem} statement
  */
 function spelt(statement) {
+  const schema = kinds.find((one) => one.kind === statement.kind)?.schema;
   const group = (/** @type {unknown} */ value) => typeof value === "object" && value !== null && !Array.isArray(value);
-  return JSON.stringify(statement, (_, value) =>
+  return JSON.stringify(schema ? withoutDefaults(statement, schema, schema) : statement, (_, value) =>
     group(value)
       ? Object.fromEntries(
           Object.entries(value)
@@ -490,18 +492,12 @@ function folded() {
 /** Fold the task away, or show it: in a narrow window it takes a third of the stage's room. @param {boolean} open */
 function unfold(open) {
   byId("fold").setAttribute("aria-expanded", String(open));
-  resized();
+  fitted();
 }
 
 /** Draw what is stated as large as there is room now. */
 function fitted() {
   if (kinds.length) show({ form: false, json: false });
-}
-
-/** The window, or what lies beside the stage, has another size. */
-function resized() {
-  fitted();
-  answers.fitted();
 }
 
 /** @type {Keys} */
@@ -567,7 +563,11 @@ const keys = new Keys([
   { keys: [], shown: t`Esc`, text: t`Close what lies over the stage; put the pen away`, act: () => {} },
 ]);
 byId("stale-solve").addEventListener("click", () => solve());
-byId("stale-back").addEventListener("click", () => answered && begun(answered));
+byId("stale-back").addEventListener("click", () => {
+  if (!answered) return;
+  begun(answered);
+  drafted();
+});
 byId("fold").addEventListener("click", () => unfold(folded()));
 byId("gallery-open").addEventListener("click", () => browse());
 byId("keys-open").addEventListener("click", () => keys.open());
@@ -605,7 +605,7 @@ window.addEventListener("hashchange", () => restore());
 let resizing = 0;
 window.addEventListener("resize", () => {
   clearTimeout(resizing);
-  resizing = setTimeout(resized, RESIZED_MS);
+  resizing = setTimeout(fitted, RESIZED_MS);
 });
 byId("label").addEventListener("input", () => {
   if (draftOf(problem.kind)) drafted();

@@ -9,7 +9,7 @@ from PIL import Image, ImageChops
 
 from service.parts.extra import installed
 from tests.browser.conftest import SCREENS
-from tests.browser.test_accessibility import serious
+from tests.browser.test_accessibility import violations
 from tests.browser.test_studio import state
 from tests.browser.test_taking_home import taken as taken_of_design
 from tests.service.running import until
@@ -154,7 +154,7 @@ def test_parts_are_hidden_chosen_and_led_by_keys(open_studio):
     for scheme, width in (("dark", 1360), ("light", 390)):
         page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
         page.set_viewport_size({"width": width, "height": 900})
-        assert serious(page) == [], (scheme, width)
+        assert violations(page) == [], (scheme, width)
         wider = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
         assert wider <= 0
         # The whole picture is on the stage, and the player below it.

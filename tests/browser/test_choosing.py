@@ -5,7 +5,7 @@ import pytest
 
 from synthesis.registry import examples
 from tests.browser.conftest import ANSWERED
-from tests.browser.test_accessibility import serious
+from tests.browser.test_accessibility import violations
 from tests.browser.test_studio import state
 from tests.service.running import until
 
@@ -59,7 +59,7 @@ def test_designs_are_chosen_by_two_quantities_by_bounds_and_by_pins(answered):
     angles = np.array([one["metrics"]["min_transmission_angle"] for one in designs])
     page.select_option("#axis-across", label="Size")
     page.select_option("#axis-up", label="Min transmission angle")
-    assert serious(page) == []
+    assert violations(page) == []
     answered.screen("choosing")
     # Points and ticks lie on one scale.
     places = spots(page)
@@ -138,7 +138,7 @@ def test_two_designs_are_compared_in_numbers_and_on_the_stage(answered):
     page.get_by_role("button", name="Side by side").click()
     page.wait_for_selector("#other .live .link")
     assert page.inner_text("#other .second-name") == "Design 3: Fourbar"
-    assert serious(page) == []
+    assert violations(page) == []
 
     def moved(selector):
         page.focus("#scrub")

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.browser.test_accessibility import serious
+from tests.browser.test_accessibility import violations
 from tests.browser.test_studio import PLAIN, state, stated
 from tests.service.drawn_files import dxf
 from tests.service.drawn_files import page as svg
@@ -74,7 +74,7 @@ def test_a_dropped_drawing_becomes_a_path_and_areas(studio):
     assert page.locator("#curve-place").is_disabled()
     page.locator("#curves summary").click()
     assert "It is text" in page.inner_text("#curves .reasons")
-    assert serious(page) == []
+    assert violations(page) == []
     studio.screen("curves-found")
     # Fewer points are read anew.
     page.fill("#curve-points", "9")
@@ -166,7 +166,7 @@ def test_a_picture_is_laid_behind_the_canvas_scaled_by_two_points_and_traced(stu
     page.fill("#backdrop-distance", "40")
     page.click("#backdrop-set")
     assert float(page.input_value("#backdrop-width")) == pytest.approx(100, rel=0.02)
-    assert serious(page) == []
+    assert violations(page) == []
     # Nothing was drawn by these clicks; and its contour is where the picture lies.
     assert stated(page)["points"] == PATH["points"]
     page.select_option("#curve0", "points")

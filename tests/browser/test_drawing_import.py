@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
-from tests.browser.test_accessibility import serious
+from tests.browser.test_accessibility import violations
 from tests.browser.test_room import field
 from tests.browser.test_studio import PLAIN, state, stated
 from tests.service.drawn_files import dxf
@@ -57,7 +57,7 @@ def test_an_obstacle_and_a_zone_come_from_drawings_and_the_answers_keep_them(stu
     page.locator("#drawing summary").click()
     assert "stroke on FRAME: It is open" in page.inner_text("#drawing .reasons")
     assert page.locator("#drawing-place").is_disabled()
-    assert serious(page) == []
+    assert violations(page) == []
     studio.screen("drawing-found")
     page.get_by_label("lintel on FRAME").select_option("obstacle")
     page.get_by_label("post on FRAME").select_option("obstacle")

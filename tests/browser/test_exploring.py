@@ -198,6 +198,8 @@ def test_dimensions_are_typed_held_and_made_equal_and_the_fit_goes_on_from_there
     studio.screen("explore-dimensions")
     begun = sizes(page)
     before = page.url
+    # A fit knows nothing of what is equal or held, and its button says so.
+    assert page.get_by_role("button", name="Optimise from here, what is held let go").count() == 1
     page.get_by_role("button", name="Optimise from here").click()
     until(lambda: page.evaluate("location.href") != before, 30, "the job")
     studio.answered()

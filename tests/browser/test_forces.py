@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.browser import test_studio
-from tests.browser.test_accessibility import serious
+from tests.browser.test_accessibility import violations
 from tests.browser.test_studio import PLAIN
 from tests.service.running import until
 
@@ -259,7 +259,7 @@ def test_a_load_is_stated_on_the_drawing_and_a_fault_is_told_at_its_field(open_s
     assert "what was stated before" in page.inner_text(".load-editor")
     page.set_viewport_size({"width": 390, "height": 844})
     assert page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth") <= 0
-    assert serious(page) == []
+    assert violations(page) == []
     assert [text for text in studio.wrong if "422" not in text] == []
     studio.wrong.clear()
     studio.screen("forces-stated")

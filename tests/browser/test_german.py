@@ -1,4 +1,4 @@
-"""The studio in German: nothing is left in English, numbers have a decimal comma, and axe-core finds nothing serious.
+"""The studio in German: nothing is left in English, numbers have a decimal comma, and axe-core finds nothing.
 
 Whether anything is left is seen in a language made up for it, in which every word stands in brackets: what stands
 outside of them has not been looked up.
@@ -11,7 +11,7 @@ import pytest
 
 from synthesis.registry import examples
 from tests.browser.conftest import DESKTOP, Studio
-from tests.browser.test_accessibility import serious
+from tests.browser.test_accessibility import violations
 from tests.browser.test_form import OPEN_ALL
 from tests.browser.test_studio import drawn, state
 from tests.service.running import until
@@ -114,7 +114,7 @@ def test_german_is_spoken_with_decimal_commas(open_studio, server):
         for tab in TABS:
             page.click(f"#tab-{tab}")
             assert english.intersection(page.evaluate(READ)) == set()
-            assert serious(page) == [], (scheme, tab)
+            assert violations(page) == [], (scheme, tab)
             studio.screen(f"german-{tab}-{size['width']}")
     told = page.locator(".figures td").all_inner_texts()
     assert sum(bool(re.search(r"\d,\d", text)) for text in told) > 10

@@ -3,7 +3,7 @@
 import pytest
 
 from tests.browser.conftest import ANSWERED
-from tests.browser.test_accessibility import serious
+from tests.browser.test_accessibility import violations
 from tests.browser.test_studio import stated
 from tests.service.running import until
 
@@ -29,7 +29,7 @@ def test_a_lid_is_led_through_by_keys(studio):
     begun(page, "A lid on a cabinet")
     assert told(page) == "A lid on a cabinet, 1 of 4"
     assert page.evaluate("document.activeElement.textContent") == "Go there"
-    assert serious(page) == []
+    assert violations(page) == []
     studio.screen("guide")
     before = stated(page)["positions"][2]
     page.keyboard.press("Enter")
@@ -56,6 +56,74 @@ def test_a_lid_is_led_through_by_keys(studio):
     until(lambda: told(page) == "A lid on a cabinet", 10, "the end")
     page.locator("#guide").get_by_role("button", name="Done").press("Enter")
     assert not page.is_visible("#guide")
+
+
+def pressed(page, key, until_there, most=80):
+    """Press a key until the focus is where it is to be."""
+    for _ in range(most):
+        if page.evaluate(f"document.activeElement.matches({until_there!r})"):
+            return
+        page.keyboard.press(key)
+    raise AssertionError(f"{key} never leads to {until_there}: {page.evaluate('document.activeElement.outerHTML')}")
+
+
+def gone_to(page, step):
+    """The guide has come to a step, and its button leads there."""
+    until(lambda: told(page).endswith(step), 200, f"step {step}")
+    page.locator("#guide").get_by_role("button", name="Go there").focus()
+    page.keyboard.press("Enter")
+
+
+def ended(page):
+    until(lambda: " of " not in told(page), 30, "the end")
+    page.locator("#guide").get_by_role("button", name="Done").focus()
+    page.keyboard.press("Enter")
+    assert not page.is_visible("#guide")
+
+
+def test_a_valve_cam_is_led_through_by_keys(studio):
+    page = studio.page
+    begun(page, "A valve cam")
+    gone_to(page, "1 of 4")
+    for row in (0, 1):
+        pressed(page, "Tab", f'[data-path="/problem/segments/{row}/lift"]')
+        page.keyboard.press("Control+a")
+        page.keyboard.type("11")
+    assert [one["lift"] for one in stated(page)["segments"][:2]] == [11, 11]
+    gone_to(page, "2 of 4")
+    pressed(page, "Tab", '[data-path="/problem/limits/pressure_angle"]')
+    less = stated(page)["limits"]["pressure_angle"] - 2
+    page.keyboard.press("Control+a")
+    page.keyboard.type(str(less))
+    until(lambda: told(page).endswith("3 of 4"), 10, "the limit is seen")
+    page.keyboard.press("Control+Enter")
+    gone_to(page, "4 of 4")
+    page.wait_for_selector("#plots .plot")
+    ended(page)
+
+
+def test_a_foot_that_walks_is_led_through_by_keys(studio):
+    page = studio.page
+    begun(page, "A foot that walks")
+    gone_to(page, "1 of 4")
+    assert page.evaluate("document.activeElement.id") == "freehand"
+    # Whoever has no mouse moves a point of the path.
+    before = stated(page)["points"]
+    pressed(page, "Shift+Tab", "#sketch .target")
+    page.keyboard.press("ArrowUp")
+    assert stated(page)["points"] != before
+    until(lambda: told(page).endswith("2 of 4"), 10, "the path is seen")
+    page.keyboard.press("Control+Enter")
+    gone_to(page, "3 of 4")
+    assert page.evaluate("document.activeElement.id") == "compare-with"
+    page.keyboard.press("ArrowDown")
+    gone_to(page, "4 of 4")
+    pressed(page, "Tab", "#downloads button")
+    while page.evaluate("document.activeElement.textContent") != "DXF":
+        page.keyboard.press("Tab")
+    with page.expect_download():
+        page.keyboard.press("Enter")
+    ended(page)
 
 
 def test_a_guided_task_is_left_at_any_time_and_stands_beside_its_thing(open_studio):

@@ -136,6 +136,30 @@ def test_a_draft_is_there_again_with_its_steps(own_studio):
     assert stated(page) != draft
 
 
+def test_what_is_edited_beside_answers_is_there_again_with_them(own_studio):
+    page = own_studio.page
+    example = examples("motion")[3]
+    state(page, example)
+    own_studio.solve()
+    page.reload()
+    page.wait_for_selector(".card")
+    # The service has written out all defaults: it is the example yet, and not another statement.
+    assert page.locator("#example option:checked").inner_text() == "Arm, five positions"
+    assert page.is_hidden("#stale")
+    state(page, {**example, "max_designs": 2})
+    page.wait_for_selector("#stale:visible")
+    page.reload()
+    page.wait_for_selector(".card")
+    page.wait_for_selector("#stale:visible")
+    assert stated(page)["max_designs"] == 2
+    assert page.locator("#example option:checked").inner_text() == "as edited"
+    page.get_by_role("button", name="Go back to it").click()
+    assert stated(page).get("max_designs") != 2
+    page.reload()
+    page.wait_for_selector(".card")
+    assert page.is_hidden("#stale")
+
+
 def test_a_browser_that_keeps_nothing_keeps_the_page_working(chromium, server):
     studio = Studio(chromium, server.url, viewport=dict(DESKTOP), before="""
       for (const name of ["localStorage", "sessionStorage"]) {

@@ -6,8 +6,9 @@ import pytest
 
 from synthesis.registry import KINDS, examples
 from tests.browser.conftest import ANSWERED
-from tests.browser.test_accessibility import serious
+from tests.browser.test_accessibility import violations
 from tests.browser.test_studio import PLAIN, drag, state, stated
+from tests.campaign import further
 from tests.service.running import until
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
@@ -87,7 +88,7 @@ def test_the_gallery_has_every_example_and_solves_it_by_two_clicks(studio):
     assert headings[:5] == [
         "Carry a body", "Draw a curve", "Make an output follow", "Change a speed", "Lift and rest",
     ]  # fmt: skip
-    assert serious(page) == []
+    assert violations(page) == []
     studio.screen("gallery")
     page.click('[data-example="motion-3"]')
     page.wait_for_selector(ANSWERED, timeout=200_000)
@@ -103,7 +104,7 @@ def test_the_gallery_and_the_sheet_of_keys_work_by_keys(studio):
     page.keyboard.press("?")
     sheet = page.locator("#keys")
     assert sheet.is_visible()
-    assert serious(page) == []
+    assert violations(page) == []
     studio.screen("keys")
     page.keyboard.press("Escape")
     assert not sheet.is_visible()
@@ -143,6 +144,77 @@ def test_the_gallery_and_the_sheet_of_keys_work_by_keys(studio):
     page.evaluate("document.activeElement.blur()")
     page.keyboard.press("g")
     assert not page.locator("#gallery").is_visible()
+
+
+def test_every_key_of_the_sheet_does_what_it_says(studio):
+    page = studio.page
+    studio.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    state(page, examples("motion")[0])
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("Control+Enter")
+    page.wait_for_selector(ANSWERED, timeout=200_000)
+    page.wait_for_selector(".moving .live .link")
+    page.evaluate("document.activeElement.blur()")
+    listed = set(page.locator("#keys-list dt").all_text_contents())
+    mode, at = "document.querySelector('#stage').dataset.mode", "+document.querySelector('#scrub').value"
+    chosen = "document.querySelector('.card[aria-pressed=true]').dataset.design"
+    tab = "document.querySelector('.tab[aria-selected=true]').id"
+    is_open = "document.querySelector('#{}').open"
+    tried = {
+        "Space": [(" ", "document.querySelector('.player button').textContent", None)],
+        "←or→": [("Home", at, 0), ("ArrowRight", at, None), ("Shift+ArrowRight", at, None), ("ArrowLeft", at, None)],
+        "HomeorEnd": [("End", at, None), ("Home", at, 0)],
+        "1…9": [("3", chosen, "3"), ("1", chosen, "1")],
+        "[or]": [("]", chosen, "2"), ("[", chosen, "1")],
+        "K": [("k", "document.querySelector('.pin-button').getAttribute('aria-pressed')", "true")],
+        "+or−": [("+", "document.querySelector('.moving .canvas').getAttribute('viewBox')", None)],
+        "F": [("f", "document.querySelector('.moving .canvas').getAttribute('viewBox')", None)],
+        "R": [("r", "document.querySelectorAll('.moving .ruler-end').length", 2)],
+        "SorW": [("s", mode, "state"), ("w", mode, "watch")],
+        "P": [("p", tab, "tab-plots")],
+        "N": [("n", tab, "tab-numbers")],
+        "C": [("c", tab, "tab-compare")],
+        "E": [("e", tab, "tab-explore")],
+        "L": [("l", "document.querySelector('#link-told').textContent", None)],
+        "?": [("?", is_open.format("keys"), True), ("Escape", is_open.format("keys"), False)],
+        "G": [("g", is_open.format("gallery"), True), ("Escape", is_open.format("gallery"), False)],
+    }  # fmt: skip
+    # Solve, steps, Escape and the fold have tests of their own.
+    elsewhere = {"CtrlEnter", "CtrlZ", "CtrlShiftZ", "Esc", "T"}
+    assert {one.replace(" ", "") for one in listed} == set(tried) | elsewhere
+    for name, presses in tried.items():
+        for key, told, wanted in presses:
+            before = page.evaluate(told)
+            page.keyboard.press(key)
+            if wanted is None:
+                until(lambda told=told, before=before: page.evaluate(told) != before, 10, f"{name}: {key}")
+            else:
+                until(lambda told=told, wanted=wanted: page.evaluate(told) == wanted, 10, f"{name}: {key}")
+            page.evaluate("document.activeElement.blur()")
+
+
+def test_every_card_of_the_gallery_is_reached_by_tab(studio):
+    page = studio.page
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("g")
+    page.wait_for_selector("#gallery[open] .gallery-card")
+    cards = page.locator(".gallery-card").evaluate_all("all => all.map(one => one.dataset.example)")
+    reached = []
+    for _ in range(len(cards) + 12):
+        page.keyboard.press("Tab")
+        found = page.evaluate("document.activeElement.dataset.example ?? null")
+        reached += [found] if found else []
+    assert reached[: len(cards)] == cards
+
+
+@pytest.mark.parametrize(("kind", "n"), further([(kind, n) for kind in KINDS for n in range(len(examples(kind)))], ()))
+def test_each_example_is_solved_by_two_clicks(studio, kind, n):
+    page = studio.page
+    page.click("#gallery-open")
+    page.click(f'[data-example="{kind}-{n}"]')
+    page.wait_for_selector(ANSWERED, timeout=280_000)
+    assert page.locator(".card .good").count() >= 1
+    page.wait_for_selector(".moving .stage .canvas")
 
 
 def test_steps_of_a_statement_are_undone_and_done_again(studio):

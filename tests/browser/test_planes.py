@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from tests.browser.test_accessibility import serious
+from tests.browser.test_accessibility import violations
 from tests.browser.test_studio import state
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
@@ -80,7 +80,7 @@ def test_links_have_the_colour_of_their_plane_and_stand_in_it(open_studio):
     assert page.locator(".side .shaft.stub").count() == len(layout["stub_shafts"]) == 2
     assert "Stub shafts at O2, O4" in page.inner_text(".planes")
     assert "Nothing clashes" in page.inner_text(".planes")
-    assert serious(page) == []
+    assert violations(page) == []
     studio.screen("planes")
 
 
@@ -96,7 +96,7 @@ def test_a_click_leads_to_where_parts_clash(open_studio):
     assert (reading - clash["input_angle"] + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=0.06)
     low, high = layout["free_range"]
     assert f"{low:.1f}° to {high:.1f}°" in page.inner_text(".planes")
-    assert serious(page) == []
+    assert violations(page) == []
     studio.screen("planes-phone")
 
 

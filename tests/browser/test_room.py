@@ -8,7 +8,7 @@ import pytest
 import shapely
 
 from synthesis.registry import KINDS, example
-from tests.browser.test_accessibility import serious
+from tests.browser.test_accessibility import violations
 from tests.browser.test_studio import LINKAGES, state, stated, unfold
 from tests.synthesis.test_space import LID
 
@@ -183,7 +183,7 @@ def test_every_area_is_drawn_moved_shaped_and_removed(studio):
     field(page, "fixed_pivots/output/polygon").fill("100, -100\n300, -100\n200, 0")
     assert page.locator("#sketch .grip").count() == 3
     studio.screen("room-form")
-    assert serious(page) == []
+    assert violations(page) == []
 
 
 def test_a_pen_is_left_and_corners_are_taken_back(studio):

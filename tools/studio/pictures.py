@@ -89,6 +89,25 @@ def write(picture: bytes, path: Path) -> None:
     image.quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
+def taken(page: Page, url: str, name: str) -> bytes:
+    """The picture of this name, or of this kind, as PNG; the page is one that was asked for reduced motion."""
+    width, height = SIZE if name in PICTURES else KIND_SIZE
+    page.set_viewport_size({"width": width, "height": height})
+    page.goto("about:blank")
+    page.goto(url)
+    page.wait_for_selector("#fields .field", timeout=WAIT_MS)
+    if name in PICTURES:
+        PICTURES[name](page)
+    else:
+        _solved(page, name, SOON.get(name, 0))
+    return page.screenshot()
+
+
+def path_of(name: str) -> Path:
+    """Where the picture of this name is kept."""
+    return (DOCS if name in PICTURES else KIND_FOLDER) / f"{name}.png"
+
+
 def main() -> None:
     """Open the page for each picture, and write it."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -103,17 +122,7 @@ def main() -> None:
         for name in [*PICTURES, *KINDS]:
             if asked.only and name not in asked.only:
                 continue
-            width, height = SIZE if name in PICTURES else KIND_SIZE
-            page.set_viewport_size({"width": width, "height": height})
-            page.goto("about:blank")
-            page.goto(asked.url)
-            page.wait_for_selector("#fields .field", timeout=WAIT_MS)
-            if name in PICTURES:
-                PICTURES[name](page)
-                write(page.screenshot(), DOCS / f"{name}.png")
-            else:
-                _solved(page, name, SOON.get(name, 0))
-                write(page.screenshot(), KIND_FOLDER / f"{name}.png")
+            write(taken(page, asked.url, name), path_of(name))
         browser.close()
 
 
