@@ -104,7 +104,7 @@ export const GUIDES = [
   },
   {
     name: t`A valve cam`,
-    line: t`A lift, a pressure angle, and the jerk that it costs.`,
+    line: t`A lift, a least radius, and the jerk that it costs.`,
     kind: "cam",
     example: "Valve cam",
     steps: [
@@ -112,15 +112,15 @@ export const GUIDES = [
         at: '[data-path="/problem/segments/0/lift"]',
         tab: "task",
         stage: "state",
-        text: t`How far the valve opens. Give the rise another lift, in the first row, and the fall below it the same.`,
+        text: t`How far the valve opens. Give the rise another lift, in the first row, as 8 mm, and the fall below it the same.`,
         done: ({ problem, before }) =>
           differs(problem.segments, before.segments) && problem.segments?.[0]?.lift === problem.segments?.[1]?.lift,
       },
       {
-        at: '[data-path="/problem/limits/pressure_angle"], [data-path="/problem/limits"]',
+        at: '[data-path="/problem/limits/min_radius"], [data-path="/problem/limits"]',
         tab: "task",
         stage: "state",
-        text: t`How steep the cam may push. Allow less: the cam becomes larger.`,
+        text: t`How sharply the cam may be curved, against wear. Ask for a greater radius: the cam becomes larger.`,
         done: ({ problem, before }) => differs(problem.limits, before.limits),
       },
       SOLVE,

@@ -88,17 +88,19 @@ def test_a_valve_cam_is_led_through_by_keys(studio):
     for row in (0, 1):
         pressed(page, "Tab", f'[data-path="/problem/segments/{row}/lift"]')
         page.keyboard.press("Control+a")
-        page.keyboard.type("11")
-    assert [one["lift"] for one in stated(page)["segments"][:2]] == [11, 11]
+        page.keyboard.type("8")
+    assert [one["lift"] for one in stated(page)["segments"][:2]] == [8, 8]
     gone_to(page, "2 of 4")
-    pressed(page, "Tab", '[data-path="/problem/limits/pressure_angle"]')
-    less = stated(page)["limits"]["pressure_angle"] - 2
+    pressed(page, "Tab", '[data-path="/problem/limits/min_radius"]')
     page.keyboard.press("Control+a")
-    page.keyboard.type(str(less))
+    page.keyboard.type("6")
+    assert stated(page)["limits"]["min_radius"] == 6
     until(lambda: told(page).endswith("3 of 4"), 10, "the limit is seen")
     page.keyboard.press("Control+Enter")
     gone_to(page, "4 of 4")
     page.wait_for_selector("#plots .plot")
+    job = page.evaluate("id => fetch(`/v1/jobs/${id}`).then(answer => answer.json())", page.url[-26:])
+    assert job["result"]["designs"][0]["metrics"]["min_convex_radius"] >= 6.0 - 1e-6
     ended(page)
 
 
