@@ -144,12 +144,12 @@ function plot(plotted, input, lead, unit, { whole = false, range: looked } = {})
     ),
     typeof limit === "number" &&
       svg("line", { class: "limit", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(limit), y2: y(limit) }),
-    input && svg("text", { class: "tick", x: EDGE.left, y: HEIGHT - 5 }, `${Math.round(input[start])}${unit}`),
+    input && svg("text", { class: "tick", x: EDGE.left, y: HEIGHT - 5 }, `${shown(Math.round(input[start]))}${unit}`),
     input &&
       svg(
         "text",
         { class: "tick", x: WIDTH - EDGE.right, y: HEIGHT - 5, "text-anchor": "end" },
-        `${Math.round(input[end])}${unit}`,
+        `${shown(Math.round(input[end]))}${unit}`,
       ),
     ...all.map((series, k) => svg("path", { class: `series s${k}`, d: data(series) })),
     ...all.flatMap((series) => peaks(series, telling).map(([k, value]) => beyond(x(k), y(value), value > telling[1]))),

@@ -256,8 +256,11 @@ export function withoutDefaults(value, schema, root) {
     Object.entries(value).flatMap(([name, inner]) => {
       const of = properties[name] ?? additionalProperties;
       if (typeof of !== "object") return [[name, inner]];
-      const plain = JSON.stringify(resolved(of, root).default);
-      return plain === JSON.stringify(inner) ? [] : [[name, withoutDefaults(inner, of, root)]];
+      const open = resolved(of, root);
+      // What tells alternatives apart is needed.
+      return open.const === undefined && JSON.stringify(open.default) === JSON.stringify(inner)
+        ? []
+        : [[name, withoutDefaults(inner, of, root)]];
     }),
   );
 }

@@ -369,7 +369,10 @@ async function restore(reloaded = false) {
   busy(true);
   try {
     let job = await api.job(id);
-    if (posted.id !== id) state(job.problem);
+    if (posted.id !== id) {
+      const schema = kinds.find((one) => one.kind === job.problem.kind)?.schema;
+      state(schema ? withoutDefaults(job.problem, schema, schema) : job.problem);
+    }
     answered = posted.id === id ? posted.problem : structuredClone(problem);
     if (reloaded) editedBeside(id);
     compare();
