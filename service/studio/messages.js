@@ -113,9 +113,13 @@ export function prose(description = "") {
   return said.replace(/\b[a-z]{2,}(_[a-z]+)+\b/g, (name) => term(name));
 }
 
-/** A text of the service with powers of ten as the page writes them: 2.34e-06 is 2.34·10⁻⁶. @param {string} text */
+/**
+ * A text of the service with numbers as the page writes them: 2.34e-06 is 2.34·10⁻⁶, and 2 ° is 2°.
+ * @param {string} text
+ */
 export function readable(text) {
-  return text.replace(/(\d)e([+-])0*(\d+)\b/g, (_, digit, sign, power) => {
+  const begun = text.charAt(0).toUpperCase() + text.slice(1).replace(/(\d) °/g, "$1°");
+  return begun.replace(/(\d)e([+-])0*(\d+)\b/g, (_, digit, sign, power) => {
     const raised = [...power].map((one) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(one)]).join("");
     return `${digit}·10${sign === "-" ? "⁻" : ""}${raised}`;
   });

@@ -73,7 +73,7 @@ function plot(plotted, input, lead, unit, { whole = false, range: looked } = {})
   const calm = middle(known, extremes);
   const telling = whole ? extremes : calm;
   // A peak beyond all bounds makes nothing of the rest.
-  const noise = NOISE * (calm[1] - calm[0]);
+  const noise = NOISE * Math.max(calm[1] - calm[0], least);
   const cut = extremes.filter((one, k) => one !== telling[k]);
   let [low, high] = typeof limit === "number" ? [Math.min(telling[0], limit), Math.max(telling[1], limit)] : telling;
   const steady = high - low <= NOISE * Math.max(Math.abs(low), Math.abs(high), least);

@@ -23,7 +23,7 @@ import { Zoom } from "./zoom.js";
 const TOOLS = 117;
 
 /** The same of a row of buttons that stands without a picture. */
-const BUTTONS = 49;
+const BUTTONS = 52;
 
 const ARM = 44;
 
