@@ -25,8 +25,8 @@ SIZE = (1280, 800)
 KIND_SIZE = (1024, 640)
 """The same for a picture of a kind: the drawer is shut."""
 
-COLOURS = 64
-"""Of a picture: text stays legible, and a file has some forty kilobytes."""
+COLOURS = 160
+"""Of a picture: text stays legible, pale grounds keep their colour, and a file has some fifty kilobytes."""
 
 WAIT_MS = 200_000
 
