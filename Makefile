@@ -93,8 +93,9 @@ chromium:
 test-cad:
 	@$(MAKE) --no-print-directory VENV=.venv-cad cad-suite
 
+# Tests of one design, and of one file where it says nothing of designs, go to one process: solids are made once.
 cad-suite: $(VENV)/.cad-tests $(NODE)
-	$(BIN)/pytest -m "cad or not slow" -q tests/cad tests/service/test_parts.py
+	$(BIN)/pytest -m "cad or not slow" -q -n 2 --dist loadgroup tests/cad tests/service/test_parts.py
 
 $(VENV)/.cad-tests: requirements-dev.lock requirements-cad.lock tests/cad/mesh.lock pyproject.toml
 	@echo "installing the locked packages and the extra cad (once; a minute or two)"

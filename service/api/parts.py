@@ -19,7 +19,6 @@ from service.jobs.errands import Busy, GivenUp, Gone
 from service.jobs.schema import JobRow
 from service.parts.answer import AssemblyView
 from service.parts.extra import installed
-from service.parts.made import has_parts
 from service.parts.sizes import NEEDS_CAD, SOLID, AssemblyQuery, File, PartFile, PartsQuery, Refused, ViewQuery
 from service.parts.workshop import MAX_PARTS_S, Workshop, filled, part_filled
 from service.telemetry import span
@@ -187,14 +186,13 @@ async def assemblies_of(request: Request, bench: Workshop, job: JobRow, result: 
     """
     designs = from_json(result)["designs"][:most]
     found = {}
-    for n, design in enumerate(designs):
-        if has_parts(design["mechanism"]):
-            try:
-                found[n] = (await _made(request, bench, filled, _order(job, result, n, {}), "svg")).decode()
-            except Refusal as refusal:
-                if refusal.status not in (409, 422):
-                    raise
-                found[n] = " ".join(detail for _, detail in refusal.errors) or refusal.detail
+    for n in range(len(designs)):
+        try:
+            found[n] = (await _made(request, bench, filled, _order(job, result, n, {}), "svg")).decode()
+        except Refusal as refusal:
+            if refusal.status not in (409, 422):
+                raise
+            found[n] = " ".join(detail for _, detail in refusal.errors) or refusal.detail
     return found
 
 
@@ -254,10 +252,7 @@ async def _made(request: Request, bench: Workshop, work: Callable[..., Any], *ar
 def _checked(result: str, number: str) -> int:
     """The index of a design of a stored result that parts are made of."""
     designs = from_json(result)["designs"]
-    n = design_index(number, len(designs))
-    if not has_parts(designs[n]["mechanism"]):
-        raise not_found("There are no parts of this type of mechanism.")
-    return n
+    return design_index(number, len(designs))
 
 
 def _refused(detail: str) -> Refusal:

@@ -13,11 +13,14 @@ from service.render.page.table import table
 SLOT_CORNERS = 4
 """Of a slot with round ends, and of a bore with a keyway."""
 
-HEADER = ("part", "quantity", "material", "length", "width", "thickness", "holes", "plane", "standard")
+HEADER = ("part", "quantity", "material", "length", "width", "thickness", "holes", "plane", "standard", "mass")
 
 
 def bill(listed: Sequence[Item]) -> str:
-    """The items with lengths in millimetres; of what is round the length is along its axis, the width its diameter."""
+    """The items with lengths in millimetres; of what is round the length is along its axis, the width its diameter.
+
+    The mass of one is told where the answer states the density, in the answer's unit of mass.
+    """
     return table(HEADER, [row(item) for item in listed])
 
 
@@ -29,7 +32,8 @@ def row(item: Item) -> list[str]:
     if part.sort == "pin":
         sizes = (part.high - part.low, width, width)
     told = [millimetres(size) for size in sizes]
-    return [item.name, str(len(item.parts)), part.material, *told, holes(part), item.planes, part.standard]
+    mass = "" if part.mass is None else f"{part.mass:.9g}"
+    return [item.name, str(len(item.parts)), part.material, *told, holes(part), item.planes, part.standard, mass]
 
 
 def holes(part: Part) -> str:
@@ -51,7 +55,7 @@ def _shaped(outline: Outline) -> str:
     arcs = sum(1 for _, _, bulge in outline.edges() if bulge) if isinstance(outline, Loop) else 0
     if isinstance(outline, Loop) and len(outline.corners) == SLOT_CORNERS and arcs == 1:
         what = "bore with keyway"
-    elif isinstance(outline, Loop) and len(outline.corners) == SLOT_CORNERS:
+    elif isinstance(outline, Loop) and len(outline.corners) == SLOT_CORNERS and min(outline.bulges) >= 0.0:
         start, end, _ = max(outline.edges(), key=lambda edge: abs(edge[1] - edge[0]) if edge[2] == 0.0 else 0.0)
         along, what = (end - start) / abs(end - start), "slot"
     (low, high), (left, right) = extent(outline, along), extent(outline, 1j * along)

@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 import tempfile
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, lru_cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -61,6 +61,12 @@ def solid(part: Part) -> Solid:
     made.label = part.name
     made.color = b3d.Color(*(int(part.colour[k : k + 2], 16) / 255.0 for k in (1, 3, 5)))
     return made
+
+
+@lru_cache(maxsize=1)
+def solids_of(assembly: Assembly) -> tuple[Solid, ...]:
+    """The solids of all parts; those of the last assembly are kept, for its other files."""
+    return tuple(solid(part) for part in assembly.parts)
 
 
 def placed(assembly: Assembly, solids: Sequence[Solid], input_: float) -> list[Solid]:

@@ -42,7 +42,7 @@ def items(assembly: Assembly) -> list[Item]:
         numbers[kind] += 1
         name = kind if kinds.count(kind) == 1 and len(parts) > 1 else f"{kind}_{numbers[kind]}"
         found.append(Item(parts[0].name if len(parts) == 1 else name, tuple(parts)))
-    order = ("base", "link", "block", "gear", "cam", "pin", "key", "ring", "washer", "spacer")
+    order = ("base", "link", "block", "gear", "cam", "wheel", "pin", "key", "ring", "washer", "spacer")
     return sorted(found, key=lambda item: order.index(item.part.sort))
 
 

@@ -7,7 +7,7 @@ are refused, so that none is stated in vain. Makers are imported when one is fir
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from service.parts.sizes import NotMade, PartsQuery
@@ -15,7 +15,7 @@ from service.parts.sizes import NotMade, PartsQuery
 if TYPE_CHECKING:
     from service.parts.model import Assembly
 
-__all__ = ["NotMade", "has_parts", "made"]
+__all__ = ["NotMade", "made"]
 
 Make = Callable[[Any, Any, PartsQuery], "Assembly"]
 
@@ -94,6 +94,12 @@ def _layshaft_gearboxes() -> Make:
     return layshaft_parts
 
 
+def _flywheels() -> Make:
+    from service.parts.flywheel import flywheel_parts
+
+    return flywheel_parts
+
+
 OF_GEARS = frozenset({"process", "thickness", "clearance", "bore", "face_width", "scale"})
 """What is asked of trains of gears."""
 
@@ -105,6 +111,7 @@ MAKERS: dict[str, Maker] = {
     "planetary_train": Maker(_planetary_trains, OF_GEARS),
     "train_series": Maker(_series, OF_GEARS),
     "layshaft_gearbox": Maker(_layshaft_gearboxes, OF_GEARS),
+    "flywheel": Maker(_flywheels, OF_GEARS - {"face_width"}),
     "cam": Maker(_cams, ONE_CYCLE),
     "barrel_cam": Maker(_barrels, ONE_CYCLE),
     "geneva_external": Maker(_genevas, ONE_CYCLE),
@@ -117,13 +124,13 @@ MAKERS: dict[str, Maker] = {
 
 NOT_BUILT = {
     "gearbox": "its gears are shifted along their shafts so that one pair of a stage is in mesh at a time",
+    "rotor": "a rotor's answer states masses, radii and angles to correct a rotor with, and no shape of it; ask for "
+    "`designs/{n}.csv` or `.dxf`, which have these, and correct the rotor that you have",
+    "engine": "an engine's answer states crank angles, a firing order and masses that balance it, and no diameter or "
+    "width of a bore, journal or web; ask for `designs/{n}.csv` or `.dxf`, which have these, or for the parts of one "
+    "cylinder as a slider-crank of `kind` `motion`",
 }
-"""Types of mechanism of kinds that have parts otherwise, and why these have none."""
-
-
-def has_parts(mechanism: Mapping[str, Any]) -> bool:
-    """Whether there is a maker for a mechanism, as an answer has it, or a word why there is none."""
-    return mechanism["type"] in NOT_BUILT or _maker("skeleton" in mechanism, mechanism["type"]) is not None
+"""Types of mechanism that have no parts, why, and what to ask for instead."""
 
 
 def made(design: Any, problem: Any, query: PartsQuery) -> Assembly:
@@ -144,8 +151,7 @@ def made(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     mechanism = design.mechanism
     maker = _maker(hasattr(mechanism, "skeleton"), mechanism.type)
     if maker is None:
-        reason = NOT_BUILT.get(mechanism.type)
-        raise NotMade(f"There are no parts of this type of mechanism{f': {reason}' if reason else ''}.")
+        raise NotMade(f"There are no parts of this type of mechanism: {NOT_BUILT[mechanism.type]}.")
     for field in PartsQuery.model_fields:
         if field in query.model_fields_set and getattr(query, field) is not None and field not in maker.fields:
             raise NotMade(f"Parts of this type of mechanism have no {field}.", f"/query/{field}")

@@ -17,10 +17,10 @@ from service.parts.shapes import Region, area, extent
 Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
 
-Sort = Literal["base", "link", "block", "gear", "cam", "pin", "ring", "washer", "spacer", "key"]
+Sort = Literal["base", "link", "block", "gear", "cam", "wheel", "pin", "ring", "washer", "spacer", "key"]
 """What a part is; shafts are pins."""
 
-FLAT: tuple[Sort, ...] = ("base", "link", "block", "gear", "cam")
+FLAT: tuple[Sort, ...] = ("base", "link", "block", "gear", "cam", "wheel")
 """Parts that are cut from a sheet, where they are prisms; all others are turned or bought."""
 
 InputField = Literal["input_angle", "input_place"]
@@ -149,6 +149,8 @@ class Part:
         What parts that are made alike have in common, where that is not to be seen from their bodies; or empty.
     unrolled : Development, optional
         What is drawn of one that is cut into a round bar.
+    mass : float, optional
+        Where the answer states the density, in the answer's unit of mass.
     """
 
     name: str
@@ -164,6 +166,7 @@ class Part:
     round: bool = False
     like: str = ""
     unrolled: Development | None = None
+    mass: float | None = None
 
     @property
     def low(self) -> float:
@@ -199,9 +202,9 @@ class Part:
         return math.fsum(body.volume for body in self.bodies)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Assembly:
-    """The parts of a design, in millimetres.
+    """The parts of a design, in millimetres; one is equal to itself alone.
 
     Attributes
     ----------

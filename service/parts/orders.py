@@ -63,7 +63,7 @@ def _file(order: Order, file: File) -> bytes:
     if file == "svg":
         draw = isometric_sheet if assembly.parallel else painted_sheet
         return draw(assembly, _title(order), at).encode()
-    solids = cad.placed(assembly, [cad.solid(part) for part in assembly.parts], at)
+    solids = cad.placed(assembly, cad.solids_of(assembly), at)
     return cad.step(solids, "assembly") if file == "step" else cad.glb(solids, "assembly")
 
 

@@ -87,9 +87,9 @@ def zipped(files: dict[str, bytes]) -> bytes:
 
 
 def _solids(assembly: Assembly, listed: list[Item], process: Process) -> dict[str, bytes]:
-    solids = {part.name: cad.solid(part) for part in assembly.parts}
-    standing = cad.placed(assembly, [*solids.values()], assembly.motion.reference)
-    files = {"assembly.step": cad.step(standing, "assembly")}
+    made = cad.solids_of(assembly)
+    solids = {part.name: shape for part, shape in zip(assembly.parts, made, strict=True)}
+    files = {"assembly.step": cad.step(cad.placed(assembly, made, assembly.motion.reference), "assembly")}
     lying = {item.name: cad.lying(solids[item.part.name], item.part) for item in listed}
     if process == "mill":
         files |= {

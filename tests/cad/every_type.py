@@ -117,6 +117,7 @@ MADE: dict[Key, Row] = {
     ("cam", "barrel_cam"): Row(BARREL),
     ("balancing", "skeleton"): _example("balancing", "skeleton"),
     ("spring_balancing", "skeleton"): _example("spring_balancing", "skeleton"),
+    ("flywheel", "flywheel"): _example("flywheel", "flywheel"),
     ("indexing", "geneva_external"): Row(DRIVES["external"]),
     ("indexing", "geneva_internal"): Row(DRIVES["internal"]),
     ("indexing", "geneva_spherical"): Row(SPHERICAL),
@@ -132,9 +133,8 @@ STAGES: dict[Key, Row] = {
 
 REFUSED: dict[Key, tuple[Row, str]] = {
     ("gearbox", "gearbox"): (_example("gearbox", "gearbox"), "its gears are shifted along their shafts"),
-    ("balancing", "rotor"): (_example("balancing", "rotor"), "no parts of this type of mechanism"),
-    ("flywheel", "flywheel"): (_example("flywheel", "flywheel"), "no parts of this type of mechanism"),
-    ("engine", "engine"): (_example("engine", "engine"), "no parts of this type of mechanism"),
+    ("balancing", "rotor"): (_example("balancing", "rotor"), "no shape of it"),
+    ("engine", "engine"): (_example("engine", "engine"), "no diameter or width of a bore, journal or web"),
 }  # fmt: skip
 """Why there are none of the others, in words of the answer."""
 

@@ -1,7 +1,8 @@
 """Whether the meshes of an assembly, as its files have them, share room while it moves: boxes first, then manifold3d.
 
 The triangles are those of STL and 3MF files, and every part goes where the motion takes it. Of each pair of parts the
-second is moved as the first sees it; places that come again are looked at once, and so are parts that go together.
+second is moved as the first sees it; places that come again are looked at once, and so are parts that go together. A
+round part is the same solid however it has turned about its axis, so that a pin in a hole is looked at once.
 
 What two meshes share is judged by its *layer*, its volume V over its surface S: the rounding of a face that rests on
 another is a layer of no thickness, however wide it is. Parts that move against each other have a clearance that is more
@@ -23,7 +24,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.parts import cad
+from service.parts.bodies import Prism
 from service.parts.model import Assembly, Part
+from service.parts.shapes import Disc
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -87,20 +90,28 @@ def places(whole: Assembly, part: Part, inputs: Real) -> Real:
 def looked_through(whole: Assembly, meshes: Sequence[Manifold], inputs: Real) -> Looked:
     """All pairs of parts at all inputs."""
     moved = [places(whole, part, inputs) for part in whole.parts]
-    boxes = [np.array(mesh.bounding_box()).reshape(2, 3) for mesh in meshes]
+    boxes = [_box(mesh) for mesh in meshes]
     tried = 0
     found: list[Shared] = []
     for (n, one), (m, other) in combinations(enumerate(whole.parts), 2):
         towards = np.linalg.inv(moved[n]) @ moved[m]
         rounding = ROUNDING * whole.size
+        together = len(_different(towards, rounding)) == 1
+        towards = _unturned(one, other, towards)
         different = _different(towards, rounding)
-        one_surface = len(different) == 1 or frozenset((one.name, other.name)) in whole.touching
+        one_surface = together or frozenset((one.name, other.name)) in whole.touching
         worst: Shared | None = None
         for k in different:
             if not _near(boxes[n], boxes[m], towards[k]):
                 continue
+            second = meshes[m].transform(np.ascontiguousarray(towards[k, :3]))
+            if not _meet(boxes[n], _box(second)):
+                continue
+            back = np.ascontiguousarray(np.linalg.inv(towards[k])[:3])
+            if not _meet(_box(meshes[n].transform(back)), boxes[m]):
+                continue
             tried += 1
-            common = meshes[n] ^ meshes[m].transform(np.ascontiguousarray(towards[k, :3]))
+            common = meshes[n] ^ second
             if (volume := common.volume()) > 0.0:
                 layer = volume / common.surface_area()
                 if worst is None or layer > worst.layer:
@@ -109,6 +120,31 @@ def looked_through(whole: Assembly, meshes: Sequence[Manifold], inputs: Real) ->
         if worst is not None:
             found.append(worst)
     return Looked(tried, found)
+
+
+def _unturned(one: Part, other: Part, towards: Real) -> Real:
+    """Places of the second part as the first sees it, turned back about the axis of either, if that is round."""
+    before, after = _axis(other), _axis(one)
+    axis = after if before is None else before
+    level = (np.abs(towards[:, 2, :3] - np.eye(3)[2]) < ROUNDING).all()
+    if axis is None or not level:
+        return towards
+    turn = towards[:, 0, 0] + 1j * towards[:, 1, 0]
+    shift = towards[:, 0, 3] + 1j * towards[:, 1, 3]
+    # A turn back about the axis comes before z -> turn z + shift, or after it.
+    shift = axis + (shift - axis) / turn if before is None else shift + turn * axis - axis
+    back = np.tile(np.eye(4), (len(towards), 1, 1))
+    back[:, 0, 3], back[:, 1, 3], back[:, 2, 3] = shift.real, shift.imag, towards[:, 2, 3]
+    return back
+
+
+def _axis(part: Part) -> complex | None:
+    """The axis of a part that consists of discs and rings about it."""
+    if not all(isinstance(body, Prism) for body in part.bodies):
+        return None
+    outlines = [outline for body in part.bodies for outline in (body.region.outer, *body.region.holes)]
+    centres = {outline.centre if isinstance(outline, Disc) else None for outline in outlines}
+    return centres.pop() if len(centres) == 1 else None
 
 
 def _different(towards: Real, rounding: float) -> Real:
@@ -121,4 +157,13 @@ def _near(one: Real, other: Real, towards: Real) -> bool:
     """Whether the box of the first meets the one about the box of the second where it is moved to."""
     middle = towards[:3, :3] @ other.mean(axis=0) + towards[:3, 3]
     half = np.abs(towards[:3, :3]) @ (0.5 * (other[1] - other[0]))
-    return bool(((middle - half < one[1]) & (one[0] < middle + half)).all())
+    return _meet(one, np.stack([middle - half, middle + half]))
+
+
+def _box(mesh: Manifold) -> Real:
+    """Its least and greatest coordinates, shape (2, 3)."""
+    return np.array(mesh.bounding_box()).reshape(2, 3)
+
+
+def _meet(one: Real, other: Real) -> bool:
+    return bool(((other[0] < one[1]) & (one[0] < other[1])).all())

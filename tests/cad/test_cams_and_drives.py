@@ -29,7 +29,7 @@ from tests.cad.readers import assert_valid_3mf, assert_valid_glb
 from tests.service.test_parts_of_barrels import BARREL
 from tests.service.test_parts_of_cams import PROBLEMS
 
-pytestmark = [pytest.mark.cad, pytest.mark.timeout(600)]
+pytestmark = [pytest.mark.cad, pytest.mark.timeout(600), pytest.mark.xdist_group("cams_and_drives")]
 
 ALL = {**PROBLEMS, "barrel": BARREL}
 OTHERS = ("arm", "flat", "flat_arm", "groove", "conjugate")
@@ -83,7 +83,7 @@ def test_solids_are_valid_and_as_large_as_the_model_says(name: str) -> None:
 def test_no_two_meshes_share_room_at_72_inputs(name: str) -> None:
     whole = assembly(name)
     looked = looked_through(whole, meshed(solids(name)), whole.motion.inputs(72))
-    assert looked.tried > 72
+    assert looked.tried >= len(whole.parts)
     assert looked.overlaps == []
 
 

@@ -32,7 +32,7 @@ from tests.service.stated.linkages import DWELL, LINE, STEERING
 from tests.service.test_parts import MOTION, SLIDER
 from tests.service.test_parts_of_geared_linkages import planted
 
-pytestmark = [pytest.mark.cad, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.cad, pytest.mark.timeout(300), pytest.mark.xdist_group("solids")]
 
 PROBLEMS: dict[str, dict[str, Any]] = {
     "fourbar": MOTION,
@@ -121,7 +121,7 @@ def nearest(places: set[complex], joint: complex) -> complex:
 def test_geared_links_have_room_at_72_inputs() -> None:
     whole = assembly(GEARED)
     looked = looked_through(whole, meshed(solids(GEARED)), whole.motion.inputs(72))
-    assert looked.tried > 72
+    assert looked.tried >= len(whole.parts)
     assert looked.overlaps == []
 
 

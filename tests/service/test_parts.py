@@ -14,7 +14,8 @@ import pytest
 
 from service.parts.extra import installed
 from tests.service.answers import finished
-from tests.service.stated.shafts import FLYWHEEL
+
+pytestmark = pytest.mark.xdist_group("parts")
 
 THREE = [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 40.0, "y": 15.0, "angle": -25.0},
          {"x": 75.0, "y": 5.0, "angle": -60.0}]  # fmt: skip
@@ -181,9 +182,7 @@ def test_without_the_extra_there_are_outlines_alone(client: Any, jobs: Any) -> N
         assert client.get(f"{jobs['fourbar']}.{form}").status_code == (200 if installed() else 501)
 
 
-def test_there_are_no_parts_of_what_is_no_linkage_or_of_no_design(client: Any, jobs: Any) -> None:
-    wheel = finished(client, FLYWHEEL)
-    assert client.get(f"/v1/jobs/{wheel['id']}/designs/0/parts").status_code == 404
+def test_there_are_no_parts_of_no_design(client: Any, jobs: Any) -> None:
     assert client.get(f"{jobs['fourbar'][:-1]}7/parts").status_code == 404
 
 

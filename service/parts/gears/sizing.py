@@ -69,12 +69,12 @@ class GearSizing:
         self.factor = self.unit * query.scale
         self.path = "/query/scale" if query.bore is None else "/query/bore"
 
-    def judge_size(self, size: float) -> None:
+    def judge_size(self, size: float, what: str = "train") -> None:
         """Refuse what is larger than anything that is made."""
         if size > LARGEST_ASSEMBLY:
             most = rounded_down(self.query.scale * LARGEST_ASSEMBLY / size)
             raise NotMade(
-                f"The train is about {size / 1000.0:.4g} m large at this scale, and parts are made up to "
+                f"The {what} is about {size / 1000.0:.4g} m large at this scale, and parts are made up to "
                 f"{LARGEST_ASSEMBLY / 1000.0:g} m; scale {most:g} is the greatest that works.", "/query/scale",
             )  # fmt: skip
 

@@ -1,0 +1,169 @@
+"""Parts of a flywheel: the wheel on its keyed shaft between two plates.
+
+The wheel is one plate, as thick as the answer says. A disc has a bore with a keyway, which the answer's full disc has
+not; shaft and key fill it and turn with it. A rim has arms and a hub beside, which the answer's ring has not. The bill
+has the mass of the wheel as it is made, and the README how that differs from the answer's.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from service.parts.bodies import Prism
+from service.parts.colours import LINK_COLOURS
+from service.parts.gears.housing import Housing, Shaft, stacked
+from service.parts.gears.keys import key_for, keyed_bore
+from service.parts.gears.motion import TrainMotion, Turning
+from service.parts.gears.sizing import GearSizing
+from service.parts.gears.wheels import looked_at
+from service.parts.model import Assembly, Carrier, Part
+from service.parts.shapes import Disc, Loop, Region, area
+from service.parts.sizes import (
+    CLEARANCES,
+    LOOSEST,
+    THINNEST_PIN,
+    TIGHTEST,
+    WIDEST_PIN,
+    WIDTH,
+    NotMade,
+    PartsQuery,
+    Sizes,
+    judged,
+    pin_below,
+    rounded_down,
+    sheet_for,
+)
+
+BORE = 0.2
+"""The thickest shaft where none is stated, as a share of the wheel's radius."""
+
+HUB, ARMS, ARM = 1.0, 5, 0.4
+"""Radius of a hub, how many arms a rim has, and their width; lengths in diameters of the shaft."""
+
+MOST_OF_WALL = 3.5
+"""The thickest shaft where none is stated, in walls of a rim."""
+
+WINDOW = 0.5
+"""Least width of the windows between hub and rim, in diameters of the shaft; narrower ones are not cut."""
+
+ON_SHAFT = Carrier("flywheel_shaft", None)
+
+
+def flywheel_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+    """The parts of a flywheel.
+
+    Parameters
+    ----------
+    design : FlywheelDesign
+    problem : FlywheelProblem
+    query : PartsQuery
+        Lengths in the unit of the problem.
+
+    Raises
+    ------
+    NotMade
+        Where the wheel has no room for such a shaft.
+    """
+    sizing = GearSizing(query, problem.length_unit)
+    wheel = design.mechanism
+    sizing.judge_size(2.0 * wheel.radius * sizing.factor, "flywheel")
+    outer, inner, thick = (sizing.factor * length for length in (wheel.radius, wheel.inner_radius, wheel.thickness))
+    density = f"{wheel.density:.6g} kg/m³" if problem.units == "si" else f"density {wheel.density:.6g}"
+    # In the answer's unit of mass: problem.scale is the length unit in that of the density.
+    to_cubic_millimetre = (problem.scale / sizing.unit) ** 3
+    made = _Wheel(outer, inner, thick, _sizes(outer, inner, sizing), wheel.density * to_cubic_millimetre)
+    return made.assembly(sizing, density, "kg" if problem.units == "si" else "units of mass")
+
+
+def _sizes(outer: float, inner: float, sizing: GearSizing) -> Sizes:
+    """Sizes with the bore that is stated, or the thickest that the wheel has room for."""
+    query, unit = sizing.query, sizing.unit
+    room = inner or outer
+    most = min(BORE * outer, room / (HUB + WINDOW))
+    if inner:
+        most = min(most, MOST_OF_WALL * (outer - inner))
+    bore = pin_below(min(most, WIDEST_PIN)) if query.bore is None else query.bore * unit
+    if not THINNEST_PIN <= bore <= WIDEST_PIN:
+        raise NotMade(
+            f"Shafts of {bore / unit:.6g} {sizing.words} are none that are made; from {THINNEST_PIN / unit:g} to "
+            f"{WIDEST_PIN / unit:g} {sizing.words} they are.", sizing.path,
+        )  # fmt: skip
+    if HUB * bore > room:
+        where = "within the rim" if inner else "in the disc"
+        raise NotMade(
+            f"A bore of {bore / unit:.6g} {sizing.words} leaves no room for a hub {where}; up to "
+            f"{rounded_down(room / HUB / unit):g} {sizing.words} do.", "/query/bore",
+        )  # fmt: skip
+    usual = min(max(CLEARANCES[query.process], 2.0 * TIGHTEST * bore), 0.5 * LOOSEST * bore)
+    clearance = usual if query.clearance is None else query.clearance * unit
+    thickness = sheet_for(bore) if query.thickness is None else query.thickness * unit
+    sizes = Sizes(query.process, WIDTH * bore, bore, thickness, clearance)
+    judged(sizes, unit)
+    return sizes
+
+
+@dataclass(frozen=True)
+class _Wheel:
+    """A flywheel in millimetres; ``inner`` is 0 of a disc, ``density`` a mass to a cubic millimetre."""
+
+    outer: float
+    inner: float
+    thick: float
+    sizes: Sizes
+    density: float
+
+    def assembly(self, sizing: GearSizing, density: str, mass_unit: str) -> Assembly:
+        """The wheel on its shaft, if it has room there."""
+        sizes = self.sizes
+        levels = stacked([sizes.thickness, self.thick, sizes.thickness], sizes)
+        bore = keyed_bore(0j, sizes.pin, key_for(sizes.pin), sizes.clearance)
+        windows = self._windows()
+        region = Region(Disc(0j, self.outer), (bore, *windows))
+        body = Prism(region, levels[1].low, levels[1].high)
+        wheel = Part(
+            "flywheel", "flywheel", "wheel", ON_SHAFT, (body,), 1.0 + 0.0j, (1, 1), density, LINK_COLOURS[0],
+            mass=self.density * body.volume,
+        )  # fmt: skip
+        shaft = Shaft("flywheel shaft", ON_SHAFT, 0j, (0, 2), keyed=(1,), ends=True)
+        housing = Housing(sizes, levels, (shaft,), ((0j, self.outer),))
+        motion = TrainMotion({ON_SHAFT.link: Turning(0j, 1.0)}, 2.0 * self.outer)
+        parts = (wheel, *housing.parts())
+        notes = self._notes(wheel, bore, windows, mass_unit)
+        return looked_at(Assembly(parts, motion, 1, 2, sizing.factor, sizing.query.scale, notes), sizes, sizing)
+
+    def _windows(self) -> tuple[Loop, ...]:
+        """What is cut out between the hub, the arms and the rim."""
+        hub, half = HUB * self.sizes.pin, 0.5 * ARM * self.sizes.pin
+        if self.inner < hub + WINDOW * self.sizes.pin:
+            return ()
+        far, near = (math.asin(half / radius) for radius in (self.inner, hub))
+        pitch = 2.0 * math.pi / ARMS
+        corners = [
+            cmath.rect(self.inner, far), cmath.rect(self.inner, pitch - far),
+            cmath.rect(hub, pitch - near), cmath.rect(hub, near),
+        ]  # fmt: skip
+        bulges = math.tan(0.25 * (pitch - 2.0 * far)), 0.0, -math.tan(0.25 * (pitch - 2.0 * near)), 0.0
+        # The keyway points along the first arm.
+        turns = [cmath.exp(1j * k * pitch) for k in range(ARMS)]
+        return tuple(Loop(tuple(turn * z for z in corners), bulges) for turn in turns)
+
+    def _notes(self, wheel: Part, bore: Loop, windows: tuple[Loop, ...], mass_unit: str) -> tuple[str, ...]:
+        """How mass and moment of inertia differ from the answer's."""
+        assert wheel.mass is not None
+        stated = self.density * self.thick * math.pi * (self.outer**2 - self.inner**2)
+        if not self.inner:
+            lost = self.density * self.thick * area(bore)
+            share = 0.5 * lost * (0.5 * self.sizes.pin) ** 2 / (0.5 * stated * self.outer**2)
+            return (
+                f"The answer's disc of {stated:.6g} {mass_unit} is full: bore and keyway take {lost:.4g} {mass_unit} "
+                f"of it and {share:.2g} of its moment of inertia; the shaft and the key that fill them turn with it.",
+            )
+        more = wheel.mass - stated
+        arms = f"hub and {ARMS} arms" if windows else "plate within it"
+        return (
+            f"The rim alone has the mass of the answer, {stated:.6g} {mass_unit}, and its moment of inertia; the "
+            f"{arms} add {more:.4g} {mass_unit}, so that the speed varies by less than is allowed.",
+        )
