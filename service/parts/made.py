@@ -94,6 +94,12 @@ def _layshaft_gearboxes() -> Make:
     return layshaft_parts
 
 
+def _sliding_gearboxes() -> Make:
+    from service.parts.gears.sliding import sliding_parts
+
+    return sliding_parts
+
+
 def _flywheels() -> Make:
     from service.parts.flywheel import flywheel_parts
 
@@ -111,6 +117,7 @@ MAKERS: dict[str, Maker] = {
     "planetary_train": Maker(_planetary_trains, OF_GEARS),
     "train_series": Maker(_series, OF_GEARS),
     "layshaft_gearbox": Maker(_layshaft_gearboxes, OF_GEARS),
+    "gearbox": Maker(_sliding_gearboxes, OF_GEARS | {"speed"}),
     "flywheel": Maker(_flywheels, OF_GEARS - {"face_width"}),
     "cam": Maker(_cams, ONE_CYCLE),
     "barrel_cam": Maker(_barrels, ONE_CYCLE),
@@ -123,7 +130,6 @@ MAKERS: dict[str, Maker] = {
 
 
 NOT_BUILT = {
-    "gearbox": "its gears are shifted along their shafts so that one pair of a stage is in mesh at a time",
     "rotor": "a rotor's answer states masses, radii and angles to correct a rotor with, and no shape of it; ask for "
     "`designs/{n}.csv` or `.dxf`, which have these, and correct the rotor that you have",
     "engine": "an engine's answer states crank angles, a firing order and masses that balance it, and no diameter or "

@@ -35,6 +35,9 @@ LARGEST_ASSEMBLY = 20_000.0
 
 MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 
+MOST_SPEEDS = 1000
+"""Of a gearbox that a request may name."""
+
 MOST_POSITIONS = 720
 """At which an assembly is shown."""
 
@@ -97,6 +100,11 @@ class PartsQuery(BaseModel):
     )
     face_width: Annotated[float, Field(gt=0.0, le=LARGEST)] | None = Field(
         default=None, description="Of gears; if left out as the answer has it, or six modules."
+    )
+    speed: Annotated[int, Field(ge=1, le=MOST_SPEEDS)] | None = Field(
+        default=None,
+        description="Of a gearbox of sliding gears: which of its speeds is engaged, from 1, in the order of "
+        "`metrics.speeds`; 1 if left out.",
     )
     scale: Annotated[float, Field(ge=SMALLEST_SCALE, le=LARGEST_SCALE)] = Field(
         default=1.0, description="How much larger than the design it is built, as for a mechanism of unit size."

@@ -102,6 +102,7 @@ MADE: dict[Key, Row] = {
     ("train_series", "train_series"): Row(
         {"kind": "train_series", "ratio": "6", "units": [{"type": "gear_train", "max_stages": 1}] * 2, "max_designs": 1}
     ),
+    ("gearbox", "gearbox"): _example("gearbox", "gearbox"),
     ("layshaft_gearbox", "layshaft_gearbox"): _example("layshaft_gearbox", "layshaft_gearbox"),
     ("function", "fourbar"): _example("function", "fourbar"),
     ("function", "slider_crank"): Row(
@@ -132,7 +133,6 @@ STAGES: dict[Key, Row] = {
 """Trains whose shafts are not parallel, which have the type of all trains: by the type of their stage."""
 
 REFUSED: dict[Key, tuple[Row, str]] = {
-    ("gearbox", "gearbox"): (_example("gearbox", "gearbox"), "its gears are shifted along their shafts"),
     ("balancing", "rotor"): (_example("balancing", "rotor"), "no shape of it"),
     ("engine", "engine"): (_example("engine", "engine"), "no diameter or width of a bore, journal or web"),
 }  # fmt: skip

@@ -48,6 +48,8 @@ class Shaft:
         Levels of what turns on it.
     spanned : tuple of int
         Levels from which a wheel goes on to the next, so that nothing stands between these on the shaft.
+    sliding : tuple of pair of int
+        The lowest and the highest level of each range in which wheels slide on a feather key, as long as the range.
     ends : bool
         Whether one end stands out of its plate, to be turned, or to turn something.
     below : bool
@@ -66,6 +68,7 @@ class Shaft:
     below: bool = False
     towards: complex = 1.0 + 0.0j
     spanned: tuple[int, ...] = ()
+    sliding: tuple[tuple[int, int], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -148,14 +151,24 @@ class Housing:
             seat(shaft.name, str(level), shaft.carrier, shaft.axis, self.levels[level], level, sizes, shaft.towards)
             for level in sorted(shaft.keyed)
         ]
+        seated += [
+            seat(
+                shaft.name, f"{low}_{high}", shaft.carrier, shaft.axis,
+                Level(self.levels[low].low, self.levels[high].high), low, sizes, shaft.towards, top=high,
+            )
+            for low, high in shaft.sliding
+        ]  # fmt: skip
+        seated.sort(key=lambda one: one[0].low)
         seats, keys = [prism for prism, _ in seated], [key for _, key in seated]
         inside = {level for level in (0, self.top) if level in shaft.reach}
-        levels = sorted({*shaft.keyed, *shaft.free, *inside})
+        slid = {level for low, high in shaft.sliding for level in range(low, high + 1)}
+        levels = sorted({*shaft.keyed, *shaft.free, *slid, *inside})
+        spanned = (*shaft.spanned, *(level for low, high in shaft.sliding for level in range(low, high)))
         stub = STUB * sizes.pin if shaft.ends else 0.0
         down = shaft.reach[1] < self.top or shaft.below
         return [
             *self._stack(
-                name, shaft.name, shaft.carrier, shaft.axis, shaft.reach, levels, seats, stub, down, shaft.spanned
+                name, shaft.name, shaft.carrier, shaft.axis, shaft.reach, levels, seats, stub, down, spanned
             ),
             *keys,
         ]
@@ -188,18 +201,24 @@ class Housing:
 
 def seat(
     shaft: str, number: str, carrier: Carrier, axis: complex, level: Level, plane: int, sizes: Sizes,
-    towards: complex = 1.0 + 0.0j,
+    towards: complex = 1.0 + 0.0j, *, top: int | None = None,
 ) -> tuple[Prism, Part]:  # fmt: skip
-    """What a shaft is where it has a wheel on it, and the key there."""
+    """What a shaft is where it has a wheel on it, and the key there.
+
+    Parameters
+    ----------
+    top : int or None
+        The highest plane of a feather key, along which wheels slide from ``plane`` on.
+    """
     key, low, high = key_for(sizes.pin), level.low + sizes.play, level.high - sizes.play
     part = Part(
         name=f"key_{plain(shaft)}_{number}",
-        described=f"key of the {shaft}",
+        described=f"{'key' if top is None else 'feather key'} of the {shaft}",
         sort="key",
         carrier=carrier,
         bodies=(Prism(Region(key_section(axis, sizes.pin, key, towards)), low, high),),
         along=towards,
-        planes=(plane, plane),
+        planes=(plane, plane if top is None else top),
         material=MATERIALS[sizes.process][1],
         colour=FASTENER_COLOUR,
         standard=f"{key.standard} x {high - low:g}" if key.standard else "",

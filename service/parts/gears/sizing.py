@@ -125,8 +125,8 @@ class GearSizing:
         if not fits:
             thinnest = self._with(PINS[0], smallest)
             needed = max(
-                _deep(thinnest) / (smallest.root_radius - WALL_OF_TEETH * smallest.module),
-                (_deep(thinnest) + WALL * thinnest.pin) / smallest.root_radius,
+                keyway_reach(thinnest) / (smallest.root_radius - WALL_OF_TEETH * smallest.module),
+                (keyway_reach(thinnest) + WALL * thinnest.pin) / smallest.root_radius,
                 thinnest.pin / most,
             )
             raise NotMade(
@@ -184,7 +184,7 @@ class GearSizing:
 
     def _fits(self, sizes: Sizes, smallest: Gear) -> bool:
         wall = max(WALL_OF_TEETH * smallest.module, WALL * sizes.pin)
-        return _deep(sizes) + wall <= smallest.root_radius
+        return keyway_reach(sizes) + wall <= smallest.root_radius
 
 
 def _beside(sizes: Sizes) -> float:
@@ -192,7 +192,7 @@ def _beside(sizes: Sizes) -> float:
     return 0.5 * sizes.collar + sizes.apart
 
 
-def _deep(sizes: Sizes) -> float:
+def keyway_reach(sizes: Sizes) -> float:
     """From the axis to the corners of the keyway."""
     key = key_for(sizes.pin)
     return math.hypot(0.5 * sizes.pin + key.in_hub + sizes.clearance, 0.5 * key.width + sizes.clearance)

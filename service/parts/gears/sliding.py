@@ -1,0 +1,254 @@
+"""Parts of a gearbox of sliding gears, in one of its speeds.
+
+Shafts stand so that they are held in every speed: a sliding gear is looked at in all levels that it comes to. Every gear
+has a tooth at its keyway, and whole shafts are turned so that the engaged pairs mesh; the parts of all speeds are thus
+the same, and only where they stand differs.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+from kinematics.errors import DimensionError
+from kinematics.gear.teeth import Gear
+from service.parts.bodies import Prism
+from service.parts.colours import LINK_COLOURS
+from service.parts.fasteners import MATERIALS
+from service.parts.gears.clusters import Cluster, clusters
+from service.parts.gears.housing import Housing, Level, Shaft, stacked
+from service.parts.gears.keys import key_for, keyed_bore
+from service.parts.gears.motion import TrainMotion, Turning
+from service.parts.gears.ordinary import MOST_TURNS
+from service.parts.gears.sizing import GearSizing, keyway_reach
+from service.parts.gears.stand import Room, Stand, Wheel, stood
+from service.parts.gears.wheels import looked_at, wheel_parts
+from service.parts.model import Assembly, Carrier, Part
+from service.parts.shapes import Disc, Region
+from service.parts.sizes import WALL, NotMade, PartsQuery, Sizes
+from service.render.gears.placed import facing
+
+Teeth = tuple[tuple[tuple[int, int], ...], ...]
+"""Driver and driven by stage and pair."""
+
+
+def sliding_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
+    """The parts of a gearbox, in the speed that is asked for.
+
+    Parameters
+    ----------
+    design : GearboxDesign
+    problem : GearboxProblem
+    query : PartsQuery
+        Lengths in the unit of the problem.
+
+    Raises
+    ------
+    NotMade
+        Where it has no such speed, or there is no room for such shafts.
+    """
+    speeds = design.metrics.speeds
+    number = 1 if query.speed is None else query.speed
+    if number > len(speeds):
+        raise NotMade(f"This gearbox has the speeds 1 to {len(speeds)}.", "/query/speed")
+    sizing = GearSizing(query, problem.length_unit)
+    teeth = tuple(tuple((pair.driver, pair.driven) for pair in stage.pairs) for stage in design.mechanism.stages)
+    module, angle = sizing.factor * design.mechanism.module, math.radians(design.mechanism.pressure_angle)
+    gears = {count: Gear(count, module, angle) for pairs in teeth for pair in pairs for count in pair}
+    sizing.judge_size(module * sum(sum(pairs[0]) for pairs in teeth))
+    told = f"Speed {number} of {len(speeds)} is shown, {speeds[number - 1].speed:.6g} rev/min of the last shaft"
+    smallest = min(gears.values(), key=lambda gear: gear.root_radius)
+    for sizes in sizing.offered(smallest):
+        task = _Task(teeth, gears, tuple(speeds[number - 1].engaged), told, sizes, sizing)
+        stand = task.stand()
+        if stand is not None:
+            try:
+                return task.made(stand)
+            except DimensionError as error:
+                raise NotMade(f"The gears cannot be cut: {error}.") from None
+    raise NotMade(
+        "There is no room for the shafts: in every stand one of them, or what is on it, would pass through a gear in "
+        "some speed. Thinner ones may do, or another scale.", sizing.path,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Task:
+    """A gearbox in millimetres, which pair of each stage is engaged, and the sizes of what carries it."""
+
+    teeth: Teeth
+    gears: dict[int, Gear]
+    engaged: tuple[int, ...]
+    told: str
+    sizes: Sizes
+    sizing: GearSizing
+
+    @cached_property
+    def clusters(self) -> tuple[Cluster, ...]:
+        """All of them, from below."""
+        return clusters([len(pairs) for pairs in self.teeth])
+
+    @property
+    def highest(self) -> int:
+        """The highest level of a wheel."""
+        return self.clusters[-1].top
+
+    @cached_property
+    def speeds(self) -> tuple[Fraction, ...]:
+        """Of each shaft over the input's; every mesh turns the direction round."""
+        found = [Fraction(1)]
+        for pairs, engaged in zip(self.teeth, self.engaged, strict=True):
+            found.append(-found[-1] * Fraction(*pairs[engaged]))
+        return tuple(found)
+
+    def stand(self) -> Stand | None:
+        """Where the shafts stand, with each sliding gear in every level that it comes to."""
+        room = Room(0.5 * self.sizes.pin, 0.5 * self.sizes.collar, self.sizes.apart)
+        return stood(self._stage, len(self.teeth), self.highest, room, polygon=False)
+
+    def _stage(self, number: int, axis: complex, ahead: complex) -> list[Wheel]:
+        """All gears of a stage in all their levels; the last is on the next shaft."""
+        found: list[Wheel] = []
+        one, other = self.teeth[number][0]
+        beyond = axis + (self.gears[one].pitch_radius + self.gears[other].pitch_radius) * ahead
+        for cluster in (cluster for cluster in self.clusters if cluster.stage == number):
+            for place, pair in enumerate(cluster.pairs):
+                driver, driven = self.teeth[number][pair]
+                for level in cluster.visited(place):
+                    found.append(self._wheel(number, pair, "driver", driver, level, axis))
+                found.append(self._wheel(number, pair, "driven", driven, cluster.fixed(place), beyond))
+        return found
+
+    def _wheel(self, stage: int, pair: int, role: str, teeth: int, level: int, centre: complex) -> Wheel:
+        shaft, gear = stage + (role == "driven"), self.gears[teeth]
+        words = f"gear of stage {stage + 1}, pair {pair + 1}, {role}, {teeth} teeth"
+        return Wheel(
+            f"gear_{stage + 1}_{pair + 1}_{role}", words, gear, shaft, level, centre, 0.0, gear.tip_radius,
+            float(self.speeds[shaft]), 2 * stage + (role == "driven"), play=0.5 * self.sizes.clearance,
+        )  # fmt: skip
+
+    def towards(self, axes: tuple[complex, ...]) -> list[complex]:
+        """Where the keys of each shaft point, so that the engaged pairs mesh."""
+        angles = [0.0]
+        for stage, (pairs, engaged) in enumerate(zip(self.teeth, self.engaged, strict=True)):
+            driver, driven = (self.gears[count] for count in pairs[engaged])
+            ahead = cmath.phase(axes[stage + 1] - axes[stage])
+            angles.append(facing(driver, angles[-1], driven, ahead))
+        return [cmath.rect(1.0, angle) for angle in angles]
+
+    def made(self, stand: Stand) -> Assembly:
+        """The assembly on a stand, if no two parts of it meet."""
+        face = self.sizing.face_width(next(iter(self.gears.values())).module, None)
+        levels = stacked([self.sizes.thickness, *[face] * self.highest, self.sizes.thickness], self.sizes)
+        towards = self.towards(stand.axes)
+        shafts = [self._shaft(number, stand, way) for number, way in enumerate(towards)]
+        around = tuple((wheel.centre, wheel.outer) for wheel in stand.wheels)
+        housing = Housing(self.sizes, levels, tuple(shafts), around)
+        wheels = {wheel.name: wheel for wheel in stand.wheels}
+        parts: list[Part] = []
+        for cluster in self.clusters:
+            for role in ("driver", "driven"):
+                own = []
+                for place, pair in enumerate(cluster.pairs):
+                    wheel = wheels[f"gear_{cluster.stage + 1}_{pair + 1}_{role}"]
+                    level = cluster.at(place, self.engaged[cluster.stage]) if role == "driver" else wheel.level
+                    own.append(wheel._replace(level=level, tooth_at=cmath.phase(towards[wheel.shaft])))
+                made = [
+                    part
+                    for wheel in own
+                    for part in wheel_parts(
+                        wheel, _carrier(wheel.shaft), levels, self.sizes, towards=towards[wheel.shaft]
+                    )
+                ]
+                joined = role == "driver" and len(own) > 1
+                parts += self._joined(cluster, own, made, levels, towards[own[0].shaft]) if joined else made
+        size = max(abs(a.centre - b.centre) + a.outer + b.outer for a in wheels.values() for b in wheels.values())
+        slowest = min(abs(wheel.speed) * wheel.gear.teeth for wheel in wheels.values())
+        bodies = {
+            _carrier(shaft).link: Turning(axis, float(self.speeds[shaft])) for shaft, axis in enumerate(stand.axes)
+        }
+        motion = TrainMotion(bodies, size, min(math.ceil(1.0 / slowest), MOST_TURNS))
+        assembly = Assembly(
+            (*parts, *housing.parts()), motion, self.highest, 2, self.sizing.factor, self.sizing.query.scale,
+            self._notes(levels, shafts),
+        )  # fmt: skip
+        return looked_at(assembly, self.sizes, self.sizing)
+
+    def _joined(
+        self, cluster: Cluster, wheels: list[Wheel], made: list[Part], levels: tuple[Level, ...], towards: complex
+    ) -> list[Part]:
+        """Two gears that slide together, with a hub between them: one piece, or three where they are cut of sheets."""
+        sizes, (lower, upper) = self.sizes, wheels
+        name = f"{cluster.stage + 1}_{cluster.pairs[0] + 1}"
+        words = f"stage {cluster.stage + 1}, pairs {cluster.pairs[0] + 1} and {cluster.pairs[1] + 1}"
+        bore = keyed_bore(lower.centre, sizes.pin, key_for(sizes.pin), sizes.clearance, towards)
+        region = Region(Disc(lower.centre, keyway_reach(sizes) + WALL * sizes.pin), (bore,))
+        hub = Prism(region, levels[lower.level].high, levels[upper.level].low)
+        colour, carrier = LINK_COLOURS[lower.tint % len(LINK_COLOURS)], _carrier(lower.shaft)
+        material, planes = MATERIALS[sizes.process][0], (lower.level, upper.level)
+        if sizes.process == "laser":
+            between = Part(
+                f"hub_{name}", f"hub between the gears of {words}", "wheel", carrier, (hub,), towards,
+                (lower.level, lower.level), material, colour,
+            )  # fmt: skip
+            return [made[0], between, made[1]]
+        bodies = (*made[0].bodies, hub, *made[1].bodies)
+        told = f"cluster of {words}, drivers, {lower.gear.teeth:g} and {upper.gear.teeth:g} teeth"
+        return [Part(f"cluster_{name}", told, "gear", carrier, bodies, towards, planes, material, colour)]
+
+    def _shaft(self, number: int, stand: Stand, towards: complex) -> Shaft:
+        last = len(self.teeth)
+        keyed = [
+            cluster.fixed(place)
+            for cluster in self.clusters
+            for place in range(len(cluster.pairs))
+            if cluster.stage + 1 == number or (cluster.stage == number and not cluster.slides)
+        ]
+        sliding = [(cluster.low, cluster.top) for cluster in self.clusters if cluster.slides and cluster.stage == number]
+        name = {0: "input shaft", last: "output shaft"}.get(number, f"shaft {number + 1}")
+        return Shaft(
+            name, _carrier(number), stand.axes[number], stand.reaches[number], tuple(keyed), ends=number in (0, last),
+            below=number == 0, towards=towards, sliding=tuple(sliding),
+        )  # fmt: skip
+
+    def _notes(self, levels: tuple[Level, ...], shafts: list[Shaft]) -> tuple[str, ...]:
+        pairs = [
+            f"pair {engaged + 1} of stage {stage + 1}, {teeth[engaged][0]}/{teeth[engaged][1]}"
+            for stage, (teeth, engaged) in enumerate(zip(self.teeth, self.engaged, strict=True))
+        ]
+        ratio = float(1 / abs(self.speeds[-1]))
+        told = [f"{self.told}: {'; '.join(pairs)}; input over output {ratio:.6g}."]
+        if any(cluster.slides for cluster in self.clusters):
+            step = levels[2].low - levels[1].low
+            told += [
+                "Of the other speeds all parts are the same, and only stand elsewhere: the query's `speed` shows them.",
+                f"A cluster of two gears has three places, {step:.4g} mm apart along its feather key: its lower gear in "
+                "mesh, neutral, its upper gear in mesh. A single sliding gear is in mesh in its lower place and neutral "
+                "in the upper. Every other cluster of the stage is brought to neutral first, and at rest: the shafts "
+                "are turned until teeth face spaces.",
+                "The ends of the feather keys hold what stands on the shaft beside them: put on spacers, keys and gears "
+                "in the order in which they lie. Forks, levers and detents that shift the gears are not among the parts.",
+            ]
+            doubles = any(cluster.slides and len(cluster.pairs) > 1 for cluster in self.clusters)
+            if doubles and self.sizes.process == "laser":
+                told.append(
+                    "The gears of a cluster of two and the hub between them are bonded or screwed to one another; each "
+                    "is on the key, so that no torque goes through the joint. A fork reaches between the gears."
+                )
+            elif doubles:
+                told.append(
+                    "A cluster of two gears is one piece with the hub between them, which a fork reaches round; its DXF "
+                    "file has the outline of the larger gear alone."
+                )
+        for shaft in shafts:
+            if shaft.reach != (0, self.highest + 1):
+                told.append(f"The {shaft.name} stands in the {'lower' if shaft.reach[0] == 0 else 'upper'} plate alone.")
+        return tuple(told)
+
+
+def _carrier(shaft: int) -> Carrier:
+    return Carrier(f"shaft_{shaft + 1}", None)
