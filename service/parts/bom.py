@@ -55,6 +55,9 @@ def _shaped(outline: Outline) -> str:
     arcs = sum(1 for _, _, bulge in outline.edges() if bulge) if isinstance(outline, Loop) else 0
     if isinstance(outline, Loop) and len(outline.corners) == SLOT_CORNERS and arcs == 1:
         what = "bore with keyway"
+        # The bore goes round from one side of the keyway to the other: across is from there back.
+        start, end, _ = next(edge for edge in outline.edges() if edge[2])
+        along = (start - end) / abs(start - end) / 1j
     elif isinstance(outline, Loop) and len(outline.corners) == SLOT_CORNERS and min(outline.bulges) >= 0.0:
         start, end, _ = max(outline.edges(), key=lambda edge: abs(edge[1] - edge[0]) if edge[2] == 0.0 else 0.0)
         along, what = (end - start) / abs(end - start), "slot"

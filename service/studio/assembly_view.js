@@ -9,7 +9,7 @@ import { foreign, t, term, translated } from "./messages.js";
 import { between } from "./player.js";
 import { symbolOf } from "./units.js";
 
-/** @import { Solved } from "./types/values.js" */
+/** @import { Schemas, Solved } from "./types/values.js" */
 
 /**
  * @typedef {{name: string, described: string, sort: string, material: string, colour: string, standard: string, lift:
@@ -110,6 +110,7 @@ export class AssemblyView {
           ...Object.entries(PROCESSES).map(([value, title]) => el("option", { value }, title)),
         ),
       ),
+      ...this.speeds().map((pick) => field("speed", t`Engaged`, pick)),
       field("pin", t`Pin (${unit})`, number(t`what fits`)),
       field("width", t`Width (${unit})`, number(t`2.5 pins`)),
       field("scale", t`Scale`, number("1")),
@@ -117,6 +118,17 @@ export class AssemblyView {
     );
     this.fault.id = "assembly-fault";
     return form;
+  }
+
+  /** Of a gearbox: what chooses among its speeds. */
+  speeds() {
+    const { mechanism, metrics } = this.job.result.designs[this.n];
+    if (mechanism.type !== "gearbox") return [];
+    const speeds = /** @type {Schemas["SpindleSpeed"][]} */ (metrics.speeds);
+    const named = speeds.map(({ speed }, k) =>
+      el("option", { value: k + 1 }, t`${shown(Number(speed.toPrecision(4)))} rev/min`),
+    );
+    return [el("select", { onchange: () => this.load() }, ...named)];
   }
 
   /** The fields that are filled in. @returns {Record<string, string>} */

@@ -296,14 +296,6 @@ def test_a_layshaft_gearbox_has_its_first_gear_keyed_and_the_others_free(client:
     assert "gear_reverse_idler" in rows
 
 
-def test_gearboxes_that_are_shifted_have_no_parts_and_a_word_why(client: Any) -> None:
-    problem = {"kind": "gearbox", "input_speed": 200.0, "speeds": {"min": 25.0, "max": 800.0, "count": 6},
-               "stage_ratio": {"min": 0.25, "max": 2.0}, "tooth_sum": {"min": 80, "max": 120},
-               "max_designs": 1}  # fmt: skip
-    job = finished(client, problem)
-    assert "shifted" in refused(client, f"/v1/jobs/{job['id']}/designs/0", 409)["detail"]
-
-
 WORM = {"kind": "gear_train", "ratio": 20, "max_designs": 1, "module": 1.5,
         "stages": [{"type": "worm", "driver": 2, "driven": 40, "hand": "left"}]}  # fmt: skip
 

@@ -9,8 +9,8 @@ driven gears are fixed::
     neutral                     a    b
     sliding, B in mesh               a    b
 
-So no sliding gear passes a fixed one, whatever their teeth, and one pair is out before the other is in. A cluster of one
-gear takes two levels, in mesh and beside. The pair of a fixed stage is always in mesh and takes one.
+So no sliding gear passes a fixed one, whatever their teeth, and one pair is out before the other is in. A cluster of
+one gear takes two levels, in mesh and beside. The pair of a fixed stage is always in mesh and takes one.
 """
 
 from __future__ import annotations

@@ -167,9 +167,7 @@ class Housing:
         stub = STUB * sizes.pin if shaft.ends else 0.0
         down = shaft.reach[1] < self.top or shaft.below
         return [
-            *self._stack(
-                name, shaft.name, shaft.carrier, shaft.axis, shaft.reach, levels, seats, stub, down, spanned
-            ),
+            *self._stack(name, shaft.name, shaft.carrier, shaft.axis, shaft.reach, levels, seats, stub, down, spanned),
             *keys,
         ]
 

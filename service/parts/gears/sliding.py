@@ -1,8 +1,8 @@
 """Parts of a gearbox of sliding gears, in one of its speeds.
 
-Shafts stand so that they are held in every speed: a sliding gear is looked at in all levels that it comes to. Every gear
-has a tooth at its keyway, and whole shafts are turned so that the engaged pairs mesh; the parts of all speeds are thus
-the same, and only where they stand differs.
+Shafts stand so that they are held in every speed: a sliding gear is looked at in all levels that it comes to. Every
+gear has a tooth at its keyway, and whole shafts are turned so that the engaged pairs mesh; the parts of all speeds are
+thus the same, and only where they stand differs.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def sliding_parts(design: Any, problem: Any, query: PartsQuery) -> Assembly:
     module, angle = sizing.factor * design.mechanism.module, math.radians(design.mechanism.pressure_angle)
     gears = {count: Gear(count, module, angle) for pairs in teeth for pair in pairs for count in pair}
     sizing.judge_size(module * sum(sum(pairs[0]) for pairs in teeth))
-    told = f"Speed {number} of {len(speeds)} is shown, {speeds[number - 1].speed:.6g} rev/min of the last shaft"
+    told = f"Speed {number} of {len(speeds)} is shown, {speeds[number - 1].speed:.6g} rev/min at the output"
     smallest = min(gears.values(), key=lambda gear: gear.root_radius)
     for sizes in sizing.offered(smallest):
         task = _Task(teeth, gears, tuple(speeds[number - 1].engaged), told, sizes, sizing)
@@ -208,7 +208,9 @@ class _Task:
             for place in range(len(cluster.pairs))
             if cluster.stage + 1 == number or (cluster.stage == number and not cluster.slides)
         ]
-        sliding = [(cluster.low, cluster.top) for cluster in self.clusters if cluster.slides and cluster.stage == number]
+        sliding = [
+            (cluster.low, cluster.top) for cluster in self.clusters if cluster.slides and cluster.stage == number
+        ]
         name = {0: "input shaft", last: "output shaft"}.get(number, f"shaft {number + 1}")
         return Shaft(
             name, _carrier(number), stand.axes[number], stand.reaches[number], tuple(keyed), ends=number in (0, last),
@@ -226,12 +228,13 @@ class _Task:
             step = levels[2].low - levels[1].low
             told += [
                 "Of the other speeds all parts are the same, and only stand elsewhere: the query's `speed` shows them.",
-                f"A cluster of two gears has three places, {step:.4g} mm apart along its feather key: its lower gear in "
-                "mesh, neutral, its upper gear in mesh. A single sliding gear is in mesh in its lower place and neutral "
-                "in the upper. Every other cluster of the stage is brought to neutral first, and at rest: the shafts "
-                "are turned until teeth face spaces.",
-                "The ends of the feather keys hold what stands on the shaft beside them: put on spacers, keys and gears "
-                "in the order in which they lie. Forks, levers and detents that shift the gears are not among the parts.",
+                f"A cluster of two gears has three places, {step:.4g} mm apart along its feather key: its lower gear "
+                "in mesh, neutral, its upper gear in mesh. A single sliding gear is in mesh in its lower place and "
+                "neutral in the upper. Every other cluster of the stage is brought to neutral first, and at rest: the "
+                "shafts are turned until teeth face spaces.",
+                "The ends of the feather keys hold what stands on the shaft beside them: put on spacers, keys and "
+                "gears in the order in which they lie. Forks, levers and detents that shift the gears are not among "
+                "the parts.",
             ]
             doubles = any(cluster.slides and len(cluster.pairs) > 1 for cluster in self.clusters)
             if doubles and self.sizes.process == "laser":
@@ -241,12 +244,13 @@ class _Task:
                 )
             elif doubles:
                 told.append(
-                    "A cluster of two gears is one piece with the hub between them, which a fork reaches round; its DXF "
-                    "file has the outline of the larger gear alone."
+                    "A cluster of two gears is one piece with the hub between them, which a fork reaches round; its "
+                    "DXF file has the outline of the larger gear alone."
                 )
         for shaft in shafts:
             if shaft.reach != (0, self.highest + 1):
-                told.append(f"The {shaft.name} stands in the {'lower' if shaft.reach[0] == 0 else 'upper'} plate alone.")
+                plate = "lower" if shaft.reach[0] == 0 else "upper"
+                told.append(f"The {shaft.name} stands in the {plate} plate alone.")
         return tuple(told)
 
 

@@ -7623,6 +7623,7 @@ export interface operations {
                 over?: ("cycle" | "used") | null;
                 bore?: number | null;
                 face_width?: number | null;
+                speed?: number | null;
                 scale?: number;
             };
             header?: never;
@@ -7738,6 +7739,7 @@ export interface operations {
                 over?: ("cycle" | "used") | null;
                 bore?: number | null;
                 face_width?: number | null;
+                speed?: number | null;
                 scale?: number;
                 input_angle?: number | null;
                 input_place?: number | null;
@@ -7855,6 +7857,7 @@ export interface operations {
                 over?: ("cycle" | "used") | null;
                 bore?: number | null;
                 face_width?: number | null;
+                speed?: number | null;
                 scale?: number;
                 input_angle?: number | null;
                 input_place?: number | null;
@@ -7972,6 +7975,7 @@ export interface operations {
                 over?: ("cycle" | "used") | null;
                 bore?: number | null;
                 face_width?: number | null;
+                speed?: number | null;
                 scale?: number;
                 positions?: number;
             };
@@ -8080,6 +8084,7 @@ export interface operations {
                 over?: ("cycle" | "used") | null;
                 bore?: number | null;
                 face_width?: number | null;
+                speed?: number | null;
                 scale?: number;
                 input_angle?: number | null;
                 input_place?: number | null;
@@ -8189,6 +8194,7 @@ export interface operations {
                 over?: ("cycle" | "used") | null;
                 bore?: number | null;
                 face_width?: number | null;
+                speed?: number | null;
                 scale?: number;
             };
             header?: never;
@@ -8297,6 +8303,7 @@ export interface operations {
                 over?: ("cycle" | "used") | null;
                 bore?: number | null;
                 face_width?: number | null;
+                speed?: number | null;
                 scale?: number;
             };
             header?: never;
@@ -8413,6 +8420,7 @@ export interface operations {
                 over?: ("cycle" | "used") | null;
                 bore?: number | null;
                 face_width?: number | null;
+                speed?: number | null;
                 scale?: number;
             };
             header?: never;
@@ -8529,6 +8537,7 @@ export interface operations {
                 over?: ("cycle" | "used") | null;
                 bore?: number | null;
                 face_width?: number | null;
+                speed?: number | null;
                 scale?: number;
             };
             header?: never;
