@@ -14,6 +14,7 @@ from tests.browser.test_studio import state
 from tests.browser.test_taking_home import taken as taken_of_design
 from tests.service.running import until
 from tests.service.test_parts import MOTION
+from tests.service.test_parts_of_gearboxes import BOX
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(400)]
 
@@ -198,3 +199,13 @@ def test_without_webgl_the_parts_are_listed(own_studio):
     assert "does not draw in three dimensions" in page.locator("#built").inner_text()
     assert page.locator(CANVAS).count() == 0
     assert ezdxf.readfile(taken(page, "base as DXF").path()).modelspace().query("CIRCLE")
+
+
+def test_a_gearbox_is_shown_in_the_speed_that_is_chosen(open_studio):
+    page = opened(open_studio(reduced_motion="reduce"), BOX)
+    notes = page.locator(".solids .note")
+    assert notes.filter(has_text="Speed 1 of 3 is shown").count() == 1
+    first = picture(page)
+    page.select_option("#assembly-speed", "3")
+    notes.filter(has_text="Speed 3 of 3 is shown").wait_for(timeout=120_000)
+    assert differs(first, picture(page))

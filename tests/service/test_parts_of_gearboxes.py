@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from service.parts.gears.motion import TrainMotion
 from service.parts.made import made
 from service.parts.overlaps import overlaps
 from service.parts.sizes import PartsQuery
@@ -53,7 +54,7 @@ def test_one_pair_of_a_stage_is_in_mesh_and_the_output_turns_at_that_speed(clien
 
 
 def test_the_same_parts_make_every_speed_and_slide_on_keys_as_long_as_their_way(client: Any, box: Any) -> None:
-    place, design = box
+    place, _ = box
     rows, others = (bill(parts(client, place, speed=speed)) for speed in (1, 2))
     for row in (*rows.values(), *others.values()):
         del row["plane"]
@@ -84,5 +85,6 @@ def test_no_two_parts_meet_in_any_speed(process: Any) -> None:
     for number in range(1, 7):
         whole = made(design, problem, PartsQuery(process=process, speed=number))
         assert overlaps(whole, 72) == []
+        assert isinstance(whole.motion, TrainMotion)
         turns = [body.speed for body in whole.motion.bodies.values()]
         assert turns[-1] == pytest.approx(design.metrics.speeds[number - 1].speed / 200.0, rel=1e-9)
