@@ -390,7 +390,7 @@ export class AssemblyView {
     return el(
       "div",
       { class: "parts" },
-      el("h4", { id: "assembly-parts" }, t`Parts`),
+      el("h3", { id: "assembly-parts", class: "minor" }, t`Parts`),
       all,
       this.fileFault,
       el("ul", { "aria-labelledby": "assembly-parts" }, ...rows),

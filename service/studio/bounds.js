@@ -36,7 +36,7 @@ export class Bounds {
     this.node = el(
       "section",
       { "aria-label": t`Bounds` },
-      el("h4", {}, t`Bounds`),
+      el("h3", { class: "minor" }, t`Bounds`),
       this.rows,
       el("p", { class: "row" }, this.said, this.all),
     );

@@ -106,7 +106,7 @@ export class Choosing {
       el(
         "section",
         { "aria-label": t`Two designs` },
-        el("h4", {}, t`Compare`),
+        el("h3", { class: "minor" }, t`Compare`),
         el(
           "div",
           { class: "row" },

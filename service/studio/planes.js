@@ -90,8 +90,8 @@ export class Planes {
       "section",
       { class: "planes", "aria-label": t`Planes` },
       el(
-        "h4",
-        {},
+        "h3",
+        { class: "minor" },
         layout.remark
           ? t`No layout`
           : [
