@@ -22,7 +22,6 @@ from tests.service.test_sixbar_paths import TASK as SIXBAR_PATH
 Key = tuple[str, str]
 """A kind of problem and a type of mechanism."""
 
-UNCLASSED_PATH = {**SIXBAR_PATH, "constraints": {}}
 QUICK = {"kind": "quick_return", "time_ratio": 1.4, "max_designs": 1}
 TURNS = {"output": {"type": "rocker", "swing": 40.0}}
 SLIDES = {"output": {"type": "slider", "stroke": 40.0}}
@@ -77,7 +76,7 @@ MADE: dict[Key, Row] = {
     ),
     ("path", "watt_1"): _sixbar(SIXBAR_PATH, "watt_1"),
     ("path", "stephenson_1"): _sixbar(OPEN_PATH, "stephenson_1")._replace(query={"scale": 2.0}),
-    ("path", "stephenson_2"): _sixbar(UNCLASSED_PATH, "stephenson_2"),
+    ("path", "stephenson_2"): _sixbar(OPEN_PATH, "stephenson_2"),
     ("path", "stephenson_3"): _sixbar(SIXBAR_PATH, "stephenson_3"),
     ("quick_return", "fourbar"): _quick("fourbar", swing=60.0, scale=2.5),
     ("quick_return", "slider_crank"): _quick("offset_slider_crank", stroke=100.0),

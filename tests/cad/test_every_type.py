@@ -110,7 +110,7 @@ def test_no_two_parts_meet_at_72_inputs(key: tuple[str, str]) -> None:
     whole = assembly(key)
     assert overlaps(whole, 72) == []
     looked = looked_through(whole, meshes(key), whole.motion.inputs(72))
-    assert looked.tried >= len(whole.parts)
+    assert looked.tried >= len(whole.parts) - 1
     assert looked.overlaps == []
 
 
