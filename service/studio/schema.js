@@ -239,7 +239,7 @@ function misfitIn(value, schema, root, path) {
  * A value without what states but its default, which the service writes out.
  * @param {any} value @param {Schema} schema @param {Schema} root @returns {any}
  */
-export function withoutDefaults(value, schema, root) {
+function withoutDefaults(value, schema, root) {
   const form = formOf(value);
   const options = alternatives(schema, root).filter((one) => one.type === form);
   if (!options.length) return value;
@@ -268,4 +268,27 @@ export function withoutDefaults(value, schema, root) {
 /** What JSON calls it. @param {unknown} value */
 function formOf(value) {
   return value === null ? "null" : Array.isArray(value) ? "array" : typeof value;
+}
+
+/** A statement without defaults. @param {any} statement @param {Schema | undefined} schema */
+export function plainly(statement, schema) {
+  return schema ? withoutDefaults(statement, schema, schema) : statement;
+}
+
+/**
+ * A statement in one spelling: fields in order, without defaults, which the service writes out, and without the empty
+ * groups in which the form has room for fields.
+ * @param {any} statement @param {Schema | undefined} schema
+ */
+export function spelling(statement, schema) {
+  const group = (/** @type {unknown} */ value) => typeof value === "object" && value !== null && !Array.isArray(value);
+  return JSON.stringify(plainly(statement, schema), (_, value) =>
+    group(value)
+      ? Object.fromEntries(
+          Object.entries(value)
+            .filter(([, inner]) => !group(inner) || Object.keys(inner).length)
+            .sort(),
+        )
+      : value,
+  );
 }

@@ -13,12 +13,13 @@ import { fill } from "./form.js";
 import { Gallery, listed } from "./gallery.js";
 import { Leader } from "./guide.js";
 import { History } from "./history.js";
-import { Keys, scrub, scrubTo, visible } from "./keys.js";
+import { keymap } from "./keymap.js";
+import { Keys } from "./keys.js";
 import { Link } from "./link.js";
 import { choose, language, languages, prose, t, translatePage, translated } from "./messages.js";
 import { Opening } from "./opening.js";
 import * as running from "./run.js";
-import { misfit, withoutDefaults } from "./schema.js";
+import { misfit, plainly, spelling } from "./schema.js";
 import { SentLinkage } from "./sent.js";
 import { canvas } from "./targets.js";
 import { Undo } from "./undo.js";
@@ -128,23 +129,9 @@ function compare() {
   byId("answers").classList.toggle("stale", stale);
 }
 
-/**
- * A statement in one spelling: fields in order, without defaults, which the service writes out, and without the empty
- * groups in which the form has room for fields.
- * @param {Problem} statement
- */
+/** A statement as it is compared with others. @param {Problem} statement */
 function spelt(statement) {
-  const schema = kinds.find((one) => one.kind === statement.kind)?.schema;
-  const group = (/** @type {unknown} */ value) => typeof value === "object" && value !== null && !Array.isArray(value);
-  return JSON.stringify(schema ? withoutDefaults(statement, schema, schema) : statement, (_, value) =>
-    group(value)
-      ? Object.fromEntries(
-          Object.entries(value)
-            .filter(([, inner]) => !group(inner) || Object.keys(inner).length)
-            .sort(),
-        )
-      : value,
-  );
+  return spelling(statement, kinds.find((one) => one.kind === statement.kind)?.schema);
 }
 
 /** Make room for what is stated now. What came in the address is there again when one goes back. */
@@ -370,8 +357,7 @@ async function restore(reloaded = false) {
   try {
     let job = await api.job(id);
     if (posted.id !== id) {
-      const schema = kinds.find((one) => one.kind === job.problem.kind)?.schema;
-      state(schema ? withoutDefaults(job.problem, schema, schema) : job.problem);
+      state(plainly(job.problem, kinds.find((one) => one.kind === job.problem.kind)?.schema));
     }
     answered = posted.id === id ? posted.problem : structuredClone(problem);
     if (reloaded) editedBeside(id);
@@ -484,9 +470,6 @@ function sending() {
 
 const link = new Link(byId("link"), byId("link-told"), sending);
 
-/** @param {string} name of a button on the board that is shown */
-const press = (name) => () => visible(`.board button[aria-label="${name}"]`)?.click();
-
 /** Whether the task is folded away. */
 function folded() {
   return byId("fold").getAttribute("aria-expanded") === "false";
@@ -504,67 +487,7 @@ function fitted() {
 }
 
 /** @type {Keys} */
-const keys = new Keys([
-  {
-    keys: ["Ctrl+Enter"],
-    shown: t`Ctrl Enter`,
-    text: t`Solve`,
-    everywhere: true,
-    act: () => {
-      if (!byId("solve").disabled) solve();
-    },
-  },
-  {
-    keys: ["Ctrl+z"],
-    shown: t`Ctrl Z`,
-    text: t`Undo`,
-    everywhere: true,
-    act: () => desk.explorer?.undo() || undo.undo(),
-  },
-  {
-    keys: ["Ctrl+Shift+z", "Ctrl+y"],
-    shown: t`Ctrl Shift Z`,
-    text: t`Redo`,
-    everywhere: true,
-    act: () => desk.explorer?.redo() || undo.redo(),
-  },
-  { keys: [" "], shown: t`Space`, text: t`Play and pause`, act: () => visible(".player button")?.click() },
-  { keys: ["ArrowLeft"], shown: t`← or →`, text: t`One degree back or on; ten with Shift`, act: () => scrub(-1) },
-  { keys: ["ArrowRight"], shown: "", text: "", act: () => scrub(1) },
-  { keys: ["Shift+ArrowLeft"], shown: "", text: "", act: () => scrub(-10) },
-  { keys: ["Shift+ArrowRight"], shown: "", text: "", act: () => scrub(10) },
-  { keys: ["Home"], shown: t`Home or End`, text: t`Beginning and end of the motion`, act: () => scrubTo(0) },
-  { keys: ["End"], shown: "", text: "", act: () => scrubTo(1) },
-  {
-    keys: [..."123456789"],
-    shown: "1 … 9",
-    text: t`Choose a design`,
-    act: (event) => answers.select(Number(event.key)),
-  },
-  { keys: ["["], shown: t`[ or ]`, text: t`The design before, the next one`, act: () => answers.further(-1) },
-  { keys: ["]"], shown: "", text: "", act: () => answers.further(1) },
-  { keys: ["c"], shown: "C", text: t`Compare designs`, act: () => desk.drawer.press("compare") },
-  { keys: ["k"], shown: "K", text: t`Pin the chosen design, or unpin it`, act: () => answers.pin() },
-  { keys: ["+", "="], shown: t`+ or −`, text: t`Nearer, farther`, act: press(t`Nearer`) },
-  { keys: ["-"], shown: "", text: "", act: press(t`Farther`) },
-  { keys: ["f"], shown: "F", text: t`Fit everything`, act: press(t`Fit everything`) },
-  { keys: ["r"], shown: "R", text: t`Ruler`, act: () => visible('[data-tool="ruler"]')?.click() },
-  { keys: ["s"], shown: t`S or W`, text: t`The stage states, or watches`, act: () => desk.stage.show("state") },
-  { keys: ["w"], shown: "", text: "", act: () => desk.stage.show("watch") },
-  { keys: ["t"], shown: "T", text: t`Fold the task, where there is little room`, act: () => visible("#fold")?.click() },
-  { keys: ["n"], shown: "N", text: t`Numbers`, act: () => desk.drawer.press("numbers") },
-  { keys: ["p"], shown: "P", text: t`Plots`, act: () => desk.drawer.press("plots") },
-  { keys: ["e"], shown: "E", text: t`Explore`, act: () => desk.drawer.press("explore") },
-  {
-    keys: ["l"],
-    shown: "L",
-    text: t`Copy a link to the statement, and to the linkage that is shown`,
-    act: () => link.copy(),
-  },
-  { keys: ["g"], shown: "G", text: t`Gallery`, act: () => browse() },
-  { keys: ["?"], shown: "?", text: t`These keys`, act: () => keys.open() },
-  { keys: [], shown: t`Esc`, text: t`Close what lies over the stage; put the pen away`, act: () => {} },
-]);
+const keys = new Keys(keymap({ answers, desk, undo, solve, browse, link, sheet: () => keys.open() }));
 byId("stale-solve").addEventListener("click", () => solve());
 byId("stale-back").addEventListener("click", () => {
   if (!answered) return;
