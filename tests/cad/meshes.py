@@ -47,8 +47,9 @@ class Shared(NamedTuple):
 
 
 class Looked(NamedTuple):
-    """How many intersections of meshes were made, what any two share, and what of it is an overlap."""
+    """How many places pairs of parts come to, how many of them were intersected, and what any two share there."""
 
+    stood: int
     tried: int
     shared: list[Shared]
 
@@ -91,12 +92,14 @@ def looked_through(whole: Assembly, meshes: Sequence[Manifold], inputs: Real) ->
     """All pairs of parts at all inputs."""
     moved = [places(whole, part, inputs) for part in whole.parts]
     boxes = [_box(mesh) for mesh in meshes]
-    tried = 0
+    tried = stood = 0
     found: list[Shared] = []
     for (n, one), (m, other) in combinations(enumerate(whole.parts), 2):
         towards = np.linalg.inv(moved[n]) @ moved[m]
         rounding = ROUNDING * whole.size
-        together = len(_different(towards, rounding)) == 1
+        apart = len(_different(towards, rounding))
+        together = apart == 1
+        stood += apart
         towards = _unturned(one, other, towards)
         different = _different(towards, rounding)
         one_surface = together or frozenset((one.name, other.name)) in whole.touching
@@ -119,7 +122,7 @@ def looked_through(whole: Assembly, meshes: Sequence[Manifold], inputs: Real) ->
                     worst = Shared((one.name, other.name), float(inputs[k]), layer, bound)
         if worst is not None:
             found.append(worst)
-    return Looked(tried, found)
+    return Looked(stood, tried, found)
 
 
 def _unturned(one: Part, other: Part, towards: Real) -> Real:

@@ -83,6 +83,7 @@ def test_solids_are_valid_and_as_large_as_the_model_says(name: str) -> None:
 def test_no_two_meshes_share_room_at_72_inputs(name: str) -> None:
     whole = assembly(name)
     looked = looked_through(whole, meshed(solids(name)), whole.motion.inputs(72))
+    assert looked.stood > 72
     assert looked.tried >= len(whole.parts) - 1
     assert looked.overlaps == []
 

@@ -110,6 +110,7 @@ def test_no_two_parts_meet_at_72_inputs(key: tuple[str, str]) -> None:
     whole = assembly(key)
     assert overlaps(whole, 72) == []
     looked = looked_through(whole, meshes(key), whole.motion.inputs(72))
+    assert looked.stood > 72
     assert looked.tried >= len(whole.parts) - 1
     assert looked.overlaps == []
 
@@ -169,6 +170,7 @@ def test_solids_are_valid_and_every_file_is_read_by_another_library(key: tuple[s
     placed = cad.placed(whole, solids(key), whole.motion.reference)
     for part, solid in zip(whole.parts, placed, strict=True):
         # The kernel integrates over the splines of a file another way than over the cones that they were.
+        assert read[part.name].is_valid
         assert read[part.name].volume == pytest.approx(solid.volume, rel=1e-3)
         (a, b), (c, d) = ((box.min, box.max) for box in (one.bounding_box() for one in (solid, read[part.name])))
         assert max(abs(p - q) for p, q in zip((*a, *b), (*c, *d), strict=True)) < 1e-4, part.name

@@ -107,6 +107,7 @@ def test_bores_are_as_far_apart_as_the_answer_says(name: str) -> None:
 def test_no_two_meshes_share_room_at_72_inputs(name: str) -> None:
     whole = assembly(name)
     looked = looked_through(whole, meshed(list(solids(name).values())), whole.motion.inputs(72))
+    assert looked.stood > 72
     assert looked.tried >= len(whole.parts) - 1
     assert looked.overlaps == []
 

@@ -121,6 +121,7 @@ def nearest(places: set[complex], joint: complex) -> complex:
 def test_geared_links_have_room_at_72_inputs() -> None:
     whole = assembly(GEARED)
     looked = looked_through(whole, meshed(solids(GEARED)), whole.motion.inputs(72))
+    assert looked.stood > 72
     assert looked.tried >= len(whole.parts) - 1
     assert looked.overlaps == []
 
