@@ -107,11 +107,11 @@ export class Cammed extends Turning {
   /** @param {number} _at @param {number} _angle radians that the cam has turned */
   put(_at, _angle) {}
 
-  /** @param {number} at */
-  show(at) {
+  /** @param {number} at @param {boolean} told */
+  show(at, told) {
     const degrees = Number(between(this.motion.input_angle, at));
     this.put(at, (degrees * Math.PI) / 180);
-    this.gauge?.show(between(this.motion.pressure_angle, at));
+    this.gauge?.show(between(this.motion.pressure_angle, at), told);
   }
 }
 

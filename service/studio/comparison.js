@@ -49,7 +49,7 @@ export class Comparison {
     this.gone = new AbortController();
     /** @type {import("./views.js").Moving | null} */
     this.moving = null;
-    /** What goes with the clock of the chosen design. @type {((share: number) => void) | null} */
+    /** What goes with the clock of the chosen design. @type {((share: number, told: boolean) => void) | null} */
     this.follow = null;
     this.begin().catch((error) => {
       if (!this.gone.signal.aborted)
@@ -78,7 +78,7 @@ export class Comparison {
       : new Mover(frame, /** @type {LinkedDesign} */ (design), motion, job.problem);
     const { player } = this.moving;
     player.stop();
-    this.follow = (share) => player.seek(share * player.last);
+    this.follow = (share, told) => player.seek(share * player.last, told);
     shown.told = () => this.attend();
     // It has half of the stage now.
     shown.again();
@@ -90,7 +90,7 @@ export class Comparison {
     const player = this.shown.moving?.player;
     if (!follow || !player) return;
     player.followers.add(follow);
-    follow(player.at / player.last);
+    follow(player.at / player.last, true);
   }
 
   /** Draw the other one over the chosen one. @param {LinkageAnalysis} motion */

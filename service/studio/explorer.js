@@ -5,7 +5,7 @@ import { stands } from "./cycle.js";
 import { el, shown, svg, words } from "./dom.js";
 import { curveOf, driven } from "./driven.js";
 import { Grip, keyed, led } from "./grip.js";
-import { Linkage, drawn } from "./linkage.js";
+import { Linkage, drawn, placed } from "./linkage.js";
 import { Player, between } from "./player.js";
 import { Sizes } from "./sizes.js";
 import { beginnings } from "./beginnings.js";
@@ -75,10 +75,9 @@ export class Explorer {
       t`The linkage, its pins to be dragged`,
       [
         this.curve,
-        ...targets.map((one) => {
-          const [u, v] = this.view.at(one.x, one.y);
-          return svg("g", { class: "goal" }, svg("circle", { cx: u, cy: v, r: 5 }));
-        }),
+        ...targets.map((one) =>
+          svg("g", { class: "goal", transform: placed(this.view.at(one.x, one.y)) }, svg("circle", {})),
+        ),
         this.ghost.node,
         this.linkage.node,
       ],

@@ -77,13 +77,14 @@ export class Flywheel extends Turning {
     );
   }
 
-  /** @param {number} at */
-  show(at) {
+  /** @param {number} at @param {boolean} told */
+  show(at, told) {
     const [u, v] = this.middle;
     this.spoke.setAttribute(
       "transform",
       `translate(${u.toFixed(2)} ${v.toFixed(2)}) rotate(${(-Number(between(this.angles, at))).toFixed(3)})`,
     );
+    if (!told) return;
     for (const { unit, series, said } of this.told)
       said.textContent = `${shown(Number(Number(between(series, at)).toPrecision(4)))} ${unit}`.trim();
   }

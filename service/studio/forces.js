@@ -50,7 +50,7 @@ export class Forces {
     this.answer = null;
     /** @type {ForceArrows | null} */
     this.arrows = null;
-    /** @type {{show: (at: number) => void}[]} */
+    /** @type {import("./plots.js").Mark[]} */
     this.marks = [];
     /** @type {{box: HTMLElement, series: Series, unit: string}[]} */
     this.readings = [];
@@ -123,9 +123,9 @@ export class Forces {
     mover.accompany({
       node,
       extent,
-      show: (input, now) => {
+      show: (input, now, told) => {
         this.arrows?.show(input, now);
-        this.show(input);
+        this.show(input, told);
       },
     });
   }
@@ -267,7 +267,7 @@ export class Forces {
     const drawn = new Hodograph(words(chosen.title), chosen.x, chosen.y, this.unit("force"));
     this.hodograph?.replaceChildren(drawn.figure);
     this.hodographed = drawn;
-    drawn.show(this.at);
+    drawn.show(this.at, true);
   }
 
   /** Where numbers are missing and why, and what is to be known of all of them. */
@@ -376,11 +376,18 @@ export class Forces {
     );
   }
 
-  /** @param {number} input */
-  show(input) {
+  /** @param {number} input @param {boolean} told whether numbers are told of it */
+  show(input, told) {
     const at = this.placeAt(input);
-    const inputs = this.known.input_angle;
     this.at = at;
+    if (at !== null) for (const mark of this.marks) mark.show(at, told);
+    this.hodographed?.show(at, told);
+    if (told) this.read(at);
+  }
+
+  /** Tell the numbers at a place of the answer's arrays. @param {number | null} at */
+  read(at) {
+    const inputs = this.known.input_angle;
     for (const { box, series, unit } of this.readings) {
       const value = at === null || !series.length ? null : between(series, at);
       box.textContent = value === null ? "–" : `${brief(value)} ${unit}`.trim();
@@ -392,8 +399,6 @@ export class Forces {
         ? t`Forces are known from ${first} to ${last}, the range that the design was verified along.`
         : (REASONS[status] ?? "");
     if (this.outside.textContent !== said) this.outside.textContent = said;
-    if (at !== null) for (const mark of this.marks) mark.show(at);
-    this.hodographed?.show(at);
   }
 
   stop() {

@@ -80,9 +80,9 @@ export class Gauge {
     );
   }
 
-  /** @param {number | null} angle */
-  show(angle) {
-    this.now.value = degrees(angle);
+  /** @param {number | null} angle @param {boolean} told whether its number is told */
+  show(angle, told) {
+    if (told) this.now.value = degrees(angle);
     this.needle.toggleAttribute("hidden", angle === null);
     if (angle === null) return;
     const [x, y] = at(Math.min(90, Math.max(0, angle)), RADIUS - 4);

@@ -66,15 +66,16 @@ export class Hodograph {
     );
   }
 
-  /** @param {number | null} at a place of the series */
-  show(at) {
+  /** @param {number | null} at a place of the series @param {boolean} told whether its numbers are told */
+  show(at, told) {
     const [x, y] = at === null ? [null, null] : [between(this.x, at), between(this.y, at)];
     const known = x !== null && y !== null;
     this.ray.toggleAttribute("hidden", !known);
     this.dot.toggleAttribute("hidden", !known);
-    this.reading.textContent = known
-      ? `x ${shown(Number(x.toPrecision(3)))}, y ${shown(Number(y.toPrecision(3)))} ${this.unit}`
-      : "–";
+    if (told)
+      this.reading.textContent = known
+        ? `x ${shown(Number(x.toPrecision(3)))}, y ${shown(Number(y.toPrecision(3)))} ${this.unit}`
+        : "–";
     if (!known) return;
     const [u, v] = this.view.at(x, y);
     for (const [name, value] of Object.entries({ x2: u, y2: v })) this.ray.setAttribute(name, String(value));

@@ -34,6 +34,11 @@ export function slope({ on, lean }, places) {
   return a && b ? lean + Math.atan2(b[1] - a[1], b[0] - a[0]) : lean;
 }
 
+/** What puts something that is drawn about the origin to a place of the picture. @param {Point} place */
+export function placed([u, v]) {
+  return `translate(${u.toFixed(2)} ${v.toFixed(2)})`;
+}
+
 export class Linkage {
   /**
    * @param {View} view
@@ -52,11 +57,11 @@ export class Linkage {
         }),
       }));
     this.slides = (skeleton.slides ?? []).map((slide) => this.slide(skeleton, slide));
-    this.pins = drawn(skeleton).map((name) => ({
-      name,
-      dot: svg("circle", { class: name === "P" ? "point" : "pin", r: name === "P" ? 5 : 4 }),
-      text: names && svg("text", { dx: 8, dy: -7 }, name),
-    }));
+    this.pins = drawn(skeleton).map((name) => {
+      const dot = svg("circle", { class: name === "P" ? "point" : "pin" });
+      const text = names && svg("text", { dx: "0.6em", dy: "-0.55em" }, name);
+      return { name, dot, node: svg("g", { class: "joined" }, dot, text) };
+    });
     const still = grounded(skeleton).map((name) => this.pivot(skeleton.joints[name]));
     this.node = svg(
       "g",
@@ -65,15 +70,14 @@ export class Linkage {
       ...still,
       ...this.links.map((one) => one.path),
       ...this.slides.map((one) => one.block),
-      ...this.pins.flatMap((one) => [one.dot, one.text]),
+      ...this.pins.map((one) => one.node),
     );
   }
 
   /** @param {Point | undefined} at */
   pivot(at) {
     if (!at) return null;
-    const [u, v] = this.view.at(...at);
-    return svg("path", { class: "ground", d: `M${u} ${v}l-9 15h18Z` });
+    return svg("g", { transform: placed(this.view.at(...at)) }, svg("path", { class: "ground", d: "M0 0l-9 15h18Z" }));
   }
 
   /**
@@ -86,7 +90,7 @@ export class Linkage {
     const link = skeleton.links.find((one) => one.name === slide.link);
     const on = slide.link === "ground" ? [] : (link?.joints ?? []);
     const rail = svg("line", { class: "rail" });
-    const block = svg("rect", { class: "block", x: -12, y: -7, width: 24, height: 14, rx: 2 });
+    const block = svg("g", {}, svg("rect", { class: "block", x: -12, y: -7, width: 24, height: 14, rx: 2 }));
     const [a, b] = on.map((/** @type {string} */ name) => skeleton.joints[name]);
     const lean = b ? angle - Math.atan2(b[1] - a[1], b[0] - a[0]) : angle;
     return { joint: slide.joint, on, lean, rail, block };
@@ -110,23 +114,12 @@ export class Linkage {
       const [c, s] = [900 * Math.cos(angle), -900 * Math.sin(angle)];
       for (const [name, value] of Object.entries({ x1: u - c, y1: v - s, x2: u + c, y2: v + s }))
         rail.setAttribute(name, String(value));
-      block.setAttribute(
-        "transform",
-        `translate(${u.toFixed(1)} ${v.toFixed(1)}) rotate(${((-angle * 180) / Math.PI).toFixed(1)})`,
-      );
+      block.setAttribute("transform", `${placed([u, v])} rotate(${((-angle * 180) / Math.PI).toFixed(1)})`);
     }
-    for (const { name, dot, text } of this.pins) {
+    for (const { name, node } of this.pins) {
       const point = places[name];
-      dot.toggleAttribute("hidden", !point);
-      if (text) text.toggleAttribute("hidden", !point);
-      if (!point) continue;
-      const [u, v] = this.view.at(...point);
-      dot.setAttribute("cx", u);
-      dot.setAttribute("cy", v);
-      if (text) {
-        text.setAttribute("x", u);
-        text.setAttribute("y", v);
-      }
+      node.toggleAttribute("hidden", !point);
+      if (point) node.setAttribute("transform", placed(this.view.at(...point)));
     }
   }
 }

@@ -340,10 +340,11 @@ export class LoadEditor {
     const { mover, placing } = this;
     if (!mover || !placing) return;
     const [x, y] = mover.view.under(mover.picture, event);
-    const away = mover.linkage.pins.map((one) => [
-      one.name,
-      Math.hypot(...mover.view.at(x, y).map((value, axis) => value - Number(one.dot.getAttribute(["cx", "cy"][axis])))),
-    ]);
+    const now = mover.now();
+    const away = mover.linkage.pins.map(({ name }) => {
+      const at = now[name];
+      return [name, at ? mover.view.scale * Math.hypot(at[0] - x, at[1] - y) : Infinity];
+    });
     const [name, distance] = away.sort(([, one], [, other]) => Number(one) - Number(other))[0];
     if (!(Number(distance) < NEAR)) return;
     placing.select.value = String(name);

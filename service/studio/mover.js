@@ -4,7 +4,7 @@ import { Circuits, others, telling, track } from "./circuits.js";
 import { el, shown, svg } from "./dom.js";
 import { Gauge } from "./gauge.js";
 import { led } from "./grip.js";
-import { Linkage, drawn, grounded } from "./linkage.js";
+import { Linkage, drawn, grounded, placed } from "./linkage.js";
 import { t } from "./messages.js";
 import { Planes, planeClass } from "./planes.js";
 import { Player, between, within } from "./player.js";
@@ -31,7 +31,8 @@ const PLANES = 300;
  * @typedef {object} Companion
  * @property {SVGElement} node
  * @property {import("./view.js").Box} extent what the picture has to show with it, pixels
- * @property {(input: number, now: import("./linkage.js").Places) => void} show
+ * @property {(input: number, now: import("./linkage.js").Places, told: boolean) => void} show with whether numbers are
+ *   told of it
  */
 
 export class Mover {
@@ -77,7 +78,7 @@ export class Mover {
       closed,
       label: t`Input`,
       reading: (at) => this.reading(at),
-      show: (at) => this.show(at),
+      show: (at, told) => this.show(at, told),
     });
     const range = rangeOf(
       motion,
@@ -103,12 +104,10 @@ export class Mover {
           used: partly(design) ? design.metrics?.min_transmission_angle : null,
         })
       : null;
-    /** @type {{figure: HTMLElement, show: (at: number) => void}[]} */
+    /** @type {import("./plots.js").Mark[]} */
     this.marks = [];
     /** @type {Companion | null} */
     this.companion = null;
-    /** What is taken hold of around the pin of the input. @type {{name: string, hit: SVGElement} | null} */
-    this.hold = null;
     this.springs = new Springs(this.view, this.skeleton, springsOf(design, problem));
     this.picture = this.drawn();
     this.build(design, problem);
@@ -153,7 +152,7 @@ export class Mover {
     const choose = (/** @type {string} */ part) => {
       this.marks = [...force, ...plotted(moved(this.motion, part, unit, slides))];
       box.replaceChildren(...this.marks.map((mark) => mark.figure));
-      for (const mark of this.marks) mark.show(this.player.at);
+      for (const mark of this.marks) mark.show(this.player.at, true);
     };
     const pick = el(
       "select",
@@ -192,12 +191,11 @@ export class Mover {
     const pin = this.linkage.pins.find((one) => one.name === name);
     if (!pin) return;
     pin.dot.classList.add("led");
-    pin.dot.setAttribute("r", "7");
     // A finger is less exact than what is drawn.
-    this.hold = { name: pin.name, hit: svg("circle", { class: "hit", r: 12 }) };
-    pin.dot.before(this.hold.hit);
+    const hit = svg("circle", { class: "hit" });
+    pin.dot.before(hit);
     const { x, y } = this.motion.joints[pin.name];
-    for (const grip of [pin.dot, this.hold.hit]) {
+    for (const grip of [pin.dot, hit]) {
       led(grip, this.picture, this.view, {
         taken: () => this.player.stop(),
         led: (at) => this.player.lead(nearest(x, y, at, this.player.at)),
@@ -234,12 +232,12 @@ export class Mover {
       ...ends,
       ...motion.toggles.map((/** @type {number} */ degrees) => {
         const angle = (degrees * Math.PI) / 180;
-        const [u, v] = view.at(ox + crank * Math.cos(angle), oy + crank * Math.sin(angle));
+        const place = view.at(ox + crank * Math.cos(angle), oy + crank * Math.sin(angle));
         return svg(
           "g",
-          { class: "stop" },
+          { class: "stop", transform: placed(place) },
           svg("title", {}, t`Toggle at ${shown(Math.round(10 * degrees) / 10)}°`),
-          svg("path", { d: `M${u - 5} ${v - 5}l10 10m0 -10l-10 10` }),
+          svg("path", { d: "M-5 -5l10 10m0 -10l-10 10" }),
         );
       }),
     ];
@@ -253,40 +251,41 @@ export class Mover {
 
   /** @param {Target} one @param {number} k */
   target(one, k) {
-    const [u, v] = this.view.at(one.x, one.y);
     const angle = ((one.angle ?? 0) * Math.PI) / 180;
     return svg(
       "g",
-      { class: "goal" },
-      svg("circle", { cx: u, cy: v, r: 5 }),
-      one.angle !== undefined &&
-        svg("line", { x1: u, y1: v, x2: u + 26 * Math.cos(angle), y2: v - 26 * Math.sin(angle) }),
-      this.targets.length <= 12 && svg("text", { x: u, y: v, dx: 8, dy: 15 }, k + 1),
+      { class: "goal", transform: placed(this.view.at(one.x, one.y)) },
+      svg("circle", {}),
+      one.angle !== undefined && svg("line", { x2: 26 * Math.cos(angle), y2: -26 * Math.sin(angle) }),
+      this.targets.length <= 12 && svg("text", { dx: "0.6em", dy: "1.15em" }, k + 1),
     );
   }
 
   /** Where all joints are now. @returns {Point[]} */
   places() {
-    return Object.values(jointsAt(this.motion, this.player.at)).filter((one) => one !== null);
+    return Object.values(this.now()).filter((one) => one !== null);
   }
 
-  /** Show the motion at a place of its arrays, between samples on a straight line. @param {number} at */
-  show(at) {
+  /** The same by the joints' names. */
+  now() {
+    return jointsAt(this.motion, this.player.at);
+  }
+
+  /**
+   * Show the motion at a place of its arrays, between samples on a straight line.
+   * @param {number} at
+   * @param {boolean} [told] whether numbers are told of it
+   */
+  show(at, told = true) {
     const now = jointsAt(this.motion, at);
     this.linkage.show(now);
-    const held = this.hold && now[this.hold.name];
-    if (this.hold && held) {
-      const [u, v] = this.view.at(...held);
-      this.hold.hit.setAttribute("cx", String(u));
-      this.hold.hit.setAttribute("cy", String(v));
-    }
     this.springs.show(now);
     this.room.show(now);
     this.planes?.show(now);
     this.circuits.show(between(this.motion.input_angle, at));
-    this.gauge?.show(between(this.motion.transmission_angle, at));
-    this.companion?.show(Number(between(this.motion.input_angle, at)), now);
-    for (const mark of this.marks) mark.show(at);
+    this.gauge?.show(between(this.motion.transmission_angle, at), told);
+    this.companion?.show(Number(between(this.motion.input_angle, at)), now, told);
+    for (const mark of this.marks) mark.show(at, told);
   }
 
   /** Lead the motion to an input. @param {number} input */

@@ -6,6 +6,9 @@ import { t } from "./messages.js";
 /** Seconds that a cycle takes at speed 1. */
 const CYCLE_S = 4;
 
+/** Between numbers that are told while it plays, milliseconds: those of every frame cannot be read. */
+const TOLD_MS = 100;
+
 /**
  * @typedef {object} Moved
  * @property {number} count samples of the motion
@@ -14,7 +17,8 @@ const CYCLE_S = 4;
  * @property {string} label what the scrubber moves
  * @property {string} [name] before the ids of its controls, where a page has a second one
  * @property {(at: number) => string} reading what stands beside the scrubber
- * @property {(at: number) => void} show called with a place of the arrays, between two samples as a fraction
+ * @property {(at: number, told: boolean) => void} show called with a place of the arrays, between two samples as a
+ *   fraction, and whether numbers are told of it
  */
 
 export class Player {
@@ -30,7 +34,7 @@ export class Player {
     /** Where it goes back and forth, instead of over all of it. @type {[number, number] | null} */
     this.range = null;
     this.last = moved.count - 1;
-    /** Told the share of the way whenever it changes. @type {Set<(share: number) => void>} */
+    /** Told the share of the way whenever it changes. @type {Set<(share: number, told: boolean) => void>} */
     this.followers = new Set();
     this.button = el(
       "button",
@@ -101,16 +105,18 @@ export class Player {
     else this.at = within(this.at, this.last);
   }
 
-  /** @param {number} at */
-  seek(at) {
+  /** @param {number} at @param {boolean} [told] whether numbers are told of it */
+  seek(at, told = true) {
     this.at = at;
     if (!this.moved.endless) at = within(at, this.last);
     this.slider.value = this.moved.endless && at > this.last ? at % this.last : at;
-    const reading = this.moved.reading(at);
-    this.reading.value = reading;
-    this.slider.setAttribute("aria-valuetext", reading);
-    this.moved.show(at);
-    for (const follow of this.followers) follow(at / this.last);
+    if (told) {
+      const reading = this.moved.reading(at);
+      this.reading.value = reading;
+      this.slider.setAttribute("aria-valuetext", reading);
+    }
+    this.moved.show(at, told);
+    for (const follow of this.followers) follow(at / this.last, told);
   }
 
   play() {
@@ -119,6 +125,7 @@ export class Player {
     this.button.textContent = t`Pause`;
     if (this.range) this.at = this.range[0] + within(this.at - this.range[0], this.last);
     let before = performance.now();
+    let toldAt = before;
     const step = (/** @type {number} */ now) => {
       if (!this.playing) return;
       let at = this.at + (this.sense * this.rate * this.last * Math.max(0, now - before)) / 1000 / CYCLE_S;
@@ -130,16 +137,21 @@ export class Player {
         this.sense = at > to ? -1 : 1;
         at = Math.min(to, Math.max(from, at));
       }
-      this.seek(at);
+      const told = now - toldAt >= TOLD_MS;
+      if (told) toldAt = now;
+      this.seek(at, told);
       this.frame = requestAnimationFrame(step);
     };
     this.frame = requestAnimationFrame(step);
   }
 
   stop() {
-    this.playing = false;
     cancelAnimationFrame(this.frame);
     this.button.textContent = t`Play`;
+    if (!this.playing) return;
+    this.playing = false;
+    // What stands still is told.
+    this.seek(this.at);
   }
 }
 

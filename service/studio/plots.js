@@ -42,7 +42,10 @@ const FEWEST = 8;
  * @property {number[]} [values] all that is known of the quantity, where the samples are taken from between them
  */
 
-/** A plot whose mark follows the motion. @typedef {{figure: HTMLElement, show: (at: number) => void}} Mark */
+/**
+ * A plot whose mark follows the motion; its number is told where that is asked for.
+ * @typedef {{figure: HTMLElement, show: (at: number, told: boolean) => void}} Mark
+ */
 
 /**
  * @param {Plotted[]} wanted @param {number[] | undefined} input degrees, one for each sample
@@ -195,7 +198,7 @@ function plot(plotted, input, lead, unit, { whole = false, range: looked } = {})
     reading,
   );
   let at = 0;
-  /** @type {((at: number) => void) | null} the plot in its other range, which has taken the place of this one */
+  /** @type {Mark["show"] | null} the plot in its other range, which has taken the place of this one */
   let other = null;
   const look = (/** @type {Partial<Seen>} */ seen) => {
     const open = more.open;
@@ -205,7 +208,7 @@ function plot(plotted, input, lead, unit, { whole = false, range: looked } = {})
       figure.replaceChildren(...next.figure.childNodes);
       /** @type {HTMLDetailsElement} */ (figure.querySelector(".plot-more")).open = open;
     });
-    other(at);
+    other(at, true);
   };
   const nearer = (/** @type {number} */ share) => {
     const wide = Math.min(samples, Math.max(FEWEST, Math.round((end - start) * share)));
@@ -260,13 +263,12 @@ function plot(plotted, input, lead, unit, { whole = false, range: looked } = {})
         .map((series) => brief(series[Math.round(k)], noise))
         .join(BETWEEN);
   };
-  const show = (/** @type {number} */ now) => {
+  const show = (/** @type {number} */ now, /** @type {boolean} */ told) => {
     at = now;
-    if (other) return other(now);
+    if (other) return other(now, told);
     mark.toggleAttribute("hidden", at < start || at > end);
-    mark.setAttribute("x1", String(x(at)));
-    mark.setAttribute("x2", String(x(at)));
-    if (pointed === null) read(at);
+    mark.setAttribute("transform", `translate(${x(at)})`);
+    if (told && pointed === null) read(at);
   };
   return { figure, show };
 }

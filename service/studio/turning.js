@@ -26,9 +26,9 @@ export class Turning {
       endless,
       label,
       reading: (at) => `${shown(Math.round(10 * this.over(angles, at)) / 10)}°`,
-      show: (at) => {
-        this.show(at);
-        for (const mark of this.marks) mark.show(this.within(at));
+      show: (at, told) => {
+        this.show(at, told);
+        for (const mark of this.marks) mark.show(this.within(at), told);
       },
     });
   }
@@ -68,8 +68,12 @@ export class Turning {
     return this.player.moved.endless ? at - last * Math.floor(at / last) : at;
   }
 
-  /** Show it at a place of its arrays, between samples as a fraction. @param {number} _at */
-  show(_at) {}
+  /**
+   * Show it at a place of its arrays, between samples as a fraction.
+   * @param {number} _at
+   * @param {boolean} _told whether numbers are told of it
+   */
+  show(_at, _told) {}
 
   pause() {
     this.player.stop();

@@ -21,6 +21,9 @@ FOURBAR = {
 
 ANSWERED = "#answers:not([aria-busy]) .known"
 
+PUT = "all => all.map(({transform: {baseVal: [{matrix}]}}) => [matrix.e, matrix.f])"
+"""Where something that is drawn about the origin has been put, pixels of its picture."""
+
 REPORT_VIOLATIONS = """
 addEventListener("securitypolicyviolation", (event) =>
   console.error(`policy violated: ${event.violatedDirective} ${event.blockedURI}`));

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from synthesis.registry import examples
-from tests.browser.conftest import ANSWERED
+from tests.browser.conftest import ANSWERED, PUT
 from tests.browser.test_accessibility import violations
 from tests.browser.test_studio import state
 from tests.service.running import until
@@ -155,9 +155,7 @@ def test_two_designs_are_compared_in_numbers_and_on_the_stage(answered):
     assert not page.is_visible("#other")
     assert moved("#watch .overlaid .link >> nth=0")
     # Where the fixed pivots of the other lie in the picture of the first is where the answers have them.
-    pins = page.locator("#watch .live .ground, #watch .overlaid .ground").evaluate_all(
-        "all => all.map(one => one.getAttribute('d').slice(1).split('l')[0].split(' ').map(Number))"
-    )
+    pins = page.locator("#watch :is(.live, .overlaid) g:has(> .ground)").evaluate_all(PUT)
     pivots = [design["mechanism"]["fixed_pivots"][side] for design in (one, other) for side in ("input", "output")]
     scale = np.hypot(*np.subtract(pins[1], pins[0])) / np.hypot(*np.subtract(pivots[1], pivots[0]))
     for pin, pivot in zip(pins, pivots, strict=True):

@@ -49,13 +49,13 @@ def test_the_other_circuit_is_drawn_faint_and_goes_with_the_crank(studio, server
     assert len(other) > 100
     assert min(math.dist(own[0], place) for place in other) > 5.0, "another curve"
     ghost = page.locator(".others .faint .link").first
-    before, standing = ghost.get_attribute("d"), page.get_attribute(".live .pin", "cx")
+    before, standing = ghost.get_attribute("d"), page.get_attribute(".live .joined", "transform")
     for _ in range(5):
         page.keyboard.press("PageUp")
     assert ghost.get_attribute("d") != before
     # Both circuits have the same crank.
     assert ghost.get_attribute("d") == page.locator(".live .link").first.get_attribute("d")
-    assert page.get_attribute(".live .pin", "cx") == standing, "the fixed pivot stands"
+    assert page.get_attribute(".live .joined", "transform") == standing, "the fixed pivot stands"
     page.uncheck("#circuits")
     assert not page.locator(".others").is_visible()
 
@@ -125,7 +125,7 @@ def test_a_click_in_a_plot_leads_the_motion(studio):
     middle = (46 + 0.5 * 244) / 300 * box["width"]
     page.mouse.click(box["x"] + middle, box["y"] + box["height"] / 2)
     assert float(page.input_value("#scrub")) == pytest.approx(120, abs=1.5)
-    marks = page.locator(".plot .mark").evaluate_all("marks => marks.map(one => one.getAttribute('x1'))")
+    marks = page.locator(".plot .mark").evaluate_all("marks => marks.map(one => one.getAttribute('transform'))")
     assert len(set(marks)) == 1, "all plots stand at the same input"
     assert page.inner_text(".player button") == "Play", "it stands still"
 
@@ -156,11 +156,11 @@ def test_a_peak_that_is_cut_is_marked_and_told(studio, server):
     assert ticks == pytest.approx([min(known), max(known)], rel=6e-3, abs=1e-6 * (max(known) - min(known)))
     assert plot.locator(".beyond-mark").count() == 0
     assert plot.locator(".reading").inner_text() == reading
-    before = plot.locator(".mark").get_attribute("x1")
+    before = plot.locator(".mark").get_attribute("transform")
     page.keyboard.press("Escape")
     page.focus("#scrub")
     page.keyboard.press("PageUp")
-    assert plot.locator(".mark").get_attribute("x1") != before, "it goes on with the motion"
+    assert plot.locator(".mark").get_attribute("transform") != before, "it goes on with the motion"
 
 
 @pytest.mark.parametrize(
@@ -183,9 +183,10 @@ def test_the_error_of_a_function_is_plotted_over_its_range(studio, server, kind,
 def test_cognates_are_switched_in_place(studio):
     page = studio.page
     solved(studio, TIMED)
-    own, pivots = curve(page, ".canvas > .curve"), page.locator(".live .ground").first.get_attribute("d")
+    pivot = page.locator(".live g:has(> .ground)").first
+    own, before = curve(page, ".canvas > .curve"), pivot.get_attribute("transform")
     page.get_by_label("Right cognate").check()
-    until(lambda: page.locator(".live .ground").first.get_attribute("d") != pivots, what="other pivots")
+    until(lambda: pivot.get_attribute("transform") != before, what="other pivots")
     traced = curve(page, ".canvas > .curve")
     assert len(traced) == len(own)
     assert max(math.dist(one, other) for one, other in zip(own, traced, strict=True)) < 0.3, "pixels"

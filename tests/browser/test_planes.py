@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from tests.browser.conftest import PUT
 from tests.browser.test_accessibility import violations
 from tests.browser.test_studio import state
 
@@ -60,7 +61,7 @@ def test_links_have_the_colour_of_their_plane_and_stand_in_it(open_studio):
         for other, above in layout["planes"].items():
             assert bottoms[one] - bottoms[other] == pytest.approx(4.5 * thick * (above - plane), abs=1e-6)
     at = {name: x for name, (x, _) in skeleton["joints"].items()}
-    pins = dict(zip(at, page.locator(".moving .live .pin").evaluate_all(NUMBERS, ["cx"]), strict=True))
+    pins = dict(zip(at, page.locator(".moving .live .joined:has(.pin)").evaluate_all(PUT), strict=True))
     scale = (pins["C"][0] - pins["O2"][0]) / (at["C"] - at["O2"])
     for link in moving:
         x, _, width, _ = bars[link["name"]]

@@ -8,6 +8,7 @@ import pytest
 import shapely
 
 from synthesis.registry import KINDS, example
+from tests.browser.conftest import PUT
 from tests.browser.test_accessibility import violations
 from tests.browser.test_studio import LINKAGES, state, stated, unfold
 from tests.synthesis.test_space import LID
@@ -293,9 +294,7 @@ def test_the_body_goes_with_its_coupler_and_the_sweep_is_played(open_studio):
     job = page.evaluate("location.hash.slice(5)")
     answer = page.evaluate("id => fetch(`/v1/jobs/${id}`).then(answer => answer.json())", job)
     used = answer["result"]["designs"][0]["metrics"]["used_range"]
-    goals = page.locator(".moving .goal circle").evaluate_all(
-        "all => all.map(one => [+one.getAttribute('cx'), +one.getAttribute('cy')])"
-    )
+    goals = page.locator(".moving .goal").evaluate_all(PUT)
     positions = LID["positions"]
     demanded = np.array([complex(one["x"], one["y"]) for one in positions])
     drawn = np.array([complex(u, -v) for u, v in goals])
