@@ -62,6 +62,7 @@ class Studio:
         self.opened = opened or f"{url}/"
         self.ready = ready
         self.viewport = options.get("viewport")
+        self.media = {name: options.get(name, "null") for name in ("color_scheme", "reduced_motion")}
         self.wrong = []
         self.context = browser.new_context(accept_downloads=True, **options)
         self.context.set_default_timeout(60_000)
@@ -92,7 +93,7 @@ class Studio:
         self.context.clear_cookies()
         self.page.unroute_all(behavior="ignoreErrors")
         self.page.goto("about:blank")
-        self.page.emulate_media(media="null", color_scheme="null", reduced_motion="null")
+        self.page.emulate_media(media="null", **self.media)
         self.page.set_viewport_size(self.viewport)
         self.wrong.clear()
         assert wrong == []
