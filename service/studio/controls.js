@@ -3,9 +3,9 @@
 import { el, words } from "./dom.js";
 import { t, term } from "./messages.js";
 
-/** @import { Schemas } from "./types/values.js" */
+/** @import { Json, Schemas } from "./types/values.js" */
 
-/** @param {string[]} choices @param {unknown} value @param {boolean} nullable @param {(value: unknown) => void} set */
+/** @param {string[]} choices @param {unknown} value @param {boolean} nullable @param {(value: Json | undefined) => void} set */
 export function choice(choices, value, nullable, set) {
   const names = nullable ? ["", ...choices] : choices;
   const box = el(
@@ -17,7 +17,7 @@ export function choice(choices, value, nullable, set) {
   return box;
 }
 
-/** @param {unknown} value @param {unknown} fallback @param {(value: unknown) => void} set */
+/** @param {unknown} value @param {unknown} fallback @param {(value: Json | undefined) => void} set */
 export function numberBox(value, fallback, set) {
   const box = el("input", {
     type: "number",
@@ -33,8 +33,8 @@ export function numberBox(value, fallback, set) {
 /**
  * @param {unknown} value
  * @param {unknown} fallback
- * @param {(value: unknown) => void} set
- * @param {(text: string) => unknown} read
+ * @param {(value: Json | undefined) => void} set
+ * @param {(text: string) => Json} read
  */
 export function textBox(value, fallback, set, read) {
   const written = (/** @type {unknown} */ one) =>
@@ -58,7 +58,7 @@ export function lines(points) {
 
 /**
  * Points of the plane, one to a line: `120, 35`. What is no number stays as it is written, and the service says so.
- * @param {unknown} value @param {(value: unknown) => void} set
+ * @param {unknown} value @param {(value: Json | undefined) => void} set
  */
 export function pointsBox(value, set) {
   const box = el("textarea", {
@@ -88,7 +88,7 @@ export function pointsBox(value, set) {
 
 /**
  * What a statement has as an analysis has it, such as a mechanism: its JSON. Nothing is set while the text is none.
- * @param {unknown} value @param {(value: unknown) => void} set
+ * @param {unknown} value @param {(value: Json | undefined) => void} set
  */
 export function jsonBox(value, set) {
   const box = el("textarea", {
@@ -124,7 +124,7 @@ let ids = 0;
  * @param {string} path
  * @param {string[]} all
  * @param {string[]} value
- * @param {(value: unknown) => void} set
+ * @param {(value: Json | undefined) => void} set
  */
 export function choices(name, note, path, all, value, set) {
   const boxes = all.map((one) => {
@@ -152,7 +152,7 @@ export function choices(name, note, path, all, value, set) {
 /**
  * Tooth numbers that there are, some of them several times: `20, 24 × 3, 30`.
  * @param {unknown} value
- * @param {(value: unknown) => void} set
+ * @param {(value: Json | undefined) => void} set
  */
 export function stockBox(value, set) {
   const written = (/** @type {string | number | Schemas["StockedGear"]} */ one) =>

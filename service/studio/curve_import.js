@@ -17,8 +17,8 @@ import { View } from "./view.js";
 /** @typedef {[number, number]} Point */
 /** @typedef {import("./api.js").Curve} Curve */
 /**
- * @typedef {{name: string, text: string, closed: boolean | null, most: number, state: (points: Point[], closed:
- *   boolean) => void}} Use what `closed` is null of takes both
+ * @typedef {{name: string, text: string, closed: boolean | null, most: number, state: (statement: Problem, points:
+ *   Point[], closed: boolean) => void}} Use what `closed` is null of takes both
  */
 
 const ACCEPTED = ".svg,.dxf,.csv,.png,.jpg,.jpeg,image/svg+xml,image/vnd.dxf,text/csv,image/png,image/jpeg";
@@ -35,12 +35,11 @@ const LEAST = 3;
 export class CurveImport {
   /**
    * @param {HTMLElement} place @param {import("./backdrop.js").Backdrop} backdrop
-   * @param {() => {problem: Problem, roomy: boolean}} stated the statement as it is now @param {() => void} changed
+   * @param {import("./store.js").Store} store
    */
-  constructor(place, backdrop, stated, changed) {
+  constructor(place, backdrop, store) {
     this.backdrop = backdrop;
-    this.stated = stated;
-    this.changed = changed;
+    this.store = store;
     this.chooser = el("input", {
       type: "file",
       id: "curve-file",
@@ -93,7 +92,7 @@ export class CurveImport {
 
   /** What a curve can become in the statement as it is. @returns {Use[]} */
   uses() {
-    const { problem, roomy } = this.stated();
+    const { problem, roomy } = this.store;
     /** @type {Use[]} */
     const uses = [];
     if (problem.kind === "path") {
@@ -102,9 +101,9 @@ export class CurveImport {
         text: t`Points of the path`,
         closed: null,
         most: OF_PATH,
-        state: (points, closed) => {
-          problem.points = points.map(([x, y]) => ({ x, y }));
-          problem.closed = closed;
+        state: (statement, points, closed) => {
+          statement.points = points.map(([x, y]) => ({ x, y }));
+          statement.closed = closed;
         },
       });
     }
@@ -114,8 +113,9 @@ export class CurveImport {
         text: t`Motion of the follower`,
         closed: false,
         most: OF_CAM,
-        state: (points) => {
-          problem.segments = segmentsOf(points, problem.follower?.type?.startsWith("oscillating") ? Math.PI / 180 : 1);
+        state: (statement, points) => {
+          const swings = statement.follower?.type?.startsWith("oscillating");
+          statement.segments = segmentsOf(points, swings ? Math.PI / 180 : 1);
         },
       });
     }
@@ -126,7 +126,8 @@ export class CurveImport {
           text: role.text,
           closed: true,
           most: OF_AREA,
-          state: (/** @type {Point[]} */ points) => void stateArea(problem, role, { polygon: points }),
+          state: (/** @type {Problem} */ statement, /** @type {Point[]} */ points) =>
+            void stateArea(statement, role, { polygon: points }),
         })),
       );
     }
@@ -152,7 +153,7 @@ export class CurveImport {
   async read(most) {
     const { file } = this;
     if (!file) return;
-    const unit = this.stated().problem.length_unit ?? "mm";
+    const unit = this.store.problem.length_unit ?? "mm";
     this.said.textContent = t`Reading ${file.name} …`;
     this.button.disabled = true;
     try {
@@ -187,7 +188,7 @@ export class CurveImport {
    */
   show(file, found, areas, unit, most) {
     const uses = this.uses();
-    const stated = this.stated().problem;
+    const { origin } = this.store;
     const scale = el("input", {
       type: "number",
       id: "curve-scale",
@@ -232,9 +233,7 @@ export class CurveImport {
         size.textContent = `${shown(width)} × ${shown(height)} ${unit}, ${counted}`;
       }
       place.disabled =
-        this.stated().problem !== stated ||
-        rows.every(({ use }) => !use.value) ||
-        !(laid() || Number.isFinite(factor()));
+        this.store.origin !== origin || rows.every(({ use }) => !use.value) || !(laid() || Number.isFinite(factor()));
     };
     for (const { use } of rows) use.addEventListener("change", told);
     const states =
@@ -281,7 +280,7 @@ export class CurveImport {
   /** @param {File} file @param {number | null} [scale] */
   async behind(file, scale = null) {
     try {
-      await this.backdrop.lay(file, this.stated().problem.length_unit ?? "mm", scale);
+      await this.backdrop.lay(file, this.store.problem.length_unit ?? "mm", scale);
       this.said.textContent = t`${file.name} lies behind the canvas.`;
       this.told?.();
     } catch (error) {
@@ -296,20 +295,21 @@ export class CurveImport {
    */
   place(name, rows, placed) {
     const uses = this.uses();
-    let count = 0;
+    const used = rows.flatMap(({ curve, use }, k) => {
+      const chosen = uses.find((one) => one.name === use.value);
+      return chosen ? [{ chosen, curve, k }] : [];
+    });
+    const count = used.length;
     try {
-      for (const [k, { curve, use }] of rows.entries()) {
-        const chosen = uses.find((one) => one.name === use.value);
-        if (!chosen) continue;
-        chosen.state(placed(k, chosen.closed === true), curve.closed);
-        count += 1;
-      }
+      this.store.change((statement) => {
+        for (const { chosen, curve, k } of used)
+          chosen.state(statement, placed(k, chosen.closed === true), curve.closed);
+      });
     } catch (error) {
       this.said.textContent = `${name}: ${error instanceof Error ? error.message : error}`;
       return;
     }
     this.close(count === 1 ? t`1 curve taken from ${name}.` : t`${count} curves taken from ${name}.`);
-    this.changed();
   }
 
   /** @param {string} said */

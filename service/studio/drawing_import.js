@@ -7,8 +7,6 @@ import { t } from "./messages.js";
 import { rolesOf, stateArea } from "./room.js";
 import { View } from "./view.js";
 
-/** @import { Problem } from "./types/values.js" */
-
 /** @typedef {[number, number]} Point */
 /** @typedef {import("./room.js").Role} Role */
 /** @typedef {import("./api.js").Drawn} Drawn */
@@ -18,11 +16,11 @@ const DIGITS = 9;
 
 export class DrawingImport {
   /**
-   * @param {Problem} problem changed in place
-   * @param {(path: string | undefined) => void} placed the area that is chosen then
+   * @param {import("./store.js").Store} store
+   * @param {(path: string | undefined) => void} placed told the area that is chosen before anything shows it
    */
-  constructor(problem, placed) {
-    this.problem = problem;
+  constructor(store, placed) {
+    this.store = store;
     this.placed = placed;
     this.file = el("input", {
       type: "file",
@@ -49,7 +47,7 @@ export class DrawingImport {
     this.said.textContent = t`Reading ${file.name} …`;
     this.button.disabled = true;
     try {
-      this.show(file.name, await api.outlines(file, this.problem.length_unit ?? "mm"));
+      this.show(file.name, await api.outlines(file, this.store.problem.length_unit ?? "mm"));
     } catch (error) {
       const why =
         error instanceof api.Refused
@@ -66,7 +64,7 @@ export class DrawingImport {
 
   /** The outlines, each with the choice of its use. @param {string} name @param {api.Outlines} found */
   show(name, found) {
-    const unit = this.problem.length_unit ?? "mm";
+    const unit = this.store.problem.length_unit ?? "mm";
     const scale = el("input", {
       type: "number",
       id: "drawing-scale",
@@ -96,7 +94,7 @@ export class DrawingImport {
           told();
         },
       },
-      ...this.options(rolesOf(this.problem)),
+      ...this.options(rolesOf(this.store.problem)),
     );
     for (const { use } of rows) use.addEventListener("change", told);
     const states =
@@ -138,7 +136,7 @@ export class DrawingImport {
     const view = new View(points, 46, 34, 3);
     const size = el("p", { class: "note" });
     const id = `drawn${k}`;
-    const fitting = rolesOf(this.problem).filter(
+    const fitting = rolesOf(this.store.problem).filter(
       (role) => role.name === "box" || role.tools.includes(one.circle ? "circle" : "polygon"),
     );
     const use = el("select", { id }, ...this.options(fitting));
@@ -172,45 +170,50 @@ export class DrawingImport {
 
   /** @param {string} name @param {{one: Drawn, use: any}[]} rows @param {number} factor */
   place(name, rows, factor) {
-    const { problem } = this;
-    const before = stated(problem.space);
-    let path;
-    let count = 0;
-    for (const { one, use } of rows) {
-      const role = rolesOf(problem).find((each) => each.name === use.value);
-      if (!role) continue;
-      count += 1;
-      const circle = one.circle && {
-        center: scaled(one.circle.center, factor),
-        radius: rounded(one.circle.radius * factor),
-      };
-      const corners = (circle && role.name === "box" ? around(circle) : (one.polygon ?? [])).map((point) =>
-        circle ? point : scaled(point, factor),
-      );
-      path = stateArea(problem, role, circle && role.name !== "box" ? { circle } : { polygon: corners });
-    }
-    this.last = { before, after: stated(problem.space) };
+    const { store } = this;
+    const before = stated(store.problem.space);
+    const used = rows.flatMap(({ one, use }) => {
+      const role = rolesOf(store.problem).find((each) => each.name === use.value);
+      return role ? [{ one, role }] : [];
+    });
+    store.change((statement) => {
+      let path;
+      for (const { one, role } of used) {
+        const circle = one.circle && {
+          center: scaled(one.circle.center, factor),
+          radius: rounded(one.circle.radius * factor),
+        };
+        const corners = (circle && role.name === "box" ? around(circle) : (one.polygon ?? [])).map((point) =>
+          circle ? point : scaled(point, factor),
+        );
+        path = stateArea(statement, role, circle && role.name !== "box" ? { circle } : { polygon: corners });
+      }
+      this.placed(path);
+    });
+    this.last = { before, after: stated(store.problem.space) };
+    const count = used.length;
     this.close(`${count === 1 ? t`1 area placed from ${name}.` : t`${count} areas placed from ${name}.`} `);
     this.said.append(
       el("button", { type: "button", class: "small", id: "drawing-undo", onclick: () => this.undo() }, t`Undo`),
     );
-    this.placed(path);
   }
 
   /** The room as it was before; what was changed in it since then would be lost, so then it stays. */
   undo() {
-    const { last, problem } = this;
+    const { last, store } = this;
     if (!last) return;
-    if (stated(problem.space) !== last.after) {
+    if (stated(store.problem.space) !== last.after) {
       this.said.textContent = t`The room has been changed since; choose what is to go, and delete it.`;
       return;
     }
     const before = JSON.parse(last.before);
-    if (before === null) delete problem.space;
-    else problem.space = before;
     this.last = null;
     this.close(t`Undone.`);
-    this.placed(undefined);
+    store.change((statement) => {
+      if (before === null) delete statement.space;
+      else statement.space = before;
+      this.placed(undefined);
+    });
   }
 
   /** @param {string} said */

@@ -1,31 +1,22 @@
 /**
  * A form made from the JSON schema of a problem.
  *
- * The form changes the problem in place. A field that is left empty is left out of the problem, so that the service's
- * default holds. Each control carries its JSON pointer as `data-path`, by which errors find it.
+ * A field that is left empty is left out of the problem, so that the service's default holds. Each control carries its
+ * JSON pointer as `data-path`, by which errors find it.
  */
 
 import { choice, choices, jsonBox, numberBox, plain, pointsBox, stockBox, textBox } from "./controls.js";
 import { el, words } from "./dom.js";
 import { prose, t } from "./messages.js";
-import { discriminator, initial, kinded, optionOf, resolved, shapeOf, tagsOf } from "./schema.js";
+import { escaped, group as structured } from "./pointer.js";
+import { discriminator, initial, kinded, optionOf, propertiesOf, resolved, shapeOf, tagsOf } from "./schema.js";
+import { ROOT, Sheet } from "./sheet.js";
 import { table } from "./table.js";
 import { unitOf } from "./units.js";
 
-/** @import { Problem } from "./types/values.js" */
+/** @import { Json } from "./types/values.js" */
 
 /** @typedef {import("./schema.js").Schema} Schema */
-
-/**
- * What the controls of one form share.
- * @typedef {object} Sheet
- * @property {Schema} root
- * @property {Problem} problem
- * @property {(schema: Schema, owner: any, path: string, names: string[]) => (Node | null)[]} controls of some
- *   properties of an object
- * @property {() => void} changed a value was changed
- * @property {() => void} rebuild the form has other controls now
- */
 
 /** Fields of every problem that few people touch; they come last. */
 const LAST = ["length_unit", "rank_by", "max_designs", "include_failed", "seed"];
@@ -35,75 +26,64 @@ const FOLDED = 3;
 
 let ids = 0;
 
-/**
- * Fill `form` with the controls of a problem.
- * @param {HTMLElement} form @param {Schema} root @param {Problem} problem @param {(rebuilt: boolean) => void} changed
- */
-export function fill(form, root, problem, changed) {
-  /** @type {Sheet} */
-  const sheet = {
-    root,
-    problem,
-    changed: () => changed(false),
-    rebuild: () => changed(true),
-    controls: (schema, owner, path, names) => controls(sheet, schema, owner, path, names),
-  };
-  const names = Object.keys(root.properties);
+/** Fill `form` with the controls of what a store states. @param {HTMLElement} form @param {import("./store.js").Store} store */
+export function fill(form, store) {
+  const sheet = new Sheet(store);
+  const { root } = sheet;
+  const names = Object.keys(propertiesOf(root));
   const must = names.filter((name) => root.required?.includes(name));
   const may = names.filter((name) => !must.includes(name) && !LAST.includes(name));
   const order = [...must, ...may, ...LAST.filter((name) => names.includes(name))];
   const opened = [...form.querySelectorAll("details[open]")].map((one) => one.getAttribute("data-path"));
   const focused = form.contains(document.activeElement) ? document.activeElement?.getAttribute("data-path") : null;
-  form.replaceChildren(...folded(sheet, root, problem, "/problem", order));
+  form.replaceChildren(...folded(sheet, root, ROOT, order));
   for (const path of opened) form.querySelector(`details[data-path="${path}"]`)?.setAttribute("open", "");
   /** @type {HTMLElement | null} */ (focused && form.querySelector(`[data-path="${focused}"]`))?.focus();
 }
 
-/** @param {Sheet} sheet @param {Schema} schema @param {any} value @param {string} path @param {string[]} [order] */
-function controls(sheet, schema, value, path, order = Object.keys(schema.properties)) {
+/** @param {Sheet} sheet @param {Schema} schema @param {string} path @param {string[]} [order] */
+function controls(sheet, schema, path, order = Object.keys(propertiesOf(schema))) {
   return order.map((name) => {
     const required = schema.required?.includes(name) ?? false;
-    return field(sheet, schema.properties[name], name, value, `${path}/${name}`, required);
+    return field(sheet, propertiesOf(schema)[name], name, `${path}/${name}`, required);
   });
 }
 
 /**
  * What is stated, and what must be; the rest is one click away.
- * @param {Sheet} sheet @param {Schema} schema @param {any} value @param {string} path @param {string[]} [order]
+ * @param {Sheet} sheet @param {Schema} schema @param {string} path @param {string[]} [order]
  * @returns {Node[]}
  */
-function folded(sheet, schema, value, path, order = Object.keys(schema.properties)) {
-  const used = (/** @type {string} */ name) =>
-    schema.required?.includes(name) || (value[name] !== undefined && value[name] !== null && !empty(value[name]));
+function folded(sheet, schema, path, order = Object.keys(propertiesOf(schema))) {
+  const used = (/** @type {string} */ name) => {
+    const value = sheet.at(`${path}/${name}`);
+    return schema.required?.includes(name) || (value !== undefined && value !== null && !empty(value));
+  };
   const made = (/** @type {string[]} */ names) =>
-    /** @type {Node[]} */ (controls(sheet, schema, value, path, names).filter((one) => one !== null));
+    /** @type {Node[]} */ (controls(sheet, schema, path, names).filter((one) => one !== null));
   const [first, rest] = [made(order.filter(used)), made(order.filter((name) => !used(name)))];
   if (rest.length < FOLDED) return [...first, ...rest];
   const more = el(
     "details",
     { class: "more", "data-path": `${path}/*`, onreveal: () => (more.open = true) },
-    el("summary", {}, `${path === "/problem" ? t`More` : t`More limits`} (${rest.length})`),
+    el("summary", {}, `${path === ROOT ? t`More` : t`More limits`} (${rest.length})`),
     el("div", { class: "fields" }, ...rest),
   );
   return [...first, more];
 }
 
 /**
- * The control of one property of `owner`.
- * @param {Sheet} sheet @param {Schema} schema @param {string} name @param {any} owner @param {string} path
+ * The control of one property of an object.
+ * @param {Sheet} sheet @param {Schema} schema @param {string} name @param {string} path
  * @param {boolean} required
  * @returns {Node | null}
  */
-function field(sheet, schema, name, owner, path, required) {
+function field(sheet, schema, name, path, required) {
   const what = kinded(schema, sheet.root);
-  const set = (/** @type {unknown} */ value) => {
-    if (value === undefined) delete owner[name];
-    else owner[name] = value;
-    // The units beside the other fields are those of the length unit, or of the mechanism that is asked for.
-    if (name === "length_unit" || (name === "mechanism" && typeof value === "string")) sheet.rebuild();
-    else sheet.changed();
-  };
-  const value = owner[name];
+  // The units beside the other fields are those of the length unit, or of the mechanism that is asked for.
+  const set = (/** @type {Json | undefined} */ value) =>
+    sheet.put(path, value, name === "length_unit" || (name === "mechanism" && typeof value === "string"));
+  const value = sheet.at(path);
   const unit = unitOf(schema, sheet.problem);
   const about =
     schema.description ?? (what.options.length === 1 ? resolved(what.options[0], sheet.root).description : "");
@@ -122,7 +102,7 @@ function field(sheet, schema, name, owner, path, required) {
         choice(what.choices ?? [], value ?? fallback, what.nullable, set),
       );
     case "choices":
-      return choices(name, note, path, what.choices ?? [], value ?? fallback ?? [], set);
+      return choices(name, note, path, what.choices ?? [], strings(value ?? fallback), set);
     case "flag":
       return flag(name, note, path, value ?? fallback, set);
     case "number":
@@ -150,30 +130,23 @@ function field(sheet, schema, name, owner, path, required) {
     case "stock":
       return labelled(name, unit, t`${note} As in 20, 24 × 3, 30.`, path, required, stockBox(value, set));
     case "table":
-      return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () => {
-        // A list that is only looked at is not stated: it becomes part of the problem with its first row.
-        const rows = Array.isArray(owner[name]) ? owner[name] : [];
-        const rebuild = () => {
-          if (rows.length) owner[name] = rows;
-          sheet.rebuild();
-        };
-        return [table({ ...sheet, rebuild }, what.item ?? {}, rows, path, what.count)];
-      });
+      return group(sheet, schema, name, note, path, required || !what.nullable, () => [
+        table(sheet.looking(path, []), what.item ?? {}, path, controls, what.count),
+      ]);
     case "object":
-      return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () => {
-        owner[name] ??= {};
-        return folded(sheet, what.options[0], owner[name], path);
-      });
+      return group(sheet, schema, name, note, path, required || !what.nullable, () =>
+        folded(sheet, what.options[0], path),
+      );
     case "union":
-      return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () =>
-        union(sheet, what.options, owner, name, path),
+      return group(sheet, schema, name, note, path, required || !what.nullable, () =>
+        union(sheet.looking(path, initial(what.options[0], sheet.root)), what.options, path),
       );
     case "map":
-      return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () =>
-        members(sheet, what.item ?? {}, owner, name, path),
+      return group(sheet, schema, name, note, path, required || !what.nullable, () =>
+        members(sheet, what.item ?? {}, path),
       );
     case "shapes":
-      return shapes(sheet, what, schema, name, note, path, required, owner, set);
+      return shapes(sheet, what, schema, name, note, path, required);
     default:
       if (what.options.every((one) => one.type === "array" && one.items?.type === "string"))
         return labelled(
@@ -192,7 +165,7 @@ function field(sheet, schema, name, owner, path, required) {
 /** The words for what a value can be. @param {Schema} option */
 function shapeName(option) {
   if (option.const !== undefined) return String(option.const);
-  const names = Object.keys(option.properties ?? {});
+  const names = Object.keys(propertiesOf(option));
   if (option.type === "object")
     return names.length === 2 && names.every((one) => ["min", "max"].includes(one)) ? t`a range` : t`in detail`;
   return (
@@ -211,38 +184,36 @@ function shapeName(option) {
  * @param {Schema} schema
  * @param {string} name
  * @param {string} note
- * @param {string} path @param {boolean} required @param {any} owner @param {(value: any) => void} set
+ * @param {string} path @param {boolean} required
  * @returns {HTMLElement}
  */
-function shapes(sheet, what, schema, name, note, path, required, owner, set) {
+function shapes(sheet, what, schema, name, note, path, required) {
   const options =
     what.nullable && (schema.default ?? null) !== null ? [...what.options, { type: "null" }] : what.options;
-  const value = owner[name] === undefined ? schema.default : owner[name];
+  const stated = sheet.at(path);
+  const value = stated === undefined ? schema.default : stated;
   const now = shapeOf(options, value) ?? options[0];
   const dimension = schema["x-dimension"];
   const ways = options.map(shapeName);
   const way = choice(ways, shapeName(now), false, (chosen) => {
     const option = options[ways.indexOf(String(chosen))];
-    owner[name] = option.type === "null" ? null : initial(option, sheet.root);
-    sheet.rebuild();
+    sheet.put(path, option.type === "null" ? null : initial(option, sheet.root), true);
   });
   if (now.const !== undefined || now.type === "null") return labelled(name, "", note, path, required, way);
   way.setAttribute("aria-label", t`${words(name)}: how it is stated`);
   const one = { ...now, ...(dimension ? { "x-dimension": dimension } : {}) };
-  // What is not stated yet stays unstated while it is only looked at.
   const inside =
     now.type === "object" || kinded(now, sheet.root).control === "table"
-      ? group(sheet, { ...one, default: schema.default }, name, note, path, true, owner, set, () => {
-          if (shapeOf([now], owner[name]) === undefined)
-            owner[name] = shapeOf([now], schema.default) ? structuredClone(schema.default) : initial(now, sheet.root);
-          return now.type === "array"
-            ? [table(sheet, now.items, owner[name], path)]
-            : controls(sheet, now, owner[name], path);
+      ? group(sheet, { ...one, default: schema.default }, name, note, path, true, () => {
+          const first =
+            schema.default !== undefined && shapeOf([now], schema.default) ? schema.default : initial(now, sheet.root);
+          const here = sheet.looking(path, first);
+          return now.type === "array" ? [table(here, now.items ?? {}, path, controls)] : controls(here, now, path);
         })
-      : field(sheet, { ...one, default: schema.default, description: note }, name, owner, path, required);
+      : field(sheet, { ...one, default: schema.default, description: note }, name, path, required);
   if (inside instanceof HTMLDetailsElement) {
     inside.querySelector("summary")?.after(way);
-    if (shapeOf([now], owner[name])) inside.dispatchEvent(new Event("reveal"));
+    if (shapeOf([now], stated)) inside.dispatchEvent(new Event("reveal"));
   } else /** @type {HTMLElement} */ (inside)?.querySelector(":scope > .error")?.before(way);
   return /** @type {HTMLElement} */ (inside);
 }
@@ -251,13 +222,10 @@ function shapes(sheet, what, schema, name, note, path, required, owner, set) {
  * Objects by names that are given to them.
  * @param {Sheet} sheet
  * @param {Schema} item
- * @param {any} owner
- * @param {string} field
  * @param {string} path
  */
-function members(sheet, item, owner, field, path) {
-  /** @type {Record<string, any>} */
-  const found = owner[field] ?? {};
+function members(sheet, item, path) {
+  const found = sheet.at(path) ?? {};
   const name = el("input", { type: "text", "aria-label": t`Name of another one`, spellcheck: "false" });
   const add = el(
     "button",
@@ -267,9 +235,8 @@ function members(sheet, item, owner, field, path) {
       onclick: () => {
         const stated = name.value.trim();
         if (!stated) return name.focus();
-        // What is only looked at is not stated.
-        owner[field] = { ...found, [stated]: found[stated] ?? initial(item, sheet.root) };
-        sheet.rebuild();
+        const one = `${path}/${escaped(stated)}`;
+        sheet.put(one, sheet.at(one) ?? initial(item, sheet.root), true);
       },
     },
     t`Add`,
@@ -286,57 +253,48 @@ function members(sheet, item, owner, field, path) {
             type: "button",
             class: "small",
             "aria-label": t`Remove ${key}`,
-            onclick: () => {
-              delete found[key];
-              sheet.rebuild();
-            },
+            onclick: () => sheet.put(`${path}/${escaped(key)}`, undefined, true),
           },
           "×",
         ),
       ),
-      ...controls(
-        sheet,
-        resolved(item, sheet.root),
-        found[key],
-        `${path}/${key.replaceAll("~", "~0").replaceAll("/", "~1")}`,
-      ),
+      ...controls(sheet, resolved(item, sheet.root), `${path}/${escaped(key)}`),
     ]),
     el("div", { class: "row member" }, name, add),
   ];
 }
 
-/** @param {Sheet} sheet @param {Schema[]} options @param {any} owner @param {string} name @param {string} path */
-function union(sheet, options, owner, name, path) {
+/** @param {Sheet} sheet that looks at the first of them where none is stated @param {Schema[]} options @param {string} path */
+function union(sheet, options, path) {
   const tag = discriminator(options) ?? "";
-  owner[name] ??= initial(options[0], sheet.root);
-  const option = optionOf(options, owner[name]);
+  const option = optionOf(options, sheet.at(path));
   const pick = choice(
     options.flatMap((one) => tagsOf(one, tag)),
-    owner[name][tag] ?? option.properties[tag].default,
+    sheet.at(`${path}/${tag}`) ?? propertiesOf(option)[tag].default,
     false,
     (value) => {
       const next = initial(options.find((one) => tagsOf(one, tag).includes(String(value))) ?? options[0], sheet.root);
-      owner[name] = { ...next, [tag]: value };
-      sheet.rebuild();
+      sheet.put(path, { ...(structured(next) ? next : {}), [tag]: value }, true);
     },
   );
-  const others = Object.keys(option.properties).filter((one) => one !== tag);
-  return [labelled(tag, "", "", `${path}/${tag}`, true, pick), ...controls(sheet, option, owner[name], path, others)];
+  const others = Object.keys(propertiesOf(option)).filter((one) => one !== tag);
+  return [labelled(tag, "", "", `${path}/${tag}`, true, pick), ...controls(sheet, option, path, others)];
 }
 
 /**
  * A group of fields that opens; what may be absent is stated by a flag.
  * @param {Sheet} sheet @param {Schema} schema @param {string} name @param {string} note @param {string} path
- * @param {boolean} always @param {any} owner @param {(value: any) => void} set @param {() => (Node | null)[]} inside
+ * @param {boolean} always @param {() => (Node | null)[]} inside
  */
-function group(sheet, schema, name, note, path, always, owner, set, inside) {
-  const stated = owner[name] !== undefined && owner[name] !== null;
+function group(sheet, schema, name, note, path, always, inside) {
+  const value = sheet.at(path);
+  const stated = value !== undefined && value !== null;
   const required = sheet.root.required?.includes(name) && path.split("/").length === 3;
   const body = el("div", { class: "fields" });
   const fillBody = () => {
     if (!body.childElementCount) body.append(...inside().filter((one) => one !== null));
   };
-  const open = stated && (required || Object.keys(owner[name]).length > 0);
+  const open = stated && (required || Object.keys(value).length > 0);
   const details = el(
     "details",
     {
@@ -348,9 +306,9 @@ function group(sheet, schema, name, note, path, always, owner, set, inside) {
         if (always || stated) fillBody();
       },
       ontoggle: () => {
-        // What is only looked at is not stated: an empty group leaves the problem again when it is closed.
         if (details.open && (always || stated)) fillBody();
-        else if (!details.open && empty(owner[name]) && !required) set(undefined);
+        // A group whose fields are all left out says nothing.
+        else if (!details.open && empty(sheet.at(path)) && !required) sheet.put(path, undefined);
       },
     },
     el("summary", {}, words(name)),
@@ -361,14 +319,7 @@ function group(sheet, schema, name, note, path, always, owner, set, inside) {
     const box = el("input", {
       type: "checkbox",
       id: `f${++ids}`,
-      onchange: () => {
-        if (box.checked) {
-          owner[name] = initial(schema, sheet.root);
-        } else {
-          delete owner[name];
-        }
-        sheet.rebuild();
-      },
+      onchange: () => sheet.put(path, box.checked ? initial(schema, sheet.root) : undefined, true),
     });
     box.checked = stated;
     details.append(el("label", { class: "flag", for: box.id }, box, t`State it`));
@@ -413,8 +364,8 @@ function labelled(name, unit, note, path, required, control) {
  * @param {string} name
  * @param {string} note
  * @param {string} path
- * @param {any} value
- * @param {(value: any) => void} set
+ * @param {Json} value
+ * @param {(value: Json | undefined) => void} set
  */
 function flag(name, note, path, value, set) {
   const id = `f${++ids}`;
@@ -433,6 +384,11 @@ function flag(name, note, path, value, set) {
     el("p", { class: "error", id: `${id}e` }),
     el("p", { class: "note", id: `${id}n` }, note),
   );
+}
+
+/** Words of a list. @param {Json} value */
+function strings(value) {
+  return Array.isArray(value) ? value.map(String) : [];
 }
 
 /** Names between commas. @param {string} text */

@@ -1,5 +1,7 @@
 /**
  * What of a statement can be taken hold of on the canvas, kind by kind: positions, points, pivots, lines and regions.
+ *
+ * Handles are of one statement: they tell where they are in it, and put, turned and removed they change it.
  */
 
 import { t } from "./messages.js";
@@ -17,8 +19,7 @@ import { smoothed, symmetric } from "./shaping.js";
  * @property {(x: number, y: number) => void} put
  * @property {{get: () => number, set: (degrees: number) => void}} [turn]
  * @property {() => void} [remove]
- * @property {{x: number, y: number, angle?: number}} [owner] with the fields of the form
- * @property {string} [path] JSON pointer of the owner
+ * @property {string} [path] JSON pointer of what has the fields x, y and angle
  */
 
 /**
@@ -33,7 +34,7 @@ import { smoothed, symmetric } from "./shaping.js";
  *   a curve as a whole
  */
 
-/** @param {Problem} problem changed in place @returns {Stated | null} null for a kind that has no place in the plane */
+/** @param {Problem} problem @returns {Stated | null} null for a kind that has no place in the plane */
 export function stated(problem) {
   /** @type {Record<string, {make(problem: Problem): Stated | null}["make"]>} */
   const makers = {
@@ -92,7 +93,6 @@ function listed(list, field, word, turning, fixed = false) {
           /** @type {Handle} */ ({
             name: String(k + 1),
             label: `${word} ${k + 1}`,
-            owner: one,
             path: `/problem/${field}/${k}`,
             get: () => [one.x, one.y],
             put: (x, y) => Object.assign(one, { x, y }),
@@ -423,6 +423,9 @@ function parallelMotion(problem) {
   };
 }
 
+/** What lengths are rounded to, as a share of them, with room for what it does to a square. */
+const ROUNDED = 1e-7;
+
 /**
  * Joints of a fourbar at its reference, or where it can first be assembled.
  * @param {any} linkage
@@ -440,7 +443,10 @@ function assembled(linkage) {
     const [dx, dy] = [pivots.output[0] - A[0], pivots.output[1] - A[1]];
     const diagonal = Math.hypot(dx, dy);
     const along = (links.coupler ** 2 - links.output ** 2 + diagonal ** 2) / (2 * diagonal);
-    const up = Math.sqrt(links.coupler ** 2 - along ** 2) * (assembly === "crossed" ? -1 : 1);
+    // In line with each other, joints that are rounded may be apart by that much more than links reach.
+    const square = links.coupler ** 2 - along ** 2;
+    const rounded = Math.abs(square) < ROUNDED * links.coupler ** 2;
+    const up = rounded ? 0 : Math.sqrt(square) * (assembly === "crossed" ? -1 : 1);
     if (!Number.isFinite(up)) continue;
     const B = /** @type {Point} */ ([
       A[0] + (along * dx - up * dy) / diagonal,

@@ -6,7 +6,7 @@ import { t } from "./messages.js";
 
 /** @import { Desk } from "./desk.js" */
 /** @import { Link } from "./link.js" */
-/** @import { Undo } from "./undo.js" */
+/** @import { Store } from "./store.js" */
 
 /** @param {string} name of a button on the board that is shown */
 const press = (name) => () => visible(`.board button[aria-label="${name}"]`)?.click();
@@ -16,14 +16,14 @@ const press = (name) => () => visible(`.board button[aria-label="${name}"]`)?.cl
  * @param {object} page
  * @param {typeof import("./answers.js")} page.answers
  * @param {Desk} page.desk
- * @param {Undo} page.undo
+ * @param {Store} page.store
  * @param {() => void} page.solve
  * @param {() => void} page.browse shows the gallery
  * @param {Link} page.link
  * @param {() => void} page.sheet shows these keys
  * @returns {import("./keys.js").Binding[]}
  */
-export function keymap({ answers, desk, undo, solve, browse, link, sheet }) {
+export function keymap({ answers, desk, store, solve, browse, link, sheet }) {
   return [
     {
       keys: ["Ctrl+Enter"],
@@ -39,14 +39,14 @@ export function keymap({ answers, desk, undo, solve, browse, link, sheet }) {
       shown: t`Ctrl Z`,
       text: t`Undo`,
       everywhere: true,
-      act: () => desk.explorer?.undo() || undo.undo(),
+      act: () => desk.explorer?.undo() || store.undo(),
     },
     {
       keys: ["Ctrl+Shift+z", "Ctrl+y"],
       shown: t`Ctrl Shift Z`,
       text: t`Redo`,
       everywhere: true,
-      act: () => desk.explorer?.redo() || undo.redo(),
+      act: () => desk.explorer?.redo() || store.redo(),
     },
     { keys: [" "], shown: t`Space`, text: t`Play and pause`, act: () => visible(".player button")?.click() },
     { keys: ["ArrowLeft"], shown: t`← or →`, text: t`One degree back or on; ten with Shift`, act: () => scrub(-1) },

@@ -12,8 +12,6 @@ import { t } from "./messages.js";
 import { Pen } from "./pen.js";
 import { areas, rolesOf, stateArea } from "./room.js";
 
-/** @import { Problem } from "./types/values.js" */
-
 /** @typedef {[number, number]} Point */
 /** @typedef {import("./room.js").Area} Area */
 /** @typedef {import("./room.js").Tool} Tool */
@@ -34,26 +32,24 @@ const TOOLS = /** @type {Tool[]} */ (["polygon", "rectangle", "circle"]);
 
 export class RoomEditor {
   /**
-   * @param {SVGSVGElement} picture @param {import("./view.js").View} view @param {Problem} problem changed in place
-   * @param {Memory} memory @param {(rebuilt: boolean) => void} changed
+   * @param {SVGSVGElement} picture @param {import("./view.js").View} view @param {import("./store.js").Store} store
+   * @param {Memory} memory
    */
-  constructor(picture, view, problem, memory, changed) {
+  constructor(picture, view, store, memory) {
     this.picture = picture;
     this.view = view;
-    this.problem = problem;
+    this.store = store;
     this.memory = memory;
-    this.changed = changed;
-    this.areas = areas(problem.space);
+    this.areas = areas(store.problem.space);
     memory.pen?.leave();
     memory.pen = null;
     this.node = svg("g", { class: "room" }, ...this.areas.map((area) => this.held(area)));
     this.said = el("p", { class: "note", role: "status" });
     // What was found in a drawing stands there until it is placed; it speaks to the canvas as it is then.
-    this.drawing = memory.drawing ??= new DrawingImport(problem, () => {});
+    this.drawing = memory.drawing ??= new DrawingImport(store, () => {});
     this.drawing.placed = (path) => {
       memory.chosen = path;
       this.rest();
-      changed(true);
     };
     this.tools = this.bar();
     this.rest();
@@ -63,10 +59,24 @@ export class RoomEditor {
     return this.areas.find((one) => one.path === this.memory.chosen);
   }
 
+  /** An area as it is now. @param {string} path @returns {Area} */
+  at(path) {
+    return /** @type {Area} */ (this.areas.find((one) => one.path === path));
+  }
+
+  /** @param {string} path of an area @param {(area: Area) => void} act @param {import("./store.js").Editor | null} [by] */
+  change(path, act, by = null) {
+    this.store.change((statement) => {
+      const area = areas(statement.space).find((one) => one.path === path);
+      if (area) act(area);
+    }, by);
+    this.areas = areas(this.store.problem.space);
+  }
+
   /** What draws: the role first, then the shape. */
   bar() {
     const { memory } = this;
-    const roles = rolesOf(this.problem);
+    const roles = rolesOf(this.store.problem);
     const role = () => roles.find((one) => one.name === pick.value) ?? roles[0];
     const pick = el(
       "select",
@@ -138,9 +148,11 @@ export class RoomEditor {
       tell: (text) => (this.said.textContent = text),
       left: () => this.rest(),
       done: (zone) => {
-        this.memory.chosen = stateArea(this.problem, role, zone);
-        this.rest();
-        this.changed(true);
+        // It is chosen, and the pen away, when the canvas is made anew.
+        this.store.change((statement) => {
+          this.memory.chosen = stateArea(statement, role, zone);
+          this.rest();
+        });
       },
     });
     this.tools.querySelector(`[data-tool="${tool}"]`)?.setAttribute("aria-pressed", "true");
@@ -181,56 +193,46 @@ export class RoomEditor {
 
   /** @param {Area} area */
   remove(area) {
-    area.remove();
     this.memory.chosen = undefined;
-    this.changed(true);
+    this.change(area.path, (one) => one.remove());
   }
 
   /** An area that can be taken hold of, with its corners where it is chosen. @param {Area} area */
   held(area) {
-    const chosen = area.path === this.memory.chosen;
+    const { path } = area;
+    const chosen = path === this.memory.chosen;
     const shape = hatched(area.role.name);
     const mark = svg("text", { class: `area-mark ${area.role.name}` }, area.role.mark);
     const body = svg(
       "g",
-      { class: `held ${chosen ? "chosen" : ""}`, tabindex: 0, role: "button", "data-grip": area.path },
+      { class: `held ${chosen ? "chosen" : ""}`, tabindex: 0, role: "button", "data-grip": path },
       shape,
       mark,
     );
-    const altered = () => {
-      show();
-      this.tell(area);
-      this.changed(false);
-    };
-    const grips = chosen ? this.grips(area, altered) : [];
+    const grips = chosen ? this.grips(area, () => show()) : [];
     const show = () => {
-      shape.setAttribute("d", outline(this.view, area));
-      const [u, v] = this.view.at(...area.top);
+      const { circle, corners, label, top } = this.at(path);
+      shape.setAttribute("d", outline(this.view, { circle, corners }));
+      const [u, v] = this.view.at(...top);
       mark.setAttribute("x", u);
       mark.setAttribute("y", v);
-      const what = area.circle ? t`circle of radius ${shown(area.circle.radius)}` : t`${area.corners.length} corners`;
-      body.setAttribute("aria-label", `${area.label}, ${what}. ${t`Arrow keys move it, Delete removes it.`}`);
+      const what = circle ? t`circle of radius ${shown(circle.radius)}` : t`${corners.length} corners`;
+      body.setAttribute("aria-label", `${label}, ${what}. ${t`Arrow keys move it, Delete removes it.`}`);
       for (const grip of grips) grip.show();
     };
-    this.dragged(
-      body,
-      () => this.choose(area),
-      (by) => area.shift(by, (value) => this.view.fine(value)),
-      altered,
-      area.path,
-    );
+    const shift = (/** @type {Point} */ by) => {
+      this.change(path, (one) => one.shift(by, (value) => this.view.fine(value)), "canvas");
+      this.tell(this.at(path));
+      show();
+    };
+    this.dragged(body, () => this.choose(area), shift, path);
     body.addEventListener("focus", () => {
-      if (!body.matches(":focus-visible") || this.memory.chosen === area.path) return;
+      if (!body.matches(":focus-visible") || this.memory.chosen === path) return;
       this.choose(area);
-      this.focus(area.path);
+      this.focus(path);
     });
     if (area.free) body.addEventListener("dblclick", (/** @type {MouseEvent} */ event) => this.split(area, event));
-    this.keyed(
-      body,
-      (by) => area.shift(by, (value) => this.view.fine(value)),
-      () => this.remove(area),
-      altered,
-    );
+    this.keyed(body, shift, () => this.remove(area));
     show();
     return svg("g", {}, body, ...grips.map((one) => one.node));
   }
@@ -256,8 +258,7 @@ export class RoomEditor {
     const away = corners.map((corner, k) => distance(at, corner, corners[(k + 1) % corners.length]));
     const k = away.indexOf(Math.min(...away));
     if (this.view.scale * away[k] > 10) return;
-    area.insert(k, [this.view.rounded(at[0]), this.view.rounded(at[1])]);
-    this.changed(true);
+    this.change(area.path, (one) => one.insert(k, [this.view.rounded(at[0]), this.view.rounded(at[1])]));
   }
 
   /**
@@ -265,48 +266,46 @@ export class RoomEditor {
    * @param {Area} area
    * @param {() => void} all shows all of it
    */
-  grips(area, all) {
-    const { circle, view } = { circle: area.circle, view: this.view };
+  grips({ path, circle, corners, free, label }, all) {
+    const { view } = this;
+    /** @type {{name: string, get: (area: Area) => Point, put: (area: Area, point: Point) => void}[]} */
     const places = circle
       ? [
           {
-            name: t`Radius of ${area.label}`,
-            get: () => /** @type {Point} */ ([circle.center[0] + circle.radius, circle.center[1]]),
-            put: (/** @type {Point} */ [x, y]) => {
+            name: t`Radius of ${label}`,
+            get: ({ circle }) => (circle ? [circle.center[0] + circle.radius, circle.center[1]] : [0, 0]),
+            put: ({ circle }, [x, y]) => {
+              if (!circle) return;
               const radius = Number(Math.hypot(x - circle.center[0], y - circle.center[1]).toPrecision(4));
               if (radius > 0) circle.radius = radius;
             },
           },
         ]
-      : area.corners.map((_, k) => ({
-          name: t`Corner ${k + 1} of ${area.label}`,
-          get: () => area.corners[k],
-          put: (/** @type {Point} */ point) => area.put(k, point),
+      : corners.map((_, k) => ({
+          name: t`Corner ${k + 1} of ${label}`,
+          get: (area) => area.corners[k],
+          put: (area, point) => area.put(k, point),
         }));
     return places.map(({ name, get, put }, k) => {
-      const key = `${area.path}#${k}`;
+      const key = `${path}#${k}`;
       const grip = new Grip({ kind: "grip", dot: "corner", radius: 5, key });
       const show = () => {
-        const [x, y] = get();
+        const [x, y] = get(this.at(path));
         grip.put(view.at(x, y));
-        const more =
-          area.free && area.corners.length > 3 ? t`Arrow keys move it, Delete removes it.` : t`Arrow keys move it.`;
+        const more = free && corners.length > 3 ? t`Arrow keys move it, Delete removes it.` : t`Arrow keys move it.`;
         grip.call(`${name}: x ${shown(x)}, y ${shown(y)}. ${more}`);
       };
-      const by = (/** @type {Point} */ [dx, dy]) => {
-        const [x, y] = get();
-        put([view.rounded(x + dx), view.rounded(y + dy)]);
+      const move = (/** @type {Point} */ [dx, dy]) => {
+        const moved = (/** @type {Area} */ area) => {
+          const [x, y] = get(area);
+          put(area, [view.rounded(x + dx), view.rounded(y + dy)]);
+        };
+        this.change(path, moved, "canvas");
+        this.tell(this.at(path));
+        all();
       };
-      this.dragged(grip.node, () => {}, by, all, key);
-      this.keyed(
-        grip.node,
-        by,
-        () => {
-          area.drop(k);
-          this.changed(true);
-        },
-        all,
-      );
+      this.dragged(grip.node, () => {}, move, key);
+      this.keyed(grip.node, move, () => this.change(path, (area) => area.drop(k)));
       return { node: grip.node, show };
     });
   }
@@ -316,10 +315,9 @@ export class RoomEditor {
    * @param {SVGElement} grip
    * @param {() => void} taken
    * @param {(by: Point) => void} move
-   * @param {() => void} show
    * @param {string} key
    */
-  dragged(grip, taken, move, show, key) {
+  dragged(grip, taken, move, key) {
     const { picture, view } = this;
     /** @type {Point} */
     let before = [0, 0];
@@ -335,23 +333,19 @@ export class RoomEditor {
         moved = true;
         before = [before[0] + by[0], before[1] + by[1]];
         view.freely(() => move(by), now.altKey);
-        show();
       },
       left: () => {
         taken();
-        if (moved) this.changed(true);
+        if (moved) this.store.settle();
         else this.focus(key);
       },
     });
   }
 
-  /** @param {SVGElement} grip @param {(by: Point) => void} move @param {() => void} remove @param {() => void} show */
-  keyed(grip, move, remove, show) {
+  /** @param {SVGElement} grip @param {(by: Point) => void} move @param {() => void} remove */
+  keyed(grip, move, remove) {
     keyed(grip, this.view, {
-      moved: (by) => {
-        this.view.freely(() => move(by));
-        show();
-      },
+      moved: (by) => this.view.freely(() => move(by)),
       removed: remove,
     });
   }

@@ -1,6 +1,31 @@
 /** What a JSON schema says of a field, as far as a form needs to know it. */
 
-/** @typedef {Record<string, any>} Schema */
+import { group } from "./pointer.js";
+
+/** @import { Json, Problem } from "./types/values.js" */
+
+/**
+ * What is read here of a JSON schema.
+ * @typedef {object} Schema
+ * @property {string} [$ref]
+ * @property {Record<string, Schema>} [$defs]
+ * @property {Schema[]} [anyOf]
+ * @property {Schema[]} [oneOf]
+ * @property {string} [type]
+ * @property {string} [description]
+ * @property {Json} [default]
+ * @property {Json} [const]
+ * @property {string[]} [enum]
+ * @property {number} [minimum]
+ * @property {number} [exclusiveMinimum]
+ * @property {Schema} [items]
+ * @property {Schema[]} [prefixItems]
+ * @property {Record<string, Schema>} [properties]
+ * @property {Schema | boolean} [additionalProperties]
+ * @property {string[]} [required]
+ * @property {Problem[]} [examples] of a kind of problem
+ * @property {string} [x-dimension] what a number measures
+ */
 
 /**
  * Of one field: which control states it.
@@ -14,11 +39,18 @@
  * @property {number} [count] rows of a table that has always so many
  */
 
+/** What fields an object has, by their names. @param {Schema} schema */
+export function propertiesOf(schema) {
+  return schema.properties ?? {};
+}
+
+/** @typedef {{name: string, schema: Schema, kinded: Kinded, required: boolean}} Column of a table */
+
 /** The schema that a reference names. @param {Schema} schema @param {Schema} root @returns {Schema} */
 export function resolved(schema, root) {
   if (!schema.$ref) return schema;
-  const target = root.$defs[schema.$ref.split("/").pop()];
   const { $ref, ...more } = schema;
+  const target = root.$defs?.[$ref.slice($ref.lastIndexOf("/") + 1)] ?? {};
   return { ...resolved(target, root), ...more };
 }
 
@@ -43,8 +75,8 @@ function numeric(schema) {
 function counted(schema) {
   return (
     schema.type === "object" &&
-    Object.keys(schema.properties ?? {}).length === 2 &&
-    schema.properties.count !== undefined
+    Object.keys(propertiesOf(schema)).length === 2 &&
+    propertiesOf(schema).count !== undefined
   );
 }
 
@@ -62,21 +94,21 @@ function listOfNumbers(schema, root) {
 
 /** The name of the property that tells alternatives of an object apart. @param {Schema[]} options */
 export function discriminator(options) {
-  const names = Object.keys(options[0]?.properties ?? {});
+  const names = Object.keys(options[0] ? propertiesOf(options[0]) : {});
   const constant = (/** @type {Schema} */ one, /** @type {string} */ name) =>
     one.properties?.[name]?.const !== undefined || one.properties?.[name]?.enum !== undefined;
   const stated = (/** @type {Schema} */ one, /** @type {string} */ name) =>
-    one.required?.includes(name) || one.properties[name].default !== undefined;
+    one.required?.includes(name) || propertiesOf(one)[name].default !== undefined;
   return names.find(
     (name) => options.every((one) => constant(one, name)) && options.filter((one) => !stated(one, name)).length === 0,
   );
 }
 
-/** The option that a discriminated value belongs to. @param {Schema[]} options @param {any} value */
+/** The option that a discriminated value belongs to. @param {Schema[]} options @param {Json | undefined} value */
 export function optionOf(options, value) {
   const name = discriminator(options);
-  const tag = name && value?.[name];
-  return options.find((one) => name && tagsOf(one, name).includes(tag)) ?? options[0];
+  if (!name || !group(value)) return options[0];
+  return options.find((one) => tagsOf(one, name).includes(String(value[name]))) ?? options[0];
 }
 
 /**
@@ -86,8 +118,8 @@ export function optionOf(options, value) {
  * @returns {string[]}
  */
 export function tagsOf(option, name) {
-  const property = option.properties[name];
-  return property.enum ?? [property.const];
+  const property = propertiesOf(option)[name];
+  return property.enum ?? [String(property.const)];
 }
 
 /** Which control states a field. @param {Schema} schema @param {Schema} root @returns {Kinded} */
@@ -99,7 +131,7 @@ export function kinded(schema, root) {
   const is = (control, more = {}) => ({ control, options, nullable, ...more });
   if (options.length === 1 && options[0].const !== undefined) return is("fixed");
   if (options.every((one) => one.enum || one.const !== undefined)) {
-    return is("choice", { choices: options.flatMap((one) => one.enum ?? [one.const]) });
+    return is("choice", { choices: options.flatMap((one) => one.enum ?? [String(one.const)]) });
   }
   const shapes = new Set(options.map((one) => (numeric(one) ? "number" : one.type)));
   if (shapes.size > 1 && shapes.has("object")) return is("shapes");
@@ -128,7 +160,7 @@ export function kinded(schema, root) {
   return is("json");
 }
 
-/** A first value for a field that must be stated. @param {Schema} schema @param {Schema} root @returns {any} */
+/** A first value for a field that must be stated. @param {Schema} schema @param {Schema} root @returns {Json} */
 export function initial(schema, root) {
   if (schema.default !== undefined && schema.default !== null) return structuredClone(schema.default);
   const [option] = alternatives(schema, root).filter((one) => one.type !== "null");
@@ -142,13 +174,13 @@ export function initial(schema, root) {
   }
   if (option.type === "object") {
     return Object.fromEntries(
-      (option.required ?? []).map((/** @type {string} */ name) => [name, initial(option.properties[name], root)]),
+      (option.required ?? []).map((/** @type {string} */ name) => [name, initial(propertiesOf(option)[name], root)]),
     );
   }
   return option.type === "string" ? "" : false;
 }
 
-/** The option that a value is an instance of. @param {Schema[]} options @param {any} value */
+/** The option that a value is an instance of. @param {Schema[]} options @param {unknown} value */
 export function shapeOf(options, value) {
   const type = Array.isArray(value) ? "array" : value === null ? "null" : typeof value;
   return options.find((one) => (numeric(one) ? "number" : one.type) === type);
@@ -162,14 +194,15 @@ function perhapsNumber(what) {
 /**
  * Columns of a table: the plain properties of its rows, of all alternatives.
  * @param {Schema} item @param {Schema} root
- * @returns {{name: string, schema: Schema, kinded: Kinded, required: boolean}[]}
+ * @returns {Column[]}
  */
 export function columns(item, root) {
   const options = alternatives(item, root);
   const tag = options.length > 1 ? discriminator(options) : undefined;
+  /** @type {Map<string, Column>} */
   const found = new Map();
   for (const option of options) {
-    for (const [name, schema] of Object.entries(option.properties)) {
+    for (const [name, schema] of Object.entries(propertiesOf(option))) {
       const here = kinded(schema, root);
       const required = options.every((one) => one.required?.includes(name));
       if (name === tag) {
@@ -190,7 +223,7 @@ export function columns(item, root) {
  * @returns {string[]}
  */
 export function beyond(option, root) {
-  return Object.entries(option.properties)
+  return Object.entries(propertiesOf(option))
     .filter(([, schema]) =>
       ["shapes", "table", "object", "union", "map", "points", "json"].includes(kinded(schema, root).control),
     )
@@ -200,7 +233,7 @@ export function beyond(option, root) {
 /**
  * The path of what is of another form than a schema has it; null where nothing is. Only the service judges numbers and
  * words.
- * @param {any} value @param {Schema} schema @param {Schema} root @param {string} [path] @returns {string | null}
+ * @param {unknown} value @param {Schema} schema @param {Schema} root @param {string} [path] @returns {string | null}
  */
 export function misfit(value, schema, root, path = "") {
   const found = alternatives(schema, root).map((one) => misfitIn(value, one, root, path));
@@ -211,7 +244,7 @@ export function misfit(value, schema, root, path = "") {
 }
 
 /**
- * @param {any} value
+ * @param {unknown} value
  * @param {Schema} schema without alternatives
  * @param {Schema} root
  * @param {string} path
@@ -221,7 +254,7 @@ function misfitIn(value, schema, root, path) {
   const form = formOf(value);
   const wanted = schema.type ?? formOf(schema.const ?? schema.enum?.[0] ?? value);
   if (form !== (wanted === "integer" ? "number" : wanted)) return path;
-  if (form !== "object" && form !== "array") return null;
+  if (typeof value !== "object" || value === null) return null;
   for (const [name, inner] of Object.entries(value)) {
     const at = `${path}/${name}`;
     const of =
@@ -237,19 +270,17 @@ function misfitIn(value, schema, root, path) {
 
 /**
  * A value without what states but its default, which the service writes out.
- * @param {any} value @param {Schema} schema @param {Schema} root @returns {any}
+ * @param {Json | undefined} value @param {Schema} schema @param {Schema} root @returns {Json | undefined}
  */
 function withoutDefaults(value, schema, root) {
-  const form = formOf(value);
-  const options = alternatives(schema, root).filter((one) => one.type === form);
+  const options = alternatives(schema, root).filter((one) => one.type === formOf(value));
   if (!options.length) return value;
-  if (form === "array") {
-    const inside = (/** @type {number} */ k) => options[0].prefixItems?.[k] ?? options[0].items;
-    return value.map((/** @type {any} */ one, /** @type {number} */ k) =>
-      inside(k) ? withoutDefaults(one, inside(k), root) : one,
-    );
-  }
-  if (form !== "object") return value;
+  if (Array.isArray(value))
+    return value.map((one, k) => {
+      const inside = options[0].prefixItems?.[k] ?? options[0].items;
+      return inside ? (withoutDefaults(one, inside, root) ?? null) : one;
+    });
+  if (!group(value)) return value;
   const { properties = {}, additionalProperties } =
     options.length > 1 && options.every((one) => one.properties) ? optionOf(options, value) : options[0];
   return Object.fromEntries(
@@ -270,23 +301,28 @@ function formOf(value) {
   return value === null ? "null" : Array.isArray(value) ? "array" : typeof value;
 }
 
-/** A statement without defaults. @param {any} statement @param {Schema | undefined} schema */
+/** A statement without defaults. @param {Problem} statement @param {Schema | undefined} schema @returns {Problem} */
 export function plainly(statement, schema) {
-  return schema ? withoutDefaults(statement, schema, schema) : statement;
+  if (!schema) return statement;
+  // Only what the service holds for stated anyway is left out.
+  const plain = /** @type {unknown} */ (
+    withoutDefaults(/** @type {Json} */ (/** @type {unknown} */ (statement)), schema, schema)
+  );
+  return /** @type {Problem} */ (plain);
 }
 
 /**
  * A statement in one spelling: fields in order, without defaults, which the service writes out, and without the empty
  * groups in which the form has room for fields.
- * @param {any} statement @param {Schema | undefined} schema
+ * @param {Problem} statement @param {Schema | undefined} schema
  */
 export function spelling(statement, schema) {
-  const group = (/** @type {unknown} */ value) => typeof value === "object" && value !== null && !Array.isArray(value);
+  const named = (/** @type {unknown} */ value) => typeof value === "object" && value !== null && !Array.isArray(value);
   return JSON.stringify(plainly(statement, schema), (_, value) =>
-    group(value)
+    named(value)
       ? Object.fromEntries(
           Object.entries(value)
-            .filter(([, inner]) => !group(inner) || Object.keys(inner).length)
+            .filter(([, inner]) => !named(inner) || Object.keys(inner).length)
             .sort(),
         )
       : value,

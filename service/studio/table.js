@@ -3,10 +3,17 @@
 import { choice, numberBox, plain, textBox } from "./controls.js";
 import { el, words } from "./dom.js";
 import { prose, t, term } from "./messages.js";
-import { alternatives, beyond, columns, discriminator, initial, kinded, optionOf } from "./schema.js";
+import { at, group } from "./pointer.js";
+import { alternatives, beyond, columns, discriminator, initial, kinded, optionOf, propertiesOf } from "./schema.js";
+import { within } from "./sheet.js";
 import { unitOf } from "./units.js";
 
-/** @typedef {import("./schema.js").Schema} Schema */
+/** @import { Json, Problem } from "./types/values.js" */
+/** @import { Column, Schema } from "./schema.js" */
+/** @import { Sheet } from "./sheet.js" */
+
+/** @typedef {Record<string, Json | undefined>} Row */
+/** @typedef {(sheet: Sheet, schema: Schema, path: string, names: string[]) => (Node | null)[]} Controls */
 
 /** Columns that stay at least where others are folded away. */
 const FEWEST = 2;
@@ -20,28 +27,28 @@ function empty(value) {
 }
 
 /**
- * @param {import("./form.js").Sheet} sheet @param {Schema} item schema of a row @param {any[]} rows changed in place
+ * @param {Sheet} sheet that looks at an empty list where none is stated @param {Schema} item schema of a row
  * @param {string} path JSON pointer of the list
+ * @param {Controls} controls of what a cell cannot state
  * @param {number} [count] where there are always so many rows
  */
-export function table(sheet, item, rows, path, count) {
+export function table(sheet, item, path, controls, count) {
+  const rows = rowsAt(sheet.problem, path);
   const heads = columns(item, sheet.root);
   const seldom = heads.filter((head) => !head.required && rows.every((row) => empty(row[head.name])));
   // One column alone says too little of a row.
   const folded = heads.length - seldom.length >= FEWEST ? seldom : [];
   const kept = (/** @type {{name: string}} */ head) => (folded.some((one) => one.name === head.name) ? "seldom" : null);
-  const line = (/** @type {Record<string, unknown>} */ row, /** @type {number} */ k) => [
+  const line = (/** @type {Row} */ row, /** @type {number} */ k) => [
     el(
       "tr",
       {},
       el("th", { scope: "row" }, k + 1),
-      ...heads.map((head) =>
-        el("td", { class: kept(head) }, cell(sheet, head, row, `${path}/${k}/${head.name}`, k, item)),
-      ),
+      ...heads.map((head) => el("td", { class: kept(head) }, cell(sheet, head, row, path, k, item))),
       el(
         "td",
         { class: "acts" },
-        ...inDetail(sheet, item, row, k),
+        ...inDetail(sheet, item, row, `${path}/${k}`, k),
         count === undefined &&
           el(
             "button",
@@ -49,37 +56,27 @@ export function table(sheet, item, rows, path, count) {
               type: "button",
               class: "small",
               "aria-label": t`Remove row ${k + 1}`,
-              onclick: () => {
-                rows.splice(k, 1);
-                sheet.rebuild();
-              },
+              onclick: () => sheet.put(`${path}/${k}`, undefined, true),
             },
             "×",
           ),
       ),
     ),
-    ...more(sheet, item, row, `${path}/${k}`, heads.length + 2, k),
+    ...more(sheet, item, row, `${path}/${k}`, controls, heads.length + 2, k),
   ];
   const onpaste = (/** @type {ClipboardEvent} */ event) => {
     const text = event.clipboardData?.getData("text/plain") ?? "";
     // Lines that are pasted into a field of many lines are lines of its own.
     if (!/[\t\n]/.test(text.trim()) || event.target instanceof HTMLTextAreaElement) return;
     event.preventDefault();
-    const at = /** @type {HTMLElement} */ (event.target).dataset.path ?? `${path}/${rows.length}/${heads[0].name}`;
-    const [first, column] = at.slice(path.length + 1).split("/");
-    paste(
-      text,
-      rows,
-      Number(first),
-      heads.slice(
-        Math.max(
-          0,
-          heads.findIndex((head) => head.name === column),
-        ),
-      ),
-      () => initial(item, sheet.root),
+    const place = /** @type {HTMLElement} */ (event.target).dataset.path ?? `${path}/${rows.length}/${heads[0].name}`;
+    const [first, column] = place.slice(path.length + 1).split("/");
+    const from = Math.max(
+      0,
+      heads.findIndex((head) => head.name === column),
     );
-    sheet.rebuild();
+    const pasted = paste(text, rowsAt(sheet.problem, path), Number(first), heads.slice(from), blank(item, sheet.root));
+    sheet.put(path, pasted, true);
   };
   const columned = `${sheet.problem.kind}${path}`;
   const view = el(
@@ -119,8 +116,8 @@ export function table(sheet, item, rows, path, count) {
             type: "button",
             class: "small",
             onclick: () => {
-              rows.push(rows.length ? structuredClone(rows[rows.length - 1]) : initial(item, sheet.root));
-              sheet.rebuild();
+              const last = rowsAt(sheet.problem, path).at(-1);
+              sheet.put(`${path}/${rows.length}`, last ?? blank(item, sheet.root), true);
             },
           },
           t`Add a row`,
@@ -146,33 +143,47 @@ export function table(sheet, item, rows, path, count) {
   return view;
 }
 
+/** The rows of a list in a statement. @param {Problem} statement @param {string} path @returns {Row[]} */
+function rowsAt(statement, path) {
+  const found = at(statement, within(path));
+  return Array.isArray(found) ? found.map((one) => (group(one) ? one : {})) : [];
+}
+
+/** A row that is begun. @param {Schema} item @param {Schema} root @returns {Row} */
+function blank(item, root) {
+  const first = initial(item, root);
+  return group(first) ? first : {};
+}
+
 /**
- * @param {import("./form.js").Sheet} sheet
- * @param {any} head
- * @param {any} row
- * @param {string} path
+ * @param {Sheet} sheet
+ * @param {Column} head
+ * @param {Row} row
+ * @param {string} list its pointer
  * @param {number} k
  * @param {Schema} item
  */
-function cell(sheet, head, row, path, k, item) {
+function cell(sheet, head, row, list, k, item) {
   const options = alternatives(item, sheet.root);
   const option = options.length > 1 ? optionOf(options, row) : options[0];
-  if (!option.properties[head.name]) return "";
-  const set = (/** @type {unknown} */ value) => {
-    if (value === undefined) delete row[head.name];
-    else row[head.name] = value;
+  const { name } = head;
+  const path = `${list}/${k}`;
+  if (!propertiesOf(option)[name]) return "";
+  const tells = options.length > 1 && name === discriminator(options);
+  const set = (/** @type {Json | undefined} */ value) => {
+    if (!tells) return sheet.put(`${path}/${name}`, value);
     // Another alternative has other fields: what it does not know goes.
-    if (options.length > 1 && head.name === discriminator(options)) {
-      const now = optionOf(options, row);
-      for (const name of Object.keys(row)) if (!now.properties[name]) delete row[name];
-      for (const name of now.required ?? []) row[name] ??= initial(now.properties[name], sheet.root);
-      sheet.rebuild();
-    } else sheet.changed();
+    const before = { ...rowsAt(sheet.problem, list)[k], [name]: value };
+    const now = optionOf(options, before);
+    const known = Object.entries(before).filter(([one]) => propertiesOf(now)[one]);
+    const must = (now.required ?? []).filter((one) => (before[one] ?? null) === null);
+    const begun = must.map((one) => [one, initial(propertiesOf(now)[one], sheet.root)]);
+    sheet.put(path, Object.fromEntries([...known, ...begun]), true);
   };
-  const value = row[head.name];
+  const value = row[name];
   let control;
   if (head.kinded.control === "choice") {
-    control = choice(head.kinded.choices, value ?? head.schema.default, head.kinded.nullable, set);
+    control = choice(head.kinded.choices ?? [], value ?? head.schema.default, head.kinded.nullable, set);
   } else if (head.kinded.control === "flag") {
     const box = el("input", { type: "checkbox", onchange: () => set(box.checked) });
     box.checked = Boolean(value ?? head.schema.default);
@@ -181,43 +192,41 @@ function cell(sheet, head, row, path, k, item) {
     control = textBox(value, head.schema.default, set, plain);
   } else if (typeof value === "object" && value !== null) return t`below`;
   else control = numberBox(value, head.schema.default, set);
-  control.setAttribute("data-path", path);
-  control.setAttribute("aria-label", t`${words(head.name)}, row ${k + 1}`);
+  control.setAttribute("data-path", `${path}/${name}`);
+  control.setAttribute("aria-label", t`${words(name)}, row ${k + 1}`);
   return control;
 }
 
-/** @param {import("./form.js").Sheet} sheet @param {Schema} item @param {any} row */
+/** @param {Sheet} sheet @param {Schema} item @param {Row} row */
 function optionAt(sheet, item, row) {
   const options = alternatives(item, sheet.root);
   return options.length > 1 ? optionOf(options, row) : options[0];
 }
 
-/** @param {unknown} value */
-function structured(value) {
-  return typeof value === "object" && value !== null;
-}
-
 /**
  * What of a row is more than a cell can state, in a row below it that opens.
- * @param {import("./form.js").Sheet} sheet
+ * @param {Sheet} sheet
  * @param {Schema} item
- * @param {any} row
+ * @param {Row} row
  * @param {string} path
+ * @param {Controls} controls
  * @param {number} width columns
  * @param {number} k
  */
-function more(sheet, item, row, path, width, k) {
+function more(sheet, item, row, path, controls, width, k) {
   const option = optionAt(sheet, item, row);
   // What a cell can state as a number stands here only where it is stated in detail.
   const names = beyond(option, sheet.root).filter(
-    (name) => kinded(option.properties[name], sheet.root).control !== "shapes" || structured(row[name]),
+    (name) => kinded(propertiesOf(option)[name], sheet.root).control !== "shapes" || group(row[name]),
   );
   if (!names.length) return [];
-  const stated = names.some((name) => structured(row[name]) && (!Array.isArray(row[name]) || row[name].length));
+  const stated = names.some((name) => {
+    const value = row[name];
+    return Array.isArray(value) ? value.length > 0 : group(value);
+  });
   const inside = el("div", { class: "fields" });
   const fill = () => {
-    if (!inside.childElementCount)
-      inside.append(...sheet.controls(option, row, path, names).filter((one) => one !== null));
+    if (!inside.childElementCount) inside.append(...controls(sheet, option, path, names).filter((one) => one !== null));
   };
   const details = el(
     "details",
@@ -239,16 +248,17 @@ function more(sheet, item, row, path, width, k) {
 
 /**
  * Buttons that begin to state in detail what a cell states as a number.
- * @param {import("./form.js").Sheet} sheet
+ * @param {Sheet} sheet
  * @param {Schema} item
- * @param {any} row
+ * @param {Row} row
+ * @param {string} path
  * @param {number} k
  */
-function inDetail(sheet, item, row, k) {
+function inDetail(sheet, item, row, path, k) {
   const option = optionAt(sheet, item, row);
   return beyond(option, sheet.root).flatMap((name) => {
-    const what = kinded(option.properties[name], sheet.root);
-    if (what.control !== "shapes" || structured(row[name])) return [];
+    const what = kinded(propertiesOf(option)[name], sheet.root);
+    if (what.control !== "shapes" || group(row[name])) return [];
     const title = t`${words(name)} of row ${k + 1} in detail`;
     return [
       el(
@@ -258,10 +268,12 @@ function inDetail(sheet, item, row, k) {
           class: "small",
           title,
           "aria-label": title,
-          onclick: () => {
-            row[name] = initial(what.options.find((one) => one.type === "object") ?? {}, sheet.root);
-            sheet.rebuild();
-          },
+          onclick: () =>
+            sheet.put(
+              `${path}/${name}`,
+              initial(what.options.find((one) => one.type === "object") ?? {}, sheet.root),
+              true,
+            ),
         },
         "⋯",
       ),
@@ -270,15 +282,17 @@ function inDetail(sheet, item, row, k) {
 }
 
 /**
- * Put the cells of a spreadsheet into the rows from `first` on.
+ * The rows with the cells of a spreadsheet in those from `first` on.
  * @param {string} text lines of cells, parted by tabs, semicolons or (with decimal points) commas
- * @param {any[]} rows @param {number} first @param {{name: string, kinded: any}[]} heads @param {() => any} blank
+ * @param {Row[]} rows @param {number} first @param {Column[]} heads @param {Row} blank a row that is begun
+ * @returns {Row[]}
  */
-export function paste(text, rows, first, heads, blank) {
+function paste(text, rows, first, heads, blank) {
+  const all = [...rows];
   const lines = text.trim().split(/\r?\n/);
   lines.forEach((line, k) => {
     const cells = line.includes("\t") ? line.split("\t") : line.split(/[;,]/);
-    const row = (rows[first + k] ??= blank());
+    const row = (all[first + k] = { ...(all[first + k] ?? blank) });
     heads.forEach((head, column) => {
       const cell = cells[column]?.trim();
       if (cell === undefined || cell === "") return;
@@ -287,4 +301,5 @@ export function paste(text, rows, first, heads, blank) {
       row[head.name] = Number.isFinite(value) ? value : cell;
     });
   });
+  return all;
 }

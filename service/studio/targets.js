@@ -8,9 +8,11 @@ import { grid, snapping } from "./grid.js";
 import { Grip, keyed, led } from "./grip.js";
 import { chosenPivots, matched, opened, stated } from "./handles.js";
 import { t, term } from "./messages.js";
+import { at } from "./pointer.js";
 import { areas } from "./room.js";
 import { RoomEditor } from "./room_editor.js";
 import { Ruler } from "./ruler.js";
+import { within } from "./sheet.js";
 import { roomOf } from "./stage.js";
 import { View } from "./view.js";
 import { Zoom } from "./zoom.js";
@@ -18,6 +20,8 @@ import { Zoom } from "./zoom.js";
 /** @import { Problem } from "./types/values.js" */
 
 /** @typedef {import("./handles.js").Handle} Handle */
+/** @typedef {import("./handles.js").Stated} Stated */
+/** @typedef {import("./store.js").Store} Store */
 
 /** Height of the tools below a canvas, pixels. */
 const TOOLS = 117;
@@ -36,29 +40,33 @@ const tools = { grid: true, snap: false };
 /**
  * What of a canvas outlives its being made anew.
  * @typedef {object} Kept
- * @property {Problem} problem whose view it is
+ * @property {number} origin of the statement whose view it is
  * @property {View | null} view
  * @property {boolean} led whether somebody has led the view somewhere; otherwise all is to be seen
  * @property {import("./room_editor.js").Memory} room
  * @property {{ends: [[number, number], [number, number]] | null}} ruler
  */
 
+/** Where the statement cannot be read there is nothing to hold. @type {Stated} */
+const NOTHING = { handles: [], lines: () => [], offers: [] };
+
 /** @type {WeakMap<HTMLElement, Kept>} */
 const kept = new WeakMap();
 
 /**
+ * Draw what is stated on the canvas.
  * @param {HTMLElement} place
- * @param {Problem} problem changed in place
- * @param {boolean} roomy whether the problem may state the room
- * @param {(rebuilt: boolean) => void} changed @param {import("./backdrop.js").Backdrop} backdrop what lies behind it
+ * @param {Store} store
+ * @param {import("./backdrop.js").Backdrop} backdrop what lies behind it
  */
-export function canvas(place, problem, roomy, changed, backdrop) {
+export function canvas(place, store, backdrop) {
+  const { problem, origin, roomy } = store;
   const found = readable(problem);
   const before = kept.get(place);
   const memory =
-    before && before.problem === problem
+    before && before.origin === origin
       ? before
-      : { problem, view: null, led: false, room: { role: before?.room.role }, ruler: { ends: null } };
+      : { origin, view: null, led: false, room: { role: before?.room.role }, ruler: { ends: null } };
   before?.room.pen?.leave();
   kept.set(place, memory);
   const graph = problem.kind === "function";
@@ -68,12 +76,11 @@ export function canvas(place, problem, roomy, changed, backdrop) {
   const [width, height] = roomOf(place, TOOLS + (buttons ? BUTTONS : 0));
   /** @type {[number, number]} */
   const size = [both ? width / 2 : width, height];
+  const redrawn = () => canvas(place, store, backdrop);
   place.replaceChildren(
-    ...(found
-      ? [drawnPlane(place, problem, found, roomy && !graph, memory, changed, graph ? null : backdrop, size)]
-      : []),
+    ...(found ? [drawnPlane(redrawn, store, readable, roomy && !graph, memory, graph ? null : backdrop, size)] : []),
     // The graph of a function is not the plane in which its linkage lies.
-    ...(graph && roomy ? [drawnPlane(place, problem, bare(problem), true, memory, changed, backdrop, size)] : []),
+    ...(graph && roomy ? [drawnPlane(redrawn, store, bare, true, memory, backdrop, size)] : []),
   );
   if (grip)
     /** @type {SVGElement | null} */ (place.querySelector(`[data-grip="${CSS.escape(grip)}"]`))?.focus({
@@ -84,7 +91,7 @@ export function canvas(place, problem, roomy, changed, backdrop) {
 /**
  * A plane in which nothing is placed but the fixed pivots, where they are chosen.
  * @param {Problem} problem
- * @returns {import("./handles.js").Stated}
+ * @returns {Stated}
  */
 function bare(problem) {
   return { handles: chosenPivots(problem), lines: () => [], offers: [] };
@@ -92,26 +99,26 @@ function bare(problem) {
 
 /**
  * A picture of a plane, and what is done in it.
- * @param {HTMLElement} place
- * @param {Problem} problem
- * @param {import("./handles.js").Stated} found
+ * @param {() => void} redrawn draws all of it anew
+ * @param {Store} store
+ * @param {(problem: Problem) => Stated | null} of what of a statement is held in it
  * @param {boolean} roomy
  * @param {Kept} memory
- * @param {(rebuilt: boolean) => void} changed
  * @param {import("./backdrop.js").Backdrop | null} backdrop
  * @param {[number, number]} room pixels
  * @returns {HTMLElement}
  */
-function drawnPlane(
-  place,
-  problem,
-  { handles, lines, word, add, offers, freehand, shapes = [] },
-  roomy,
-  memory,
-  changed,
-  backdrop,
-  room,
-) {
+function drawnPlane(redrawn, store, of, roomy, memory, backdrop, room) {
+  const { problem } = store;
+  /** What is held now. @type {Stated} */
+  let found = NOTHING;
+  const look = () => (found = of(store.problem) ?? NOTHING);
+  const { handles, word, add, offers, freehand, shapes = [] } = look();
+  /** @param {(found: Stated, statement: Problem) => void} act @param {import("./store.js").Editor | null} [by] */
+  const change = (act, by) => {
+    store.change((statement) => act(of(statement) ?? NOTHING, statement), by);
+    look();
+  };
   const corners = roomy ? areas(problem.space).flatMap((area) => area.extent) : [];
   const points = [...handles.flatMap(({ get, name }) => (name === "ground" ? [] : [get()])), ...corners];
   const fits = memory.view?.width === room[0] && memory.view.height === room[1] && memory.view.suits(points);
@@ -130,7 +137,7 @@ function drawnPlane(
   });
   const trail = svg("path", { class: "trail" });
   const pen = svg("path", { class: "pen" });
-  const areasOf = roomy ? new RoomEditor(picture, view, problem, memory.room, changed) : null;
+  const areasOf = roomy ? new RoomEditor(picture, view, store, memory.room) : null;
   picture.append(
     svg("rect", { class: "paper", width, height }),
     ...(backdrop?.drawn(view, picture) ?? []),
@@ -142,21 +149,40 @@ function drawnPlane(
   const redraw = () =>
     trail.setAttribute(
       "d",
-      lines()
+      found
+        .lines()
         .map((line) => view.path(line))
         .join(""),
     );
-  const drawn = handles.map((handle, k) =>
-    held(handle, `${word ?? "handle"}${k}`, view, picture, () => drawn.forEach((one) => one.show()), redraw, changed),
+  const show = () => {
+    for (const one of drawn) one.show();
+    redraw();
+  };
+  const drawn = handles.map((_, k) =>
+    held(`${word ?? "handle"}${k}`, view, picture, {
+      handle: () => found.handles[k],
+      change: (act) => {
+        change(({ handles }) => act(handles[k]), "canvas");
+        told(store.problem, found.handles[k].path);
+        show();
+      },
+      remove: () => change(({ handles }) => handles[k].remove?.()),
+      left: () => store.settle(),
+    }),
   );
   picture.append(...drawn.map((one) => one.group));
-  for (const one of drawn) one.show();
-  redraw();
+  show();
   // Coordinates of a graph are no lengths.
   const ruler =
     word === "pair"
       ? null
-      : new Ruler(picture, view, problem.length_unit ?? "mm", () => handles.map((one) => one.get()), memory.ruler);
+      : new Ruler(
+          picture,
+          view,
+          problem.length_unit ?? "mm",
+          () => found.handles.map((one) => one.get()),
+          memory.ruler,
+        );
   const toggle = (/** @type {"grid" | "snap"} */ name, /** @type {string} */ text, /** @type {string} */ title) =>
     el(
       "button",
@@ -168,7 +194,7 @@ function drawnPlane(
         "data-tool": name,
         onclick: () => {
           tools[name] = !tools[name];
-          changed(true);
+          redrawn();
         },
       },
       text,
@@ -176,17 +202,14 @@ function drawnPlane(
   const chosen = el(
     "div",
     { class: "canvas-tools", role: "group", "aria-label": t`Tools of the canvas` },
-    ...shapes.map(({ text, title, make }) =>
+    ...shapes.map(({ text, title }, k) =>
       el(
         "button",
         {
           type: "button",
           class: "small",
           title,
-          onclick: () => {
-            make((value) => view.fine(value));
-            changed(true);
-          },
+          onclick: () => change(({ shapes = [] }) => shapes[k].make((value) => view.fine(value))),
         },
         text,
       ),
@@ -215,13 +238,12 @@ function drawnPlane(
               view.scale *= nearness;
             }
             Object.assign(memory, { view: seen && view, led: seen !== null });
-            canvas(place, problem, roomy, changed, backdrop);
+            redrawn();
           },
         })
       : null;
   const put = (/** @type {[number, number]} */ [x, y]) => {
-    add?.(view.rounded(x), view.rounded(y));
-    changed(true);
+    change(({ add }) => add?.(view.rounded(x), view.rounded(y)));
   };
   if (add) {
     picture.addEventListener("dblclick", (/** @type {MouseEvent} */ event) => {
@@ -231,10 +253,11 @@ function drawnPlane(
   picture.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
     if (!mode.checked) return;
     stroke(event, view, picture, pen, (way, closed) => {
-      problem.points = way.map(([x, y]) => ({ x, y }));
-      if (closed) matched(problem);
-      else opened(problem);
-      changed(true);
+      change((_, statement) => {
+        statement.points = way.map(([x, y]) => ({ x, y }));
+        if (closed) matched(statement);
+        else opened(statement);
+      });
     });
   });
   const last = handles.at(-1)?.get() ?? [0, 0];
@@ -265,15 +288,15 @@ function drawnPlane(
             { type: "button", class: "small", onclick: () => put([last[0] + 40 / view.scale, last[1]]) },
             t`Add a ${term(word ?? "")}`,
           ),
-        ...offers.map(({ text, make }) =>
+        ...offers.map(({ text }, k) =>
           el(
             "button",
             {
               type: "button",
               class: "small",
               onclick: () => {
-                make([view.rounded(view.middle[0]), view.rounded(view.middle[1])], view.rounded(size));
-                changed(true);
+                const middle = /** @type {[number, number]} */ (view.middle.map((one) => view.rounded(one)));
+                change(({ offers }) => offers[k].make(middle, view.rounded(size)));
               },
             },
             text,
@@ -300,14 +323,26 @@ function readable(problem) {
   }
 }
 
+/** The fields of the form go along with what is led. @param {Problem} problem @param {string | undefined} path */
+function told(problem, path) {
+  for (const field of path ? ["x", "y", "angle"] : []) {
+    const box = document.querySelector(`[data-path="${path}/${field}"]`);
+    const value = at(problem, within(`${path}/${field}`));
+    if (box instanceof HTMLInputElement && value !== undefined) box.value = String(value);
+  }
+}
+
 /**
  * A handle on the canvas: a dot, and a knob where it turns.
- * @param {Handle} handle @param {string} key @param {View} view @param {SVGSVGElement} picture
- * @param {() => void} all shows all handles: some hang together @param {() => void} redraw draws what is between them
- * @param {(rebuilt: boolean) => void} changed
+ * @param {string} key @param {View} view @param {SVGSVGElement} picture
+ * @param {object} on
+ * @param {() => Handle} on.handle as it is now
+ * @param {(act: (handle: Handle) => void) => void} on.change what it is the handle of
+ * @param {() => void} on.remove
+ * @param {() => void} on.left it is let go
  */
-function held(handle, key, view, picture, all, redraw, changed) {
-  const { name, label, turn } = handle;
+function held(key, view, picture, { handle, change, remove, left }) {
+  const { name, label, turn, remove: removable } = handle();
   const grip = new Grip({ name, beside: [12, 20], radius: 8, key });
   const group = grip.node;
   const line = svg("line", { class: "arm" });
@@ -317,11 +352,12 @@ function held(handle, key, view, picture, all, redraw, changed) {
   group.prepend(line);
   if (end && knob) group.append(end, knob);
   const show = () => {
-    const [x, y] = handle.get();
+    const { get, turn } = handle();
+    const [x, y] = get();
     const [u, v] = view.at(x, y);
     grip.put([u, v]);
     const turned = turn ? `, ${t`angle ${shown(turn.get())}°`}` : "";
-    const keys = [t`Arrow keys move it`, turn && t`page keys turn it`, handle.remove && t`Delete removes it`];
+    const keys = [t`Arrow keys move it`, turn && t`page keys turn it`, removable && t`Delete removes it`];
     grip.call(`${label}: x ${shown(x)}, y ${shown(y)}${turned}. ${keys.filter(Boolean).join(", ")}.`);
     if (!knob || !end || !turn) return;
     const angle = (turn.get() * Math.PI) / 180;
@@ -333,53 +369,30 @@ function held(handle, key, view, picture, all, redraw, changed) {
     for (const [attribute, value] of Object.entries({ x1: u, y1: v, x2: ku, y2: kv }))
       line.setAttribute(attribute, String(value));
   };
-  const altered = () => {
-    for (const field of handle.path ? /** @type {const} */ (["x", "y", "angle"]) : []) {
-      const box = document.querySelector(`[data-path="${handle.path}/${field}"]`);
-      const value = handle.owner?.[field];
-      if (box instanceof HTMLInputElement && value !== undefined) box.value = String(value);
-    }
-    all();
-    redraw();
-    changed(false);
-  };
-  const put = (/** @type {SVGElement} */ part, /** @type {(at: [number, number]) => void} */ moved) =>
+  /** @param {SVGElement} part @param {(handle: Handle, at: [number, number]) => void} moved */
+  const lead = (part, moved) =>
     led(part, picture, view, {
-      led: (at, now) => {
-        view.freely(() => moved(at), now.altKey);
-        altered();
-      },
-      left: () => changed(true),
+      led: (at, now) => view.freely(() => change((one) => moved(one, at)), now.altKey),
+      left,
     });
-  for (const one of [grip.dot, grip.hit]) put(one, ([x, y]) => handle.put(view.rounded(x), view.rounded(y)));
-  if (knob && end && turn) {
+  for (const one of [grip.dot, grip.hit]) lead(one, (handle, [x, y]) => handle.put(view.rounded(x), view.rounded(y)));
+  if (knob && end) {
     for (const one of [knob, end]) {
-      put(one, ([x, y]) => {
-        const [px, py] = handle.get();
+      lead(one, ({ get, turn }, [x, y]) => {
+        const [px, py] = get();
         const step = view.snap ? SNAP_TURN : 1;
-        turn.set(step * Math.round((Math.atan2(y - py, x - px) * 180) / Math.PI / step));
+        turn?.set(step * Math.round((Math.atan2(y - py, x - px) * 180) / Math.PI / step));
       });
     }
   }
-  const { remove } = handle;
   keyed(group, view, {
-    moved: ([dx, dy]) => {
-      const [x, y] = handle.get();
-      handle.put(view.fine(x + dx), view.fine(y + dy));
-      altered();
-    },
-    turned:
-      turn &&
-      ((by) => {
-        turn.set(turn.get() + by);
-        altered();
+    moved: ([dx, dy]) =>
+      change(({ get, put }) => {
+        const [x, y] = get();
+        put(view.fine(x + dx), view.fine(y + dy));
       }),
-    removed:
-      remove &&
-      (() => {
-        remove();
-        changed(true);
-      }),
+    turned: turn && ((by) => change(({ turn }) => turn?.set(turn.get() + by))),
+    removed: removable && remove,
   });
   return { group, show };
 }

@@ -11,19 +11,13 @@ const MOST = 200;
 /** Statements as JSON, the oldest first in both. @typedef {{past: string[], future: string[]}} Steps */
 
 export class Undo {
-  /** @param {(statement: Problem) => void} apply @param {HTMLButtonElement} back @param {HTMLButtonElement} forth */
-  constructor(apply, back, forth) {
-    this.apply = apply;
-    this.buttons = { back, forth };
+  constructor() {
     /** @type {string[]} */
     this.past = [];
     /** @type {string[]} */
     this.future = [];
     this.now = "";
     this.noted = 0;
-    back.addEventListener("click", () => this.undo());
-    forth.addEventListener("click", () => this.redo());
-    this.tell();
   }
 
   /**
@@ -39,7 +33,6 @@ export class Undo {
     this.noted = apart ? -Infinity : time;
     this.now = text;
     this.future = [];
-    this.tell();
   }
 
   /** @returns {Steps} */
@@ -51,33 +44,25 @@ export class Undo {
   resume({ past, future }) {
     this.past = past;
     this.future = future;
-    this.tell();
   }
 
-  undo() {
-    const before = this.past.pop();
-    if (before === undefined) return;
-    this.future.push(this.now);
-    this.go(before);
+  /** The statement before; null where there is none. */
+  back() {
+    return this.step(this.past, this.future);
   }
 
-  redo() {
-    const next = this.future.pop();
-    if (next === undefined) return;
-    this.past.push(this.now);
-    this.go(next);
+  /** The statement that was gone back from; null where there is none. */
+  forth() {
+    return this.step(this.future, this.past);
   }
 
-  /** @param {string} text */
-  go(text) {
+  /** @param {string[]} from @param {string[]} to @returns {Problem | null} */
+  step(from, to) {
+    const text = from.pop();
+    if (text === undefined) return null;
+    to.push(this.now);
     this.now = text;
     this.noted = -Infinity;
-    this.tell();
-    this.apply(JSON.parse(text));
-  }
-
-  tell() {
-    this.buttons.back.disabled = !this.past.length;
-    this.buttons.forth.disabled = !this.future.length;
+    return JSON.parse(text);
   }
 }

@@ -4,6 +4,9 @@ import type { components } from "./api.js";
 
 export type Schemas = components["schemas"];
 
+/** What JSON can say: of it is what a schema describes only where the page runs. */
+export type Json = string | number | boolean | null | Json[] | { [name: string]: Json | undefined };
+
 type Names<Union> = Union extends unknown ? keyof Union : never;
 type At<Union, Name> = Union extends unknown ? (Name extends keyof Union ? Union[Name] : never) : never;
 type Always<Union, Name extends keyof Union = keyof Union> = Name extends unknown

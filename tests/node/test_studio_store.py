@@ -1,0 +1,81 @@
+"""The store of the studio: what changes the statement, what is told of it, and the steps between which one goes."""
+
+import json
+import shutil
+import subprocess
+
+import pytest
+
+from tests.service.running import ROOT
+
+STUDIO = ROOT / "service" / "studio"
+
+PROGRAM = """
+import { Store } from "./store.js";
+const store = new Store();
+store.kinds = [
+  { kind: "path", schema: { type: "object", properties: { kind: {}, points: {}, seed: { default: 0 } } },
+    example: { kind: "path" } },
+  { kind: "cam", schema: { type: "object", properties: { kind: {} } }, example: { kind: "cam" } },
+];
+let time = 0;
+performance.now = () => time;
+const told = [];
+store.listen(({ stated, by, edited, begun }) => told.push([stated, by, edited, begun]));
+const tries = (act) => { try { act(); return "no fault"; } catch (fault) { return fault.constructor.name; } };
+const seen = {};
+store.begin({ kind: "path", points: [[0, 0]] });
+const first = store.problem;
+for (const x of [1, 2, 3]) store.change((statement) => (statement.points[0][0] = x), "canvas");
+seen.before = first.points;
+time = 1000;
+store.change((statement) => statement.points.push([5, 5]), "form");
+seen.origin = store.origin;
+seen.written = tries(() => store.problem.points.push([6, 6]));
+seen.failed = tries(() => store.change((statement) => { statement.points = []; throw new RangeError(); }));
+seen.now = store.problem.points;
+store.post("A", store.problem);
+store.answer("A");
+time = 2000;
+store.change((statement) => (statement.seed = 0));
+seen.defaults = store.stale;
+store.undo();
+store.undo();
+seen.back = store.problem.points;
+seen.stale = store.stale;
+store.redo();
+seen.forth = store.problem.points;
+store.undo();
+store.undo();
+seen.all = [store.problem.points, store.past.steps.past.length, store.past.steps.future.length];
+store.write({ kind: "cam" }, "text");
+seen.kind = [store.kind.kind, store.past.steps.future.length, store.fits({ kind: "lid" })];
+console.log(JSON.stringify({ ...seen, told }));
+"""
+
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(60)]
+
+
+def test_changes_make_statements_steps_and_news(tmp_path):
+    for module in STUDIO.glob("*.js"):
+        shutil.copy(module, tmp_path)
+    (tmp_path / "package.json").write_text('{"type": "module"}')
+    (tmp_path / "program.js").write_text(PROGRAM)
+    done = subprocess.run(["node", "program.js"], cwd=tmp_path, capture_output=True, text=True, timeout=30)
+    assert done.returncode == 0, done.stderr
+    seen = json.loads(done.stdout)
+    # Statements stay as they were, whoever writes into them, and what fails changes nothing.
+    assert seen["before"] == [[0, 0]]
+    assert (seen["written"], seen["failed"]) == ("TypeError", "RangeError")
+    assert seen["now"] == [[3, 0], [5, 5]]
+    assert seen["origin"] == 1
+    # A burst is one step; a default that is written out makes no answer stale.
+    assert seen["defaults"] is False
+    assert (seen["back"], seen["forth"]) == ([[3, 0]], [[3, 0], [5, 5]])
+    assert seen["stale"] is True
+    assert seen["all"] == [[[0, 0]], 0, 3]
+    assert seen["kind"] == ["cam", 0, False]
+    begun, canvas, form = [True, None, False, True], [True, "canvas", True, False], [True, "form", True, False]
+    other = [True, None, True, False]
+    answered, written = [False, None, False, False], [True, "text", True, True]
+    assert seen["told"] == [begun, *3 * [canvas], form, answered, *6 * [other], written]
