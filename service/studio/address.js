@@ -50,7 +50,10 @@ export async function sentIn(fragment, kinds) {
   if (fragment.length > MOST)
     throw new Unreadable(t`The address is longer than ${MOST} characters, which no statement needs.`);
   const text = await unpacked(fragment.slice(MARK.length));
-  /** Anything: whoever made the address may have written what they liked. @type {any} */
+  /**
+   * What it should be: whoever made the address may have written what they liked.
+   * @type {{problem?: Problem, label?: unknown, mechanism?: Linked | null, placed?: unknown} | null}
+   */
   let told;
   try {
     told = JSON.parse(text);
@@ -59,7 +62,7 @@ export async function sentIn(fragment, kinds) {
   }
   const { problem, label = "", mechanism = null, placed = false } = told ?? {};
   const kind = kinds.find((one) => one.kind === problem?.kind);
-  if (!kind) throw new Unreadable(t`The address states a kind of problem that this service does not know.`);
+  if (!problem || !kind) throw new Unreadable(t`The address states a kind of problem that this service does not know.`);
   const wrong = misfit(problem, kind.schema, kind.schema);
   if (wrong !== null)
     throw new Unreadable(

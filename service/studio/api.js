@@ -246,7 +246,7 @@ export async function motion(id, design, steps, signal) {
  * @param {string} id
  * @param {number} design
  * @param {number} steps
- * @param {Schemas["DynamicsBlock"] | null} block null for the problem's own
+ * @param {Schemas["DesignForcesBlock"] | null} block null for the problem's own
  * @param {AbortSignal} signal
  * @returns {Promise<LinkageAnalysis>}
  */

@@ -35,7 +35,7 @@ const PROCESSES = { laser: t`cut by laser`, print: t`printed`, mill: t`milled` }
 export class AssemblyView {
   /**
    * @param {HTMLElement} place of the list of parts @param {Solved} job @param {number} n
-   * @param {() => any} moving what moves in the drawing now, if anything does
+   * @param {() => Partial<Led> | null} moving what moves in the drawing now, if anything does
    * @param {HTMLElement} board of the picture
    */
   constructor(place, job, n, moving, board) {
@@ -63,7 +63,7 @@ export class AssemblyView {
     this.list = el("div");
     this.fileFault = el("p", { class: "error", role: "alert" });
     this.beyond = el("p", { class: "note", hidden: true });
-    /** By kind of part. @type {Map<string, any>} */
+    /** By kind of part. @type {Map<string, HTMLInputElement>} */
     this.boxes = new Map();
     this.words = el("p", { class: "note", role: "status" });
     this.fault = el("div", { class: "fault", role: "alert" });
@@ -178,10 +178,11 @@ export class AssemblyView {
     for (const box of this.form.querySelectorAll("[aria-invalid]")) box.removeAttribute("aria-invalid");
   }
 
-  /** Say why there are no such parts, and offer what works. @param {any} error */
+  /** Say why there are no such parts, and offer what works. @param {unknown} error */
   refused(error) {
     const faults = error instanceof api.Refused ? error.errors : [];
-    const reason = faults.map((one) => one.detail).join(" ") || error.message;
+    const reason =
+      faults.map((one) => one.detail).join(" ") || (error instanceof Error ? error.message : String(error));
     this.fault.replaceChildren(el("p", { class: "error" }, reason));
     for (const { path } of faults)
       this.form.querySelector(`[name="${path.replace("/query/", "")}"]`)?.setAttribute("aria-invalid", "true");
@@ -195,7 +196,7 @@ export class AssemblyView {
           type: "button",
           class: "small",
           onclick: () => {
-            this.form.querySelector('[name="scale"]').value = String(Number(scale));
+            /** @type {HTMLInputElement} */ (this.form.elements.namedItem("scale")).value = String(Number(scale));
             this.load();
           },
         },
@@ -310,7 +311,7 @@ export class AssemblyView {
           type: "button",
           class: "small",
           onclick: () => {
-            apart.value = this.explosion > 0 ? 0 : 1;
+            apart.value = this.explosion > 0 ? "0" : "1";
             apart.dispatchEvent(new Event("input"));
           },
         },
@@ -430,7 +431,8 @@ export class AssemblyView {
     for (const item of items) {
       if (visible) this.hidden.delete(item);
       else this.hidden.add(item);
-      this.boxes.get(item).checked = visible;
+      const box = this.boxes.get(item);
+      if (box) box.checked = visible;
       this.scene?.hide(item, visible);
     }
   }
@@ -447,7 +449,7 @@ export class AssemblyView {
     this.scene?.choose(item);
     for (const row of this.list.querySelectorAll("li")) {
       const chosen = row.dataset.item === item;
-      row.querySelector(".called").setAttribute("aria-pressed", String(chosen));
+      row.querySelector(".called")?.setAttribute("aria-pressed", String(chosen));
       if (chosen) row.scrollIntoView({ block: "nearest" });
     }
   }
@@ -455,7 +457,8 @@ export class AssemblyView {
   /** What moves in the drawing, where it has a player. @returns {Led | null} */
   led() {
     const moving = this.moving();
-    return moving?.player && moving.motion?.input_angle?.length > 1 ? moving : null;
+    const { player, motion } = moving ?? {};
+    return player && motion && (motion.input_angle?.length ?? 0) > 1 ? { player, motion } : null;
   }
 
   /** Go where the drawing is. */

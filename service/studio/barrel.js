@@ -77,7 +77,7 @@ export class Barrel extends Cammed {
   /** @param {number} at @param {number} angle */
   put(at, angle) {
     const height = Number(between(this.displacement, at));
-    this.groove.setAttribute("transform", `translate(${(-this.view.scale * this.turn * angle) / (2 * Math.PI)} 0)`);
-    this.roller.setAttribute("cy", String(this.view.at(0, height)[1]));
+    this.groove?.setAttribute("transform", `translate(${(-this.view.scale * this.turn * angle) / (2 * Math.PI)} 0)`);
+    this.roller?.setAttribute("cy", String(this.view.at(0, height)[1]));
   }
 }

@@ -251,42 +251,42 @@ export class Disc extends Cammed {
       mechanism: { follower },
     } = this;
     const [u, v] = view.at(0, 0);
-    this.cam.setAttribute("transform", `rotate(${(-this.sense * angle * 180) / Math.PI} ${u} ${v})`);
+    this.cam?.setAttribute("transform", `rotate(${(-this.sense * angle * 180) / Math.PI} ${u} ${v})`);
     const [across, up] = [between(this.contact.x, at), between(this.contact.y, at)];
     if (across === null || up === null) return;
     const touching = turned([across, up], this.sense * angle);
     const [tu, tv] = view.at(...touching);
-    this.touch.setAttribute("cx", String(tu));
-    this.touch.setAttribute("cy", String(tv));
+    this.touch?.setAttribute("cx", String(tu));
+    this.touch?.setAttribute("cy", String(tv));
     if (this.rolls) {
       const centre = this.centre(angle);
       const [cu, cv] = view.at(...centre);
       const spin = this.spin.length ? Number(between(this.spin, at)) : 0;
-      this.wheel.setAttribute(
+      this.wheel?.setAttribute(
         "transform",
         `translate(${cu.toFixed(2)} ${cv.toFixed(2)}) rotate(${((-spin * 180) / Math.PI).toFixed(2)})`,
       );
       for (const [name, value] of Object.entries({ x1: tu, y1: tv, x2: 3 * cu - 2 * tu, y2: 3 * cv - 2 * tv }))
-        this.normal.setAttribute(name, String(value));
+        this.normal?.setAttribute(name, String(value));
       const end = /** @type {Point} */ (
         this.swings ? [follower.pivot_distance ?? 0, 0] : [centre[0] + this.radius + STEM * (this.base ?? 0), centre[1]]
       );
       const other = this.opposite(centre);
-      this.holder.setAttribute(
+      this.holder?.setAttribute(
         "d",
         view.path(other ? [...(this.swings ? [centre, end, other] : [other, centre, end])] : [centre, end]),
       );
       if (other)
-        this.other.setAttribute(
+        this.other?.setAttribute(
           "transform",
           `translate(${view
             .at(...other)
             .map((one) => one.toFixed(2))
             .join(" ")})`,
         );
-    } else this.holder.setAttribute("d", this.face(touching));
+    } else this.holder?.setAttribute("d", this.face(touching));
     const what = this.swings ? t`Arm` : t`Follower`;
-    this.facts.replaceChildren(el("dt", {}, what), el("dd", {}, this.place(at)));
+    this.facts?.replaceChildren(el("dt", {}, what), el("dd", {}, this.place(at)));
   }
 
   /**

@@ -13,7 +13,7 @@ export function choice(choices, value, nullable, set) {
     { onchange: () => set(box.value === "" ? undefined : box.value) },
     ...names.map((one) => el("option", { value: one }, one === "" ? "–" : term(String(one)))),
   );
-  box.value = value ?? names[0];
+  box.value = String(value ?? names[0]);
   return box;
 }
 
@@ -26,7 +26,7 @@ export function numberBox(value, fallback, set) {
     placeholder: typeof fallback === "number" ? fallback : "",
     oninput: () => set(box.value === "" ? undefined : box.valueAsNumber),
   });
-  if (typeof value === "number") box.value = value;
+  if (typeof value === "number") box.value = String(value);
   return box;
 }
 

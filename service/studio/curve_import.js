@@ -47,7 +47,7 @@ export class CurveImport {
       accept: ACCEPTED,
       "aria-label": t`Drawing, table or picture`,
       tabindex: -1,
-      onchange: () => this.take(this.chooser.files[0]),
+      onchange: () => this.take(this.chooser.files?.[0]),
     });
     this.button = el(
       "button",
@@ -290,7 +290,7 @@ export class CurveImport {
 
   /**
    * @param {string} name
-   * @param {{curve: Curve, use: any}[]} rows
+   * @param {{curve: Curve, use: HTMLSelectElement}[]} rows
    * @param {(k: number, area: boolean) => Point[]} placed
    */
   place(name, rows, placed) {

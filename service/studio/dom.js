@@ -6,7 +6,8 @@
 import { number, term } from "./messages.js";
 
 /** @typedef {Node | string | number | null | undefined | false} Child */
-/** @typedef {Record<string, string | number | boolean | null | undefined | ((event: any) => void)>} Attributes */
+/** Listeners say themselves of which sort their event is. @typedef {(event: never) => void} Listener */
+/** @typedef {Record<string, string | number | boolean | null | undefined | Listener>} Attributes */
 
 const SVG = "http://www.w3.org/2000/svg";
 
@@ -20,7 +21,7 @@ const SVG = "http://www.w3.org/2000/svg";
 function furnished(element, attributes, children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (value === false || value === null || value === undefined) continue;
-    if (typeof value === "function") element.addEventListener(name.slice(2), value);
+    if (typeof value === "function") element.addEventListener(name.slice(2), /** @type {EventListener} */ (value));
     else element.setAttribute(name, value === true ? "" : String(value));
   }
   for (const child of children) {
@@ -33,10 +34,10 @@ function furnished(element, attributes, children) {
 
 /**
  * An HTML element.
- * @param {string} tag
+ * @template {keyof HTMLElementTagNameMap} Tag
+ * @param {Tag} tag
  * @param {Attributes} [attributes]
  * @param {...Child} children
- * @returns {any} of the type that the tag has, which no type says of a text
  */
 export function el(tag, attributes = {}, ...children) {
   return furnished(document.createElement(tag), attributes, children);
@@ -44,10 +45,10 @@ export function el(tag, attributes = {}, ...children) {
 
 /**
  * An SVG element.
- * @param {string} tag
+ * @template {keyof SVGElementTagNameMap} Tag
+ * @param {Tag} tag
  * @param {Attributes} [attributes]
  * @param {...Child} children
- * @returns {any} likewise
  */
 export function svg(tag, attributes = {}, ...children) {
   return furnished(document.createElementNS(SVG, tag), attributes, children);
@@ -55,13 +56,15 @@ export function svg(tag, attributes = {}, ...children) {
 
 /**
  * The element of the page with this id.
+ * @template {HTMLElement} [T = HTMLElement]
  * @param {string} id
- * @returns {any} likewise
+ * @param {new () => T} [type] of which it is
+ * @returns {T}
  */
-export function byId(id) {
+export function byId(id, type) {
   const found = document.getElementById(id);
-  if (!found) throw new Error(`the page has no element ${id}`);
-  return found;
+  if (!(found instanceof (type ?? HTMLElement))) throw new Error(`the page has no such element ${id}`);
+  return /** @type {T} */ (found);
 }
 
 /** What stands for an element that is made anew: its id, or what it is called. @param {Element} one */

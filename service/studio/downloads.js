@@ -28,8 +28,8 @@ export function downloads(job, n, drawing) {
       {
         type: "button",
         class: "small",
-        onclick: async (event) => {
-          const pressed = event.currentTarget;
+        onclick: async (/** @type {MouseEvent} */ event) => {
+          const pressed = /** @type {HTMLButtonElement} */ (event.currentTarget);
           pressed.disabled = true;
           fault.replaceChildren();
           try {
@@ -111,7 +111,7 @@ function opened(job, n, button) {
 async function raster(image) {
   await image.decode();
   const canvas = el("canvas", { width: 2 * image.naturalWidth, height: 2 * image.naturalHeight });
-  const pen = canvas.getContext("2d");
+  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   pen.fillStyle = "white";
   pen.fillRect(0, 0, canvas.width, canvas.height);
   pen.drawImage(image, 0, 0, canvas.width, canvas.height);

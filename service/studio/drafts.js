@@ -59,7 +59,11 @@ function newest(texts) {
   return texts.slice(from + 1);
 }
 
-/** Anything: another version of the page may have kept it. @param {string} name @returns {any} */
+/**
+ * What is kept under a name: another version of the page may have kept it.
+ * @param {string} name
+ * @returns {{problem?: Problem, label?: unknown, job?: unknown, kind?: unknown, past?: unknown, future?: unknown} | null}
+ */
 function read(name) {
   try {
     return JSON.parse(lasting.read(name) ?? "null");

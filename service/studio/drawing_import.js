@@ -7,6 +7,8 @@ import { t } from "./messages.js";
 import { rolesOf, stateArea } from "./room.js";
 import { View } from "./view.js";
 
+/** @import { Problem } from "./types/values.js" */
+
 /** @typedef {[number, number]} Point */
 /** @typedef {import("./room.js").Role} Role */
 /** @typedef {import("./api.js").Drawn} Drawn */
@@ -41,7 +43,7 @@ export class DrawingImport {
   }
 
   async read() {
-    const [file] = this.file.files;
+    const [file] = this.file.files ?? [];
     if (!file) return;
     this.list.replaceChildren();
     this.said.textContent = t`Reading ${file.name} …`;
@@ -168,7 +170,7 @@ export class DrawingImport {
     ];
   }
 
-  /** @param {string} name @param {{one: Drawn, use: any}[]} rows @param {number} factor */
+  /** @param {string} name @param {{one: Drawn, use: HTMLSelectElement}[]} rows @param {number} factor */
   place(name, rows, factor) {
     const { store } = this;
     const before = stated(store.problem.space);
@@ -223,7 +225,7 @@ export class DrawingImport {
   }
 }
 
-/** A room as text, without the empty groups in which the form has room for fields. @param {any} space */
+/** A room as text, without the empty groups in which the form has room for fields. @param {Problem["space"]} space */
 function stated(space) {
   const empty = (/** @type {unknown} */ value) =>
     typeof value === "object" && value !== null && !Array.isArray(value) && !Object.keys(value).length;

@@ -26,7 +26,10 @@ const FOLDED = 3;
 
 let ids = 0;
 
-/** Fill `form` with the controls of what a store states. @param {HTMLElement} form @param {import("./store.js").Store} store */
+/**
+ * Fill `form` with the controls of what a store states.
+ * @param {HTMLElement} form @param {import("./store.js").Store} store
+ */
 export function fill(form, store) {
   const sheet = new Sheet(store);
   const { root } = sheet;
@@ -264,7 +267,10 @@ function members(sheet, item, path) {
   ];
 }
 
-/** @param {Sheet} sheet that looks at the first of them where none is stated @param {Schema[]} options @param {string} path */
+/**
+ * @param {Sheet} sheet that looks at the first of them where none is stated
+ * @param {Schema[]} options @param {string} path
+ */
 function union(sheet, options, path) {
   const tag = discriminator(options) ?? "";
   const option = optionOf(options, sheet.at(path));

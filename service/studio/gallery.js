@@ -23,7 +23,7 @@ export class Gallery {
   /** @param {import("./api.js").Kind[]} kinds @param {(example: Example) => void} choose */
   constructor(kinds, choose) {
     this.choose = choose;
-    this.dialog = byId("gallery");
+    this.dialog = byId("gallery", HTMLDialogElement);
     this.place = byId("gallery-cards");
     /** @type {Promise<Document> | null} */
     this.drawn = null;

@@ -5,6 +5,7 @@
  */
 
 import { t } from "./messages.js";
+import { at, put } from "./pointer.js";
 import { smoothed, symmetric } from "./shaping.js";
 
 /** @import { Problem, Schemas } from "./types/values.js" */
@@ -58,7 +59,7 @@ const whole = (value) => Array.isArray(value) && value.length === 2 && value.eve
 
 /**
  * A point `[x, y]` of an object.
- * @param {any} owner
+ * @param {object | null | undefined} owner
  * @param {string} field
  * @param {string} name
  * @param {string} label
@@ -66,21 +67,21 @@ const whole = (value) => Array.isArray(value) && value.length === 2 && value.eve
  * @returns {Handle[]}
  */
 function point(owner, field, name, label, removable = true) {
-  if (!whole(owner?.[field])) return [];
+  if (!owner || !whole(at(owner, [field]))) return [];
   return [
     {
       name,
       label,
-      get: () => owner[field],
-      put: (x, y) => (owner[field] = [x, y]),
-      ...(removable ? { remove: () => (owner[field] = null) } : {}),
+      get: () => /** @type {Point} */ (at(owner, [field])),
+      put: (x, y) => put(owner, [field], [x, y]),
+      ...(removable ? { remove: () => put(owner, [field], null) } : {}),
     },
   ];
 }
 
 /**
  * Objects with x and y, and an angle where they turn.
- * @param {any[]} list
+ * @param {{x: number, y: number, angle?: number}[]} list
  * @param {string} field
  * @param {string} word
  * @param {boolean} turning
@@ -428,7 +429,7 @@ const ROUNDED = 1e-7;
 
 /**
  * Joints of a fourbar at its reference, or where it can first be assembled.
- * @param {any} linkage
+ * @param {NonNullable<Schemas["ParallelMotionProblem"]["linkage"]>} linkage
  * @returns {Record<string, Point> | null}
  */
 function assembled(linkage) {

@@ -90,7 +90,7 @@ export class History {
   /** Show the lines that have all the words looked for. */
   filter() {
     const sought = this.words.value.toLowerCase().split(/\s+/);
-    for (const line of this.list.children)
+    for (const line of this.list.querySelectorAll("li"))
       line.hidden = !sought.every((/** @type {string} */ word) => (line.dataset.words ?? "").includes(word));
   }
 }

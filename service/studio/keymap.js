@@ -31,7 +31,7 @@ export function keymap({ answers, desk, store, solve, browse, link, sheet }) {
       text: t`Solve`,
       everywhere: true,
       act: () => {
-        if (!byId("solve").disabled) solve();
+        if (!byId("solve", HTMLButtonElement).disabled) solve();
       },
     },
     {

@@ -22,8 +22,8 @@ export class Keys {
   /** @param {Binding[]} bindings */
   constructor(bindings) {
     this.bindings = bindings;
-    this.sheet = byId("keys");
-    const letters = byId("letters");
+    this.sheet = byId("keys", HTMLDialogElement);
+    const letters = byId("letters", HTMLInputElement);
     letters.checked = lasting.read(OFF) === null;
     letters.addEventListener("change", () => lasting.write(OFF, letters.checked ? null : "1"));
     this.letters = letters;

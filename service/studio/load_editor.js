@@ -8,9 +8,10 @@ import { choice, numberBox } from "./controls.js";
 import { el, words } from "./dom.js";
 import * as faults from "./faults.js";
 import { t, term } from "./messages.js";
+import { at, put } from "./pointer.js";
 import { symbolOf } from "./units.js";
 
-/** @import { Problem, Skeleton } from "./types/values.js" */
+/** @import { Json, Problem, Schemas, Skeleton } from "./types/values.js" */
 
 /** How near to a pin a click means it, pixels of the picture. */
 const NEAR = 22;
@@ -19,6 +20,9 @@ const NEAR = 22;
 const EDITED = ["units", "gravity", "speed_rpm", "speed", "links", "point_masses", "loads"];
 
 /** @typedef {import("./mover.js").Mover} Mover */
+/** @typedef {Schemas["DesignForcesBlock"]} Block */
+/** A mass that is being stated: its number may be missing yet. @typedef {Partial<Schemas["PointMass"]>} Mass */
+/** @typedef {Schemas["StatedLoad"]} Load */
 /** @typedef {{select: HTMLSelectElement, button: HTMLElement}} Placed */
 
 let ids = 0;
@@ -26,14 +30,16 @@ let ids = 0;
 export class LoadEditor {
   /**
    * @param {Skeleton} skeleton @param {Problem} problem @param {boolean} sliding whether a slide drives
-   * @param {(block: any) => Promise<void>} show asks for the forces by a block, and shows them
+   * @param {(block: Block) => Promise<void>} show asks for the forces by a block, and shows them
    */
   constructor(skeleton, problem, sliding, show) {
     this.skeleton = skeleton;
     this.sliding = sliding;
     this.ask = show;
-    /** @type {any} */
-    this.block = structuredClone(problem.dynamics ?? { gravity: { magnitude: 9.80665, angle: 270 } });
+    /** What a linkage's problem has of the sort is such a block. */
+    this.block = /** @type {Block} */ (
+      /** @type {unknown} */ (structuredClone(problem.dynamics ?? { gravity: { magnitude: 9.80665, angle: 270 } }))
+    );
     this.problem = {
       kind: problem.kind,
       length_unit: problem.length_unit,
@@ -106,12 +112,12 @@ export class LoadEditor {
     return this.skeleton.links.map((link) => link.name).filter((/** @type {string} */ name) => name !== "ground");
   }
 
-  /** @returns {any[]} */
+  /** @returns {Mass[]} */
   get masses() {
     return (this.block.point_masses ??= []);
   }
 
-  /** @returns {any[]} */
+  /** @returns {Load[]} */
   get loads() {
     return (this.block.loads ??= []);
   }
@@ -121,8 +127,8 @@ export class LoadEditor {
    * @param {string} path
    * @param {string} name
    * @param {string} unit
-   * @param {any} value
-   * @param {(value: any) => void} set
+   * @param {unknown} value
+   * @param {(value: Json | undefined) => void} set
    * @param {string} [note]
    */
   number(path, name, unit, value, set, note) {
@@ -152,7 +158,7 @@ export class LoadEditor {
       t`Speed of the input`,
       unit,
       this.block[name],
-      (value) => put(this.block, name, value),
+      (value) => put(this.block, [name], value),
       t`0 is statics.`,
     );
   }
@@ -163,8 +169,8 @@ export class LoadEditor {
       angle: undefined,
       ...(this.block.gravity && { magnitude: 9.80665, angle: 270, ...this.block.gravity }),
     };
-    const set = (/** @type {"magnitude" | "angle"} */ name) => (/** @type {number | undefined} */ value) => {
-      pull[name] = value;
+    const set = (/** @type {"magnitude" | "angle"} */ name) => (/** @type {Json | undefined} */ value) => {
+      pull[name] = typeof value === "number" ? value : undefined;
       if (pull.magnitude === undefined) delete this.block.gravity;
       else this.block.gravity = pull.angle === undefined ? { magnitude: pull.magnitude } : { ...pull };
     };
@@ -184,9 +190,9 @@ export class LoadEditor {
   material() {
     const { block } = this;
     const field = (/** @type {string} */ name, /** @type {string} */ dimension) =>
-      this.number(`/dynamics/links/${name}`, words(name), this.unit(dimension), block.links?.[name], (value) => {
-        put((block.links ??= {}), name, value);
-        if (!Object.keys(block.links).length) delete block.links;
+      this.number(`/dynamics/links/${name}`, words(name), this.unit(dimension), at(block, ["links", name]), (value) => {
+        put(block, ["links", name], value);
+        if (!Object.keys(block.links ?? {}).length) delete block.links;
       });
     return el(
       "fieldset",
@@ -210,7 +216,7 @@ export class LoadEditor {
     const rows = [...this.rows.querySelectorAll("fieldset")].filter((one) => one.dataset.sort === name);
     const row = rows[rows.length - 1];
     row?.querySelector("select")?.focus();
-    row?.querySelector("[aria-pressed]")?.click();
+    /** @type {HTMLElement | null | undefined} */ (row?.querySelector("[aria-pressed]"))?.click();
   }
 
   /** All masses and loads, each with its place and its strength. */
@@ -223,9 +229,9 @@ export class LoadEditor {
           k,
           `/dynamics/point_masses/${k}`,
           "point mass",
-          this.at(mass, `/dynamics/point_masses/${k}/joint`),
+          this.on(mass, `/dynamics/point_masses/${k}/joint`),
           this.number(`/dynamics/point_masses/${k}/mass`, t`Mass`, this.unit("mass"), mass.mass, (value) =>
-            put(mass, "mass", value),
+            put(mass, ["mass"], value),
           ),
         ),
       ),
@@ -237,10 +243,10 @@ export class LoadEditor {
               `${path}/force/constant/${n}`,
               t`Force ${"xy"[n]}`,
               this.unit("force"),
-              load.force.constant[n],
-              (value) => (load.force.constant[n] = value ?? null),
+              at(load, ["force", "constant", String(n)]),
+              (value) => put(load, ["force", "constant", String(n)], value ?? null),
             );
-          return this.row(this.loads, k, path, "force", this.at(load, `${path}/joint`), axis(0), axis(1));
+          return this.row(this.loads, k, path, "force", this.on(load, `${path}/joint`), axis(0), axis(1));
         }
         if (load.link !== undefined && load.torque && "constant" in load.torque) {
           return this.row(
@@ -249,12 +255,8 @@ export class LoadEditor {
             path,
             "torque",
             this.named(this.links, load, "link", `${path}/link`),
-            this.number(
-              `${path}/torque/constant`,
-              t`Torque`,
-              this.unit("torque"),
-              load.torque.constant,
-              (value) => (load.torque.constant = value ?? null),
+            this.number(`${path}/torque/constant`, t`Torque`, this.unit("torque"), load.torque.constant, (value) =>
+              put(load, ["torque", "constant"], value ?? null),
             ),
           );
         }
@@ -269,7 +271,13 @@ export class LoadEditor {
     );
   }
 
-  /** @param {any[]} all @param {number} k @param {string} path @param {string} sort @param {...HTMLElement} controls */
+  /**
+   * @param {unknown[]} all
+   * @param {number} k
+   * @param {string} path
+   * @param {string} sort
+   * @param {...HTMLElement} controls
+   */
   row(all, k, path, sort, ...controls) {
     return el(
       "fieldset",
@@ -293,9 +301,9 @@ export class LoadEditor {
     );
   }
 
-  /** @param {string[]} names @param {any} row @param {string} key @param {string} path */
+  /** @param {string[]} names @param {Mass | Load} row @param {string} key @param {string} path */
   named(names, row, key, path) {
-    const box = choice(names, row[key], false, (value) => (row[key] = value));
+    const box = choice(names, at(row, [key]), false, (value) => put(row, [key], value));
     box.id = `load${++ids}`;
     box.setAttribute("data-path", path);
     return el("div", { class: "field" }, el("label", { for: box.id }, words(key)), box, el("p", { class: "error" }));
@@ -303,19 +311,19 @@ export class LoadEditor {
 
   /**
    * The joint of a mass or force: from the list, or by a click on the drawing.
-   * @param {any} row
+   * @param {Mass | Load} row
    * @param {string} path
    */
-  at(row, path) {
+  on(row, path) {
     const field = this.named(this.joints, row, "joint", path);
+    const select = /** @type {HTMLSelectElement} */ (field.querySelector("select"));
     const button = el(
       "button",
       {
         type: "button",
         class: "small",
         "aria-pressed": "false",
-        onclick: () =>
-          this.place(this.placing?.button === button ? null : { select: field.querySelector("select"), button }),
+        onclick: () => this.place(this.placing?.button === button ? null : { select, button }),
       },
       t`Choose on the drawing`,
     );
@@ -389,10 +397,4 @@ export class LoadEditor {
     if (this.answered)
       this.faults.append(el("p", { class: "note" }, t`The forces below are those of what was stated before.`));
   }
-}
-
-/** Set a field, or leave it out. @param {any} where @param {string} name @param {any} value */
-function put(where, name, value) {
-  if (value === undefined) delete where[name];
-  else where[name] = value;
 }

@@ -3,9 +3,10 @@
 import { el, shown, words } from "./dom.js";
 import { amount, beside, unitFor } from "./figures.js";
 import { t, term } from "./messages.js";
+import { at, put } from "./pointer.js";
 import { thumbnail } from "./thumbnail.js";
 
-/** @import { Problem, Result, Schemas } from "./types/values.js" */
+/** @import { Json, Problem, Result, Schemas } from "./types/values.js" */
 
 /** @typedef {Schemas["Gap"]} Gap */
 /**
@@ -41,7 +42,7 @@ const STATED = {
 
 /**
  * What has no measure, or no number that could be eased: it is left out.
- * @type {Record<string, {text: string, path: string[], value: any}>}
+ * @type {Record<string, {text: string, path: string[], value: Json}>}
  */
 const LEFT_OUT = {
   grashof: { text: t`with any class of linkage`, path: ["constraints", "grashof"], value: "any" },
@@ -141,8 +142,10 @@ function eased(problem, gap) {
     return {
       text: t`with ${term(check)} wider by ${amount(by, gap, problem)}`,
       apply: (statement) => {
-        const zone = at(statement, region);
-        for (const way of ["x", "y"]) zone[way] = [zone[way][0] - by, zone[way][1] + by];
+        for (const way of ["x", "y"]) {
+          const sides = at(statement, [...region, way]);
+          if (Array.isArray(sides)) put(statement, [...region, way], [Number(sides[0]) - by, Number(sides[1]) + by]);
+        }
       },
     };
   }
@@ -162,16 +165,16 @@ function eased(problem, gap) {
  * Demand what is reached where all else holds.
  * @param {Problem} problem
  * @param {string} name
- * @param {any} value
+ * @param {number | number[] | null} value
  * @returns {Easing | null}
  */
 function reached(problem, name, value) {
   const check = REACHED[name];
   const path = check ? STATED[check] : [name];
-  if (name === "dwell_angles" && Array.isArray(problem.dwells)) {
-    const angles = value.map((/** @type {number} */ one) => rounded(one, false));
+  if (name === "dwell_angles" && Array.isArray(problem.dwells) && Array.isArray(value)) {
+    const angles = value.map((one) => rounded(one, false));
     return {
-      text: t`with dwells of ${angles.map((/** @type {number} */ one) => `${shown(one)}°`).join(AND)}`,
+      text: t`with dwells of ${angles.map((one) => `${shown(one)}°`).join(AND)}`,
       apply: (statement) => statement.dwells?.forEach((dwell, k) => (dwell.angle = angles[k])),
     };
   }
@@ -209,7 +212,7 @@ function rounded(value, up) {
 
 /**
  * Where a statement has a limit under the name of its check.
- * @param {any} owner
+ * @param {unknown} owner
  * @param {string} check
  * @param {number} limit
  * @param {string[]} [above]
@@ -223,14 +226,4 @@ function named(owner, check, limit, above = []) {
     if (found) return found;
   }
   return null;
-}
-
-/** @param {any} owner @param {string[]} path @returns {any} */
-function at(owner, path) {
-  return path.reduce((inner, name) => inner?.[name], owner);
-}
-
-/** @param {any} owner @param {string[]} path @param {any} value */
-function put(owner, path, value) {
-  at(owner, path.slice(0, -1))[path[path.length - 1]] = value;
 }

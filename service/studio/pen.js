@@ -44,8 +44,8 @@ export class Pen {
 
   listen() {
     const { signal } = this.gone;
-    const on = (/** @type {string} */ name, /** @type {(event: any) => void} */ act) =>
-      this.sheet.addEventListener(name, act, { signal });
+    /** @param {"pointerdown" | "pointermove" | "pointerup"} name @param {(event: PointerEvent) => void} act */
+    const on = (name, act) => this.sheet.addEventListener(name, act, { signal });
     on("pointerdown", (event) => {
       event.stopPropagation();
       this.sheet.setPointerCapture(event.pointerId);
@@ -53,7 +53,7 @@ export class Pen {
     });
     on("pointermove", (event) => this.show(this.at(event)));
     on("pointerup", (event) => (this.tool === "polygon" ? this.corner(event) : this.finish(this.at(event))));
-    on("dblclick", (event) => event.stopPropagation());
+    this.sheet.addEventListener("dblclick", (event) => event.stopPropagation(), { signal });
     // Wherever the focus is, but for a field in which somebody types.
     document.addEventListener("keydown", (event) => this.key(event), { signal, capture: true });
   }

@@ -109,7 +109,7 @@ export class Player {
   seek(at, told = true) {
     this.at = at;
     if (!this.moved.endless) at = within(at, this.last);
-    this.slider.value = this.moved.endless && at > this.last ? at % this.last : at;
+    this.slider.value = String(this.moved.endless && at > this.last ? at % this.last : at);
     if (told) {
       const reading = this.moved.reading(at);
       this.reading.value = reading;

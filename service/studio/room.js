@@ -4,11 +4,16 @@
 
 import { t } from "./messages.js";
 
+import { group, put } from "./pointer.js";
+
 /** @import { Problem } from "./types/values.js" */
 
 /** @typedef {[number, number]} Point */
 /** @typedef {{polygon?: Point[] | null, circle?: {center: Point, radius: number} | null, frame?: string}} Zone */
 /** @typedef {"polygon" | "rectangle" | "circle"} Tool */
+/** A zone, the corners of an outline, or the two of a box: which of them, its role says. @typedef {Zone | Point[]} Shape */
+/** What has shapes by names or, where a pivot has several zones, by numbers. @typedef {Record<string, Shape>} Owner */
+/** The block: its groups, or lists, and the box. @typedef {Record<string, Owner | Shape[]>} Block */
 
 /**
  * What an area is for.
@@ -69,11 +74,11 @@ export function rolesOf(problem) {
 /** A place of the statement that holds an area: a zone, the corners of an outline, or the two corners of a box. */
 export class Area {
   /**
-   * @param {any} space
+   * @param {Block} space
    * @param {Role} role
    * @param {string} path JSON pointer
-   * @param {any} owner
-   * @param {string | number} key of the value in it
+   * @param {Owner} owner
+   * @param {string} key of the value in it
    * @param {number} number among those of its role, 0 where it is alone
    */
   constructor(space, role, path, owner, key, number) {
@@ -85,20 +90,24 @@ export class Area {
     this.label = `${role.text}${number ? `, ${number}` : ""}`;
   }
 
-  /** @returns {any} */
   get value() {
     return this.owner[this.key];
   }
 
   /** Of a circle. @returns {{center: Point, radius: number} | null} */
   get circle() {
-    return this.value.circle ?? null;
+    return Array.isArray(this.value) ? null : (this.value.circle ?? null);
+  }
+
+  /** The corners that are stated. @returns {Point[]} */
+  get points() {
+    return Array.isArray(this.value) ? this.value : (this.value.polygon ?? []);
   }
 
   /** Corners in order; none of a circle. @returns {Point[]} */
   get corners() {
     if (this.role.name === "box") {
-      const [[left, low], [right, high]] = this.value;
+      const [[left, low], [right, high]] = this.points;
       return [
         [left, low],
         [right, low],
@@ -106,7 +115,7 @@ export class Area {
         [left, high],
       ];
     }
-    return this.role.name === "body" ? this.value : (this.value.polygon ?? []);
+    return this.points;
   }
 
   /** Points that a picture of it must show. @returns {Point[]} */
@@ -146,7 +155,7 @@ export class Area {
       this.corners[k] = [x, y];
       return;
     }
-    const [low, high] = this.value;
+    const [low, high] = this.points;
     const [left, below] = [k === 0 || k === 3, k < 2];
     if (left ? x < high[0] : x > low[0]) (left ? low : high)[0] = x;
     if (below ? y < high[1] : y > low[1]) (below ? low : high)[1] = y;
@@ -166,7 +175,7 @@ export class Area {
   shift([dx, dy], rounded) {
     const moved = (/** @type {Point} */ [x, y]) => /** @type {Point} */ ([rounded(x + dx), rounded(y + dy)]);
     if (this.circle) this.circle.center = moved(this.circle.center);
-    else if (this.role.name === "box") this.owner[this.key] = this.value.map(moved);
+    else if (this.role.name === "box") this.owner[this.key] = this.points.map(moved);
     else this.corners.forEach((corner, k) => (this.corners[k] = moved(corner)));
   }
 
@@ -174,17 +183,17 @@ export class Area {
   remove() {
     const {
       space,
+      owner,
       role: {
         field: [outer, inner],
       },
     } = this;
-    if (Array.isArray(this.owner) && outer !== "box") {
-      this.owner.splice(Number(this.key), 1);
-      if (inner && this.owner.length === 1) [space[outer][inner]] = this.owner;
-      if (inner && !this.owner.length) delete space[outer][inner];
-      if (!inner && !this.owner.length) delete space[outer];
-    } else delete this.owner[this.key];
-    if (inner && space[outer] && Object.values(space[outer]).every((one) => one === null || one === undefined))
+    if (Array.isArray(owner)) {
+      owner.splice(Number(this.key), 1);
+      if (inner && owner.length === 1) put(space, [outer, inner], owner[0]);
+      else if (!owner.length) put(space, inner ? [outer, inner] : [outer], undefined);
+    } else delete owner[this.key];
+    if (inner && space[outer] && Object.values(space[outer]).every((one) => (one ?? null) === null))
       delete space[outer];
   }
 }
@@ -192,19 +201,25 @@ export class Area {
 /**
  * Whether it is a shape that can be drawn; what is being typed need not be one yet.
  * @param {Role} role
- * @param {any} value
+ * @param {Shape | null | undefined} value
  */
 function drawable(role, value) {
   const point = (/** @type {unknown} */ one) => Array.isArray(one) && one.length === 2 && one.every(Number.isFinite);
   if (role.name === "box") return Array.isArray(value) && value.length === 2 && value.every(point);
-  const corners = role.name === "body" ? value : value?.polygon;
-  if (Array.isArray(corners)) return corners.length >= 3 && corners.every(point);
-  return Boolean(value?.circle) && point(value.circle.center) && value.circle.radius > 0;
+  const corners = Array.isArray(value) ? value : value?.polygon;
+  if (corners) return Array.isArray(corners) && corners.length >= 3 && corners.every(point);
+  const circle = Array.isArray(value) ? null : value?.circle;
+  return Boolean(circle) && point(circle?.center) && Number(circle?.radius) > 0;
 }
 
-/** All areas of a block, in the order in which they are drawn. @param {any} space @returns {Area[]} */
-export function areas(space) {
-  if (typeof space !== "object" || space === null) return [];
+/**
+ * All areas of a block, in the order in which they are drawn.
+ * @param {Problem["space"]} stated
+ * @returns {Area[]}
+ */
+export function areas(stated) {
+  if (!group(stated)) return [];
+  const space = /** @type {Block} */ (/** @type {unknown} */ (stated));
   const drawn = ["box", "obstacle", "body"];
   const order = [...drawn, ...ROLES.map(({ name }) => name).filter((name) => !drawn.includes(name))];
   return order.flatMap((name) => {
@@ -212,14 +227,16 @@ export function areas(space) {
     const {
       field: [outer, inner],
     } = role;
-    const owner = inner ? space[outer] : space;
+    const owner = /** @type {Owner | undefined} */ (inner ? space[outer] : space);
     const key = inner ?? outer;
     const value = owner?.[key];
     const path = `/problem/space/${role.field.join("/")}`;
+    if (!owner || !value) return [];
     if (!Array.isArray(value) || name === "box" || name === "body")
       return drawable(role, value) ? [new Area(space, role, path, owner, key, 0)] : [];
-    return value.flatMap((zone, k) =>
-      drawable(role, zone) ? [new Area(space, role, `${path}/${k}`, value, k, k + 1)] : [],
+    const zones = /** @type {Owner} */ (/** @type {unknown} */ (value));
+    return Object.entries(zones).flatMap(([k, zone]) =>
+      drawable(role, zone) ? [new Area(space, role, `${path}/${k}`, zones, k, Number(k) + 1)] : [],
     );
   });
 }

@@ -64,7 +64,11 @@ export class RoomEditor {
     return /** @type {Area} */ (this.areas.find((one) => one.path === path));
   }
 
-  /** @param {string} path of an area @param {(area: Area) => void} act @param {import("./store.js").Editor | null} [by] */
+  /**
+   * @param {string} path of an area
+   * @param {(area: Area) => void} act
+   * @param {import("./store.js").Editor | null} [by]
+   */
   change(path, act, by = null) {
     this.store.change((statement) => {
       const area = areas(statement.space).find((one) => one.path === path);
@@ -90,7 +94,7 @@ export class RoomEditor {
       },
       ...roles.map((one) => el("option", { value: one.name }, one.text)),
     );
-    pick.value = roles.some((one) => one.name === memory.role) ? memory.role : roles[0].name;
+    pick.value = (roles.find((one) => one.name === memory.role) ?? roles[0]).name;
     const buttons = TOOLS.map((tool) =>
       el(
         "button",
@@ -187,7 +191,7 @@ export class RoomEditor {
     if (this.memory.chosen === area.path) return;
     this.memory.chosen = area.path;
     this.node.replaceChildren(...this.areas.map((one) => this.held(one)));
-    this.remover.disabled = false;
+    if (this.remover) this.remover.disabled = false;
     this.hint();
   }
 
@@ -214,8 +218,8 @@ export class RoomEditor {
       const { circle, corners, label, top } = this.at(path);
       shape.setAttribute("d", outline(this.view, { circle, corners }));
       const [u, v] = this.view.at(...top);
-      mark.setAttribute("x", u);
-      mark.setAttribute("y", v);
+      mark.setAttribute("x", String(u));
+      mark.setAttribute("y", String(v));
       const what = circle ? t`circle of radius ${shown(circle.radius)}` : t`${corners.length} corners`;
       body.setAttribute("aria-label", `${label}, ${what}. ${t`Arrow keys move it, Delete removes it.`}`);
       for (const grip of grips) grip.show();

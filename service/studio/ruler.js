@@ -104,8 +104,8 @@ export class Ruler {
     const unit = this.unit && ` ${this.unit}`;
     this.text.textContent = `${brief(length)}${unit}, ${brief(Number(angle.toFixed(1)))}°`;
     this.title.textContent = t`${length}${unit}, ${angle}°; across ${dx}${unit}, up ${dy}${unit}`;
-    this.text.setAttribute("x", (x + u) / 2);
-    this.text.setAttribute("y", (y + v) / 2 - 9);
+    this.text.setAttribute("x", String((x + u) / 2));
+    this.text.setAttribute("y", String((y + v) / 2 - 9));
     const keys = t`it measures ${this.text.textContent}. Arrow keys move it, Delete takes the ruler away.`;
     this.grips.forEach((grip, k) => {
       const [ex, ey] = ends[k];

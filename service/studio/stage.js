@@ -116,7 +116,7 @@ export class Stage {
     this.place = byId("stage");
     this.frame = new Frame(byId("watch"), byId("beside"), byId("plots"));
     this.caption = byId("caption");
-    this.buttons = { state: byId("mode-state"), watch: byId("mode-watch") };
+    this.buttons = { state: byId("mode-state"), watch: byId("mode-watch", HTMLButtonElement) };
     /** Whether there is anything to watch. */
     this.watching = false;
     this.buttons.state.addEventListener("click", () => this.show("state"));

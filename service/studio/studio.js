@@ -39,6 +39,7 @@ const opening = new Opening(desk, "Hatch lid");
 /** What is shown until somebody states something. @type {{leave: () => void}} */
 let guest = opening;
 
+const label = byId("label", HTMLInputElement);
 const store = new Store();
 const backdrop = new Backdrop(() => task.draw());
 /** @type {Task} */
@@ -55,8 +56,8 @@ const task = new Task(store, backdrop, {
 store.listen(({ edited }) => {
   byId("stale").hidden = !store.stale;
   byId("answers").classList.toggle("stale", store.stale);
-  byId("undo").disabled = !store.past.steps.past.length;
-  byId("redo").disabled = !store.past.steps.future.length;
+  byId("undo", HTMLButtonElement).disabled = !store.past.steps.past.length;
+  byId("redo", HTMLButtonElement).disabled = !store.past.steps.future.length;
   if (!edited) return;
   drafted();
   vacate();
@@ -83,7 +84,7 @@ function asked() {
 function drafted() {
   const { problem } = store;
   if (store.example >= 0) forgetDraft(problem.kind);
-  else keepDraft(problem, byId("label").value, store.past.steps, store.answered === null ? "" : asked());
+  else keepDraft(problem, label.value, store.past.steps, store.answered === null ? "" : asked());
 }
 
 /**
@@ -99,7 +100,7 @@ function resume(kind, steps) {
     return;
   }
   store.begin(draft.problem, steps);
-  byId("label").value = draft.label;
+  label.value = draft.label;
   byId("draft").hidden = false;
 }
 
@@ -112,14 +113,14 @@ function state(statement, solved = false) {
 }
 
 async function solve() {
-  const button = byId("solve");
+  const button = byId("solve", HTMLButtonElement);
   button.disabled = true;
   busy(true);
   tell("");
   task.clear();
   try {
     const statement = store.problem;
-    const job = await api.solve(statement, byId("label").value || null);
+    const job = await api.solve(statement, label.value || null);
     store.post(job.id, statement);
     desk.drawer.select("answers");
     const note = el("p", { class: "note" }, t`Designs stand here as soon as they are found.`);
@@ -155,7 +156,7 @@ async function unpack() {
     busy(false);
     store.forget();
     store.begin(sent.problem);
-    byId("label").value = sent.label;
+    label.value = sent.label;
     byId("result").replaceChildren(
       el("p", { class: "note" }, t`This statement came in the address. Solve finds its answers.`),
     );
@@ -199,7 +200,7 @@ async function restore(reloaded = false) {
     if (store.posted.id !== id) state(store.plain(job.problem));
     store.answer(id);
     if (reloaded) editedBeside(id);
-    byId("label").value = job.label ?? "";
+    label.value = job.label ?? "";
     if (["queued", "running"].includes(job.status)) {
       history.load().catch(tell);
       const ended = await running.run(byId("progress"), id);
@@ -237,14 +238,14 @@ function left() {
 /** Begin with an example, by the name that it has in the gallery. @param {{problem: Problem, name: string}} example */
 function exemplify({ problem, name }) {
   state(problem);
-  byId("label").value = translated(name);
+  label.value = translated(name);
 }
 
 async function begin() {
   try {
     store.kinds = await api.kinds();
   } catch (error) {
-    if (error instanceof api.Refused && error.status === 401) byId("key").open = true;
+    if (error instanceof api.Refused && error.status === 401) byId("key", HTMLDetailsElement).open = true;
     return tell(error);
   }
   tell("");
@@ -291,7 +292,7 @@ function sending() {
   const { type, skeleton, driven_by } = design?.mechanism ?? {};
   return {
     problem: store.problem,
-    label: byId("label").value,
+    label: label.value,
     placed: Boolean(design?.placement),
     mechanism: skeleton ? /** @type {Linked} */ ({ type, skeleton, ...(driven_by && { driven_by }) }) : null,
   };
@@ -301,8 +302,8 @@ const link = new Link(byId("link"), byId("link-told"), sending);
 
 /** @type {Keys} */
 const keys = new Keys(keymap({ answers, desk, store, solve, browse, link, sheet: () => keys.open() }));
-byId("undo").addEventListener("click", () => store.undo());
-byId("redo").addEventListener("click", () => store.redo());
+byId("undo", HTMLButtonElement).addEventListener("click", () => store.undo());
+byId("redo", HTMLButtonElement).addEventListener("click", () => store.redo());
 byId("stale-solve").addEventListener("click", () => solve());
 byId("stale-back").addEventListener("click", () => {
   if (!store.answered) return;
@@ -311,23 +312,21 @@ byId("stale-back").addEventListener("click", () => {
 });
 byId("gallery-open").addEventListener("click", () => browse());
 byId("keys-open").addEventListener("click", () => keys.open());
-byId("key")
-  .querySelector("form")
-  .addEventListener("submit", (/** @type {Event} */ event) => {
-    event.preventDefault();
-    api.useKey(byId("key-value").value.trim());
-    byId("key-value").value = "";
-    byId("key").open = false;
-    begin();
-  });
-byId("language").replaceChildren(
+byId("key-form").addEventListener("submit", (event) => {
+  event.preventDefault();
+  api.useKey(byId("key-value", HTMLInputElement).value.trim());
+  byId("key-value", HTMLInputElement).value = "";
+  byId("key", HTMLDetailsElement).open = false;
+  begin();
+});
+byId("language", HTMLSelectElement).replaceChildren(
   ...Object.entries(languages).map(([code, { name }]) =>
     el("option", { value: code, lang: code, selected: code === language }, `${code.toUpperCase()} · ${name}`),
   ),
 );
-byId("language").addEventListener("change", () => choose(byId("language").value));
+byId("language", HTMLSelectElement).addEventListener("change", () => choose(byId("language", HTMLSelectElement).value));
 window.addEventListener("hashchange", () => restore());
-byId("label").addEventListener("input", () => {
+label.addEventListener("input", () => {
   if (draftOf(store.problem.kind)) drafted();
 });
 if (!location.hash && !lastKind()) opening.show();

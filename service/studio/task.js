@@ -31,7 +31,7 @@ export class Task {
     this.fields = byId("fields");
     this.faults = byId("faults");
     this.sketch = byId("sketch");
-    this.text = byId("json-text");
+    this.text = byId("json-text", HTMLTextAreaElement);
     /** The kind whose examples stand there. */
     this.introduced = "";
     store.listen((change) => change.stated && this.show(change));
@@ -91,7 +91,7 @@ export class Task {
   introduce() {
     const { kind, examples } = this.store;
     this.introduced = kind.kind;
-    byId("kind").value = kind.kind;
+    byId("kind", HTMLSelectElement).value = kind.kind;
     byId("example").replaceChildren(
       el("option", { value: "" }, t`as edited`),
       ...examples.map((_, n) => el("option", { value: n }, translated(kind.examples[n].name))),
@@ -109,7 +109,7 @@ export class Task {
       this.fields.replaceChildren();
     }
     if (kind !== this.introduced) this.introduce();
-    byId("example").value = store.example < 0 ? "" : String(store.example);
+    byId("example", HTMLSelectElement).value = store.example < 0 ? "" : String(store.example);
     if (by === null || by === "text") fill(this.fields, store);
     if (by !== "canvas") this.draw();
     if (by !== "text") text.value = JSON.stringify(store.problem, null, 2);
