@@ -78,15 +78,17 @@ export class Frame {
 }
 
 /**
- * The picture of a mechanism: what its view shows, as large as there is room.
+ * A picture of the plane: what its view shows, as large as there is room.
  * @param {import("./view.js").View} view
  * @param {string} label what it shows, for who hears the page
  * @param {import("./dom.js").Child[]} drawn
- * @param {{held?: boolean}} [use] whether something in it is taken hold of
+ * @param {object} [use]
+ * @param {boolean} [use.held] whether something in it is taken hold of
+ * @param {boolean} [use.whole] whether it goes to the edges of its room, as a grid does, and not of what points take
  * @returns {SVGSVGElement}
  */
-export function scene(view, label, drawn, { held = false } = {}) {
-  const { x, y, width, height } = view.box;
+export function scene(view, label, drawn, { held = false, whole = false } = {}) {
+  const { x, y, width, height } = whole ? view.room : view.box;
   return svg(
     "svg",
     {

@@ -13,7 +13,7 @@ import { areas } from "./room.js";
 import { RoomEditor } from "./room_editor.js";
 import { Ruler } from "./ruler.js";
 import { within } from "./sheet.js";
-import { roomOf } from "./stage.js";
+import { roomOf, scene } from "./stage.js";
 import { View } from "./view.js";
 import { Zoom } from "./zoom.js";
 
@@ -126,20 +126,14 @@ function drawnPlane(redrawn, store, of, roomy, memory, backdrop, room) {
     roomy && memory.view && (memory.led || fits)
       ? memory.view
       : new View(points, ...room, corners.length ? 40 : 0.2 * Math.min(...room));
-  const { width, height } = view;
   if (roomy) memory.view = view;
   view.snap = tools.snap ? snapping(view) : 0;
-  const picture = svg("svg", {
-    viewBox: `0 0 ${width} ${height}`,
-    class: "canvas",
-    role: "group",
-    "aria-label": t`The problem in the plane`,
-  });
+  const picture = scene(view, t`The problem in the plane`, [], { held: true, whole: true });
   const trail = svg("path", { class: "trail" });
   const pen = svg("path", { class: "pen" });
   const areasOf = roomy ? new RoomEditor(picture, view, store, memory.room) : null;
   picture.append(
-    svg("rect", { class: "paper", width, height }),
+    svg("rect", { class: "paper", ...view.room }),
     ...(backdrop?.drawn(view, picture) ?? []),
     ...(tools.grid ? grid(view) : []),
     ...(areasOf ? [areasOf.node] : []),
@@ -226,17 +220,7 @@ function drawnPlane(redrawn, store, of, roomy, memory, backdrop, room) {
       ? new Zoom(picture, {
           busy: () => mode.checked,
           settled: (seen) => {
-            if (seen) {
-              const {
-                middle: [x, y],
-                nearness,
-              } = seen;
-              view.middle = [
-                view.middle[0] + (x - width / 2) / view.scale,
-                view.middle[1] - (y - height / 2) / view.scale,
-              ];
-              view.scale *= nearness;
-            }
+            if (seen) view.look(seen.middle, seen.nearness);
             Object.assign(memory, { view: seen && view, led: seen !== null });
             redrawn();
           },
@@ -261,7 +245,7 @@ function drawnPlane(redrawn, store, of, roomy, memory, backdrop, room) {
     });
   });
   const last = handles.at(-1)?.get() ?? [0, 0];
-  const size = (0.4 * Math.min(width, 640)) / view.scale;
+  const size = (0.4 * Math.min(view.width, 640)) / view.scale;
   const how = [
     freehand && problem.closed && t`Closed: the whole curve is matched.`,
     handles.some((one) => one.turn) ? t`Drag to move, drag the end to turn.` : t`Drag to move.`,

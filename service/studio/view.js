@@ -54,6 +54,11 @@ export class View {
     return { x: (this.width - width) / 2, y: (this.height - height) / 2, width, height };
   }
 
+  /** All of the picture. @returns {Box} */
+  get room() {
+    return { x: 0, y: 0, width: this.width, height: this.height };
+  }
+
   /** @param {number} x @param {number} y @returns {Point} */
   at(x, y) {
     return [this.width / 2 + this.scale * (x - this.middle[0]), this.height / 2 - this.scale * (y - this.middle[1])];
@@ -69,7 +74,18 @@ export class View {
     const matrix = picture.getScreenCTM();
     if (!matrix) return [NaN, NaN];
     const { x, y } = new DOMPoint(pointer.clientX, pointer.clientY).matrixTransform(matrix.inverse());
-    return [this.middle[0] + (x - this.width / 2) / this.scale, this.middle[1] - (y - this.height / 2) / this.scale];
+    return this.of(x, y);
+  }
+
+  /** The point of the plane at a place of the picture. @param {number} u @param {number} v @returns {Point} */
+  of(u, v) {
+    return [this.middle[0] + (u - this.width / 2) / this.scale, this.middle[1] - (v - this.height / 2) / this.scale];
+  }
+
+  /** Look at a place of the picture, from so much nearer. @param {number[]} place pixels @param {number} nearness */
+  look([u, v], nearness) {
+    this.middle = this.of(u, v);
+    this.scale *= nearness;
   }
 
   /** A round step of about `pixels`. @param {number} pixels */
