@@ -5,7 +5,12 @@ import { t, term } from "./messages.js";
 
 /** @import { Json, Schemas } from "./types/values.js" */
 
-/** @param {string[]} choices @param {unknown} value @param {boolean} nullable @param {(value: Json | undefined) => void} set */
+/**
+ * @param {string[]} choices
+ * @param {unknown} value
+ * @param {boolean} nullable
+ * @param {(value: Json | undefined) => void} set
+ */
 export function choice(choices, value, nullable, set) {
   const names = nullable ? ["", ...choices] : choices;
   const box = el(

@@ -62,7 +62,7 @@ function newest(texts) {
 /**
  * What is kept under a name: another version of the page may have kept it.
  * @param {string} name
- * @returns {{problem?: Problem, label?: unknown, job?: unknown, kind?: unknown, past?: unknown, future?: unknown} | null}
+ * @returns {Partial<Record<"label" | "job" | "kind" | "past" | "future", unknown> & {problem: Problem}> | null}
  */
 function read(name) {
   try {

@@ -84,7 +84,10 @@ export class Forces {
       );
   }
 
-  /** Ask for the forces and show them. @param {Schemas["DesignForcesBlock"] | null} block null for that of the problem */
+  /**
+   * Ask for the forces and show them.
+   * @param {Schemas["DesignForcesBlock"] | null} block null for that of the problem
+   */
   async ask(block) {
     const answer = await api.forces(this.job.id, this.n, STEPS, block, this.gone.signal);
     if (this.gone.signal.aborted) return;

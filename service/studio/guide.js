@@ -30,6 +30,7 @@ export class Leader {
     /** @type {Guide | null} */
     this.guide = null;
     this.n = 0;
+    /** @type {Problem | null} */
     this.before = null;
     this.chosen = "";
     this.timer = 0;
@@ -103,7 +104,7 @@ export class Leader {
     if (n > guide.steps.length) return this.leave();
     this.n = n;
     const step = guide.steps[n];
-    this.before = structuredClone(page.problem());
+    this.before = page.problem();
     this.chosen = document.querySelector('.card[aria-pressed="true"]')?.getAttribute("data-design") ?? "";
     this.count.textContent = step ? t`${guide.name}, ${n + 1} of ${guide.steps.length}` : guide.name;
     this.text.textContent = step?.text ?? t`That is all: everything can be undone, changed, and solved again.`;

@@ -11,7 +11,7 @@ import { group, put } from "./pointer.js";
 /** @typedef {[number, number]} Point */
 /** @typedef {{polygon?: Point[] | null, circle?: {center: Point, radius: number} | null, frame?: string}} Zone */
 /** @typedef {"polygon" | "rectangle" | "circle"} Tool */
-/** A zone, the corners of an outline, or the two of a box: which of them, its role says. @typedef {Zone | Point[]} Shape */
+/** A zone, the corners of an outline, or the two of a box, as its role says. @typedef {Zone | Point[]} Shape */
 /** What has shapes by names or, where a pivot has several zones, by numbers. @typedef {Record<string, Shape>} Owner */
 /** The block: its groups, or lists, and the box. @typedef {Record<string, Owner | Shape[]>} Block */
 

@@ -34,6 +34,8 @@ export class Store {
     /** The statement whose answers are shown; null while there are none. @type {Problem | null} */
     this.answered = null;
     this.past = new Undo();
+    /** @type {WeakMap<Problem, string>} */
+    this.spellings = new WeakMap();
     /** @type {((change: Change) => void)[]} */
     this.listeners = [];
   }
@@ -81,7 +83,11 @@ export class Store {
 
   /** A statement as it is compared with others. @param {Problem} statement */
   spelt(statement) {
-    return spelling(statement, this.kindOf(statement)?.schema);
+    const known = this.spellings.get(statement);
+    if (known !== undefined) return known;
+    const text = spelling(statement, this.kindOf(statement)?.schema);
+    this.spellings.set(statement, text);
+    return text;
   }
 
   /** A statement without what the service has written out. @param {Problem} statement @returns {Problem} */

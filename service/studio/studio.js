@@ -54,8 +54,9 @@ const task = new Task(store, backdrop, {
   picture: (name) => gallery?.picture(name),
 });
 store.listen(({ edited }) => {
-  byId("stale").hidden = !store.stale;
-  byId("answers").classList.toggle("stale", store.stale);
+  const { stale } = store;
+  byId("stale").hidden = !stale;
+  byId("answers").classList.toggle("stale", stale);
   byId("undo", HTMLButtonElement).disabled = !store.past.steps.past.length;
   byId("redo", HTMLButtonElement).disabled = !store.past.steps.future.length;
   if (!edited) return;

@@ -103,13 +103,14 @@ export class Task {
   show({ by, begun }) {
     const { store, text } = this;
     const { kind } = store.problem;
+    const { example } = store;
     if (begun) {
       byId("draft").hidden = true;
       faults.clear(this.fields, this.faults);
       this.fields.replaceChildren();
     }
     if (kind !== this.introduced) this.introduce();
-    byId("example", HTMLSelectElement).value = store.example < 0 ? "" : String(store.example);
+    byId("example", HTMLSelectElement).value = example < 0 ? "" : String(example);
     if (by === null || by === "text") fill(this.fields, store);
     if (by !== "canvas") this.draw();
     if (by !== "text") text.value = JSON.stringify(store.problem, null, 2);
@@ -140,12 +141,11 @@ export class Task {
     const { store, text } = this;
     try {
       const written = JSON.parse(text.value);
-      if (!store.kindOf(written)) throw new SyntaxError(t`“kind” must name a kind of problem.`);
+      if (!written || !store.kindOf(written)) throw new SyntaxError(t`“kind” must name a kind of problem.`);
       store.write(written, "text");
     } catch (error) {
-      if (!(error instanceof SyntaxError)) throw error;
       text.setAttribute("aria-invalid", "true");
-      byId("json-error").textContent = error.message;
+      byId("json-error").textContent = error instanceof Error ? error.message : String(error);
     }
   }
 

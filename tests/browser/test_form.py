@@ -28,13 +28,16 @@ def show(page, problem):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_field_of_a_kind_has_its_control(kept_studio, kind):
-    """No field is left to the JSON alone; each number has its unit beside it, where it has one."""
+    """No field is left to the JSON alone, and what is only looked at is not stated with the next change."""
     page = kept_studio.page
     page.select_option("#kind", kind)
     for n, _ in enumerate(examples(kind)):
         page.select_option("#example", str(n))
+        before = stated(page)
         page.evaluate(OPEN_ALL)
         assert page.inner_text("#fields").count("Stated in the JSON") == 0
+        page.fill(at("max_designs"), "7")
+        assert stated(page) == {**before, "max_designs": 7}
     names = set(KINDS[kind].problem.model_fields) - {"kind"}
     assert {name for name in names if page.locator(at(name)).count() == 0} == set()
     unlabelled = page.locator("#fields :is(input, select):not([aria-label])").evaluate_all(

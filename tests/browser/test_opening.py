@@ -185,7 +185,7 @@ def test_every_key_of_the_sheet_does_what_it_says(studio):
     for name, presses in tried.items():
         for key, told, wanted in presses:
             # A design that was chosen takes the place of the one before when its motion is there.
-            page.wait_for_selector("#watch:not(.waiting)")
+            page.wait_for_selector("#watch:not(.waiting)", state="attached")
             before = page.evaluate(told)
             page.keyboard.press(key)
             if wanted is None:

@@ -4,7 +4,7 @@ import type { components } from "./api.js";
 
 export type Schemas = components["schemas"];
 
-/** What JSON can say: of it is what a schema describes only where the page runs. */
+/** What JSON can say: of a statement that is walked by its schema no more is known before the page runs. */
 export type Json = string | number | boolean | null | Json[] | { [name: string]: Json | undefined };
 
 type Names<Union> = Union extends unknown ? keyof Union : never;
