@@ -18,6 +18,7 @@ from rich.table import Table
 from service import client as service
 from service.sources import STANDARD_INPUT, SourceError, problem_of
 from service.units import symbols
+from synthesis.model.counting import counted
 from synthesis.registry import parse_problem
 
 _COLUMNS = 7
@@ -149,7 +150,7 @@ def _compared(designs: Sequence[Mapping[str, Any]]) -> Table:
     # What is the same for all tells nobody which to take.
     telling = [name for name in plain if len({str(design["metrics"].get(name)) for design in designs}) > 1]
     columns = (telling or plain)[:_COLUMNS]
-    table = Table(title=f"{len(designs)} {'design' if len(designs) == 1 else 'designs'}, best first")
+    table = Table(title=f"{counted(len(designs), 'design')}, best first")
     table.add_column("", justify="right")
     table.add_column("mechanism")
     for name in columns:

@@ -8,6 +8,7 @@ from typing import Any
 from kinematics.compiled import LINKAGES, is_compiled
 from kinematics.linkage import warm
 from synthesis.model.answer import Reachable, Result
+from synthesis.model.counting import agreeing, counted
 from synthesis.model.kind import Kind, Progress, part_of
 from synthesis.model.linkage_statement import FORCES, LinkageProblem
 from synthesis.model.statement import StatedProblem
@@ -111,7 +112,8 @@ def _relaxed(problem: StatedProblem, result: Result[Any], found: Relaxation) -> 
     designs = found.sound[: problem.max_designs]
     count, search = len(designs), result.search
     account = {"complete": False, "candidates": search.candidates + count, "accepted": count}
-    summary = f"{count} design{'s' * (count > 1)} found without the constraints satisfy them all the same."
+    those = f"{counted(count, 'design')} found without the constraints"
+    summary = f"{those} {agreeing(count, 'satisfies', 'satisfy')} them all the same."
     return result.model_copy(
         update={
             "designs": [*designs, *result.designs][: problem.max_designs],

@@ -18,6 +18,7 @@ from starlette.routing import Match
 from service import telemetry
 from service.explained import MAX_FAULTS, explained, place
 from service.jobs.database import unreachable
+from synthesis.model.counting import counted
 
 PROBLEM_JSON = "application/problem+json"
 
@@ -244,7 +245,7 @@ def _answer(
 def _counted(faults: int) -> str:
     if faults > MAX_FAULTS:
         return f"The request has more than {MAX_FAULTS} faults; the first {MAX_FAULTS} are listed."
-    return f"The request has {faults} {'fault' if faults == 1 else 'faults'}."
+    return f"The request has {counted(faults, 'fault')}."
 
 
 def _method(request: Request) -> str:

@@ -20,6 +20,7 @@ from pydantic import BaseModel
 from service.render.page.numbers import length
 from service.render.page.svg import clean
 from service.units import symbols
+from synthesis.model.counting import grouped
 from synthesis.model.dimension import Dimension, dimensions
 from synthesis.model.statement import StatedProblem
 
@@ -31,10 +32,6 @@ MOST_NUMBERS = 16
 
 COLUMNS = 9
 """Columns of a list at most: more are no table on paper."""
-
-
-GROUPED = 10_000
-"""Whole numbers from here on have their digits in groups of three."""
 
 
 _ABSENT = re.compile("null|left out|none (where|of)", re.IGNORECASE)
@@ -82,11 +79,7 @@ def written(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, int):
-        return (
-            f"{value:,}".replace(",", "\u202f").replace("-", "−")
-            if abs(value) >= GROUPED
-            else str(value).replace("-", "−")
-        )
+        return grouped(value)
     if isinstance(value, float):
         return length(value) if math.isfinite(value) else "–"
     if isinstance(value, tuple) and value and all(entry is None or isinstance(entry, int | float) for entry in value):

@@ -4,7 +4,7 @@ import * as api from "./api.js";
 import { Choosing } from "./choosing.js";
 import { el } from "./dom.js";
 import { Shown } from "./design.js";
-import { foreign, readable, t, term, translated } from "./messages.js";
+import { foreign, grouped, readable, t, term, translated } from "./messages.js";
 import { missed } from "./misses.js";
 import { Strip } from "./strip.js";
 
@@ -116,7 +116,7 @@ function known(search, found, summary) {
   if (!search) return [];
   const counted = Object.entries(search.rejected ?? {})
     .filter(([, n]) => n)
-    .map(([why, n]) => `${term(why)} ${n}`);
+    .map(([why, n]) => `${term(why)} ${grouped(n)}`);
   const sure = search.complete
     ? found
       ? t`Complete: the search has left out nothing that the problem allows; the best are shown.`

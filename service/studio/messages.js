@@ -41,8 +41,11 @@ const POINT = new Intl.NumberFormat(language).formatToParts(0.5).find((part) => 
 /** What separates the numbers of a list: a comma may be a decimal one. */
 export const BETWEEN = POINT === "," ? "; " : ", ";
 
+/** Counts from here on have their digits in groups of three. */
+const GROUPED = 10_000;
+
 /** A number in English prose: what stands in its place is a number too. */
-const NUMBER = /(?<![\w{])[-−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w}])/g;
+const NUMBER = /(?<![\w{])[-−]?\d+(?:\u202f\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?(?![\w}])/g;
 
 /** Texts by what they are in English; of English itself none. @type {Record<string, string>} */
 const messages = language === SOURCE ? {} : await fetched(languages[language].messages);
@@ -129,6 +132,12 @@ export function readable(text) {
 export function term(name) {
   const plain = name.replaceAll("_", " ");
   return messages[plain] ?? plain;
+}
+
+/** A whole number in a sentence, its digits in groups of three, as the service writes it. @param {number} value */
+export function grouped(value) {
+  const digits = String(value);
+  return value < GROUPED ? digits : digits.replace(/\B(?=(\d{3})+$)/g, "\u202f");
 }
 
 /** A number as the language writes it; its digits are those that it has. @param {number | string} value */

@@ -21,6 +21,7 @@ from kinematics.gear.strength import Factors, Load
 from kinematics.gear.teeth import Gear, Mesh
 from kinematics.gear.train import TrainStage
 from synthesis.model.answer import Answer, optional
+from synthesis.model.counting import counted
 from synthesis.model.dimension import ROTATIONAL_SPEED, Length
 from synthesis.model.gear_answer import tool_contact
 from synthesis.model.statement import PositiveNumber, Statement
@@ -443,7 +444,7 @@ def common_width(judges: list[Judge], names: list[str]) -> float | None:
 
 def carrying_words(failed: int) -> str:
     """That the power decided, and how many trains it ruled out."""
-    before = f"{failed} trains do not" if failed > 1 else "one does not" if failed else "all do"
+    before = counted(failed, "train does not", "trains do not") if failed else "all do"
     return f"It carries the power, by a first estimate; of those judged {before}."
 
 

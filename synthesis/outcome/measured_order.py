@@ -12,6 +12,7 @@ from functools import partial
 from typing import Any, TypeVar
 
 from synthesis.model.answer import Result, Verification
+from synthesis.model.counting import counted
 from synthesis.model.linkage_statement import FORCES, LinkageProblem
 from synthesis.model.statement import StatedProblem
 from synthesis.outcome.forces import value_of, with_force_checks
@@ -139,4 +140,4 @@ def _told(order: str, designs: list[Any], measure: Callable[[Any], float | None]
             found = "they take" if order == "planes" else "it is"
             found += f" {known[0]:.4g} to {known[-1]:.4g}"
     count = len(designs)
-    return f" Ordered by {what}, of {count} design{'s' * (count != 1)} {done}; {found}."
+    return f" Ordered by {what}, of {counted(count, 'design')} {done}; {found}."

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Generic, Protocol, TypeVar
 
 from synthesis.model.answer import Search, Verification
+from synthesis.model.counting import grouped
 from synthesis.model.kind import Progress
 from synthesis.model.statement import StatedProblem
 from synthesis.outcome.held import held_to_all
@@ -171,7 +172,9 @@ class Sifting(Generic[Design]):
 
     def listed(self, *left_out: str) -> str:
         """The reasons in words with their numbers, but for those that are left out; empty where there is none."""
-        return ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in self.rejected.items() if name not in left_out)
+        return ", ".join(
+            f"{name.replace('_', ' ')} {grouped(n)}" for name, n in self.rejected.items() if name not in left_out
+        )
 
     def reasons(self) -> str:
         """The reasons as a sentence that is added to a summary."""

@@ -17,6 +17,7 @@ from synthesis.kinds.dwell.placed_starts import placed_starts
 from synthesis.kinds.dwell.problem import HIGH, LOW, DwellProblem, Turning
 from synthesis.kinds.dwell.shaped import Sixbar, mechanism_of, with_way
 from synthesis.kinds.dwell.verification import verify_dwell
+from synthesis.model.counting import counted
 from synthesis.model.kind import Progress
 from synthesis.numerics.narrowing import narrowest
 from synthesis.outcome.placement import put
@@ -264,7 +265,7 @@ def _refined(problem: DwellProblem, kind: Kind, start: Start, transmission: floa
 
 
 def _summary(problem: DwellProblem, sifting: Sifting[DwellDesign]) -> str:
-    unit = problem.length_unit if problem.output.type == "slider" else "°"
+    unit = f" {problem.length_unit}" if problem.output.type == "slider" else "°"
     if not sifting.passed:
         reasons = sifting.listed() or "no curve rests it"
         return f"No dwell sixbar was found that meets every demand ({reasons}); that none exists is not proven."
@@ -274,8 +275,7 @@ def _summary(problem: DwellProblem, sifting: Sifting[DwellDesign]) -> str:
     else:
         best, which = usable_first(problem, shown[: problem.max_designs]).designs[0], "first"
     widths = " and ".join(f"{rest.width:.1f}°" for rest in best.targets)
-    many = f"{count} dwell sixbars" if count > 1 else "One dwell sixbar"
     return (
-        f"{many}; in the {which} the output moves by {best.metrics.jitter:.2g} {unit} at most while it rests, and "
-        f"keeps within {problem.allowed:.3g} {unit} over {widths} of the crank."
+        f"{counted(count, 'dwell sixbar')}; in the {which} the output moves by {best.metrics.jitter:.2g}{unit} at most "
+        f"while it rests, and keeps within {problem.allowed:.3g}{unit} over {widths} of the crank."
     )

@@ -16,6 +16,7 @@ from synthesis.kinds.engine.enumeration import even_arrangements, stated_arrange
 from synthesis.kinds.engine.measures import measured
 from synthesis.kinds.engine.problem import EngineLayout, EngineProblem
 from synthesis.kinds.engine.verification import verify_engine
+from synthesis.model.counting import grouped
 from synthesis.model.kind import Progress
 from synthesis.outcome.sifting import Sifting
 
@@ -154,5 +155,5 @@ def _summary(problem: EngineProblem, sifting: Sifting[EngineDesign], count: int,
     if not count:
         return "No arrangement of these throws fires evenly; state throw_angles to compare uneven ones."
     evenly = "" if problem.throw_angles is not None else " with even firing"
-    part = "" if listed == count else f", of which {listed} symmetric ones were compared"
-    return f"Arrangements of the throws{evenly}: {count}{part}. {_told(sifting)}"
+    part = "" if listed == count else f", of which {grouped(listed)} symmetric ones were compared"
+    return f"Arrangements of the throws{evenly}: {grouped(count)}{part}. {_told(sifting)}"

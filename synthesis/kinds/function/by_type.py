@@ -21,6 +21,7 @@ from synthesis.kinds.function.sixbar_search import SixbarSearch
 from synthesis.kinds.function.stated_mechanisms import SIXBARS, lacking
 from synthesis.kinds.function.task import function_task
 from synthesis.kinds.function.verification import verify_function
+from synthesis.model.counting import counted
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.sixbars import IN_WORDS
 from synthesis.model.stated_types import looked_for, no_class, not_looked_for, told_of_unclassed
@@ -156,7 +157,7 @@ def _told(
 
 
 def _summary(problem: FunctionProblem, sifting: Sifting[FunctionDesign]) -> str:
-    weighed = f"{sifting.candidates} sixbars were drawn and composed"
+    weighed = f"{counted(sifting.candidates, 'sixbar was', 'sixbars were')} drawn and composed"
     if not sifting.passed:
         return (
             f"{weighed}, and none was found that satisfies all demands.{sifting.reasons()} "
@@ -166,7 +167,7 @@ def _summary(problem: FunctionProblem, sifting: Sifting[FunctionDesign]) -> str:
     error = best.structural_error
     if problem.aim == "precision":
         count = len(sifting.passed)
-        return f"{weighed}; {f'{count} that differ meet' if count > 1 else 'one meets'} all pairs."
+        return f"{weighed}; {counted(count, 'meets', 'that differ meet')} all pairs."
     if problem.aim == "least_squares":
         text = f"the least root mean square structural error found is {error.rms:.4g}° (at most {error.max:.4g}°)"
     else:

@@ -25,6 +25,7 @@ from synthesis.kinds.function.scales import Scaling, one_scale, two_scales
 from synthesis.kinds.function.structural_error import STEPS
 from synthesis.kinds.function.task import FunctionTask, built, function_task
 from synthesis.kinds.function.verification import verify_function
+from synthesis.model.counting import agreeing, counted, grouped
 from synthesis.model.kind import Progress, part_of
 from synthesis.outcome.sifting import OUTRANKED, Sifting
 
@@ -357,25 +358,26 @@ class _Harvest(Sifting[FunctionDesign]):
             else:
                 text = f"The least root mean square structural error found is {error.rms:.4g}{unit}"
                 text += f" (at most {error.max:.4g}{unit})"
-            text += f", from {improved} of {judged} starts; no proof that none is better."
+            text += f", from {grouped(improved)} of {counted(judged, 'start')}; no proof that none is better."
         else:
-            text = (
-                f"None of {improved} of {judged} starts came to a linkage that satisfies all demands.{self.reasons()}"
-            )
+            text = f"None of {grouped(improved)} of {counted(judged, 'start')} came to a linkage that satisfies all "
+            text += f"demands.{self.reasons()}"
         return self._result(self.problem.aim, False, text)
 
     def determined(self, proved: bool, method: str) -> FunctionResult:
         """The answer where all linkages were computed."""
         unknown = _NUMERICAL | (_PLACES if self.problem.fixed_pivots is None else set())
         complete = proved and not unknown & self.rejected.keys()
-        text = f"{len(self.passed)} of {self.candidates} real linkages satisfy all demands.{self.reasons()}"
+        passed, of = len(self.passed), counted(self.candidates, "real linkage")
+        text = f"{grouped(passed)} of {of} {agreeing(passed, 'satisfies', 'satisfy')} all demands.{self.reasons()}"
         if not self.passed:
             text += " There are no others, so no design exists." if complete else " Others may exist."
         return self._result(method, complete, text)
 
     def searched(self, method: str) -> FunctionResult:
         """The answer where linkages were searched for."""
-        text = f"{len(self.passed)} linkages found among {self.candidates} candidates.{self.reasons()}"
+        among = counted(self.candidates, "candidate")
+        text = f"{counted(len(self.passed), 'linkage')} found among {among}.{self.reasons()}"
         return self._result(method, False, text)
 
     def _result(self, method: str, complete: bool, summary: str) -> FunctionResult:

@@ -17,6 +17,7 @@ from synthesis.kinds.gear_train.search import Outcome, Train, order, search
 from synthesis.kinds.gear_train.stated_stages import GEARS
 from synthesis.kinds.gear_train.task import Task, gear_train_task
 from synthesis.kinds.gear_train.verification import verify
+from synthesis.model.counting import grouped
 from synthesis.model.gear_answer import Ratio
 from synthesis.model.gear_strength import carrying_words, too_weak_words
 from synthesis.model.kind import Progress
@@ -118,13 +119,13 @@ def _summary(
     problem: GearTrainProblem, task: Task, outcome: Outcome, accepted: list[GearTrainDesign], borne: Judged | None
 ) -> str:
     """One or two sentences: what was found, or why there is nothing."""
-    number = f"{outcome.combinations:,}".replace(",", " ")
+    number = grouped(outcome.combinations)
     if accepted and not task.by_size:
         best = accepted[0]
         stages = ", ".join(f"{s.driver}:{s.driven}" for s in best.mechanism.stages)
         error = best.metrics.relative_error
         how = "exactly the ratio" if error == 0.0 else f"a relative error of {error:.3g}"
-        tied = "no other train is as near" if outcome.ties == 1 else f"{outcome.ties} trains are as near"
+        tied = "no other train is as near" if outcome.ties == 1 else f"{grouped(outcome.ties)} trains are as near"
         if borne is not None:
             return f"{stages} has {how}. {carrying_words(borne.failed)} {_scope(problem, number)}"
         return f"{stages} has {how}; {tied}. {_scope(problem, number)}"

@@ -21,6 +21,7 @@ from synthesis.kinds.gearbox.problem import GearboxProblem
 from synthesis.kinds.gearbox.stages import Options, StageLimits, stage_options
 from synthesis.kinds.gearbox.structures import Group, Structure, formula, spread, structures
 from synthesis.kinds.gearbox.verification import measure, verify
+from synthesis.model.counting import counted
 from synthesis.model.gear_answer import GearPairTeeth
 from synthesis.model.kind import Progress
 from synthesis.outcome.sifting import Sifting
@@ -201,16 +202,18 @@ def _unsearched(problem: GearboxProblem, tried: list[Structure]) -> str:
 
 def _summary(problem: GearboxProblem, tried: list[Structure], passed: list[GearboxDesign], covered: int) -> str:
     """What the search covered and what is best, in one sentence."""
-    count = problem.speeds.count
+    count, combinations = problem.speeds.count, counted(covered, "combination")
     if not tried:
         return f"{count} speeds cannot be made by stages of 2 to {problem.max_pairs} pairs."
     if not passed:
         return (
-            f"None of {len(tried)} structures with {covered:,} combinations of tooth numbers keeps all {count} speeds "
+            f"None of {counted(len(tried), 'structure')} with {combinations} of tooth numbers keeps all {count} speeds "
             f"within {100.0 * problem.widest:.3g} % and the limits."
         )
     first = passed[0]
+    error = first.metrics.max_error
+    kept = f"within {100.0 * error:.3g} %" if error else "exactly"
     return (
-        f"{first.mechanism.formula} keeps {count} speeds within {100.0 * first.metrics.max_error:.3g} %, the best of "
-        f"{len(tried)} structures with {covered:,} combinations of tooth numbers."
+        f"{first.mechanism.formula} keeps {count} speeds {kept}, the best of {counted(len(tried), 'structure')} with "
+        f"{combinations} of tooth numbers."
     )

@@ -26,6 +26,7 @@ from synthesis.kinds.layshaft_gearbox.design import (
 )
 from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 from synthesis.kinds.layshaft_gearbox.verification import PASSING, measure, verify
+from synthesis.model.counting import counted
 from synthesis.model.gear_answer import GearPairTeeth, Ratio
 from synthesis.model.kind import Progress
 from synthesis.model.mesh_limits import external_sound
@@ -227,14 +228,14 @@ def _outlined(box: _Box) -> ParetoLayshaft:
 
 def _summary(problem: LayshaftProblem, passed: list[LayshaftDesign], boxes: list[_Box], covered: int) -> str:
     """What the search covered and what is best, in one sentence."""
-    counted = f"{covered:,} combinations of tooth numbers covered"
+    searched = f"{counted(covered, 'combination')} of tooth numbers covered"
     if passed:
         first = passed[0]
         return (
             f"A tooth sum of {first.metrics.tooth_sum} keeps all {len(first.metrics.errors)} ratios within "
-            f"{100.0 * first.metrics.max_error:.3g} %; {counted}."
+            f"{100.0 * first.metrics.max_error:.3g} %; {searched}."
         )
     if not boxes:
-        return f"The limits leave no gearbox: {counted}."
+        return f"The limits leave no gearbox: {searched}."
     nearest = 100.0 * float(boxes[0].error)
-    return f"No gearbox keeps all ratios within the tolerance: the best is off by {nearest:.3g} %; {counted}."
+    return f"No gearbox keeps all ratios within the tolerance: the best is off by {nearest:.3g} %; {searched}."

@@ -29,6 +29,7 @@ from synthesis.kinds.motion.driver_joints import ROOM, diagonal, rocker_driven
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.stated_dyads import DriverDyad
 from synthesis.kinds.motion.verification import verify
+from synthesis.model.counting import agreeing, counted, grouped
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, SixbarMechanism
 from synthesis.model.linkages import driven_fourbar, to_complex
@@ -109,7 +110,9 @@ def with_driver_dyads(problem: MotionProblem, result: MotionResult, progress: Pr
             usable.append(sifting.passed[-1])
     # Designs that transmit badly are offered where there are no others.
     sifting.withdraw(usable or sifting.passed, OUTRANKED)
-    given = f"{sifting.accepted} of {tried} fourbars were given a driver dyad whose crank turns through."
+    were = agreeing(sifting.accepted, "was", "were")
+    of = f"{grouped(sifting.accepted)} of {counted(tried, 'fourbar')}"
+    given = f"{of} {were} given a driver dyad whose crank turns through."
     return result.model_copy(
         update={
             "designs": sifting.designs(partial(ranked, rank_by=problem.rank_by)),

@@ -31,6 +31,7 @@ from synthesis.kinds.motion.steered_fit import (
     with_angle,
 )
 from synthesis.kinds.motion.task import motion_task
+from synthesis.model.counting import agreeing, counted
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.outcome.ranking import ranked, widest_apart
@@ -163,12 +164,14 @@ def solve_in_room(problem: MotionProblem, exact: MotionResult | None, progress: 
 def _summary(sifting: Sifting[LinkageDesign], started: int, steered: int, exact: int) -> str:
     if not sifting.passed:
         return (
-            f"None of {started} linkages that were drawn in the room and steered into the tolerances and demands "
+            f"None of {counted(started, 'linkage')} that were drawn in the room and steered into the tolerances and "
+            "demands "
             f"satisfies them all (rejected: {sifting.listed(OUTRANKED) or 'none'}). A linkage may exist that the "
             "search did not meet."
         )
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
     return (
-        f"{steered} linkages that were steered into the room and the tolerances satisfy all demands, and {exact} that "
-        f"meet the positions exactly; the least transmission angle is up to {best:.1f}°. A better linkage may exist."
+        f"{counted(steered, 'linkage that was', 'linkages that were')} steered into the room and the tolerances "
+        f"{agreeing(steered, 'satisfies', 'satisfy')} all demands, and {counted(exact, 'that meets', 'that meet')} the "
+        f"positions exactly; the least transmission angle is up to {best:.1f}°. A better linkage may exist."
     )

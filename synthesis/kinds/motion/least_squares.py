@@ -26,6 +26,7 @@ from synthesis.kinds.motion.screening import SOUND, screen
 from synthesis.kinds.motion.screening import demands as screening_demands
 from synthesis.kinds.motion.task import MotionTask, motion_task
 from synthesis.kinds.motion.verification import verify
+from synthesis.model.counting import agreeing, counted, grouped
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import LinkageDesign, LinkageMechanism
 from synthesis.model.linkages import (
@@ -320,14 +321,16 @@ class _Run(Sifting[LinkageDesign]):
     def _summary(self) -> str:
         n = len(self.problem.positions)
         if self.passed:
-            share = 100.0 * min(map(error_of, self.passed))
+            share, passed = 100.0 * min(map(error_of, self.passed)), len(self.passed)
             text = (
-                f"{len(self.passed)} of {self.candidates} fitted linkages meet the demands of the {n} positions; the "
-                f"best has a root-mean-square residual of {share:.3g} % of the task size (hundredths of a radian)."
+                f"{grouped(passed)} of {counted(self.candidates, 'fitted linkage')} "
+                f"{agreeing(passed, 'meets', 'meet')} "
+                f"the demands of the {n} positions; the best has a root-mean-square residual of {share:.3g} % of the "
+                "task size (hundredths of a radian)."
             )
         else:
             reasons = self.listed() or "none"
-            text = f"None of {self.candidates} fitted linkages satisfies all demands (rejected: {reasons})."
+            text = f"None of {counted(self.candidates, 'fitted linkage')} satisfies all demands (rejected: {reasons})."
         return text + " Least squares descends from many starts; a nearer linkage may exist that none of them leads to."
 
 

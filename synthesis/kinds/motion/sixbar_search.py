@@ -24,6 +24,7 @@ from synthesis.kinds.motion.stated_mechanisms import Sixbar
 from synthesis.kinds.motion.stated_positions import MOST_HELD
 from synthesis.kinds.motion.task import MotionTask, motion_task
 from synthesis.kinds.motion.verification import verify
+from synthesis.model.counting import counted
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import LinkageDesign, SixbarMechanism
 from synthesis.model.linkage_statement import Region
@@ -222,10 +223,10 @@ def _within(sides: tuple[float, float, float, float], task: MotionTask) -> Real:
 
 def _summary(sifting: Sifting[LinkageDesign], search: SixbarSearch) -> str:
     looked_at = [
-        f"{count} {what}"
-        for count, what in (
-            (search.branches.descents, "sixbars were taken towards the positions on one branch"),
-            (search.chains.weighed, "sixbars of chains that are constrained by two more cranks were weighed"),
+        counted(count, f"sixbar {which}was {done}", f"sixbars {which}were {done}")
+        for count, which, done in (
+            (search.branches.descents, "", "taken towards the positions on one branch"),
+            (search.chains.weighed, "of chains that are constrained by two more cranks ", "weighed"),
         )
         if count
     ]

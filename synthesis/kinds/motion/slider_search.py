@@ -34,6 +34,7 @@ from synthesis.kinds.motion.sliders import Sliders, sliders
 from synthesis.kinds.motion.stated_dyads import DyadChoices
 from synthesis.kinds.motion.task import Complex, MotionTask, Real, motion_task
 from synthesis.kinds.motion.verification import verify
+from synthesis.model.counting import counted
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import LinkageDesign, LinkageMechanism
 from synthesis.model.linkages import inverted_slider_crank_mechanism, slider_crank_mechanism
@@ -166,8 +167,8 @@ def beside_sliders(
     search = sifting.search(
         f"{result.search.method}, slider_search", complete=result.search.complete and not open_questions
     )
-    noun = "linkage with a slider carries" if accepted == 1 else "linkages with a slider carry"
-    text = f"{result.summary} {accepted or 'No'} {noun} the body through all positions."
+    carrying = counted(accepted, "linkage with a slider carries", "linkages with a slider carry")
+    text = f"{result.summary} {carrying} the body through all positions."
     designs = ranked(designs, problem.rank_by)[: problem.max_designs]
     return result.model_copy(update={"designs": designs, "search": search, "summary": text})
 
@@ -227,7 +228,8 @@ def slider_linkages(
     sifting.reject(OUTRANKED, sound - driven)
     progress(1.0, "verified")
     word = "slider-crank" if kind == "PR" else "inverted slider-crank"
-    text = f"{sifting.accepted} distinct {word}s were driven and verified, of {sifting.candidates} pairs of dyads."
+    distinct = counted(sifting.accepted, f"distinct {word} was", f"distinct {word}s were")
+    text = f"{distinct} driven and verified, of {counted(sifting.candidates, 'pair')} of dyads."
     if not sifting.accepted:
         text = f"No {word} was found that satisfies all demands (rejected: {sifting.listed() or 'none'})."
     return MotionResult(

@@ -33,6 +33,7 @@ from synthesis.kinds.motion.slider_search import beside_sliders, solve_sliders, 
 from synthesis.kinds.motion.steered import solve_steered, steered_on
 from synthesis.kinds.motion.task import MotionTask
 from synthesis.model.answer import Search
+from synthesis.model.counting import agreeing, counted, grouped
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.model.linkage_statement import Constraints
@@ -193,29 +194,30 @@ def _result(pairs: Pairs, designs: list[LinkageDesign], search: Search, summary:
 
 def _summary_of_determined(pairs: Pairs, sifting: Sifting[LinkageDesign]) -> str:
     count, accepted = sifting.candidates, sifting.accepted
-    verb = "carries" if accepted == 1 else "carry"
-    noun = "linkage" if count == 1 else "linkages"
+    verb = agreeing(accepted, "carries", "carry")
+    linkages = counted(count, "linkage")
     if pairs.alike:
         dyads = len(pairs.inputs.fixed)
-        text = f"{dyads} dyad{'s' * (dyads > 1)} with two pins {'make' if dyads > 1 else 'makes'} {count} {noun}"
+        text = f"{counted(dyads, 'dyad')} with two pins {agreeing(dyads, 'makes', 'make')} {linkages}"
         text += f", of which {accepted} {verb} the body through all positions." if count else "."
         if accepted and len(sifting.passed) > accepted:
             text += f" {len(sifting.passed) - accepted} can be driven from either side."
     else:
-        text = f"{accepted} of {count} {noun} with the stated choices {verb} the body through all positions."
+        text = f"{accepted} of {linkages} with the stated choices {verb} the body through all positions."
     return text + sifting.reasons()
 
 
 def _summary_of_search(sifting: Sifting[LinkageDesign], sound: int) -> str:
     if not sifting.passed:
         return (
-            f"None of the {sifting.candidates} pairs of dyads that were tried makes a linkage that satisfies all "
-            f"demands (rejected: {sifting.listed(OUTRANKED)}). A linkage may exist that the search did not meet."
+            f"None of the {grouped(sifting.candidates)} pairs of dyads that were tried makes a linkage that satisfies "
+            f"all demands (rejected: {sifting.listed(OUTRANKED)}). A linkage may exist that the search did not meet."
         )
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
     text = (
-        f"{sound} of {sifting.candidates} pairs of dyads passed the screening; the best {len(sifting.passed)} distinct "
-        f"ones were driven and verified, with a least transmission angle of up to {best:.1f}°."
+        f"{grouped(sound)} of {grouped(sifting.candidates)} pairs of dyads passed the screening; the best "
+        f"{counted(len(sifting.passed), 'distinct one was', 'distinct ones were')} driven and verified, with a least "
+        f"transmission angle of up to {best:.1f}°."
     )
     if best < USABLE_TRANSMISSION_ANGLES[0]:
         text += f" None that was found reaches {USABLE_TRANSMISSION_ANGLES[0]:.0f}°."
@@ -233,7 +235,7 @@ def _remarks(pairs: Pairs) -> list[str]:
             count = len(cloud.sliders)
             kinds = " and ".join(sorted({slider.kind for slider in cloud.sliders}))
             remarks.append(
-                f"{count} more dyad{'s' * (count > 1)} of the {name} {'have' if count > 1 else 'has'} a pivot "
+                f"{counted(count, 'more dyad')} of the {name} {agreeing(count, 'has', 'have')} a pivot "
                 f"at infinity: a slider ({kinds})."
             )
     return list(dict.fromkeys(remarks))

@@ -30,6 +30,7 @@ from synthesis.kinds.motion.steered_fit import (
 from synthesis.kinds.motion.steered_starts import Start, starts
 from synthesis.kinds.motion.task import MotionTask, Real, motion_task
 from synthesis.kinds.motion.verification import verify
+from synthesis.model.counting import agreeing, counted
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, LinkageMechanism
 from synthesis.model.linkages import FourbarConfiguration, body_shift, driven_fourbar, fourbar_mechanism
@@ -126,12 +127,15 @@ def _start_of(problem: MotionProblem, task: MotionTask, rows: Real, design: Link
 def _summary(sifting: Sifting[LinkageDesign], started: int, steered: int, exact: int) -> str:
     if not sifting.passed:
         return (
-            f"None of {started} linkages that were steered into the tolerances and demands satisfies them all "
+            f"None of {counted(started, 'linkage')} that were steered into the tolerances and demands satisfies them "
+            "all "
             f"(rejected: {sifting.listed(OUTRANKED) or 'none'}). A linkage may exist that the search did not meet."
         )
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
     return (
-        f"{steered} linkages that were steered into the tolerances from {started} starts satisfy all demands, and "
-        f"{exact} that meet the positions exactly; the least transmission angle is up to {best:.1f}°. The tolerances "
+        f"{counted(steered, 'linkage that was', 'linkages that were')} steered into the tolerances from "
+        f"{counted(started, 'start')} {agreeing(steered, 'satisfies', 'satisfy')} all demands, and "
+        f"{counted(exact, 'that meets', 'that meet')} the positions exactly; the least transmission angle is up to "
+        f"{best:.1f}°. The tolerances "
         "were searched from poses drawn within them; a better linkage may exist."
     )

@@ -14,6 +14,7 @@ from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem, Sourc
 from synthesis.kinds.parallel_motion.verification import verify_parallel_motion
 from synthesis.kinds.path.solver import solve_path
 from synthesis.mechanisms import GivenFourbar, MechanismError
+from synthesis.model.counting import agreeing, counted, grouped
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.model.linkages import FourbarConfiguration, coupler_point, driven_fourbar, skeleton, to_point
@@ -162,11 +163,12 @@ def _sixbar(joints: FourbarConfiguration) -> ParallelMotionMechanism:
 def _summary(problem: ParallelMotionProblem, sifting: Sifting[ParallelMotionDesign]) -> str:
     if not sifting.passed:
         reasons = sifting.listed() or "no fourbar"
-        return f"None of {sifting.candidates} sixbars carries the body along the curve ({reasons})."
+        return f"None of {counted(sifting.candidates, 'sixbar')} carries the body along the curve ({reasons})."
     best, passed = _ranked(problem.rank_by, sifting.passed)[0].metrics, len(sifting.passed)
     goes = "" if best.full_rotation else ", driven to and fro along a part of the curve"
     return (
-        f"{passed} of {sifting.candidates} sixbars carry the body along the curve without turning it; the first "
+        f"{grouped(passed)} of {counted(sifting.candidates, 'sixbar')} {agreeing(passed, 'carries', 'carry')} the "
+        "body along the curve without turning it; the first "
         f"transmits force at {best.min_transmission_angle:.1f}° at least{goes}, from Q at ({best.translation[0]:.6g}, "
         f"{best.translation[1]:.6g}) of P."
     )

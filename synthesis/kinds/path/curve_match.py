@@ -67,6 +67,7 @@ from synthesis.kinds.path.point_fit import Candidate, PointTask, configuration_o
 from synthesis.kinds.path.problem import PathPoint, PathProblem
 from synthesis.kinds.path.stance_fit import as_fit, fits_in_stance
 from synthesis.kinds.path.verification import verify_path
+from synthesis.model.counting import agreeing, counted, grouped
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_statement import LengthLimits
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
@@ -358,16 +359,16 @@ def _verified(
 
 
 def _summary(problem: PathProblem, sifting: Sifting[PathDesign], sweep: CurveSweep | None) -> str:
-    counts = f"{sifting.accepted} of {sifting.candidates}"
+    satisfy = f"{agreeing(sifting.accepted, 'satisfies', 'satisfy')} all demands"
+    counts = f"{grouped(sifting.accepted)} of {grouped(sifting.candidates)}"
     if sweep is None:
         text = (
-            "Linkages on the given pivots were fitted to points along the curve from many starts; "
-            f"{counts} satisfy all demands."
+            f"Linkages on the given pivots were fitted to points along the curve from many starts; {counts} {satisfy}."
         )
     else:
         text = (
-            f"{sweep.curves} curves of {sweep.linkages} linkages were compared with the target, {sweep.refined} "
-            f"refined; {counts} designs, cognates included, satisfy all demands."
+            f"{grouped(sweep.curves)} curves of {counted(sweep.linkages, 'linkage')} were compared with the target, "
+            f"{grouped(sweep.refined)} refined; {counts} designs, cognates included, {satisfy}."
         )
     if sifting.passed:
         ordered = ranked_by_nearness(sifting.passed, problem)

@@ -32,6 +32,7 @@ from synthesis.kinds.path.limits import setting_of
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.room_starts import bounded
 from synthesis.kinds.path.verification import verify_path
+from synthesis.model.counting import agreeing, counted, grouped
 from synthesis.model.kind import Progress
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.numerics.portions import in_portions
@@ -171,9 +172,10 @@ def _answer(problem: PathProblem, members: list[Member], brought: int, progress:
         sifting.sift((one for one in driven if one.broken > 0.0), verified, problem.max_designs)
     progress(1.0, "verified")
     text = (
-        f"{brought} linkages near a curve through the points were brought to them, {len(ordered)} of them exactly and "
-        f"with the pivots where they are asked for; {sifting.accepted} of {len(driven)} that differ satisfy all "
-        "demands."
+        f"{counted(brought, 'linkage')} near a curve through the points {agreeing(brought, 'was', 'were')} brought to "
+        f"them, {grouped(len(ordered))} of them exactly and with the pivots where they are asked for; "
+        f"{grouped(sifting.accepted)} of {grouped(len(driven))} that differ "
+        f"{agreeing(sifting.accepted, 'satisfies', 'satisfy')} all demands."
     )
     text += sifting.reasons()
     if not sifting.accepted:

@@ -16,6 +16,7 @@ from synthesis.kinds.path.nearness import ERROR_TOLERANCE, FAR, NEARER, error_of
 from synthesis.kinds.path.point_fit import Candidate, descended_from, fitted, mechanism_of, point_task
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification import verify_path
+from synthesis.model.counting import agreeing, counted, grouped
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.outcome.ranking import ranked
@@ -105,18 +106,21 @@ class _Fits(Harvest):
         timing = "at their crank angles" if self.problem.prescribed else "in order"
         if self.passed:
             best = min(self.passed, key=lambda design: error_of(design, self.problem)).metrics
+            passed, of = len(self.passed), counted(self.candidates, "fitted linkage")
             text = (
-                f"{len(self.passed)} of {self.candidates} fitted linkages satisfy all demands; the best passes the {n} "
-                f"points {timing} with a root-mean-square distance of {best.rms_distance:.4g} {unit} and at most "
+                f"{grouped(passed)} of {of} {agreeing(passed, 'satisfies', 'satisfy')} all demands; the best passes "
+                "the "
+                f"{n} points {timing} with a root-mean-square distance of {best.rms_distance:.4g} {unit} and at most "
                 f"{best.max_distance:.4g} {unit} (sum of squares {best.sum_of_squares:.6g} {unit}²)."
             )
             if best.excursion:
                 text += f" Between the points it goes {best.excursion:.4g} {unit} farther than these tell."
             if self.rejected[FAR]:
-                text += f" {self.rejected[FAR]} others are near the points, but far from their course between them."
+                others = counted(self.rejected[FAR], "other is", "others are")
+                text += f" {others} near the points, but far from their course between them."
         else:
             rejected = self.listed() or "none"
-            text = f"None of {self.candidates} fitted linkages satisfies all demands (rejected: {rejected})."
+            text = f"None of {counted(self.candidates, 'fitted linkage')} satisfies all demands (rejected: {rejected})."
         if self.problem.start is not None:
             return text + " Least squares descends from the start that is stated; elsewhere a nearer linkage may exist."
         return text + " Least squares descends from many starts; a nearer linkage may exist that none of them leads to."

@@ -9,6 +9,7 @@ from synthesis.kinds.path.five_point_system import SOLUTIONS
 from synthesis.kinds.path.five_points import five_points
 from synthesis.kinds.path.harvest import Harvest
 from synthesis.kinds.path.problem import PathProblem
+from synthesis.model.counting import agreeing, counted
 from synthesis.model.kind import Progress
 from synthesis.model.linkages import to_complex
 from synthesis.outcome.sifting import reported
@@ -39,8 +40,10 @@ def solve_given_pivots(problem: PathProblem, progress: Progress) -> PathResult:
     progress(1.0, "verified")
     complete = solved.complete and not harvest.unproven
     text = (
-        f"{solved.found} of {SOLUTIONS} solutions on these pivots were computed; {len(solved.linkages)} are real, "
-        f"{on_one_circuit} of these have all points on one circuit, and {len(harvest.passed)} satisfy all demands."
+        f"{solved.found} of {SOLUTIONS} solutions on these pivots were computed; "
+        f"{counted(len(solved.linkages), 'is real', 'are real')}, {on_one_circuit} of these "
+        f"{agreeing(on_one_circuit, 'has', 'have')} all points on one circuit, and "
+        f"{counted(len(harvest.passed), 'satisfies', 'satisfy')} all demands."
     )
     text += harvest.reasons() + harvest.proof(complete=complete)
     result = harvest.result("five_point_continuation", complete=complete, summary=text)

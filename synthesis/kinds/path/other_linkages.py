@@ -34,6 +34,7 @@ from synthesis.kinds.path.nearness import FAR, USABLE, order_of, steady
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.stance_fit import no_stance, simple_in_stance, stance_spec
 from synthesis.kinds.path.verify_traced import verify_traced
+from synthesis.model.counting import agreeing, counted, grouped
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import (
     CouplerPoint,
@@ -387,8 +388,10 @@ def _answer(problem: PathProblem, mechanisms: list[Mechanism], progress: Progres
     if problem.fitted:
         sifting.withdraw(steady(sifting.passed, problem), FAR)
     progress(1.0, "verified")
-    name = problem.mechanism.replace("_", "-" if problem.mechanism == "slider_crank" else " ") + "s"
-    text = f"{sifting.accepted} of {sifting.candidates} {name} that were fitted satisfy all demands."
+    name = problem.mechanism.replace("_", "-" if problem.mechanism == "slider_crank" else " ")
+    fitted = counted(sifting.candidates, f"{name} that was", f"{name}s that were")
+    satisfy = agreeing(sifting.accepted, "satisfies", "satisfy")
+    text = f"{grouped(sifting.accepted)} of {fitted} fitted {satisfy} all demands."
     if sifting.passed and problem.fitted:
         best = in_rank(sifting.passed)[0].metrics
         text += f" The best one's rms distance is {best.rms_distance:.3g} {problem.length_unit}."

@@ -33,6 +33,7 @@ from synthesis.kinds.path.sixbar_mechanism import fitted_sixbar
 from synthesis.kinds.path.sixbar_shapes import FAMILIES, FORMS, alike_sixbars
 from synthesis.kinds.path.stance_fit import stance_of_target
 from synthesis.kinds.path.verify_traced import verify_traced
+from synthesis.model.counting import agreeing, counted, grouped
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import SixbarMechanism
 from synthesis.model.linkages import to_complex
@@ -222,7 +223,9 @@ def _answer(problem: PathProblem, mechanisms: list[SixbarMechanism], progress: P
     if problem.fitted:
         sifting.withdraw(near_the_nearest(steady(sifting.passed, problem), problem), FAR)
     progress(1.0, "verified")
-    text = f"{sifting.accepted} of {sifting.candidates} sixbars that were fitted satisfy all demands."
+    fitted = counted(sifting.candidates, "sixbar that was", "sixbars that were")
+    satisfy = agreeing(sifting.accepted, "satisfies", "satisfy")
+    text = f"{grouped(sifting.accepted)} of {fitted} fitted {satisfy} all demands."
     text += sifting.reasons()
     if not sifting.passed:
         text += " None was found; others may exist."

@@ -37,6 +37,7 @@ from synthesis.kinds.path.stance import told_of_stance
 from synthesis.kinds.path.starts import nine_point_start
 from synthesis.kinds.path.timed import solve_timed
 from synthesis.kinds.path.verify_cognates import with_cognates
+from synthesis.model.counting import agreeing, counted, grouped
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkages import FourbarConfiguration
 from synthesis.numerics.continuation import follow, refine
@@ -122,9 +123,11 @@ def _solve_nine(problem: PathProblem, progress: Progress) -> PathResult:
     )
     method = "nine_point_continuation" if len(given) == NINE else "nine_point_family"
     text = (
-        f"{counts.computed} of {ORBITS * rounds} triples of cognate fourbars were computed; {counts.real} are real, "
-        f"{on_one_circuit} of these have all points on one circuit, and {harvest.accepted} of {harvest.candidates} "
-        f"designs satisfy all demands.{harvest.reasons()}{harvest.proof(complete=complete)}"
+        f"{counts.computed} of {ORBITS * rounds} triples of cognate fourbars were computed; "
+        f"{counted(counts.real, 'is real', 'are real')}, {on_one_circuit} of these "
+        f"{agreeing(on_one_circuit, 'has', 'have')} all points on one circuit, and {grouped(harvest.accepted)} of "
+        f"{counted(harvest.candidates, 'design')} {agreeing(harvest.accepted, 'satisfies', 'satisfy')} all "
+        f"demands.{harvest.reasons()}{harvest.proof(complete=complete)}"
     )
     result = harvest.result(method, complete=complete, summary=text)
     return result.model_copy(update={"triples": counts})

@@ -29,6 +29,7 @@ from synthesis.kinds.path.design import PathResult, TimedDyads
 from synthesis.kinds.path.exact_fit import exact_fits
 from synthesis.kinds.path.harvest import APART, SHORTEST_LINK, Harvest
 from synthesis.kinds.path.problem import PathProblem
+from synthesis.model.counting import agreeing, counted
 from synthesis.model.kind import Progress
 from synthesis.model.linkages import FourbarConfiguration
 
@@ -119,22 +120,24 @@ def _all_of_five(problem: PathProblem, progress: Progress) -> PathResult:
         for o2, a, b, o4 in given[0] + size * solved.joints:
             harvest.drive(FourbarConfiguration(*map(complex, (o2, a, b, o4, given[0]))))
     progress(1.0, "verified")
-    complete = proved and not harvest.unproven
+    complete, passed = proved and not harvest.unproven, len(harvest.passed)
     text = (
-        f"{inputs} input dyads and {fourbars} fourbars pass the five points at their crank angles; "
-        f"{len(harvest.passed)} of them satisfy all demands."
+        f"{counted(inputs, 'input dyad')} and {counted(fourbars, 'fourbar')} pass the five points at their crank "
+        f"angles; {passed} of them {agreeing(passed, 'satisfies', 'satisfy')} all demands."
     )
     text += harvest.reasons()
     if sliders:
-        text += f" {sliders} more dyads have a pivot at infinity: sliders."
+        text += f" {counted(sliders, 'more dyad has', 'more dyads have')} a pivot at infinity: sliders."
     text += harvest.proof(complete=complete)
     result = harvest.result("timed_dyads", complete=complete, summary=text)
     return result.model_copy(update={"timed": TimedDyads(inputs=inputs, fourbars=fourbars, sliders=sliders)})
 
 
 def _summary_of_fewer(problem: PathProblem, harvest: Harvest) -> str:
+    passed = len(harvest.passed)
     text = (
-        f"{len(harvest.passed)} of {harvest.candidates} linkages through the {len(problem.points)} points at their "
-        "crank angles satisfy all demands; the points leave freedom, from which these are drawn."
+        f"{passed} of {counted(harvest.candidates, 'linkage')} through the {len(problem.points)} points at their crank "
+        f"angles {agreeing(passed, 'satisfies', 'satisfy')} all demands; the points leave freedom, from which these "
+        "are drawn."
     )
     return text + harvest.reasons() + harvest.proof(complete=False)

@@ -24,6 +24,7 @@ from synthesis.kinds.planetary_train.nearest import Candidate, Nearest, SetTable
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.kinds.planetary_train.tooth_numbers import ToothNumbers
 from synthesis.kinds.planetary_train.verification import measure, verify
+from synthesis.model.counting import counted, grouped
 from synthesis.model.gear_answer import Ratio
 from synthesis.model.gear_strength import carrying_words, too_weak_words
 from synthesis.model.kind import Progress
@@ -154,19 +155,17 @@ class _Ranking:
     def _summary(self, ties: int) -> str:
         """What the search covered and what is best, in one sentence."""
         problem, sifting = self._problem, self._sifting
-        covered = f"{sifting.candidates:,} combinations of tooth numbers and members covered"
+        covered = f"{counted(sifting.candidates, 'combination')} of tooth numbers and members covered"
         if sifting.passed:
             first = sifting.passed[0]
             exact = "exactly" if first.metrics.error == 0 else f"with an error of {100.0 * first.metrics.error:.4g} %"
-            alike = f"; {ties:,} trains have the least error" if problem.rank_by == "error" and ties > 1 else ""
-            return f"{first.mechanism.arrangement} reaches {problem.ratio} {exact}; {covered}{alike}."
+            alike = f"; {grouped(ties)} trains have the least error" if problem.rank_by == "error" and ties > 1 else ""
+            name = first.mechanism.arrangement.replace("_", " ")
+            return f"The {name} arrangement reaches {problem.ratio} {exact}; {covered}{alike}."
         if self._idle and not sifting.candidates:
             return "With these members a planet set takes no part in the ratio; state a simpler arrangement."
         if not self._sound:
-            reasons = ", ".join(
-                f"{reason.replace('_', ' ')} {count:,}" for reason, count in sifting.rejected.most_common()
-            )
-            return f"No train fits within the limits: {covered} ({reasons or 'the limits leave none'})."
+            return f"No train fits within the limits: {covered} ({sifting.listed() or 'the limits leave none'})."
         if not self._best:
             direction = "the same" if problem.target > 0 else "the opposite"
             return f"No train turns input and output in {direction} direction with these members; {covered}."

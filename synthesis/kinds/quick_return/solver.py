@@ -15,6 +15,7 @@ from synthesis.kinds.quick_return import crank_rocker, drag_link, offset_slider,
 from synthesis.kinds.quick_return.design import QuickReturnDesign, QuickReturnMechanisms, QuickReturnResult, RatioRange
 from synthesis.kinds.quick_return.problem import QuickReturnProblem
 from synthesis.kinds.quick_return.verification import verify_quick_return
+from synthesis.model.counting import agreeing, counted
 from synthesis.model.kind import Progress
 from synthesis.outcome.placement import put
 from synthesis.outcome.ranking import ranked
@@ -122,7 +123,8 @@ def _summary(
         count = len(sifting.passed)
         lines.insert(
             0,
-            f"{count} design{'s have' if count > 1 else ' has'} a measured time ratio of {problem.time_ratio:g}; the "
+            f"{counted(count, 'design')} {agreeing(count, 'has', 'have')} a measured time ratio of "
+            f"{problem.time_ratio:g}; the "
             f"best transmission angle is {best.metrics.min_transmission_angle:.3f}°, of a "
             f"{_words(best.mechanism.type)}.",
         )

@@ -9,6 +9,7 @@ from synthesis.kinds.steering.davis import davis_gears
 from synthesis.kinds.steering.design import SteeringDesign, SteeringMechanisms, SteeringResult
 from synthesis.kinds.steering.problem import SteeringProblem
 from synthesis.kinds.steering.verification import verify_steering
+from synthesis.model.counting import counted
 from synthesis.model.kind import Progress
 from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import Sifting
@@ -59,7 +60,9 @@ def _summary(sifting: Sifting[SteeringDesign], *, complete: bool) -> str:
     fourbars = [design.metrics.steering_error for design in passed if design.mechanism.type == "fourbar"]
     text = []
     if fourbars:
-        text.append(f"The best of {len(fourbars)} Ackermann linkages has a steering error of {min(fourbars):.4f}°.")
+        text.append(
+            f"The best of {counted(len(fourbars), 'Ackermann linkage')} has a steering error of {min(fourbars):.4f}°."
+        )
     if any(design.mechanism.type == "davis" for design in passed):
         text.append("Davis's gear steers correctly at every angle.")
     if not passed:

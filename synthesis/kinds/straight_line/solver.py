@@ -25,6 +25,7 @@ from synthesis.kinds.straight_line.families import (
 )
 from synthesis.kinds.straight_line.problem import LineMechanism, StraightLineProblem
 from synthesis.kinds.straight_line.verification import verify_straight_line
+from synthesis.model.counting import counted
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism, skeleton, slide, to_point
@@ -271,8 +272,10 @@ def _summary(problem: StraightLineProblem, sifting: Sifting[StraightLineDesign])
             "not proven."
         )
     best = _ranked(problem, sifting.passed)[0].metrics
+    exact = best.straightness_error <= ROUNDING
+    kept = "to the line exactly" if exact else f"within {best.straightness_error:.3g} % of the length across the line"
+    name = best.family.replace("_", "-").title()
     return (
-        f"{len(sifting.passed)} straight-line mechanisms; the first, {best.family.replace('_', '-')}, keeps within "
-        f"{best.straightness_error:.3g} % of the length across the line, with a velocity that varies by "
-        f"{best.velocity_variation:.3g} %."
+        f"{counted(len(sifting.passed), 'straight-line mechanism')}; the first, {name}'s, keeps {kept}, "
+        f"with a velocity that varies by {best.velocity_variation:.3g} %."
     )

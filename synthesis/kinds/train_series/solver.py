@@ -21,6 +21,7 @@ from synthesis.kinds.train_series.problem import TrainSeriesProblem
 from synthesis.kinds.train_series.search import Found, Search, Series
 from synthesis.kinds.train_series.stated_units import problem_of
 from synthesis.kinds.train_series.verification import verify
+from synthesis.model.counting import counted
 from synthesis.model.gear_answer import Ratio
 from synthesis.model.kind import Progress
 from synthesis.outcome.sifting import Sifting
@@ -133,17 +134,17 @@ def _summary(
     accepted: list[TrainSeriesDesign],
 ) -> str:
     """One or two sentences: what was found, or why there is nothing."""
-    covered = f"{search.combinations:,} series covered".replace(",", " ")
+    covered = f"{counted(search.combinations, 'series', 'series')} covered"
     if accepted:
         first = accepted[0]
         parts = " × ".join(f"{unit.ratio.value:.6g}" for unit in first.mechanism.units).replace("-", "−")
         ratio = first.mechanism.ratio.value
         exact = (
-            f"is exactly {problem.ratio}"
+            f"is exactly {problem.ratio:g}"
             if first.metrics.error == 0.0
-            else f"is {ratio:.8g} instead of {problem.ratio}, an error of {100.0 * first.metrics.error:.4g} %"
+            else f"is {ratio:.8g} instead of {problem.ratio:g}, an error of {100.0 * first.metrics.error:.4g} %"
         ).replace("-", "−")
-        alike = f"; {found.ties:,} series have the least error" if found.ties > 1 else ""
+        alike = f"; {counted(found.ties, 'series', 'series')} have the least error" if found.ties > 1 else ""
         return f"{parts} {exact}; {covered}{alike}."
     for k, catalogue in enumerate(catalogues, 1):
         if not len(catalogue.value):
