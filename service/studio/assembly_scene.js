@@ -269,9 +269,9 @@ export class AssemblyScene {
     this.dirty = true;
   }
 
-  /** @param {string} item @param {boolean} visible */
-  hide(item, visible) {
-    for (const solid of this.solids) if (solid.item === item) solid.group.visible = visible;
+  /** @param {string} name of a part @param {boolean} visible */
+  hide(name, visible) {
+    for (const { group } of this.solids) if (group.name === name) group.visible = visible;
     this.dirty = true;
   }
 
@@ -281,15 +281,16 @@ export class AssemblyScene {
     this.marked();
   }
 
-  /** @param {string | null} item */
-  hover(item) {
-    this.hovered = item;
+  /** @param {string | null} which of the kinds of parts, or which part */
+  hover(which) {
+    this.hovered = which;
     this.marked();
   }
 
   marked() {
-    for (const { item, mesh } of this.solids) {
-      const light = item === this.chosen ? 0.5 : item === this.hovered ? 0.25 : 0;
+    for (const { item, group, mesh } of this.solids) {
+      const pointed = this.hovered === item || this.hovered === group.name;
+      const light = item === this.chosen ? 0.5 : pointed ? 0.25 : 0;
       if (this.accent) mesh.material.emissive.copy(this.accent);
       mesh.material.emissiveIntensity = light;
     }

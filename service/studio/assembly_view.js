@@ -24,6 +24,8 @@ import { symbolOf } from "./units.js";
  *   drawing
  */
 
+/** @typedef {{all: HTMLInputElement, names: string[], each: Map<string, HTMLInputElement>}} Shows `each` by `names` */
+
 /** Inputs that are asked for. */
 const POSITIONS = 144;
 
@@ -52,19 +54,21 @@ export class AssemblyView {
     this.scene = null;
     /** What is in the picture, if it can be. @type {typeof import("./assembly_scene.js") | null} */
     this.drawing = null;
-    /** @type {Set<string>} */
+    /** Names of parts. @type {Set<string>} */
     this.hidden = new Set();
     /** @type {string | null} */
     this.chosen = null;
     this.explosion = 0;
     this.frame = 0;
+    /** The speed of a gearbox that the parts are made for, from 1. @type {number | null} */
+    this.engaged = null;
     /** The place of the drawing's motion that is shown. @type {number} */
     this.seen = NaN;
     this.list = el("div");
     this.fileFault = el("p", { class: "error", role: "alert" });
     this.beyond = el("p", { class: "note", hidden: true });
-    /** By kind of part. @type {Map<string, HTMLInputElement>} */
-    this.boxes = new Map();
+    /** Of each kind of part: what shows all of it, and what shows each. @type {Shows[]} */
+    this.shows = [];
     this.words = el("p", { class: "note", role: "status" });
     this.fault = el("div", { class: "fault", role: "alert" });
     this.body = el("div", { class: "assembly", hidden: true });
@@ -110,7 +114,6 @@ export class AssemblyView {
           ...Object.entries(PROCESSES).map(([value, title]) => el("option", { value }, title)),
         ),
       ),
-      ...this.speeds().map((pick) => field("speed", t`Engaged`, pick)),
       field("pin", t`Pin (${unit})`, number(t`what fits`)),
       field("width", t`Width (${unit})`, number(t`2.5 pins`)),
       field("scale", t`Scale`, number("1")),
@@ -120,28 +123,32 @@ export class AssemblyView {
     return form;
   }
 
-  /** Of a gearbox: what chooses among its speeds. */
-  speeds() {
+  /** Of a gearbox: the number of the speed that is engaged in the drawing, from 1. @returns {number | null} */
+  speed() {
     const { mechanism, metrics } = this.job.result.designs[this.n];
-    if (mechanism.type !== "gearbox") return [];
+    if (mechanism.type !== "gearbox") return null;
     const speeds = /** @type {Schemas["SpindleSpeed"][]} */ (metrics.speeds);
-    const named = speeds.map(({ speed }, k) =>
-      el("option", { value: k + 1 }, t`${shown(Number(speed.toPrecision(4)))} rev/min`),
+    const engaged = String(this.moving()?.motion?.engaged);
+    return (
+      1 +
+      Math.max(
+        0,
+        speeds.findIndex((one) => String(one.engaged) === engaged),
+      )
     );
-    return [el("select", { onchange: () => this.load() }, ...named)];
   }
 
   /** The fields that are filled in. @returns {Record<string, string>} */
   stated() {
     const boxes = /** @type {HTMLInputElement[]} */ ([...this.form.querySelectorAll("[name]")]);
-    return Object.fromEntries(
-      boxes.filter(({ value }) => value.trim() !== "").map(({ name, value }) => [name, value.trim()]),
-    );
+    const filled = boxes.filter(({ value }) => value.trim() !== "").map(({ name, value }) => [name, value.trim()]);
+    return Object.fromEntries(this.engaged === null ? filled : [...filled, ["speed", String(this.engaged)]]);
   }
 
   async load() {
     this.asked?.abort();
     const asked = (this.asked = new AbortController());
+    this.engaged = this.speed();
     this.words.textContent = t`The parts are being made …`;
     this.body.setAttribute("aria-busy", "true");
     this.clear();
@@ -211,7 +218,8 @@ export class AssemblyView {
     this.scene = null;
     this.assembly = assembly;
     const kinds = new Set(assembly.parts.map(({ item }) => item));
-    this.hidden = new Set([...this.hidden].filter((item) => kinds.has(item)));
+    const names = new Set(assembly.parts.map(({ name }) => name));
+    this.hidden = new Set([...this.hidden].filter((name) => names.has(name)));
     this.chosen = null;
     this.words.textContent =
       [
@@ -259,7 +267,7 @@ export class AssemblyView {
       hover: (item) => this.hover(item),
       choose: (item) => this.choose(item),
     });
-    for (const item of this.hidden) this.scene.hide(item, false);
+    for (const name of this.hidden) this.scene.hide(name, false);
     this.scene.explode(this.explosion);
     this.scene.fit(false);
     this.seen = NaN;
@@ -330,30 +338,24 @@ export class AssemblyView {
     const kinds = new Map();
     for (const part of assembly.parts) kinds.set(part.item, [...(kinds.get(part.item) ?? []), part]);
     this.fileFault.replaceChildren();
-    this.boxes.clear();
+    this.shows = [];
+    const every = assembly.parts.map(({ name }) => name);
     const all = el(
       "div",
       { class: "row" },
-      el("button", { type: "button", class: "small", onclick: () => this.shown([...kinds.keys()], true) }, t`Show all`),
-      el(
-        "button",
-        { type: "button", class: "small", onclick: () => this.shown([...kinds.keys()], false) },
-        t`Hide all`,
-      ),
+      el("button", { type: "button", class: "small", onclick: () => this.show(every, true) }, t`Show all`),
+      el("button", { type: "button", class: "small", onclick: () => this.show(every, false) }, t`Hide all`),
       this.file(t`All files`, t`All files as a zip`, `${this.job.kind}-${this.n + 1}-parts.zip`, () =>
         api.parts(this.job.id, this.n, query),
       ),
     );
-    const rows = [...kinds].map(([item, [part, ...others]]) => {
+    const rows = [...kinds].map(([item, equals]) => {
+      const [part, ...others] = equals;
       const called = others.length ? term(item) : translated(part.described);
-      const box = el("input", {
-        type: "checkbox",
-        id: `show-${item}`,
-        "aria-label": t`Show ${called}`,
-        onchange: () => this.shown([item], box.checked),
-      });
-      box.checked = !this.hidden.has(item);
-      this.boxes.set(item, box);
+      const names = equals.map(({ name }) => name);
+      const box = this.box(`show-${item}`, called, names);
+      const each = this.places(equals);
+      this.shows.push({ all: box, names, each: each.boxes });
       const swatch = el("span", { class: "swatch", "aria-hidden": "true" });
       swatch.style.backgroundColor = part.colour;
       return el(
@@ -386,8 +388,10 @@ export class AssemblyView {
             ),
           ),
         ),
+        each.node,
       );
     });
+    this.told();
     return el(
       "div",
       { class: "parts" },
@@ -426,14 +430,63 @@ export class AssemblyView {
     return button;
   }
 
-  /** @param {string[]} items @param {boolean} visible */
-  shown(items, visible) {
-    for (const item of items) {
-      if (visible) this.hidden.delete(item);
-      else this.hidden.add(item);
-      const box = this.boxes.get(item);
-      if (box) box.checked = visible;
-      this.scene?.hide(item, visible);
+  /** What shows or hides parts. @param {string} id @param {string} called @param {string[]} names */
+  box(id, called, names) {
+    const box = el("input", {
+      type: "checkbox",
+      id,
+      "aria-label": t`Show ${called}`,
+      onchange: () => this.show(names, box.checked),
+    });
+    return box;
+  }
+
+  /**
+   * Of equal parts each at its place, behind a summary; one alone is shown by its row.
+   * @param {Part[]} equals
+   * @returns {{node: HTMLElement | null, boxes: Map<string, HTMLInputElement>}}
+   */
+  places(equals) {
+    if (equals.length === 1) return { node: null, boxes: new Map() };
+    /** @type {Map<string, number>} */
+    const met = new Map();
+    const rows = equals.map(({ name, described }) => {
+      const nth = (met.get(described) ?? 0) + 1;
+      met.set(described, nth);
+      const alike = equals.filter((one) => one.described === described).length > 1;
+      const called = `${translated(described)}${alike ? ` ${nth}` : ""}`;
+      const box = this.box(`show-place-${name}`, called, [name]);
+      const node = el(
+        "label",
+        { for: box.id, onpointerenter: () => this.scene?.hover(name), onpointerleave: () => this.scene?.hover(null) },
+        box,
+        called,
+      );
+      return { name, box, node };
+    });
+    return {
+      node: el("details", { class: "places" }, el("summary", {}, t`One by one`), ...rows.map(({ node }) => node)),
+      boxes: new Map(rows.map(({ name, box }) => [name, box])),
+    };
+  }
+
+  /** @param {string[]} names @param {boolean} visible */
+  show(names, visible) {
+    for (const name of names) {
+      if (visible) this.hidden.delete(name);
+      else this.hidden.add(name);
+      this.scene?.hide(name, visible);
+    }
+    this.told();
+  }
+
+  /** The list says what is shown: of a kind all, some or none. */
+  told() {
+    for (const { all, names, each } of this.shows) {
+      for (const [name, box] of each) box.checked = !this.hidden.has(name);
+      const shown = names.filter((name) => !this.hidden.has(name)).length;
+      all.checked = shown === names.length;
+      all.indeterminate = shown > 0 && shown < names.length;
     }
   }
 
@@ -463,9 +516,9 @@ export class AssemblyView {
 
   /** Go where the drawing is. */
   follow() {
-    if (!this.scene || !this.assembly) return;
     const led = this.led();
-    if (!led) return;
+    if (led && this.speed() !== this.engaged) this.load();
+    if (!led || !this.scene || !this.assembly) return;
     const { player, motion } = led;
     if (player.at === this.seen) return;
     this.seen = player.at;

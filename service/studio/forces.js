@@ -3,6 +3,7 @@
 import * as api from "./api.js";
 import { el, shown, words } from "./dom.js";
 import { ForceArrows, forcesIn } from "./force_arrows.js";
+import { cleared } from "./force_scales.js";
 import { Hodograph } from "./hodograph.js";
 import { LoadEditor } from "./load_editor.js";
 import { foreign, t, term, translated } from "./messages.js";
@@ -91,7 +92,7 @@ export class Forces {
   async ask(block) {
     const answer = await api.forces(this.job.id, this.n, STEPS, block, this.gone.signal);
     if (this.gone.signal.aborted) return;
-    this.answer = answer;
+    this.answer = cleared(/** @type {Forces["known"]} */ (answer), this.skeleton, this.sliding);
     this.build();
     this.put();
   }

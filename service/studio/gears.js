@@ -31,15 +31,8 @@ export class Gears extends Turning {
     this.drawings = [];
     /** @type {{wheel: import("./wheels.js").Wheel, line: SVGLineElement}[]} */
     this.arms = [];
-    this.fill(this.build(), [
-      this.engaging(),
-      this.facts,
-      el(
-        "p",
-        { class: "note" },
-        t`Circles are pitch circles. Each gear turns as fast as the analysis says, one turn of the input in four seconds at speed 1.`,
-      ),
-    ]);
+    const note = t`Circles are pitch circles. Each gear turns as fast as the analysis says, one turn of the input in four seconds at speed 1.`;
+    this.fill(this.build(), [this.facts, el("p", { class: "note" }, note)], [], [this.engaging()]);
   }
 
   /** Draw the gears of the motion as it is, and tell their speeds. */
@@ -90,7 +83,7 @@ export class Gears extends Turning {
     ]);
   }
 
-  /** Of a gearbox: which gear is engaged. */
+  /** Of a gearbox: which gear is engaged, in the drawing and in the assembly beside it. */
   engaging() {
     const { mechanism } = this.design;
     const { speeds } = this.motion;
@@ -110,7 +103,7 @@ export class Gears extends Turning {
       ),
     );
     pick.value = String(speeds.findIndex((one) => String(one.engaged) === String(this.motion.engaged)));
-    return el("div", { class: "row" }, el("label", { for: "engaged" }, t`Engaged`), pick);
+    return el("div", { class: "row engaging" }, el("label", { for: "engaged" }, t`Engaged`), pick);
   }
 
   /** @param {number[]} engaged */

@@ -18,6 +18,9 @@ import { unitOf } from "./units.js";
 /** Columns that stay at least where others are folded away. */
 const FEWEST = 2;
 
+/** Columns that rows have in one line, where nothing of them is chosen. */
+const ONE_LINE = 3;
+
 /** Tables of which all columns have been asked for. @type {Set<string>} */
 const wide = new Set();
 
@@ -38,7 +41,9 @@ export function table(sheet, item, path, controls, count) {
   const seldom = heads.filter((head) => !head.required && rows.every((row) => empty(row[head.name])));
   // One column alone says too little of a row.
   const folded = heads.length - seldom.length >= FEWEST ? seldom : [];
-  const kept = (/** @type {{name: string}} */ head) => (folded.some((one) => one.name === head.name) ? "seldom" : null);
+  const chosen = (/** @type {{kinded: {control: string}}} */ head) => head.kinded.control === "choice";
+  const kept = (/** @type {(typeof heads)[number]} */ head) =>
+    [folded.some((one) => one.name === head.name) && "seldom", chosen(head) && "choice-of"].filter(Boolean).join(" ");
   const line = (/** @type {Row} */ row, /** @type {number} */ k) => [
     el(
       "tr",
@@ -79,9 +84,19 @@ export function table(sheet, item, path, controls, count) {
     sheet.put(path, pasted, true);
   };
   const columned = `${sheet.problem.kind}${path}`;
+  const lined = (/** @type {number} */ seen) => heads.some(chosen) || seen > ONE_LINE;
   const view = el(
     "div",
-    { class: folded.length && !wide.has(columned) ? "table brief" : "table", onpaste },
+    {
+      class: [
+        "table",
+        folded.length && !wide.has(columned) && "brief",
+        lined(heads.length - (wide.has(columned) ? 0 : folded.length)) && "lined",
+      ]
+        .filter(Boolean)
+        .join(" "),
+      onpaste,
+    },
     el(
       "table",
       {},
@@ -131,6 +146,7 @@ export function table(sheet, item, path, controls, count) {
             onclick: () => {
               wide.add(columned);
               view.classList.remove("brief");
+              view.classList.toggle("lined", lined(heads.length));
               const first = `${path}/0/${folded[0].name}`;
               /** @type {HTMLElement | null} */ (view.querySelector(`[data-path="${CSS.escape(first)}"]`))?.focus();
             },

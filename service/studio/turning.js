@@ -38,13 +38,15 @@ export class Turning {
    * @param {SVGSVGElement} picture
    * @param {(Node | null | false | undefined)[]} beside
    * @param {import("./plots.js").Plotted[]} [plotted] over the angles
+   * @param {(Node | null)[]} [below] on the stage, beneath the picture
    */
-  fill(picture, beside, plotted = []) {
+  fill(picture, beside, plotted = [], below = []) {
     this.picture = picture;
     this.marks = plots(plotted, this.angles, (at) => this.player.lead(at));
     this.frame.fill({
       picture,
       clock: this.player.row,
+      below,
       beside,
       plots: [
         this.marks.length > 0

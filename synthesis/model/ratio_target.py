@@ -254,3 +254,12 @@ def _e(bits: int) -> tuple[int, int]:
         k += 1
         term //= k
     return (total >> guard) - 1, (total >> guard) + 2
+
+
+def as_stated(ratio: str | float) -> str:
+    """A ratio for a sentence: an expression as it was written, a number without zeros that say nothing.
+
+    >>> as_stated("sqrt(2)"), as_stated(25.0), as_stated(332.96886)
+    ('sqrt(2)', '25', '332.96886')
+    """
+    return ratio if isinstance(ratio, str) else f"{ratio:.12g}"

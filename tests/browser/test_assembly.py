@@ -122,7 +122,19 @@ def test_parts_are_hidden_chosen_and_led_by_keys(open_studio):
     assert coloured(picture(page)) == 0
     page.locator(PLACES).get_by_role("button", name="Show all").click()
     assert not differs(picture(page), whole)
-    assert page.locator("#assembly .parts input:checked").count() == kinds
+    assert page.locator("#assembly .parts li > input:checked").count() == kinds
+
+    # Of equal parts each is hidden at its own place.
+    rings = page.locator('#assembly li[data-item="ring"]')
+    rings.locator("summary").click()
+    places = rings.locator(".places input")
+    places.first.uncheck()
+    assert differs(picture(page), whole)
+    assert places.evaluate_all("all => all.filter(one => one.checked).length") == places.count() - 1
+    assert rings.locator("> input").evaluate("one => one.indeterminate && !one.checked")
+    rings.locator("> input").check()
+    page.mouse.move(0, 0)
+    assert not differs(picture(page), whole)
 
     # Links have their colours of the stage: a click on one chooses it in the list, and the picture shows the choice.
     box = page.locator(CANVAS).bounding_box()
@@ -206,6 +218,9 @@ def test_a_gearbox_is_shown_in_the_speed_that_is_chosen(open_studio):
     notes = page.locator(".solids .note")
     assert notes.filter(has_text="Speed 1 of 3 is shown").count() == 1
     first = picture(page)
-    page.select_option("#assembly-speed", "3")
+    # What is engaged in the drawing is engaged in the assembly, too.
+    slowest = page.inner_text("#beside .speeds")
+    page.select_option("#engaged", "2")
     notes.filter(has_text="Speed 3 of 3 is shown").wait_for(timeout=120_000)
     assert differs(first, picture(page))
+    assert page.inner_text("#beside .speeds") != slowest

@@ -28,6 +28,7 @@ from synthesis.model.counting import counted, grouped
 from synthesis.model.gear_answer import Ratio
 from synthesis.model.gear_strength import carrying_words, too_weak_words
 from synthesis.model.kind import Progress
+from synthesis.model.ratio_target import as_stated
 from synthesis.outcome.exhaustive import first_within, pareto
 from synthesis.outcome.sifting import Sifting
 
@@ -161,7 +162,7 @@ class _Ranking:
             exact = "exactly" if first.metrics.error == 0 else f"with an error of {100.0 * first.metrics.error:.4g} %"
             alike = f"; {grouped(ties)} trains have the least error" if problem.rank_by == "error" and ties > 1 else ""
             name = first.mechanism.arrangement.replace("_", " ")
-            return f"The {name} arrangement reaches {problem.ratio} {exact}; {covered}{alike}."
+            return f"The {name} arrangement reaches {as_stated(problem.ratio)} {exact}; {covered}{alike}."
         if self._idle and not sifting.candidates:
             return "With these members a planet set takes no part in the ratio; state a simpler arrangement."
         if not self._sound:

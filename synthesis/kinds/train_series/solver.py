@@ -24,6 +24,7 @@ from synthesis.kinds.train_series.verification import verify
 from synthesis.model.counting import counted
 from synthesis.model.gear_answer import Ratio
 from synthesis.model.kind import Progress
+from synthesis.model.ratio_target import as_stated
 from synthesis.outcome.sifting import Sifting
 
 MOST_TRIED = 1000
@@ -140,9 +141,10 @@ def _summary(
         parts = " × ".join(f"{unit.ratio.value:.6g}" for unit in first.mechanism.units).replace("-", "−")
         ratio = first.mechanism.ratio.value
         exact = (
-            f"is exactly {problem.ratio:g}"
+            f"is exactly {as_stated(problem.ratio)}"
             if first.metrics.error == 0.0
-            else f"is {ratio:.8g} instead of {problem.ratio:g}, an error of {100.0 * first.metrics.error:.4g} %"
+            else f"is {ratio:.8g} instead of {as_stated(problem.ratio)}, "
+            f"an error of {100.0 * first.metrics.error:.4g} %"
         ).replace("-", "−")
         alike = f"; {counted(found.ties, 'series', 'series')} have the least error" if found.ties > 1 else ""
         return f"{parts} {exact}; {covered}{alike}."
