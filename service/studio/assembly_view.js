@@ -454,7 +454,7 @@ export class AssemblyView {
       const nth = (met.get(described) ?? 0) + 1;
       met.set(described, nth);
       const alike = equals.filter((one) => one.described === described).length > 1;
-      const called = `${translated(described)}${alike ? ` ${nth}` : ""}`;
+      const called = `${translated(described)}${alike ? ` (${nth})` : ""}`;
       const box = this.box(`show-place-${name}`, called, [name]);
       const node = el(
         "label",

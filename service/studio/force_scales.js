@@ -67,7 +67,9 @@ export function cleared(answer, skeleton, sliding) {
       extremes: {
         ...extremes,
         drive: {
-          ...drive,
+          // Nothing is greatest nowhere.
+          at: idle ? null : drive.at,
+          at_min: idle ? null : drive.at_min,
           max: driving.one(drive.max),
           min: driving.one(drive.min),
           mean: driving.one(drive.mean),

@@ -110,6 +110,10 @@ def test_stage_and_player_and_progress_are_in_view_from_solve_to_the_end(open_st
       return [whole.scrollWidth - innerWidth, whole.scrollHeight - innerHeight];
     }""")
     assert max(away) <= 0, away
+    wide = page.locator("#statement .table").evaluate_all(
+        "all => all.filter(one => one.scrollWidth > one.clientWidth + 1).map(one => one.textContent)"
+    )
+    assert wide == [], "what is stated lies within its panel"
     # The drawing lies on the stage, and fills a fair part of it.
     drawn = page.evaluate("""() => {
       const boxes = [...document.querySelectorAll(
@@ -229,6 +233,15 @@ def test_what_moves_fills_the_stage_of_another_window(own_studio):
     assert coil["x"] >= bar["x"] - 6
     page.click("#tab-numbers")
     assert "N/m" in page.inner_text("#numbers")
+    # What is left of a drive that is balanced exactly is rounding, and nothing; the pin bears the arm all the same.
+    page.click("#tab-plots")
+    peaks = dict(
+        page.locator(".peaks tbody tr").evaluate_all(
+            "all => all.map(one => [one.cells[0].textContent, one.cells[1].textContent])"
+        )
+    )
+    assert peaks["Drive torque, greatest"] == peaks["Drive torque, least"] == "0 N·m"
+    assert peaks["Pin force O"] == "81.005 N"
 
 
 def test_the_task_folds_away_where_there_is_little_room(own_studio):
