@@ -20,8 +20,8 @@ import { symbolOf } from "./units.js";
  *   import("./assembly_motion.js").Inputs, carriers: import("./assembly_motion.js").Carrier[], parts: Part[]}} Assembly
  */
 /**
- * @typedef {{player: import("./player.js").Player, motion: {input_angle: (number | null)[]}}} Led what moves in the
- *   drawing
+ * What moves in the drawing.
+ * @typedef {{player: import("./player.js").Player, motion: {input_angle: (number | null)[], engaged?: number[]}}} Led
  */
 
 /** @typedef {{all: HTMLInputElement, names: string[], each: Map<string, HTMLInputElement>}} Shows `each` by `names` */
