@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from synthesis.kinds.path.nine_point_system import (
     GROUPS,
@@ -32,6 +31,7 @@ from synthesis.kinds.path.nine_point_system import (
 )
 from synthesis.kinds.path.starts import nine_point_start
 from synthesis.numerics.continuation import CONVERGED, REACHED, follow, refine
+from synthesis.numerics.known import Known
 
 Complex = NDArray[np.complex128]
 Mask = NDArray[np.bool_]
@@ -177,62 +177,56 @@ class _Orbits:
     def __init__(self, p: Complex) -> None:
         self.p = p
         self.y, self.low = np.empty((2, 0, 16), np.complex128)
-        self._keys = np.empty((0, 3), np.complex128)
+        self._known = Known(3, SAME_ORBIT)
+        self._on_way = Known(3, SAME_ORBIT)
 
     @property
     def missing(self) -> int:
         return ORBITS - len(self.y)
 
+    def begin_way(self) -> None:
+        """From now on ends are those of another way."""
+        self._on_way = Known(3, SAME_ORBIT)
+
     def add(self, y: Complex, low: Complex) -> Mask:
-        """Add those solutions that are sound; tells which of them were new."""
+        """Add those ends of a way that are sound; tells which are, of several of one orbit the first."""
+        sound = self._sound(y, low)
+        sound[sound] = self._on_way.add(orbit_keys(y[sound], self.p, low[sound]))
+        self._join(y[sound], low[sound])
+        return sound
+
+    def _sound(self, y: Complex, low: Complex) -> Mask:
         keys = orbit_keys(y, self.p, low)
-        new = np.isfinite(keys).all(axis=-1) & is_linkage(y) & (residuals(y, self.p, low) <= RESIDUAL)
-        new[new] = ~self._known(keys[new])
-        first = np.flatnonzero(new)
-        same = _same(keys[first])
-        # Of several paths with one end the first counts.
-        new[first] = ~np.tril(same, -1).any(axis=-1)
+        return np.asarray(np.isfinite(keys).all(axis=-1) & is_linkage(y) & (residuals(y, self.p, low) <= RESIDUAL))
+
+    def _join(self, y: Complex, low: Complex) -> None:
+        new = self._known.add(orbit_keys(y, self.p, low))
         self.y, self.low = np.concatenate([self.y, y[new]]), np.concatenate([self.low, low[new]])
-        self._keys = np.concatenate([self._keys, keys[new]])
-        return np.asarray(new)
 
     def holds(self, y: Complex) -> bool:
         """Whether all these solutions are known."""
-        return bool(self._known(orbit_keys(y, self.p)).all())
+        return bool(self._known.holds(orbit_keys(y, self.p)).all())
 
     def add_conjugates(self) -> None:
         """Add the conjugate of every orbit where it is missing."""
         mirrored = conjugate(self.y)
-        alone = ~self._known(orbit_keys(mirrored, self.p))
+        alone = ~self._known.holds(orbit_keys(mirrored, self.p))
         if alone.any():
             low = np.concatenate([_mirrored(self.low[alone]), np.zeros((np.count_nonzero(alone), 8))], axis=-1)
             y, low, moved = refine(nine_point_system_extended, GROUPS, SCRATCH, mirrored[alone], low, self.p)
-            self.add(y[moved < CONVERGED], low[moved < CONVERGED])
-
-    def _known(self, keys: Complex) -> Mask:
-        if not len(self._keys) or not len(keys):
-            return np.zeros(len(keys), np.bool_)
-        radius = SAME_ORBIT * np.abs(keys).max(axis=-1)
-        near = cKDTree(self._keys.view(np.float64)).query_ball_point(
-            np.ascontiguousarray(keys).view(np.float64), radius, p=np.inf, return_length=True
-        )
-        return np.asarray(near > 0)
-
-
-def _same(keys: Complex) -> Mask:
-    """Which keys of some are which others of them, shape (keys, keys)."""
-    gaps = np.abs(keys[:, None] - keys[None]).max(axis=-1)
-    return np.asarray(gaps <= SAME_ORBIT * np.abs(keys).max(axis=-1, initial=0.0)[:, None])
+            kept = (moved < CONVERGED) & self._sound(y, low)
+            self._join(y[kept], low[kept])
 
 
 def _run(orbits: _Orbits, bend: Complex, threads: int, progress: Callable[[float], None]) -> int:
     """Follow all orbits along one way and add what they reach; returns how many had to be followed again."""
     begun = nine_point_start()
+    orbits.begin_way()
     lost: list[int] = []
     for first in range(0, ORBITS, PORTION):
         some = np.arange(first, min(first + PORTION, ORBITS))
-        new = _follow(orbits, nine_point_system, begun.y[some], begun.p, bend, FIRST_TOLERANCE, threads)
-        lost += [int(n) for n in some[~new]]
+        sound = _follow(orbits, nine_point_system, begun.y[some], begun.p, bend, FIRST_TOLERANCE, threads)
+        lost += [int(n) for n in some[~sound]]
         progress(0.8 * (first + len(some)) / ORBITS)
         if len(lost) > 0.5 * PORTION + SPECIAL * ORBITS:
             return len(lost)
@@ -251,15 +245,15 @@ def _run(orbits: _Orbits, bend: Complex, threads: int, progress: Callable[[float
 def _follow(
     orbits: _Orbits, system: Any, y: Complex, begun: Complex, bend: Complex, tolerance: float, threads: int
 ) -> Mask:
-    """Follow solutions of the start to the problem; tells which of them came to an orbit that was not known."""
+    """Follow solutions of the start to the problem; tells which of them have a sound end of their own."""
     ends = follow(
         system, GROUPS, SCRATCH, y, begun, orbits.p, bend, tolerance=tolerance, most_steps=STEPS, threads=threads
     )
-    new = np.asarray((ends.status == REACHED) & np.isfinite(ends.y).all(axis=-1))
+    sound = np.asarray((ends.status == REACHED) & np.isfinite(ends.y).all(axis=-1))
     # Refined, so that the keys of ill-conditioned solutions have digits to tell them by.
-    y, low, _ = refine(nine_point_system_extended, GROUPS, SCRATCH, ends.y[new], ends.low[new], orbits.p)
-    new[new] = orbits.add(y, low)
-    return new
+    y, low, _ = refine(nine_point_system_extended, GROUPS, SCRATCH, ends.y[sound], ends.low[sound], orbits.p)
+    sound[sound] = orbits.add(y, low)
+    return sound
 
 
 def _real_linkages(orbits: _Orbits) -> Complex:
