@@ -263,6 +263,31 @@ def test_pairs_are_met_exactly(client, kind, count):
 
 
 @pytest.mark.campaign
+@pytest.mark.timeout(900)
+def test_all_watt_2_through_nine_points_are_computed(client):
+    """Nine points of the logarithm: all is computed, and what is offered meets them by its loops."""
+    task = {
+        "kind": "function",
+        "function": {"name": "logarithm", "x": [1.0, 10.0]},
+        "input_range": 60.0,
+        "output_range": 60.0,
+        "precision_points": 9,
+        "mechanisms": ["watt_2"],
+        "constraints": {"min_transmission_angle": 15.0},
+    }
+    body = finished(client, task)
+    result = body["result"]
+    assert result["search"]["complete"]
+    assert result["search"]["method"] == "nine_pair_continuation"
+    assert result["search"]["candidates"] > 500
+    designs = passed(body)
+    assert len(designs) == result["search"]["accepted"] == 3
+    x = 1.0 + 9.0 * (0.5 - 0.5 * np.cos((2.0 * np.arange(9) + 1.0) * math.pi / 18.0))
+    for design in designs:
+        held_against_loops(design, x, np.log10(x), off=1e-7)
+
+
+@pytest.mark.campaign
 def test_least_squares_are_no_greater_than_those_of_minimax(client):
     by = {
         criterion: passed(answered(client, mechanisms=["stephenson_3"], criterion=criterion, max_designs=1))[0]
@@ -290,7 +315,9 @@ ZONE = {"fixed_pivots": {"input": {"circle": {"center": [0.0, 0.0], "radius": 9.
         ({"mechanisms": ["fourbar", "watt_2"], "manufacture": GRID}, {"/manufacture"}),
         ({"mechanisms": ["watt_2"], "space": ZONE}, {"/space/fixed_pivots"}),
         ({"mechanisms": ["stephenson_2"], "constraints": {"grashof": "crank_rocker"}}, {"/constraints/grashof"}),
-        ({"mechanisms": ["watt_2"], "precision_points": 9}, {"/precision_points"}),
+        ({"mechanisms": ["watt_2", "stephenson_3"], "precision_points": 9}, {"/precision_points"}),
+        ({"mechanisms": ["watt_2"], "precision_points": 10}, {"/precision_points"}),
+        ({"mechanisms": ["watt_2"], "precision_points": 9, "output_range": None}, {"/output_range"}),
         ({"mechanisms": "auto", "precision_points": 8}, {"/precision_points"}),
     ],
 )

@@ -14,6 +14,7 @@ from functools import partial
 import numpy as np
 
 from synthesis.kinds.function.design import FunctionDesign, FunctionResult
+from synthesis.kinds.function.nine_pair_search import solve_nine_pairs
 from synthesis.kinds.function.order import error_of, ordered
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.sixbar_build import built
@@ -93,6 +94,8 @@ def _well(problem: FunctionProblem, design: FunctionDesign) -> bool:
 
 def solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResult:
     """Sixbars of the types that are listed, the best by the criterion first."""
+    if problem.determines_watts:
+        return solve_nine_pairs(problem, REASONS, progress)
     task = function_task(problem)
     search = SixbarSearch(task)
     sifting = Sifting[FunctionDesign](problem, REASONS)

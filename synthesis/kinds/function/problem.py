@@ -46,7 +46,10 @@ EXACT_PAIRS = 3
 MOST_EXACT = 7
 
 MOST_BY_SIXBARS = 8
-"""Pairs that sixbars are made to meet at most. Watt II has nine numbers of its own, the others eleven."""
+"""Pairs that sixbars are made to meet by search at most. Watt II has nine numbers of its own, the others eleven."""
+
+ALL_WATTS = 9
+"""Pairs that have finitely many Watt II sixbars, all of which are computed."""
 
 HELD_PLACES = 41
 """Places of the range, ends included, at which a function that is approximated is held to as it is made."""
@@ -191,8 +194,10 @@ class FunctionProblem(LinkageProblem):
         "or its extension, and leaves the zeros open where no such linkage satisfies all demands; it leaves them open "
         "for everything else.",
     )
-    precision_points: Annotated[Count, Field(ge=2, le=MOST_BY_SIXBARS)] | None = Field(
-        default=None, description="Points of the function that are met exactly."
+    precision_points: Annotated[Count, Field(ge=2, le=ALL_WATTS)] | None = Field(
+        default=None,
+        description="Points of the function that are met exactly; nine by watt_2 sixbars alone, of which all are "
+        "computed.",
     )
     spacing: Literal["chebyshev", "equal"] = Field(default="chebyshev", description="Of the precision points.")
     mechanism: Literal["fourbar", "slider_crank"] = "fourbar"
@@ -204,7 +209,8 @@ class FunctionProblem(LinkageProblem):
     criterion: Literal["precision", "least_squares", "minimax"] | None = Field(
         default=None,
         description="Left out: `precision` where precision points are asked for, or there are no more pairs than can "
-        "be met; else `minimax`.",
+        "be met, eight at most; else `minimax`. With `precision`, nine pairs and `watt_2` alone all sixbars are "
+        "computed that meet them.",
     )
     fixed_pivots: GroundPivots | None = Field(
         default=None,
@@ -220,7 +226,7 @@ class FunctionProblem(LinkageProblem):
         if self.criterion is not None:
             return self.criterion
         if self.pairs is not None:
-            return "precision" if len(self.pairs) <= self.most_exact else "minimax"
+            return "precision" if len(self.pairs) <= min(self.most_exact, MOST_BY_SIXBARS) else "minimax"
         return "precision" if self.precision_points is not None else "minimax"
 
     @property
@@ -318,7 +324,7 @@ class FunctionProblem(LinkageProblem):
     def most_exact(self) -> int:
         """Pairs that can be met at most: proportions, zeros and scales that are open."""
         if self.sixbars_alone:
-            return MOST_BY_SIXBARS
+            return ALL_WATTS if self.sixbars == ("watt_2",) else MOST_BY_SIXBARS
         zeros = [self.zeros.input, self.zeros.output].count(None) if isinstance(self.zeros, Zeros) else 2
         if self.function is not None:
             free = [self.input_range, self.output_range].count(None)
@@ -327,6 +333,12 @@ class FunctionProblem(LinkageProblem):
         else:
             free = 1 if self.slides else 2
         return EXACT_PAIRS + zeros + free
+
+    @property
+    def determines_watts(self) -> bool:
+        """Whether nine pairs are to be met by Watt II sixbars, of which there are finitely many."""
+        count = self.precision_points if self.pairs is None else len(self.pairs)
+        return self.sixbars_alone and self.sixbars == ("watt_2",) and self.aim == "precision" and count == ALL_WATTS
 
     def span(self, side: Literal["input", "output"]) -> float | None:
         """The range of a side, degrees or length units, signed; None where it is open."""
@@ -459,9 +471,17 @@ class FunctionProblem(LinkageProblem):
         if self.slides and self.output_range is None:
             yield Contradiction("/output_range", "a slider's range sets the size of the linkage and must be given")
         if self.aim == "precision" and (self.precision_points or 0) > self.most_exact:
-            detail = f"at most {self.most_exact} points can be met; leave zeros or ranges open"
-            yield Contradiction("/precision_points", detail)
+            more = "name watt_2 alone for nine" if self.sixbars_alone else "leave zeros or ranges open"
+            yield Contradiction("/precision_points", f"at most {self.most_exact} points can be met; {more}")
 
     def _zeros_and_scales(self) -> Iterator[Contradiction]:
         if self.scales is not None and self.slides and self.scales.output is None:
             yield Contradiction("/scales/output", "a slider's scale only changes the size of the linkage; state it")
+        if not self.determines_watts:
+            return
+        detail = "nine pairs have finitely many sixbars only where it is stated"
+        for side in ("input", "output"):
+            if self.scales is not None and getattr(self.scales, side) is None:
+                yield Contradiction(f"/scales/{side}", detail)
+            if self.function is not None and self.span(side) is None:
+                yield Contradiction(f"/{side}_range", detail)

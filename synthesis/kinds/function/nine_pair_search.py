@@ -1,0 +1,180 @@
+"""Nine pairs, or nine precision points, and a Watt II sixbar: all that there are, each verified.
+
+Of the real solutions (:mod:`synthesis.kinds.function.nine_pairs`) most cannot be had: their dyads close on another side
+at one pair than at another, so that no motion of one linkage comes from the one to the other. Those that stay on one
+side, at the pairs and between them, are driven by the analysis core.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.function.design import FunctionDesign, FunctionResult
+from synthesis.kinds.function.nine_pair_system import SOLUTIONS
+from synthesis.kinds.function.nine_pairs import all_watts
+from synthesis.kinds.function.order import ordered
+from synthesis.kinds.function.problem import FunctionProblem
+from synthesis.kinds.function.sixbar_build import built
+from synthesis.kinds.function.sixbar_descents import Descents, Found
+from synthesis.kinds.function.sixbar_followers import followed
+from synthesis.kinds.function.sixbar_kernels import NUMBERS, START, WATT_2, ZERO, A, B, C, K, L
+from synthesis.kinds.function.sixbar_search import EXACT_STEPS, EXACT_TOLERANCE, places_of
+from synthesis.kinds.function.task import FunctionTask, function_task
+from synthesis.kinds.function.verification import verify_function
+from synthesis.model.counting import agreeing, grouped
+from synthesis.model.kind import Progress
+from synthesis.outcome.sifting import Sifting, reported
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+THREADS = 2
+"""Paths that are followed side by side."""
+
+FOLLOWED = 0.9
+"""Share of the progress with which all paths are followed."""
+
+NO_LENGTH = 1e-9
+"""A link below this share of its ground is none."""
+
+MET = 1e-6
+"""Error at a pair, radians, below which a solution meets it in the assembly in which it meets the first."""
+
+DENSE = 181
+"""Places of the range at which linkages are looked at before they are driven."""
+
+MARGIN = 1e-3
+"""By which the cosine of a transmission angle at one of these places, or a link ratio, is too large for certain."""
+
+PROVING = {"branch_defect", "circuit_defect", "order_defect", "transmission_angle"}
+"""Reasons against a linkage that was driven which no other place or size of its fourbars changes."""
+
+
+class _Judged(NamedTuple):
+    """What becomes of the solutions for one pair of scales: linkages to be driven, and reasons against the others."""
+
+    kept: list[Found]
+    reasons: list[str]
+
+
+def solve_nine_pairs(problem: FunctionProblem, reasons: dict[str, str], progress: Progress) -> FunctionResult:
+    """All Watt II sixbars through nine pairs.
+
+    Parameters
+    ----------
+    problem : FunctionProblem
+        Its zeros are open, and its scales stated.
+    reasons : dict
+        Of rejection, by the checks that designs break.
+    progress : callable
+        Told how far the work is.
+    """
+    task = function_task(problem)
+    rng = np.random.default_rng(problem.seed)
+    sifting = Sifting[FunctionDesign](problem, reasons)
+    choices = [(k, l_) for k, _ in task.scales[0] for l_, _ in task.scales[1]]
+    complete, computed, real = True, 0, 0
+    kept: list[Found] = []
+    reasons_before: list[str] = []
+    for n, (k, l_) in enumerate(choices):
+
+        def tell(share: float, n: int = n) -> None:
+            done = round(share * SOLUTIONS)
+            progress(FOLLOWED * (n + share) / len(choices), f"{grouped(done)} of {grouped(SOLUTIONS)} paths followed")
+
+        watts = all_watts(k * task.inputs, l_ * task.outputs, rng, tell, THREADS)
+        complete, computed, real = complete and watts.complete, computed + watts.found, real + len(watts.real)
+        judged = _judged(task, watts.real, k, l_)
+        kept += judged.kept
+        reasons_before += judged.reasons
+    on_one_side = len(kept)
+    # The best of what can be seen beforehand first, so that equals keep an order.
+    kept.sort(key=lambda one: _greatest_cosine(task, one))
+
+    def verified(one: Found) -> FunctionDesign | None:
+        try:
+            return verify_function(problem, *built(task, one))
+        except (ValueError, ZeroDivisionError, OverflowError):
+            return None  # it stands on a toggle, where no place is a number
+
+    sifting.sift(reported(kept, progress, (FOLLOWED, 1.0), "verifying {next} of {all} sixbars"), verified)
+    progress(1.0, "verified")
+    complete = complete and sifting.rejected.keys() <= PROVING
+    for reason in reasons_before:
+        sifting.reject(reason)
+    counts = f"{grouped(computed)} of {grouped(SOLUTIONS * len(choices))}"
+    text = (
+        f"{counts} Watt II sixbars through the nine pairs were computed, real and complex; {grouped(real)} "
+        f"{agreeing(real, 'is', 'are')} real, {on_one_side} of these {agreeing(on_one_side, 'keeps', 'keep')} the "
+        f"assembly from the first pair to the last, and {sifting.accepted} "
+        f"{agreeing(sifting.accepted, 'satisfies', 'satisfy')} all demands.{sifting.reasons()}"
+    )
+    if not sifting.passed:
+        text += " There are no others, so no design of this type exists." if complete else " Others may exist."
+    return FunctionResult(
+        designs=sifting.designs(partial(ordered, problem)),
+        search=sifting.search("nine_pair_continuation", complete=complete),
+        summary=text,
+    )
+
+
+def _judged(task: FunctionTask, real: Complex, k: float, l_: float) -> _Judged:
+    """Which solutions are linkages that keep their assembly, brought to rounding."""
+    constraints, places = task.problem.constraints, places_of(task)
+    descents = Descents(places.points, 0.0, None)
+    low, high = places.dense[0].min(), places.dense[0].max()
+    dense = np.union1d(np.linspace(low, high, DENSE), places.dense[0])
+    demanded = constraints.min_transmission_angle
+    greatest = 1.0 if demanded is None else math.cos(math.radians(demanded)) + MARGIN
+    widest = constraints.max_link_ratio or math.inf
+    kept, reasons = [], []
+    for vectors in real:
+        one = _row(vectors, k, l_, float(task.inputs[0]), float(task.outputs[0]))
+        if one.at[[A, B, C, 7, 8, 9]].min() < NO_LENGTH:
+            reasons.append("degenerate_link")
+            continue
+        if _link_ratio(one) > widest * (1.0 + MARGIN):
+            reasons.append("link_ratio")
+            continue
+        errors = followed(WATT_2, one.assembly, one.at, *places.dense).errors
+        if not np.abs(errors).max() < MET:
+            reasons.append("branch_defect")
+            continue
+        one = descents.descended(one, 0.0, EXACT_STEPS, EXACT_TOLERANCE)
+        between = followed(WATT_2, one.assembly, one.at, dense, np.zeros_like(dense))
+        if not np.isfinite(between.errors).all():
+            reasons.append("branch_defect")
+        elif np.abs(between.cosines).max() > greatest:
+            reasons.append("transmission_angle")
+        else:
+            kept.append(one)
+    return _Judged(kept, reasons)
+
+
+def _row(vectors: Complex, k: float, l_: float, first_input: float, first_output: float) -> Found:
+    """A solution as a row of :mod:`~synthesis.kinds.function.sixbar_kernels`."""
+    a, c, d, e = (complex(z) for z in vectors)
+    at = np.zeros(NUMBERS)
+    at[[A, B, C, 7, 8, 9]] = abs(a), abs(1.0 + c - a), abs(c), abs(d), abs(1.0 + e - d), abs(e)
+    at[START], at[ZERO] = np.angle(a) - k * first_input, np.angle(e) - l_ * first_output
+    at[K], at[L] = k, l_
+    at[10] = np.angle(d) - np.angle(c)
+    # Whether the joint of each dyad is to the left of the way from its pin to its pivot.
+    sides = [((1.0 - pin).conjugate() * (1.0 + arm - pin)).imag > 0.0 for pin, arm in ((a, c), (d, e))]
+    return Found("watt_2", int(sides[0]) | int(sides[1]) << 1, at, 0.0)
+
+
+def _link_ratio(one: Found) -> float:
+    """The longest link over the shortest within either fourbar: the sizes of both may be chosen, but not this."""
+    fourbars = np.array([[1.0, *one.at[[A, B, C]]], [1.0, *one.at[[7, 8, 9]]]])
+    return float((fourbars.max(axis=1) / fourbars.min(axis=1)).max())
+
+
+def _greatest_cosine(task: FunctionTask, one: Found) -> float:
+    """Of the transmission angles at the pairs."""
+    return float(np.abs(followed(WATT_2, one.assembly, one.at, *places_of(task).dense).cosines).max())

@@ -1,0 +1,107 @@
+"""Watt II sixbars through nine pairs: the system, its start, and all solutions of drawn problems."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinematics.linkage.planar import catalogue
+from kinematics.linkage.planar.drive import drive
+from synthesis.dispatch import solve
+from synthesis.kinds.function.nine_pair_system import GROUPS, SCRATCH, SOLUTIONS, nine_pair_system, residuals
+from synthesis.kinds.function.nine_pairs import all_watts, nine_pair_start
+from synthesis.numerics.continuation import REACHED, follow
+from synthesis.numerics.known import Known
+from synthesis.registry import parse_problem
+from tools.watt_start import nine_pair_problem
+
+
+def gaps(y, p):
+    """Changes of both couplers' squared lengths with the turn of the link between them eliminated by its roots."""
+    a, a_bar, c, c_bar, d, d_bar, e, e_bar = y
+    found = []
+    for u, w in zip(1.0 + p[:8], 1.0 + p[8:], strict=True):
+        first = [c * (1 - a_bar / u), a + a_bar - c - c_bar + c * a_bar + c_bar * a - a * u - a_bar / u]
+        turns = np.roots([*first, c_bar * (1 - a * u)])
+        at_first = (1 + e - d) * (1 + e_bar - d_bar)
+        found.append(np.prod([(1 + e * w - d * q) * (1 + e_bar / w - d_bar / q) - at_first for q in turns]))
+    return np.array(found)
+
+
+def test_a_drawn_sixbar_solves_its_own_problem():
+    rng = np.random.default_rng(3)
+    for _ in range(10):
+        y, p = nine_pair_problem(rng)
+        assert residuals(y, p) < 1e-9
+        assert np.abs(gaps(y, p)).max() < 1e-8 * np.abs(y).max() ** 4
+
+
+def test_the_compiled_system_is_newtons_step_of_the_couplers_lengths():
+    """Against another form of the equations, which have the same steps where they hold, by differences."""
+    rng = np.random.default_rng(4)
+    for _ in range(5):
+        y, p = nine_pair_problem(rng)
+        dp = rng.normal(size=16) + 1j * rng.normal(size=16)
+        newton, tangent = np.empty((2, 8), np.complex128)
+        assert nine_pair_system(y, np.zeros(8, complex), p, dp, newton, tangent, np.empty(SCRATCH, complex)) == 1
+        h = 1e-6
+        jacobian = np.stack([(gaps(y + h * k, p) - gaps(y - h * k, p)) / (2 * h) for k in np.eye(8)], axis=1)
+        by_p = (gaps(y, p + h * dp) - gaps(y, p - h * dp)) / (2 * h)
+        assert np.abs(newton).max() < 1e-9 * np.abs(y).max()
+        assert np.abs(tangent - np.linalg.solve(jacobian, -by_p)).max() < 1e-4 * np.abs(tangent).max()
+
+
+def test_the_start_has_all_solutions_each_once():
+    begun = nine_pair_start()
+    assert begun.y.shape == (SOLUTIONS, 8)
+    assert residuals(begun.y, begun.p).max() < 1e-9
+    assert Known(8, 1e-6).add(begun.y).all()
+
+
+def test_some_paths_lead_to_solutions_of_another_problem():
+    begun, some = nine_pair_start(), slice(0, SOLUTIONS, 700)
+    _, p = nine_pair_problem(np.random.default_rng(8))
+    ends = follow(nine_pair_system, GROUPS, SCRATCH, begun.y[some], begun.p, p, np.zeros(16, complex), tolerance=1e-3)
+    reached = ends.y[ends.status == REACHED]
+    assert len(reached) > 30
+    assert Known(8, 1e-6).add(reached).all()
+    largest = max(np.abs(gaps(one, p)).max() / np.abs(one).max() ** 4 for one in reached)
+    assert largest < 1e-7
+
+
+def planted(rng):
+    """A Watt II that turns through a range on one branch with 15° at least, and nine pairs of its own."""
+    names = ["O2", "A", "B", "O4", "C", "D", "O6"]
+    while True:
+        z = rng.uniform(-1.0, 1.0, 7) + 1j * rng.uniform(-1.0, 1.0, 7)
+        joints = dict(zip(names, (complex(one) for one in z), strict=True))
+        mechanism = catalogue.sixbar("watt_2", joints)
+        turned = np.radians(rng.uniform(80.0, 140.0)) * np.linspace(0.0, 1.0, 97)
+        motion = drive(mechanism, float(mechanism.reference_input) + turned, order=0)
+        if not motion.valid.all() or min(np.abs(sine).min() for sine in motion.sines.values()) < np.sin(np.radians(15)):
+            continue
+        outputs = np.unwrap(motion.angles["output"][0])
+        if np.abs(np.diff(outputs)).max() < np.radians(6.0) and np.ptp(outputs) > np.radians(30.0):
+            return joints, turned[::12], outputs[::12] - outputs[0]
+
+
+def vectors(joints):
+    """Crank and rocker, input link and output, with grounds of 1."""
+    o2, a, b, o4, c, d, o6 = (joints[name] for name in ("O2", "A", "B", "O4", "C", "D", "O6"))
+    return np.array([(a - o2) / (o4 - o2), (b - o4) / (o4 - o2), (c - o4) / (o6 - o4), (d - o6) / (o6 - o4)])
+
+
+@pytest.mark.campaign
+def test_all_sixbars_through_nine_pairs_of_a_drawn_one():
+    joints, inputs, outputs = planted(np.random.default_rng(12))
+    watts = all_watts(inputs, outputs, np.random.default_rng(0), lambda share: None, threads=2)
+    assert watts.complete, watts.lost
+    assert np.abs(watts.real - vectors(joints)).max(axis=1).min() < 1e-6
+    pairs = [{"input": float(x), "output": float(y)} for x, y in np.degrees([inputs, outputs]).T]
+    stated = {"kind": "function", "pairs": pairs, "criterion": "precision", "mechanisms": ["watt_2"], "max_designs": 50}
+    result = solve(parse_problem(stated | {"constraints": {"min_transmission_angle": 14.0}}))
+    assert result.search.complete
+    assert result.search.method == "nine_pair_continuation"
+    assert result.designs
+    assert all(design.verification.passed for design in result.designs)
+    assert max(design.structural_error.max for design in result.designs) < 1e-6
