@@ -128,10 +128,22 @@ export function readable(text) {
   });
 }
 
+/** What is not called as it is written. @type {Record<string, string>} */
+const CALLED = {
+  "watt 1": "Watt I",
+  "watt 2": "Watt II",
+  "stephenson 1": "Stephenson I",
+  "stephenson 2": "Stephenson II",
+  "stephenson 3": "Stephenson III",
+  "geneva external": "external Geneva drive",
+  "geneva internal": "internal Geneva drive",
+  "geneva spherical": "spherical Geneva drive",
+};
+
 /** `min_transmission_angle` as it stands within a sentence: `min transmission angle`. @param {string} name */
 export function term(name) {
   const plain = name.replaceAll("_", " ");
-  return messages[plain] ?? plain;
+  return messages[plain] ?? CALLED[plain] ?? plain;
 }
 
 /** A whole number in a sentence, its digits in groups of three, as the service writes it. @param {number} value */
