@@ -7,13 +7,16 @@ from __future__ import annotations
 
 import argparse
 import io
+import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from PIL import Image
+import numpy as np
+from PIL import Image, ImageDraw
 from playwright.sync_api import Page, sync_playwright
+from scipy.interpolate import CubicSpline
 
-from synthesis.registry import KINDS
+from synthesis.registry import KINDS, examples
 
 CHROMIUM = "/usr/bin/chromium"
 DOCS = Path(__file__).parents[2] / "docs"
@@ -25,8 +28,9 @@ SIZE = (1280, 800)
 KIND_SIZE = (1024, 640)
 """The same for a picture of a kind: the drawer is shut."""
 
-COLOURS = 160
-"""Of a picture: text stays legible, pale grounds keep their colour, and a file has some fifty kilobytes."""
+COMMON, FURTHER = 96, 96
+"""Colours of a picture: the commonest, as they are, so that grounds and text keep theirs, and others between them; a
+file then has some fifty kilobytes."""
 
 WAIT_MS = 200_000
 
@@ -34,18 +38,105 @@ SOON = {"motion": 0, "path": 1, "function": 2, "dwell": 1}
 """The example of each kind that is soon solved, where that is not the first."""
 
 
-def _solved(page: Page, kind: str, example: int) -> None:
-    """State an example, solve it, and let it stand still a third of its way on."""
-    page.select_option("#kind", kind)
-    page.select_option("#example", str(example))
+LID: Mapping[str, object] = {
+    "kind": "motion",
+    "positions": [
+        {"x": 0.0, "y": 0.0, "angle": 0.0},
+        {"x": 230.0, "y": 240.0, "angle": 40.0},
+        {"x": 190.0, "y": 470.0, "angle": 85.0},
+    ],
+    "length_unit": "mm",
+}
+"""A lid of a cabinet."""
+
+LID_OUTLINE = [[0.0, -100.0], [60.0, -100.0], [60.0, 80.0], [-30.0, 80.0]]
+
+ROOM: Mapping[str, object] = {
+    **LID,
+    "space": {
+        "fixed_pivots": {"input": {"polygon": [[-450.0, 60.0], [-130.0, 60.0], [-130.0, 360.0], [-450.0, 360.0]]}},
+        "obstacles": [
+            {"polygon": [[-450.0, 500.0], [20.0, 500.0], [20.0, 560.0], [-450.0, 560.0]]},
+            {"circle": {"center": [410.0, 40.0], "radius": 60.0}},
+        ],
+        "body": {"outline": LID_OUTLINE},
+        "clearance": 5.0,
+    },
+}
+"""A zone for a pivot, a shelf, a post, and how the lid looks."""
+
+SWEPT: Mapping[str, object] = {
+    **LID,
+    "input_side": {"fixed_pivot": [-170.0, 500.0]},
+    "output_side": {"fixed_pivot": [-195.0, 368.0]},
+    "max_designs": 1,
+    "space": {
+        "obstacles": [{"circle": {"center": [-300.0, 40.0], "radius": 60.0}}],
+        "body": {"outline": LID_OUTLINE},
+        "link_width": 16.0,
+    },
+}
+"""Both fixed pivots are chosen: one linkage, found at once."""
+
+LOADED: Mapping[str, object] = {
+    "kind": "quick_return",
+    "time_ratio": 1.4,
+    "stroke": 100.0,
+    "mechanism": "crank_shaper",
+    "max_designs": 1,
+    "length_unit": "mm",
+    "dynamics": {
+        "gravity": {},
+        "speed_rpm": 60.0,
+        "links": {"density": 7800.0, "thickness": 10.0, "width": 20.0},
+        "loads": [{"joint": "D", "force": {"constant": [200.0, 0.0]}}],
+    },
+}
+"""A shaper; its ram works while it goes slowly, to the left."""
+
+OUTLINE = examples("path")[3]["points"]
+"""The closed curve of an example: a picture shows it, and its first points are traced."""
+
+TRACED = 11
+
+SKETCH = 600
+"""Width and height of the picture that is laid behind the canvas, pixels."""
+
+SKETCH_MM = 78.67
+"""The width that the page gives to it: four thirds of the height of the points."""
+
+
+def _stated(page: Page, problem: Mapping[str, object]) -> None:
+    """State a problem of one's own; the task then shows its beginning."""
+    page.locator("#json").evaluate("details => { details.open = true; }")
+    page.fill("#json-text", json.dumps(problem))
+    page.locator("#json").evaluate("details => { details.open = false; }")
+    page.locator("#statement").evaluate("task => { task.scrollTop = 0; }")
+
+
+def _answered(page: Page) -> None:
+    """Solve what is stated, and let it stand still a third of its way on."""
     page.click("#solve")
     page.wait_for_selector("#answers:not([aria-busy]) .card", timeout=WAIT_MS)
     page.wait_for_selector(".moving .stage .canvas", timeout=WAIT_MS)
     page.wait_for_selector("#watch:not(.waiting)")
+    _led(page, 0.3)
+
+
+def _led(page: Page, share: float) -> None:
+    """Put the motion to a share of it."""
     page.locator("#scrub").evaluate(
-        "one => { one.value = String(0.3 * one.max); one.dispatchEvent(new Event('input')); one.blur(); }"
+        "(one, share) => { one.value = String(share * one.max); one.dispatchEvent(new Event('input')); one.blur(); }",
+        share,
     )
     page.wait_for_timeout(300)
+
+
+def _solved(page: Page, kind: str, example: int) -> None:
+    """State an example, solve it, and let it stand still a third of its way on."""
+    page.select_option("#kind", kind)
+    page.select_option("#example", str(example))
+    _answered(page)
 
 
 def _opening(page: Page) -> None:
@@ -74,19 +165,113 @@ def _guided(page: Page) -> None:
     page.wait_for_timeout(300)
 
 
+def _room(page: Page) -> None:
+    _stated(page, ROOM)
+    page.wait_for_selector("#sketch .room .area.obstacle")
+    page.wait_for_timeout(300)
+
+
+def _import(page: Page) -> None:
+    """The picture of a curve lies behind the points that trace it, and two places of it have been clicked."""
+    _stated(page, {"kind": "path", "points": OUTLINE[:TRACED], "length_unit": "mm"})
+    with page.expect_file_chooser() as choosing:
+        page.click("#curve-import")
+    choosing.value.set_files({"name": "sketch.png", "mimeType": "image/png", "buffer": _sketch()})
+    page.click("#curve-behind")
+    page.wait_for_selector("#sketch image.backdrop")
+    page.click("#backdrop-pick")
+    box = page.locator("#sketch image.backdrop").bounding_box()
+    assert box is not None
+    for x, y in ((11.6, 33.5), (59.0, 59.0)):
+        u, v = _in_sketch(x, y)
+        page.mouse.click(box["x"] + u * box["width"] / SKETCH, box["y"] + v * box["height"] / SKETCH)
+    page.fill("#backdrop-distance", "54")
+    page.wait_for_timeout(300)
+
+
+def _in_sketch(x: float, y: float) -> tuple[float, float]:
+    """Pixels of a place of the plane: the page puts a picture about the middle of what is stated."""
+    finer = SKETCH / SKETCH_MM
+    return SKETCH / 2 + (x - 32.3) * finer, SKETCH / 2 - (y - 41.5) * finer
+
+
+def _sketch() -> bytes:
+    """What lies within the outline, filled, as PNG."""
+    turns = [*OUTLINE, OUTLINE[0]]
+    curve = CubicSpline(range(len(turns)), [(one["x"], one["y"]) for one in turns], bc_type="periodic")
+    places = [_in_sketch(x, y) for x, y in curve([k / 20 for k in range(20 * len(OUTLINE))])]
+    finer = 4
+    picture = Image.new("L", (finer * SKETCH, finer * SKETCH), 255)
+    ImageDraw.Draw(picture).polygon([(finer * u, finer * v) for u, v in places], fill=90)
+    file = io.BytesIO()
+    picture.resize((SKETCH, SKETCH), Image.Resampling.BOX).save(file, "PNG")
+    return file.getvalue()
+
+
+def _sweep(page: Page) -> None:
+    _stated(page, SWEPT)
+    _answered(page)
+    page.check("#sweep")
+    page.wait_for_selector(".moving .sweep .swept")
+    page.get_by_label("Other circuit").uncheck()
+    page.locator("#watch").get_by_role("button", name="Nearer", exact=True).click()
+    _led(page, 0.2)
+
+
+def _planes(page: Page) -> None:
+    _solved(page, "quick_return", 3)
+    page.wait_for_selector(".moving .side .bar")
+
+
+def _forces(page: Page) -> None:
+    _stated(page, LOADED)
+    _answered(page)
+    _led(page, 0.2)
+    page.click("#tab-plots")
+    page.wait_for_selector(".moving .force")
+    page.locator("#forces").evaluate("one => one.scrollIntoView()")
+    page.wait_for_timeout(300)
+
+
+def _assembly(page: Page) -> None:
+    """The first example, its planes apart."""
+    _solved(page, "motion", 0)
+    page.click("#tab-assembly")
+    page.wait_for_selector("#assembly .parts li", timeout=WAIT_MS)
+    _led(page, 0.65)
+    page.fill("#explode", "1")
+    page.locator("#built").get_by_role("button", name="Fit", exact=True).click()
+    page.wait_for_timeout(1000)
+
+
 PICTURES: Mapping[str, Callable[[Page], None]] = {
     "studio": _opening,
     "studio_gallery": _gallery,
     "studio_choosing": _choosing,
     "studio_guided": _guided,
+    "studio_room": _room,
+    "studio_import": _import,
+    "studio_sweep": _sweep,
+    "studio_planes": _planes,
+    "studio_forces": _forces,
+    "studio_assembly": _assembly,
 }
 
 
 def write(picture: bytes, path: Path) -> None:
     """Write a picture with few colours."""
     image = Image.open(io.BytesIO(picture)).convert("RGB")
+    colours, places, counts = np.unique(
+        np.asarray(image).reshape(-1, 3), axis=0, return_inverse=True, return_counts=True
+    )
+    common = colours[np.argsort(-counts, kind="stable")[:COMMON]]
     # Of what is drawn in a few pixels the colour is kept, too.
-    image.quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(path, optimize=True)
+    further = image.quantize(FURTHER, method=Image.Quantize.MAXCOVERAGE).getpalette() or []
+    palette = np.vstack([common, np.reshape(further, (-1, 3))]).astype(np.int64)
+    nearest = np.square(colours[:, None].astype(np.int64) - palette).sum(axis=2).argmin(axis=1)
+    few = Image.fromarray(nearest[places].reshape(image.height, image.width).astype(np.uint8))
+    few.putpalette(palette.ravel().tolist())
+    few.save(path, optimize=True)
 
 
 def taken(page: Page, url: str, name: str) -> bytes:
@@ -118,11 +303,13 @@ def main() -> None:
     with sync_playwright() as playwright:
         # Without its sandbox, which needs a user other than root; it sees our own page only.
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        page = browser.new_page(reduced_motion="reduce")
         for name in [*PICTURES, *KINDS]:
             if asked.only and name not in asked.only:
                 continue
+            # In a window of its own, which knows no statement of another picture.
+            page = browser.new_page(reduced_motion="reduce")
             write(taken(page, asked.url, name), path_of(name))
+            page.close()
         browser.close()
 
 
