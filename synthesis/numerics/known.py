@@ -10,6 +10,19 @@ Complex = NDArray[np.complex128]
 Mask = NDArray[np.bool_]
 
 
+def crowded(points: Complex, share: float) -> Mask:
+    """Which of some points, shape (k, numbers), are the same as another one of them."""
+    return np.asarray(_near(points, points, share) > 1)
+
+
+def _near(known: Complex, points: Complex, share: float) -> NDArray[np.int64]:
+    """How many known points are the same as each of some."""
+    radius = share * np.abs(points).max(axis=-1)
+    tree = cKDTree(np.ascontiguousarray(known).view(np.float64))
+    near = tree.query_ball_point(np.ascontiguousarray(points).view(np.float64), radius, p=np.inf, return_length=True)
+    return np.asarray(near)
+
+
 class Known:
     """What has been met so far.
 
@@ -29,7 +42,7 @@ class Known:
         """Which of some points, shape (k, numbers), are known."""
         if not len(self._points) or not len(points):
             return np.zeros(len(points), np.bool_)
-        return self._near(self._points, points) > 0
+        return np.asarray(_near(self._points, points, self._share) > 0)
 
     def add(self, points: Complex) -> Mask:
         """Add some points, shape (k, numbers); tells which of them were new, of several that are the same the first."""
@@ -42,12 +55,3 @@ class Known:
             new[new] = [min(group) == n for n, group in enumerate(groups)]
         self._points = np.concatenate([self._points, points[new]])
         return np.asarray(new)
-
-    def _near(self, known: Complex, points: Complex) -> NDArray[np.int64]:
-        """How many known points are the same as each of some."""
-        radius = self._share * np.abs(points).max(axis=-1)
-        tree = cKDTree(np.ascontiguousarray(known).view(np.float64))
-        near = tree.query_ball_point(
-            np.ascontiguousarray(points).view(np.float64), radius, p=np.inf, return_length=True
-        )
-        return np.asarray(near)

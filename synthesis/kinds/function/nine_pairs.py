@@ -2,10 +2,10 @@
 
 The solutions of the start are followed to the problem's turns (:mod:`synthesis.kinds.function.nine_pair_system`). What
 is reached is brought to its last digits with equations in twice the precision and checked as a whole: that no two paths
-ended in one solution (one of them has then jumped), and that with every solution its complex conjugate is there, as
-real turns demand. The conjugates of solutions whose own path was lost are filled in by that; what is still missing is
-followed in smaller steps and in twice the precision, and along other ways, on which every path ends elsewhere. What
-cannot be found is said: nothing is complete without all of them.
+ended in one solution (one of them has then jumped, and both are followed again), and that with every solution its
+complex conjugate is there, as real turns demand. The conjugates of solutions whose own path was lost are filled in by
+that; what is still missing is followed in smaller steps and in twice the precision, and along other ways, on which
+every path ends elsewhere. What cannot be found is said: nothing is complete without all of them.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ from synthesis.kinds.function.nine_pair_system import (
     nine_pair_system_extended,
 )
 from synthesis.numerics.continuation import CONVERGED, REACHED, follow, refine
-from synthesis.numerics.known import Known
+from synthesis.numerics.known import Known, crowded
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Mask = NDArray[np.bool_]
 
-SAME = 1e-6
+SAME = 1e-10
 """Solutions whose vectors agree to this share are one."""
 
 NONE, NO_END = 1e-9, 1e9
@@ -157,7 +157,6 @@ class _Solutions:
         self.turns = np.concatenate([p[:8], p[:8].conj(), p[8:], p[8:].conj()])
         self.y = np.empty((0, UNKNOWNS), np.complex128)
         self._known = Known(2 * UNKNOWNS, SAME)
-        self._on_way = Known(2 * UNKNOWNS, SAME)
 
     @property
     def missing(self) -> int:
@@ -167,16 +166,13 @@ class _Solutions:
     def self_conjugate(self) -> bool:
         return bool(self._known.holds(_keys(conjugate(self.y))).all())
 
-    def begin_way(self) -> None:
-        """From now on ends are those of another way."""
-        self._on_way = Known(2 * UNKNOWNS, SAME)
-
-    def add(self, y: Complex, low: Complex) -> Mask:
-        """Add those ends of a way that are sound; tells which are, of several that are the same the first."""
+    def add(self, y: Complex, low: Complex) -> Complex:
+        """Add those ends of paths that are sound; the ends as they are told apart, NaN for the others."""
         refined, sound = self.refined(y, low)
-        sound[sound] = self._on_way.add(_keys(refined[sound]))
         self._join(refined[sound])
-        return sound
+        keys = np.full((len(y), 2 * UNKNOWNS), np.nan, np.complex128)
+        keys[sound] = _keys(refined[sound])
+        return keys
 
     def refined(self, y: Complex, low: Complex | None = None) -> tuple[Complex, Mask]:
         """Ends with the digits of twice the precision's equations, and which of them are solutions."""
@@ -203,31 +199,40 @@ def _keys(y: Complex) -> Complex:
 
 def _run(solutions: _Solutions, bend: Complex, threads: int, progress: Callable[[float], None]) -> None:
     """Follow all paths along one way and add what they reach, and then those again that were lost."""
-    solutions.begin_way()
-    lost: list[int] = []
+    keys = np.full((SOLUTIONS, 2 * UNKNOWNS), np.nan, np.complex128)
+    lost = 0
     for first in range(0, SOLUTIONS, PORTION):
         some = np.arange(first, min(first + PORTION, SOLUTIONS))
-        sound = _follow(solutions, nine_pair_system, some, bend, FIRST_TOLERANCE, threads)
-        lost += [int(n) for n in some[~sound]]
+        keys[some] = _follow(solutions, nine_pair_system, some, bend, FIRST_TOLERANCE, threads)
+        lost += int(np.isnan(keys[some, 0]).sum())
         progress(RETRIED * (first + len(some)) / SOLUTIONS)
-        if len(lost) > PORTION + SPECIAL * SOLUTIONS:
+        if lost > PORTION + SPECIAL * SOLUTIONS:
             return
     solutions.add_conjugates()
+    again = _astray(keys)
     for n, tolerance in enumerate(RETRY_TOLERANCES):
-        for first in range(0, len(lost), PORTION):
+        for first in range(0, len(again), PORTION):
             if solutions.missing <= 0:
                 return
-            again = np.array(lost[first : first + PORTION])
-            _follow(solutions, nine_pair_system_extended, again, bend, tolerance, threads)
+            some = again[first : first + PORTION]
+            _follow(solutions, nine_pair_system_extended, some, bend, tolerance, threads)
             solutions.add_conjugates()
-            done = (n + (first + len(again)) / len(lost)) / len(RETRY_TOLERANCES)
+            done = (n + (first + len(some)) / len(again)) / len(RETRY_TOLERANCES)
             progress(RETRIED + (1.0 - RETRIED) * done)
+
+
+def _astray(keys: Complex) -> NDArray[np.int64]:
+    """Paths that have no end, and all of those that have one in common: one of them at most has come to its own."""
+    ended = np.flatnonzero(~np.isnan(keys[:, 0]))
+    astray = np.ones(len(keys), np.bool_)
+    astray[ended] = crowded(keys[ended], SAME)
+    return np.flatnonzero(astray)
 
 
 def _follow(
     solutions: _Solutions, system: Any, some: NDArray[np.int64], bend: Complex, tolerance: float, threads: int
-) -> Mask:
-    """Follow some solutions of the start to the problem; tells which of them have a sound end of their own."""
+) -> Complex:
+    """Follow some solutions of the start to the problem; returns their ends as they are told apart, NaN for none."""
     begun = nine_pair_start()
     ends = follow(
         system,
@@ -241,9 +246,10 @@ def _follow(
         most_steps=STEPS,
         threads=threads,
     )
-    sound = np.asarray(ends.status == REACHED)
-    sound[sound] = solutions.add(ends.y[sound], ends.low[sound])
-    return sound
+    keys = np.full((len(some), 2 * UNKNOWNS), np.nan, np.complex128)
+    reached = ends.status == REACHED
+    keys[reached] = solutions.add(ends.y[reached], ends.low[reached])
+    return keys
 
 
 def _real(solutions: _Solutions) -> Complex:
