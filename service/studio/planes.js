@@ -115,7 +115,7 @@ export class Planes {
               svg(
                 "svg",
                 { viewBox: "0 0 26 16", width: 26, height: 16, "aria-hidden": "true" },
-                svg("rect", { class: `bar ${planeClass(plane)}`, x: 1, y: 1, width: 24, height: 14, rx: 3 }),
+                svg("rect", { class: `slab ${planeClass(plane)}`, x: 1, y: 1, width: 24, height: 14, rx: 3 }),
                 svg("text", { class: "plane-number", x: 13, y: 12.5 }, plane),
               ),
               el("span", { class: "hidden" }, t`Plane ${plane}`, ": "),
@@ -195,7 +195,7 @@ export class Planes {
     this.bars = Object.entries(layout.planes).map(([name, plane]) => ({
       name,
       bar: svg("rect", {
-        class: `bar ${planeClass(plane)}`,
+        class: `slab ${planeClass(plane)}`,
         y: this.below(plane) - this.scale * stated.thickness,
         height: this.scale * stated.thickness,
         rx: 3,

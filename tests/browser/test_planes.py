@@ -51,7 +51,7 @@ def test_links_have_the_colour_of_their_plane_and_stand_in_it(open_studio):
     bars = dict(
         zip(
             layout["planes"],
-            page.locator(".side .bar").evaluate_all(NUMBERS, ["x", "y", "width", "height"]),
+            page.locator(".side .slab").evaluate_all(NUMBERS, ["x", "y", "width", "height"]),
             strict=True,
         )
     )

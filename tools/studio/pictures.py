@@ -220,7 +220,7 @@ def _sweep(page: Page) -> None:
 
 def _planes(page: Page) -> None:
     _solved(page, "quick_return", 3)
-    page.wait_for_selector(".moving .side .bar")
+    page.wait_for_selector(".moving .side .slab")
 
 
 def _forces(page: Page) -> None:
