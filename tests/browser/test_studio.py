@@ -106,9 +106,9 @@ def test_the_scrubber_is_worked_by_keys_and_moves_the_marks(studio):
     page.wait_for_selector(".moving .live .link")
     page.focus("#scrub")
     page.keyboard.press("ArrowRight")
-    first, mark = link_now(page), page.locator(".plots .mark").first.get_attribute("x1")
+    first, mark = link_now(page), page.locator(".plots .mark").first.get_attribute("transform")
     page.keyboard.press("ArrowRight")
-    second, moved = link_now(page), page.locator(".plots .mark").first.get_attribute("x1")
+    second, moved = link_now(page), page.locator(".plots .mark").first.get_attribute("transform")
     assert first != second
     assert mark != moved
     page.wait_for_timeout(300)
