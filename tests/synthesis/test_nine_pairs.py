@@ -69,6 +69,7 @@ def test_some_paths_lead_to_solutions_of_another_problem():
 
 
 @pytest.mark.campaign
+@pytest.mark.timeout(900)
 def test_all_sixbars_through_nine_pairs_of_a_drawn_one():
     vectors, inputs, outputs = planted(np.random.default_rng(0))
     watts = all_watts(inputs, outputs, np.random.default_rng(0), lambda share: None, threads=2)
