@@ -55,8 +55,7 @@ LARGEST = 1e150
 
 @njit(cache=True, nogil=True)
 def _row(y: Complex, turns: Complex, moves: Complex, row: Complex) -> None:
-    """A pair's derivatives by the unknowns, less its equation, and less its derivative as the turns move; scaled by the
-    greatest of the first.
+    """A pair's derivatives by the unknowns, less its equation, and less its derivative as the turns move.
 
     ``turns``: s, s̄, r, r̄; ``moves``: how they move.
     """
@@ -95,16 +94,19 @@ def _row(y: Complex, turns: Complex, moves: Complex, row: Complex) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _scaled(row: Complex) -> bool:
-    """Scale a row by its greatest derivative; returns whether it is a number other than zero."""
-    largest = 0.0
-    for k in range(8):
-        largest = max(largest, abs(row[k].real), abs(row[k].imag))
-    if not 0.0 < largest < LARGEST:
-        return False
-    for k in range(10):
-        row[k] /= largest
-    return True
+def _solved(matrix: Complex, newton: Complex, tangent: Complex) -> int:
+    """Both steps from the rows of all pairs, each scaled by its greatest derivative; 0 where they are singular."""
+    for row in matrix:
+        largest = 0.0
+        for k in range(8):
+            largest = max(largest, abs(row[k].real), abs(row[k].imag))
+        if not 0.0 < largest < LARGEST:
+            return 0
+        row /= largest
+    if not reduce(matrix):
+        return 0
+    newton[:], tangent[:] = matrix[:, 8], matrix[:, 9]
+    return 1
 
 
 @njit(cache=True, nogil=True)
@@ -125,13 +127,7 @@ def nine_pair_system(
     for j in range(8):
         _spread(p, dp, j, turns, moves)
         _row(y, turns, moves, matrix[j])
-        if not _scaled(matrix[j]):
-            return 0
-    if not reduce(matrix):
-        return 0
-    for k in range(8):
-        newton[k], tangent[k] = matrix[k, 8], matrix[k, 9]
-    return 1
+    return _solved(matrix, newton, tangent)
 
 
 @njit(cache=True, nogil=True)
@@ -196,13 +192,7 @@ def nine_pair_system_extended(
             r_bar = _product((-p[8 + j], 0j), _inverse(_sum(one, (p[8 + j], 0j))))
         _row(y, turns, moves, matrix[j])
         matrix[j, 8] = -_equation(y, low, (turns[0], 0j), s_bar, (turns[2], 0j), r_bar)
-        if not _scaled(matrix[j]):
-            return 0
-    if not reduce(matrix):
-        return 0
-    for k in range(8):
-        newton[k], tangent[k] = matrix[k, 8], matrix[k, 9]
-    return 1
+    return _solved(matrix, newton, tangent)
 
 
 def is_linkage(y: Complex) -> NDArray[np.bool_]:
