@@ -307,6 +307,13 @@ def test_least_squares_are_no_greater_than_those_of_minimax(client):
 
 
 GRID = {"round": {"length": 0.5, "coordinates": 0.5}}
+NINE = {
+    "function": None,
+    "input_range": None,
+    "output_range": None,
+    "criterion": "precision",
+    "pairs": [*PAIRS, {"input": 80, "output": 83.0}],
+}
 ZONE = {"fixed_pivots": {"input": {"circle": {"center": [0.0, 0.0], "radius": 9.0}}}}
 
 
@@ -325,6 +332,8 @@ ZONE = {"fixed_pivots": {"input": {"circle": {"center": [0.0, 0.0], "radius": 9.
         ({"mechanisms": ["stephenson_2"], "constraints": {"grashof": "crank_rocker"}}, {"/constraints/grashof"}),
         ({"mechanisms": ["watt_2", "stephenson_3"], "precision_points": 9}, {"/precision_points"}),
         ({"mechanisms": ["watt_2"], "precision_points": 10}, {"/precision_points"}),
+        (NINE | {"mechanisms": ["watt_2", "stephenson_3"]}, {"/pairs"}),
+        (NINE | {"mechanisms": ["watt_2"], "scales": {"input": 1.0}}, {"/scales/output"}),
         ({"mechanisms": ["watt_2"], "precision_points": 9, "output_range": None}, {"/output_range"}),
         ({"mechanisms": "auto", "precision_points": 8}, {"/precision_points"}),
     ],

@@ -454,7 +454,8 @@ class FunctionProblem(LinkageProblem):
         if max(moved) - min(moved) <= EQUAL_INPUTS * (max(map(abs, moved)) if self.slides else 1.0):
             yield Contradiction("/pairs", "the output does not move")
         if self.aim == "precision" and len(pairs) > self.most_exact:
-            detail = f"at most {self.most_exact} pairs can be met with what is left open; ask for another criterion"
+            more = "name watt_2 alone for nine" if self.sixbars_alone else "leave zeros or scales open"
+            detail = f"at most {self.most_exact} pairs can be met; {more}, or ask for another criterion"
             yield Contradiction("/pairs", detail)
 
     def _faults_of_ranges(self) -> Iterator[Contradiction]:
