@@ -28,7 +28,7 @@ from synthesis.kinds.function.nine_pair_system import (
     nine_pair_system,
     nine_pair_system_extended,
 )
-from synthesis.numerics.continuation import CONVERGED, REACHED, follow, refine
+from synthesis.numerics.continuation import CONVERGED, REACHED, follow, further, refine
 from synthesis.numerics.known import Known, crowded
 
 Real = NDArray[np.float64]
@@ -141,7 +141,7 @@ def all_watts(
 
 
 def _part(progress: Callable[[float], None], way: int) -> Callable[[float], None]:
-    return lambda share: progress((way + share) / (way + 1.0))
+    return lambda share: progress(further(way, share))
 
 
 def conjugate(y: Complex) -> Complex:

@@ -30,7 +30,7 @@ from synthesis.kinds.path.nine_point_system import (
     residuals,
 )
 from synthesis.kinds.path.starts import nine_point_start
-from synthesis.numerics.continuation import CONVERGED, REACHED, follow, refine
+from synthesis.numerics.continuation import CONVERGED, REACHED, follow, further, refine
 from synthesis.numerics.known import Known
 
 Complex = NDArray[np.complex128]
@@ -158,7 +158,7 @@ def all_triples(
 
 
 def _part(progress: Callable[[float], None], way: int) -> Callable[[float], None]:
-    return lambda share: progress((way + share) / (way + 1.0))
+    return lambda share: progress(further(way, share))
 
 
 def conjugate(y: Complex) -> Complex:
