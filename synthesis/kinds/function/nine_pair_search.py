@@ -92,7 +92,6 @@ def solve_nine_pairs(problem: FunctionProblem, reasons: dict[str, str], progress
         judged = _judged(task, watts.real, k, l_)
         kept += judged.kept
         reasons_before += judged.reasons
-    on_one_side = len(kept)
     # The best of what can be seen beforehand first, so that equals keep an order.
     kept.sort(key=lambda one: _greatest_cosine(task, one))
 
@@ -110,8 +109,7 @@ def solve_nine_pairs(problem: FunctionProblem, reasons: dict[str, str], progress
     counts = f"{grouped(computed)} of {grouped(SOLUTIONS * len(choices))}"
     text = (
         f"{counts} Watt II sixbars through the nine pairs were computed, real and complex; {grouped(real)} "
-        f"{agreeing(real, 'is', 'are')} real, {on_one_side} of these {agreeing(on_one_side, 'keeps', 'keep')} the "
-        f"assembly from the first pair to the last, and {sifting.accepted} "
+        f"{agreeing(real, 'is', 'are')} real, and {grouped(sifting.accepted)} of these "
         f"{agreeing(sifting.accepted, 'satisfies', 'satisfy')} all demands.{sifting.reasons()}"
     )
     if not sifting.passed:
