@@ -12,12 +12,14 @@ the error of the prediction (∝ h⁵), sets the next step h.
 
 The system is one compiled function that does the linear algebra, because that is where its structure saves time:
 
-    system(y, low, p, dp, newton, tangent, work) -> solvable
+    system(y, low, p, p_low, dp, newton, tangent, work) -> solvable
 
 writes ``newton`` = −J⁻¹ f and ``tangent`` = −J⁻¹ f_p dp, and returns 0 where J is singular; ``work`` is scratch.
-``low`` is what y has rounded off: a system that computes f at y + low in higher precision is followed in higher
-precision, since Newton's steps go into y and low together. :mod:`synthesis.numerics.elimination` has a dense solver.
-The type of a system is :data:`SYSTEM`, so that one compiled tracker serves every system and both are cached on disk.
+``low`` and ``p_low`` are what y and p have rounded off: a system that computes f at y + low and p + p_low in higher
+precision is followed in higher precision, since Newton's steps go into y and low together. Near a solution that is
+nearly singular the way itself must be as precise: there a change of p by 1e-16 moves y by more than a step does.
+:mod:`synthesis.numerics.elimination` has a dense solver. The type of a system is :data:`SYSTEM`, so that one compiled
+tracker serves every system and both are cached on disk.
 """
 
 from __future__ import annotations
@@ -31,15 +33,15 @@ from numba import types
 from numpy.typing import NDArray
 
 from kinematics.compiling import njit
-from synthesis.numerics.double_double import add
+from synthesis.numerics.double_double import add, multiply
 
 Complex = NDArray[np.complex128]
 
 _VECTOR = types.Array(types.complex128, 1, "C")
 _INDICES = types.Array(types.int64, 1, "C")
 
-SYSTEM = types.int64(_VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR)
-"""The type of a compiled system: y, low, p, dp, newton, tangent, work."""
+SYSTEM = types.int64(_VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR)
+"""The type of a compiled system: y, low, p, p_low, dp, newton, tangent, work."""
 
 REACHED, TOO_MANY_STEPS, STEP_TOO_SMALL, NOT_CONVERGED = range(4)
 """How a path ended; only ``REACHED`` gives a solution."""
@@ -53,8 +55,9 @@ SHARP = 1e-13
 CONVERGED = 1e-7
 """A last Newton step above this, relative, is no convergence: the end point is singular or a path was lost."""
 
-FIRST_STEP, LEAST_STEP = 0.02, 1e-12
-"""Step of t at first, and that below which a path is given up: it runs into a singularity."""
+FIRST_STEP, LEAST_STEP, LEAST_PRECISE_STEP = 0.02, 1e-12, 1e-14
+"""Step of t at first, and those below which a path is given up, the last one where the way has twice the precision: it
+runs into a singularity."""
 
 OVERFLOW, UNDERFLOW = 1e300, 1e-300
 """Squared sizes beyond the first are not finite enough to go on with; the second keeps a quotient by zero defined."""
@@ -110,17 +113,35 @@ def _parameters(t: float, start: Complex, end: Complex, bend: Complex, p: Comple
         dp[k] = end[k] - start[k] + (1.0 - 2.0 * t) * bend[k]
 
 
+@njit(cache=True, nogil=True)
+def _precise_parameters(
+    t: float, start: Complex, end: Complex, bend: Complex, p: Complex, p_low: Complex, dp: Complex
+) -> None:
+    """The same in twice the precision, as p₁ + u (p₀ − p₁ + t b) with u = 1 − t."""
+    u, u_low = add(1.0 + 0j, 0j, complex(-t), 0j)
+    for k in range(p.size):
+        away, away_low = multiply(complex(t), 0j, bend[k], 0j)
+        back, back_low = add(start[k], 0j, -end[k], 0j)
+        away, away_low = add(away, away_low, back, back_low)
+        away, away_low = multiply(away, away_low, u, u_low)
+        p[k], p_low[k] = add(away, away_low, end[k], 0j)
+        dp[k] = end[k] - start[k] + (1.0 - 2.0 * t) * bend[k]
+
+
 @njit(
-    types.float64(types.FunctionType(SYSTEM), _INDICES, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR),
+    types.float64(
+        types.FunctionType(SYSTEM), _INDICES, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR,
+    ),
     cache=True,
     nogil=True,
-)
+)  # fmt: skip
 def _refine(
     system: Any,
     groups: Any,
     y: Complex,
     low: Complex,
     p: Complex,
+    p_low: Complex,
     dp: Complex,
     newton: Complex,
     tangent: Complex,
@@ -129,7 +150,7 @@ def _refine(
     """Newton's method in place until its steps are at rounding level; returns the last step's relative size."""
     moved = np.inf
     for _ in range(8):
-        if system(y, low, p, dp, newton, tangent, work) == 0:
+        if system(y, low, p, p_low, dp, newton, tangent, work) == 0:
             break
         now = _relative(newton, y, groups)
         if now >= moved:
@@ -145,7 +166,7 @@ def _refine(
 @njit(
     types.UniTuple(types.int64, 2)(
         types.FunctionType(SYSTEM), _INDICES, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, types.float64, types.int64,
-        types.int64,
+        types.int64, types.boolean,
     ),
     cache=True,
     nogil=True,
@@ -161,39 +182,46 @@ def _follow(
     tolerance: float,
     most_steps: int,
     scratch: int,
+    precise: bool,
 ) -> tuple[int, int]:
     """Follow one path; ``y`` is its start and becomes its end. Returns status and steps."""
     n = y.size
     work = np.empty(scratch, np.complex128)
     p, dp = np.empty(start.size, np.complex128), np.empty(start.size, np.complex128)
+    p_low = np.zeros(start.size, np.complex128)
     slopes = np.empty((4, n), np.complex128)
     newton, tangent = np.empty(n, np.complex128), np.empty(n, np.complex128)
     at, rest = np.empty(n, np.complex128), np.zeros(n, np.complex128)
     t, h, tried, grown = 0.0, FIRST_STEP, 0, 2.0
+    least = LEAST_PRECISE_STEP if precise else LEAST_STEP
     _parameters(0.0, start, end, bend, p, dp)
-    system(y, low, p, dp, newton, tangent, work)
+    system(y, low, p, p_low, dp, newton, tangent, work)
     slopes[0] = tangent
     while t < 1.0:
         if tried >= most_steps:
             return TOO_MANY_STEPS, tried
-        if h < LEAST_STEP:
+        if h < least:
             return STEP_TOO_SMALL, tried
         tried += 1
         h = min(h, 1.0 - t)
+        if precise:
+            h = (t + h) - t  # what the step is in numbers that t can be
         for stage in range(1, 4):
             reach = h if stage == 3 else 0.5 * h
-            if stage != 2:
+            if stage != 2 and precise:
+                _precise_parameters(t + reach, start, end, bend, p, p_low, dp)
+            elif stage != 2:
                 _parameters(t + reach, start, end, bend, p, dp)
             for k in range(n):
                 at[k] = y[k] + reach * slopes[stage - 1, k]
-            system(at, low, p, dp, newton, tangent, work)
+            system(at, low, p, p_low, dp, newton, tangent, work)
             slopes[stage] = tangent
         for k in range(n):
             change = h / 6.0 * (slopes[0, k] + 2.0 * (slopes[1, k] + slopes[2, k]) + slopes[3, k])
             at[k], rest[k] = add(y[k], low[k], change, 0j)
         missed, accepted = 0.0, False
         for correction in range(3):
-            if system(at, rest, p, dp, newton, tangent, work) == 0:
+            if system(at, rest, p, p_low, dp, newton, tangent, work) == 0:
                 break
             moved = _relative(newton, at, groups)
             if correction == 0:
@@ -216,7 +244,7 @@ def _follow(
         else:
             h *= min(max(scale, 0.2), 0.6)
             grown = 1.0
-    moved = _refine(system, groups, y, low, p, dp, newton, tangent, work)
+    moved = _refine(system, groups, y, low, p, p_low, dp, newton, tangent, work)
     return (REACHED if moved < CONVERGED else NOT_CONVERGED), tried
 
 
@@ -232,14 +260,14 @@ def _refine_all(system: Any, groups: Any, y: Complex, low: Complex, p: Complex, 
     work, still = np.empty(scratch, np.complex128), np.zeros(p.size, np.complex128)
     newton, tangent = np.empty(y.shape[1], np.complex128), np.empty(y.shape[1], np.complex128)
     for n in range(y.shape[0]):
-        moved[n] = _refine(system, groups, y[n], low[n], p, still, newton, tangent, work)
+        moved[n] = _refine(system, groups, y[n], low[n], p, still, still, newton, tangent, work)
 
 
 @njit(
     types.void(
         types.FunctionType(SYSTEM), _INDICES, types.Array(types.complex128, 2, "C"),
         types.Array(types.complex128, 2, "C"), _VECTOR, _VECTOR, _VECTOR,
-        types.float64, types.int64, types.int64, _INDICES, _INDICES,
+        types.float64, types.int64, types.int64, types.boolean, _INDICES, _INDICES,
     ),
     cache=True,
     nogil=True,
@@ -255,12 +283,13 @@ def _follow_all(
     tolerance: float,
     most_steps: int,
     scratch: int,
+    precise: bool,
     status: Any,
     steps: Any,
 ) -> None:
     for path in range(y.shape[0]):
         status[path], steps[path] = _follow(
-            system, groups, y[path], low[path], start, end, bend, tolerance, most_steps, scratch
+            system, groups, y[path], low[path], start, end, bend, tolerance, most_steps, scratch, precise
         )
 
 
@@ -276,6 +305,7 @@ def follow(
     tolerance: float = 5e-3,
     most_steps: int = 5000,
     threads: int = 1,
+    precise: bool = False,
 ) -> Ends:
     """Follow solutions from one set of parameters to another.
 
@@ -297,6 +327,8 @@ def follow(
         A path that is not at its end by then is given up.
     threads : int
         Paths are independent; the kernel releases the interpreter.
+    precise : bool
+        Whether the parameters on the way have twice the precision, for a system that uses it.
 
     Returns
     -------
@@ -313,7 +345,8 @@ def follow(
 
     def work(first: int) -> None:
         some = slice(first, first + CHUNK)
-        kernel(system, groups, ends[some], low[some], *ways, tolerance, most_steps, scratch, status[some], steps[some])
+        limits = tolerance, most_steps, scratch, precise
+        kernel(system, groups, ends[some], low[some], *ways, *limits, status[some], steps[some])
 
     if threads == 1:
         for first in range(0, count, CHUNK):

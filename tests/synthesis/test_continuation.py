@@ -13,7 +13,7 @@ SCRATCH = 9
 
 
 @njit(SYSTEM, cache=True, nogil=True)
-def three_quadrics(y, low, p, dp, newton, tangent, work):
+def three_quadrics(y, low, p, p_low, dp, newton, tangent, work):
     """Three general quadrics: 8 solutions (Bézout). Parameters: ten coefficients of each."""
     jacobian = work[:9].reshape((3, 3))
     pivots = np.empty(3, np.int64)

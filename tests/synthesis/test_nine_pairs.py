@@ -42,7 +42,8 @@ def test_the_compiled_system_is_newtons_step_of_the_couplers_lengths():
         y, p = nine_pair_problem(rng)
         dp = rng.normal(size=16) + 1j * rng.normal(size=16)
         newton, tangent = np.empty((2, 8), np.complex128)
-        assert nine_pair_system(y, np.zeros(8, complex), p, dp, newton, tangent, np.empty(SCRATCH, complex)) == 1
+        low, p_low, work = (np.zeros(count, complex) for count in (8, 16, SCRATCH))
+        assert nine_pair_system(y, low, p, p_low, dp, newton, tangent, work) == 1
         h = 1e-6
         jacobian = np.stack([(gaps(y + h * k, p) - gaps(y - h * k, p)) / (2 * h) for k in np.eye(8)], axis=1)
         by_p = (gaps(y, p + h * dp) - gaps(y, p - h * dp)) / (2 * h)

@@ -91,7 +91,8 @@ def test_the_compiled_system_is_newtons_step_of_the_equations(system):
         y = y * (1.0 + 0.01 * rng.normal(size=16))
         dp = rng.normal(size=16) + 1j * rng.normal(size=16)
         newton, tangent = np.empty((2, 16), np.complex128)
-        assert system(y, np.zeros(16, complex), p, dp, newton, tangent, np.empty(SCRATCH, complex)) == 1
+        low, p_low, work = (np.zeros(count, complex) for count in (16, 16, SCRATCH))
+        assert system(y, low, p, p_low, dp, newton, tangent, work) == 1
         h = 1e-6
         jacobian = np.stack([(gaps(y + h * e, p) - gaps(y - h * e, p)) / (2 * h) for e in np.eye(16)], axis=1)
         by_p = (gaps(y, p + h * dp) - gaps(y, p - h * dp)) / (2 * h)

@@ -120,7 +120,7 @@ def _spread(p: Complex, dp: Complex, j: int, turns: Complex, moves: Complex) -> 
 
 @njit(SYSTEM, cache=True, nogil=True)
 def nine_pair_system(
-    y: Complex, low: Complex, p: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
+    y: Complex, low: Complex, p: Complex, p_low: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
 ) -> int:
     """The system, of the type that the continuation follows."""
     matrix, turns, moves = work[:80].reshape((8, 10)), work[80:84], work[84:88]
@@ -172,7 +172,7 @@ def _equation(y: Complex, low: Complex, s: Pair, s_bar: Pair, r: Pair, r_bar: Pa
 
 @njit(SYSTEM, cache=True, nogil=True)
 def nine_pair_system_extended(
-    y: Complex, low: Complex, p: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
+    y: Complex, low: Complex, p: Complex, p_low: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
 ) -> int:
     """The system with its equations in twice the precision.
 
@@ -185,13 +185,14 @@ def nine_pair_system_extended(
     for j in range(8):
         if p.size == TURNS:
             turns[:], moves[:] = p[j:TURNS:8], dp[j:TURNS:8]
-            s_bar, r_bar = (turns[1], 0j), (turns[3], 0j)
+            s, s_bar, r, r_bar = (turns[0], 0j), (turns[1], 0j), (turns[2], 0j), (turns[3], 0j)
         else:
             _spread(p, dp, j, turns, moves)
-            s_bar = _product((-p[j], 0j), _inverse(_sum(one, (p[j], 0j))))
-            r_bar = _product((-p[8 + j], 0j), _inverse(_sum(one, (p[8 + j], 0j))))
+            s, r = (p[j], p_low[j]), (p[8 + j], p_low[8 + j])
+            s_bar = _product((-s[0], -s[1]), _inverse(_sum(one, s)))
+            r_bar = _product((-r[0], -r[1]), _inverse(_sum(one, r)))
         _row(y, turns, moves, matrix[j])
-        matrix[j, 8] = -_equation(y, low, (turns[0], 0j), s_bar, (turns[2], 0j), r_bar)
+        matrix[j, 8] = -_equation(y, low, s, s_bar, r, r_bar)
     return _solved(matrix, newton, tangent)
 
 

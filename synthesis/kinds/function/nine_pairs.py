@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 from importlib import resources
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,8 +58,8 @@ run would find the same."""
 FIRST_TOLERANCE, RETRY_TOLERANCES = 2e-3, (2e-4, 1e-5)
 """Relative error of the prediction that a step may have: at first, and when lost paths are followed again."""
 
-PORTION, STEPS = 512, 5000
-"""Paths between two reports of progress, and greatest number of steps of one."""
+PORTION, STEPS, RETRY_STEPS = 512, 5000, 20_000
+"""Paths between two reports of progress, and greatest number of steps of one, at first and when followed again."""
 
 RETRIED = 0.9
 """Share of the progress of a way with which the lost paths are followed again."""
@@ -203,7 +203,7 @@ def _run(solutions: _Solutions, bend: Complex, threads: int, progress: Callable[
     lost = 0
     for first in range(0, SOLUTIONS, PORTION):
         some = np.arange(first, min(first + PORTION, SOLUTIONS))
-        keys[some] = _follow(solutions, nine_pair_system, some, bend, FIRST_TOLERANCE, threads)
+        keys[some] = _follow(solutions, some, bend, FIRST_TOLERANCE, threads)
         lost += int(np.isnan(keys[some, 0]).sum())
         progress(RETRIED * (first + len(some)) / SOLUTIONS)
         if lost > PORTION + SPECIAL * SOLUTIONS:
@@ -215,7 +215,7 @@ def _run(solutions: _Solutions, bend: Complex, threads: int, progress: Callable[
             if solutions.missing <= 0:
                 return
             some = again[first : first + PORTION]
-            _follow(solutions, nine_pair_system_extended, some, bend, tolerance, threads)
+            _follow(solutions, some, bend, tolerance, threads, again=True)
             solutions.add_conjugates()
             done = (n + (first + len(some)) / len(again)) / len(RETRY_TOLERANCES)
             progress(RETRIED + (1.0 - RETRIED) * done)
@@ -230,12 +230,18 @@ def _astray(keys: Complex) -> NDArray[np.int64]:
 
 
 def _follow(
-    solutions: _Solutions, system: Any, some: NDArray[np.int64], bend: Complex, tolerance: float, threads: int
+    solutions: _Solutions,
+    some: NDArray[np.int64],
+    bend: Complex,
+    tolerance: float,
+    threads: int,
+    *,
+    again: bool = False,
 ) -> Complex:
     """Follow some solutions of the start to the problem; returns their ends as they are told apart, NaN for none."""
     begun = nine_pair_start()
     ends = follow(
-        system,
+        nine_pair_system_extended if again else nine_pair_system,
         GROUPS,
         SCRATCH,
         begun.y[some],
@@ -243,8 +249,9 @@ def _follow(
         solutions.p,
         bend,
         tolerance=tolerance,
-        most_steps=STEPS,
+        most_steps=RETRY_STEPS if again else STEPS,
         threads=threads,
+        precise=again,
     )
     keys = np.full((len(some), 2 * UNKNOWNS), np.nan, np.complex128)
     reached = ends.status == REACHED

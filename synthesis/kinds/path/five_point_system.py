@@ -37,7 +37,7 @@ GROUPS = np.array([0, 0, 0, 0, 1, 1, 1, 1], np.int64)
 
 @njit(SYSTEM, cache=True, nogil=True)
 def five_point_system(
-    y: Complex, low: Complex, p: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
+    y: Complex, low: Complex, p: Complex, p_low: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
 ) -> int:
     """The system, of the type that the continuation follows."""
     matrix = work[:64].reshape((8, 8))

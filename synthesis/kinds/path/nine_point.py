@@ -11,7 +11,7 @@ be found is said: nothing is complete without all 1442.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -225,7 +225,7 @@ def _run(orbits: _Orbits, bend: Complex, threads: int, progress: Callable[[float
     lost: list[int] = []
     for first in range(0, ORBITS, PORTION):
         some = np.arange(first, min(first + PORTION, ORBITS))
-        sound = _follow(orbits, nine_point_system, begun.y[some], begun.p, bend, FIRST_TOLERANCE, threads)
+        sound = _follow(orbits, begun.y[some], begun.p, bend, FIRST_TOLERANCE, threads)
         lost += [int(n) for n in some[~sound]]
         progress(0.8 * (first + len(some)) / ORBITS)
         if len(lost) > 0.5 * PORTION + SPECIAL * ORBITS:
@@ -236,18 +236,29 @@ def _run(orbits: _Orbits, bend: Complex, threads: int, progress: Callable[[float
             break
         members = cognates(begun.y[lost], begun.p)[:, attempt % 3]
         tolerance = RETRY_TOLERANCE if attempt < 3 else LAST_TOLERANCE
-        _follow(orbits, nine_point_system_extended, members, begun.p, bend, tolerance, threads)
+        _follow(orbits, members, begun.p, bend, tolerance, threads, again=True)
         orbits.add_conjugates()
         progress(0.8 + 0.03 * attempt)
     return len(lost)
 
 
 def _follow(
-    orbits: _Orbits, system: Any, y: Complex, begun: Complex, bend: Complex, tolerance: float, threads: int
+    orbits: _Orbits, y: Complex, begun: Complex, bend: Complex, tolerance: float, threads: int, *, again: bool = False
 ) -> Mask:
-    """Follow solutions of the start to the problem; tells which of them have a sound end of their own."""
+    """Follow solutions of the start to the problem, those that were lost in twice the precision; tells which of them
+    have a sound end of their own."""
     ends = follow(
-        system, GROUPS, SCRATCH, y, begun, orbits.p, bend, tolerance=tolerance, most_steps=STEPS, threads=threads
+        nine_point_system_extended if again else nine_point_system,
+        GROUPS,
+        SCRATCH,
+        y,
+        begun,
+        orbits.p,
+        bend,
+        tolerance=tolerance,
+        most_steps=STEPS,
+        threads=threads,
+        precise=again,
     )
     sound = np.asarray((ends.status == REACHED) & np.isfinite(ends.y).all(axis=-1))
     # Refined, so that the keys of ill-conditioned solutions have digits to tell them by.

@@ -196,7 +196,7 @@ def _solve(y: Complex, newton: Complex, tangent: Complex, work: Complex, points:
 
 @njit(SYSTEM, **OPTIONS)
 def nine_point_system(
-    y: Complex, low: Complex, p: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
+    y: Complex, low: Complex, p: Complex, p_low: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
 ) -> int:
     """The system, of the type that the continuation follows, in ordinary precision."""
     points = p.size // 2
@@ -208,7 +208,7 @@ def nine_point_system(
 
 @njit(SYSTEM, cache=True, nogil=True)
 def nine_point_system_extended(
-    y: Complex, low: Complex, p: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
+    y: Complex, low: Complex, p: Complex, p_low: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
 ) -> int:
     """The system with its residuals in twice the precision, for solutions that ordinary rounding would lose.
 
@@ -227,9 +227,9 @@ def nine_point_system_extended(
         for dyad in range(2):
             k = 4 * dyad
             moved, moved_low = multiply(y[k], low[k], s, s_low)
-            alpha, alpha_low = add(moved, moved_low, p[j], 0j)
+            alpha, alpha_low = add(moved, moved_low, p[j], p_low[j])
             moved, moved_low = multiply(y[k + 1], low[k + 1], s_back, s_back_low)
-            beta, beta_low = add(moved, moved_low, p[8 + j], 0j)
+            beta, beta_low = add(moved, moved_low, p[8 + j], p_low[8 + j])
             to, to_low = add(beta, beta_low, y[k + 3], low[k + 3])
             one, one_low = multiply(alpha, alpha_low, to, to_low)
             other, other_low = multiply(y[k + 2], low[k + 2], beta, beta_low)
