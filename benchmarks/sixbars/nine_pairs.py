@@ -14,7 +14,6 @@ from benchmarks.sixbars.planted_functions import drawn
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.drive import drive
 from synthesis.dispatch import solve
-from synthesis.kinds.function.nine_pair_search import THREADS
 from synthesis.kinds.function.nine_pairs import all_watts
 from synthesis.registry import parse_problem
 
@@ -60,7 +59,7 @@ def table(tasks: int, seed: int) -> None:
     for n in range(tasks):
         vectors, inputs, outputs = planted(rng)
         wall, processor = time.perf_counter(), time.process_time()
-        watts = all_watts(inputs, outputs, np.random.default_rng(n), lambda share: None, THREADS)
+        watts = all_watts(inputs, outputs, np.random.default_rng(n), lambda share: None)
         processor, wall = time.process_time() - processor, time.perf_counter() - wall
         own = float(np.abs(watts.real - vectors).max(axis=1).min(initial=np.inf))
         print(

@@ -46,8 +46,12 @@ SYSTEM = types.int64(_VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECT
 REACHED, TOO_MANY_STEPS, STEP_TOO_SMALL, NOT_CONVERGED = range(4)
 """How a path ended; only ``REACHED`` gives a solution."""
 
-CLOSE = 1e-6
-"""Newton's relative step at which a point on the way is near enough to its path; the next one would be its square."""
+CLOSE, PRECISELY_CLOSE = 1e-6, 1e-9
+"""Newton's relative step at which a point on the way is near enough to its path, and where the way has twice the
+precision; the next one would be its square."""
+
+CORRECTIONS, PRECISE_CORRECTIONS = 3, 6
+"""Newton's steps at most after a prediction, and where the way has twice the precision."""
 
 SHARP = 1e-13
 """Newton's relative step that an end point is refined to, if rounding lets it."""
@@ -55,9 +59,9 @@ SHARP = 1e-13
 CONVERGED = 1e-7
 """A last Newton step above this, relative, is no convergence: the end point is singular or a path was lost."""
 
-FIRST_STEP, LEAST_STEP, LEAST_PRECISE_STEP = 0.02, 1e-12, 1e-14
-"""Step of t at first, and those below which a path is given up, the last one where the way has twice the precision: it
-runs into a singularity."""
+FIRST_STEP, LEAST_STEP, LEAST_SHARE = 0.02, 1e-12, 1e-7
+"""Step of t at first, and that below which a path is given up: it runs into a singularity. Where the way has twice the
+precision the last one is a share of what is left of the way: nearly singular ends are neared by ever smaller steps."""
 
 OVERFLOW, UNDERFLOW = 1e300, 1e-300
 """Squared sizes beyond the first are not finite enough to go on with; the second keeps a quotient by zero defined."""
@@ -107,25 +111,27 @@ def _relative(step: Complex, y: Complex, groups: Any) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _parameters(t: float, start: Complex, end: Complex, bend: Complex, p: Complex, dp: Complex) -> None:
+def _parameters(left: float, start: Complex, end: Complex, bend: Complex, p: Complex, dp: Complex) -> None:
+    """The parameters at t = 1 − ``left``, and their derivatives by t."""
+    t = 1.0 - left
     for k in range(p.size):
-        p[k] = (1.0 - t) * start[k] + t * end[k] + t * (1.0 - t) * bend[k]
-        dp[k] = end[k] - start[k] + (1.0 - 2.0 * t) * bend[k]
+        p[k] = left * start[k] + t * end[k] + t * left * bend[k]
+        dp[k] = end[k] - start[k] + (left - t) * bend[k]
 
 
 @njit(cache=True, nogil=True)
 def _precise_parameters(
-    t: float, start: Complex, end: Complex, bend: Complex, p: Complex, p_low: Complex, dp: Complex
+    left: float, start: Complex, end: Complex, bend: Complex, p: Complex, p_low: Complex, dp: Complex
 ) -> None:
-    """The same in twice the precision, as p₁ + u (p₀ − p₁ + t b) with u = 1 − t."""
-    u, u_low = add(1.0 + 0j, 0j, complex(-t), 0j)
+    """The same in twice the precision, as p₁ + (1 − t) (p₀ − p₁ + t b)."""
+    t, t_low = add(1.0 + 0j, 0j, complex(-left), 0j)
     for k in range(p.size):
-        away, away_low = multiply(complex(t), 0j, bend[k], 0j)
+        away, away_low = multiply(t, t_low, bend[k], 0j)
         back, back_low = add(start[k], 0j, -end[k], 0j)
         away, away_low = add(away, away_low, back, back_low)
-        away, away_low = multiply(away, away_low, u, u_low)
+        away, away_low = multiply(away, away_low, complex(left), 0j)
         p[k], p_low[k] = add(away, away_low, end[k], 0j)
-        dp[k] = end[k] - start[k] + (1.0 - 2.0 * t) * bend[k]
+        dp[k] = end[k] - start[k] + (left - t.real) * bend[k]
 
 
 @njit(
@@ -192,26 +198,24 @@ def _follow(
     slopes = np.empty((4, n), np.complex128)
     newton, tangent = np.empty(n, np.complex128), np.empty(n, np.complex128)
     at, rest = np.empty(n, np.complex128), np.zeros(n, np.complex128)
-    t, h, tried, grown = 0.0, FIRST_STEP, 0, 2.0
-    least = LEAST_PRECISE_STEP if precise else LEAST_STEP
-    _parameters(0.0, start, end, bend, p, dp)
+    left, h, tried, grown = 1.0, FIRST_STEP, 0, 2.0
+    close, corrections = (PRECISELY_CLOSE, PRECISE_CORRECTIONS) if precise else (CLOSE, CORRECTIONS)
+    _parameters(left, start, end, bend, p, dp)
     system(y, low, p, p_low, dp, newton, tangent, work)
     slopes[0] = tangent
-    while t < 1.0:
+    while left > 0.0:
         if tried >= most_steps:
             return TOO_MANY_STEPS, tried
-        if h < least:
+        if h < (LEAST_SHARE * left if precise else LEAST_STEP):
             return STEP_TOO_SMALL, tried
         tried += 1
-        h = min(h, 1.0 - t)
-        if precise:
-            h = (t + h) - t  # what the step is in numbers that t can be
+        h = min(h, left)
         for stage in range(1, 4):
             reach = h if stage == 3 else 0.5 * h
             if stage != 2 and precise:
-                _precise_parameters(t + reach, start, end, bend, p, p_low, dp)
+                _precise_parameters(left - reach, start, end, bend, p, p_low, dp)
             elif stage != 2:
-                _parameters(t + reach, start, end, bend, p, dp)
+                _parameters(left - reach, start, end, bend, p, dp)
             for k in range(n):
                 at[k] = y[k] + reach * slopes[stage - 1, k]
             system(at, low, p, p_low, dp, newton, tangent, work)
@@ -220,7 +224,7 @@ def _follow(
             change = h / 6.0 * (slopes[0, k] + 2.0 * (slopes[1, k] + slopes[2, k]) + slopes[3, k])
             at[k], rest[k] = add(y[k], low[k], change, 0j)
         missed, accepted = 0.0, False
-        for correction in range(3):
+        for correction in range(corrections):
             if system(at, rest, p, p_low, dp, newton, tangent, work) == 0:
                 break
             moved = _relative(newton, at, groups)
@@ -230,12 +234,12 @@ def _follow(
                 break
             for k in range(n):
                 at[k], rest[k] = add(at[k], rest[k], newton[k], 0j)
-            if moved < CLOSE:
+            if moved < close:
                 accepted = True
                 break
         scale = (0.4 * tolerance / (missed + UNDERFLOW)) ** 0.2 if missed < OVERFLOW else 0.2
         if accepted:
-            t = 1.0 if h >= 1.0 - t else t + h
+            left -= h
             for k in range(n):
                 y[k], low[k] = at[k], rest[k]
                 slopes[0, k] = tangent[k]

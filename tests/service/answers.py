@@ -12,8 +12,8 @@ ENDED_S = 240.0
 """A busy machine may need that long for what takes a second."""
 
 
-def finished(client, problem):
-    """The job of a problem, when it has ended."""
+def finished(client, problem, seconds=ENDED_S):
+    """The job of a problem, when it has ended, so many seconds later at most."""
     answer = client.post("/v1/jobs", json={"problem": problem}, headers={"Prefer": "wait=30"})
     assert answer.status_code in (200, 202), answer.text
     job = answer.json()
@@ -22,7 +22,7 @@ def finished(client, problem):
         now = client.get(f"/v1/jobs/{job['id']}").json()
         return None if now["status"] in ("queued", "running") else now
 
-    return job if answer.status_code == 200 else until(ended, ENDED_S, "the job's end")
+    return job if answer.status_code == 200 else until(ended, seconds, "the job's end")
 
 
 def drawn(client, place, design):

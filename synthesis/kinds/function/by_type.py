@@ -120,7 +120,7 @@ def solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResul
     return FunctionResult(
         designs=sifting.designs(partial(ordered, problem)),
         search=sifting.search("sixbar_search"),
-        summary=_summary(problem, sifting),
+        summary=_summary(problem, sifting) + search.told,
     )
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.kinds.function.design import FunctionDesign, FunctionResult
+from synthesis.kinds.function.nine_pair_sixbars import sixbar_of
 from synthesis.kinds.function.nine_pair_system import SOLUTIONS
 from synthesis.kinds.function.nine_pairs import all_watts
 from synthesis.kinds.function.order import ordered
@@ -22,7 +23,7 @@ from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.sixbar_build import built
 from synthesis.kinds.function.sixbar_descents import Descents, Found
 from synthesis.kinds.function.sixbar_followers import followed
-from synthesis.kinds.function.sixbar_kernels import NUMBERS, START, WATT_2, ZERO, A, B, C, K, L
+from synthesis.kinds.function.sixbar_kernels import WATT_2, A, B, C
 from synthesis.kinds.function.sixbar_search import EXACT_STEPS, EXACT_TOLERANCE, places_of
 from synthesis.kinds.function.task import FunctionTask, function_task
 from synthesis.kinds.function.verification import verify_function
@@ -32,9 +33,6 @@ from synthesis.outcome.sifting import Sifting, reported
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-
-THREADS = 2
-"""Paths that are followed side by side."""
 
 FOLLOWED = 0.9
 """Share of the progress with which all paths are followed."""
@@ -87,7 +85,7 @@ def solve_nine_pairs(problem: FunctionProblem, reasons: dict[str, str], progress
             done = round(share * SOLUTIONS)
             progress(FOLLOWED * (n + share) / len(choices), f"{grouped(done)} of {grouped(SOLUTIONS)} paths followed")
 
-        watts = all_watts(k * task.inputs, l_ * task.outputs, rng, tell, THREADS)
+        watts = all_watts(k * task.inputs, l_ * task.outputs, rng, tell)
         complete, computed, real = complete and watts.complete, computed + watts.found, real + len(watts.real)
         judged = _judged(task, watts.real, k, l_)
         kept += judged.kept
@@ -132,7 +130,7 @@ def _judged(task: FunctionTask, real: Complex, k: float, l_: float) -> _Judged:
     widest = constraints.max_link_ratio or math.inf
     kept, reasons = [], []
     for vectors in real:
-        one = _row(vectors, k, l_, float(task.inputs[0]), float(task.outputs[0]))
+        one = sixbar_of(vectors, k, l_, float(task.inputs[0]), float(task.outputs[0]))
         if one.at[[A, B, C, 7, 8, 9]].min() < NO_LENGTH:
             reasons.append("degenerate_link")
             continue
@@ -152,19 +150,6 @@ def _judged(task: FunctionTask, real: Complex, k: float, l_: float) -> _Judged:
         else:
             kept.append(one)
     return _Judged(kept, reasons)
-
-
-def _row(vectors: Complex, k: float, l_: float, first_input: float, first_output: float) -> Found:
-    """A solution as a row of :mod:`~synthesis.kinds.function.sixbar_kernels`."""
-    a, c, d, e = (complex(z) for z in vectors)
-    at = np.zeros(NUMBERS)
-    at[[A, B, C, 7, 8, 9]] = abs(a), abs(1.0 + c - a), abs(c), abs(d), abs(1.0 + e - d), abs(e)
-    at[START], at[ZERO] = np.angle(a) - k * first_input, np.angle(e) - l_ * first_output
-    at[K], at[L] = k, l_
-    at[10] = np.angle(d) - np.angle(c)
-    # Whether the joint of each dyad is to the left of the way from its pin to its pivot.
-    sides = [((1.0 - pin).conjugate() * (1.0 + arm - pin)).imag > 0.0 for pin, arm in ((a, c), (d, e))]
-    return Found("watt_2", int(sides[0]) | int(sides[1]) << 1, at, 0.0)
 
 
 def _link_ratio(one: Found) -> float:

@@ -48,6 +48,9 @@ with vectors that are."""
 BEND = 0.5
 """Size of the random bend of the way."""
 
+THREADS = 2
+"""Paths that are followed side by side."""
+
 WAYS = 4
 """Whole runs at most; the first finds all or nearly all in general problems."""
 
@@ -106,7 +109,13 @@ def nine_pair_start() -> Start:
 
 
 def all_watts(
-    inputs: Real, outputs: Real, rng: np.random.Generator, progress: Callable[[float], None], threads: int = 1
+    inputs: Real,
+    outputs: Real,
+    rng: np.random.Generator,
+    progress: Callable[[float], None],
+    *,
+    threads: int = THREADS,
+    ways: int = WAYS,
 ) -> Watts:
     """All Watt II sixbars that meet nine pairs.
 
@@ -120,12 +129,14 @@ def all_watts(
         Told the share of the paths that are done.
     threads : int
         Paths followed side by side.
+    ways : int
+        Ways along which all paths are followed at most, while some are missing.
     """
     turned = np.concatenate([inputs[1:] - inputs[0], outputs[1:] - outputs[0]])
     # exp(iθ) − 1 without cancellation.
     p = np.asarray(2j * np.sin(0.5 * turned) * np.exp(0.5j * turned))
     solutions = _Solutions(p)
-    for way in range(WAYS):
+    for way in range(ways):
         known = len(solutions.y)
         bend = BEND * (rng.normal(size=(PARAMETERS, 2)) @ np.array([1.0, 1.0j]))
         _run(solutions, bend, threads, _part(progress, way))

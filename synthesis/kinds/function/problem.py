@@ -338,7 +338,18 @@ class FunctionProblem(LinkageProblem):
     def determines_watts(self) -> bool:
         """Whether nine pairs are to be met by Watt II sixbars, of which there are finitely many."""
         count = self.precision_points if self.pairs is None else len(self.pairs)
-        return self.sixbars_alone and self.sixbars == ("watt_2",) and self.aim == "precision" and count == ALL_WATTS
+        return self.watts_alone and self.aim == "precision" and count == ALL_WATTS
+
+    @property
+    def follows_watts(self) -> bool:
+        """Whether Watt II sixbars are to follow pairs, of which some nine have finitely many."""
+        many = self.pairs is not None and len(self.pairs) >= ALL_WATTS
+        return self.watts_alone and self.aim != "precision" and many and None not in self.scale_choice
+
+    @property
+    def watts_alone(self) -> bool:
+        """Whether nothing but Watt II sixbars is looked for."""
+        return self.sixbars_alone and self.sixbars == ("watt_2",)
 
     def span(self, side: Literal["input", "output"]) -> float | None:
         """The range of a side, degrees or length units, signed; None where it is open."""
