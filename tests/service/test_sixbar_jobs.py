@@ -414,7 +414,7 @@ def test_room_planes_and_forces_hold_together(client):
         ({"driver_dyad": True}, "/problem/driver_dyad"),
         ({"manufacture": {"tolerances": {"length": 0.1}}}, "/problem/manufacture"),
         ({"space": {"fixed_pivots": {"input": {"circle": {"center": [0, 0], "radius": 9}}}}}, "/problem/space"),
-        ({"positions": on_a_way(np.random.default_rng(0), 21)}, "/problem/mechanisms"),
+        ({"positions": on_a_way(np.random.default_rng(0), 61)}, "/problem/mechanisms"),
         ({"positions": SIX, "chain": {"elbow": "left"}}, "/problem/chain"),
         ({"method": "least_squares", "chain": {"elbow": "left"}}, "/problem/chain"),
         ({"mechanisms": ["fourbar"], "chain": {"elbow": "left"}}, "/problem/chain"),

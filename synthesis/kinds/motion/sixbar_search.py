@@ -171,7 +171,7 @@ class SixbarSearch:
 
 
 def solve_sixbars(problem: MotionProblem, types: tuple[Sixbar, ...], progress: Progress) -> MotionResult:
-    """Sixbars of some types that carry the body through two to twenty positions."""
+    """Sixbars of some types that carry the body through two to sixty positions."""
     search = SixbarSearch(problem, types)
     looked = part_of(progress, 0.0, 0.9)
     found = search.fitted(looked) if problem.fitted else search.run(looked)

@@ -12,7 +12,7 @@ from synthesis.model.statement import Coordinate, Degrees, Flag, PositiveLength,
 MOST_HELD = 5
 """Positions that a linkage of two dyads can take exactly, in general (Norton, Table 5-3)."""
 
-MOST_OF_SIXBARS = 20
+MOST_OF_SIXBARS = 60
 """Positions of a sixbar at most. In general it can meet eight: its fourteen numbers, and the three of the body's place
 on it, are what these state beyond the turns of the input."""
 
