@@ -120,6 +120,7 @@ def test_a_change_point_on_the_way_is_not_overlooked() -> None:
     for design in failed:
         assert design.metrics.min_transmission_angle < 0.5
     assert result.search.accepted + sum(result.search.rejected.values()) == result.search.candidates
+    assert result.search.rejected.keys() == {"rotation"}
 
 
 def test_links_that_all_turn_through_pass_the_body() -> None:

@@ -20,13 +20,16 @@ from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.model.linkages import FourbarConfiguration, coupler_point, driven_fourbar, skeleton, to_point
 from synthesis.model.statement import Contradiction, ContradictionError
 from synthesis.outcome.ranking import ranked
-from synthesis.outcome.sifting import Sifting, reported
+from synthesis.outcome.sifting import DEFECTS, Sifting, reported
 
 Base = Literal["source", "left_cognate", "right_cognate", "path"]
 InputSide = Literal["input", "output"]
 
 PATH_SHARE = 0.9
 """Share of the work that a path problem is."""
+
+REASONS = DEFECTS | {"translates": "rotation", "on_curve": "deviation"}
+"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
 
 
 class _Fourbar(NamedTuple):
@@ -46,7 +49,7 @@ def solve_parallel_motion(problem: ParallelMotionProblem, progress: Progress) ->
     else:
         assert problem.linkage is not None
         fourbars = list(_of_linkage(problem.linkage, cognates_too=problem.include_cognates))
-    sifting = Sifting[ParallelMotionDesign](problem)
+    sifting = Sifting[ParallelMotionDesign](problem, REASONS)
     sifting.sift(
         reported(fourbars, progress, (PATH_SHARE, 1.0), "driving sixbars"),
         lambda fourbar: verify_parallel_motion(problem, _sixbar(fourbar.joints), fourbar.base, fourbar.input_side),
