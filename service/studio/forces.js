@@ -6,7 +6,7 @@ import { ForceArrows, forcesIn } from "./force_arrows.js";
 import { cleared } from "./force_scales.js";
 import { Hodograph } from "./hodograph.js";
 import { LoadEditor } from "./load_editor.js";
-import { foreign, t, term, translated } from "./messages.js";
+import { foreign, number, t, term, translated } from "./messages.js";
 import { between, within } from "./player.js";
 import { brief, plots, runs } from "./plots.js";
 import { placeOf } from "./sweep.js";
@@ -355,7 +355,9 @@ export class Forces {
               "tr",
               {},
               el("th", { scope: "row" }, title),
-              el("td", {}, value === null ? "–" : `${shown(value)} ${of}`.trim()),
+              value === null
+                ? el("td", {}, "–")
+                : el("td", { title: `${number(value)} ${of}`.trim() }, `${brief(value)} ${of}`.trim()),
               el(
                 "td",
                 {},
