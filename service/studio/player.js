@@ -66,7 +66,7 @@ export class Player {
     const speed = el(
       "select",
       { id: speeds, onchange: () => (this.rate = Number(speed.value)) },
-      ...[0.25, 0.5, 1, 2, 4].map((rate) => el("option", { value: rate }, `${rate} ×`)),
+      ...[0.25, 0.5, 1, 2, 4].map((rate) => el("option", { value: rate }, `${rate}×`)),
     );
     speed.value = "1";
     this.reading = el("output", { for: scrub, class: "reading" });

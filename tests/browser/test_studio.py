@@ -93,6 +93,8 @@ def test_a_linkage_is_stated_solved_and_moves(open_studio, name, options):
     until(lambda: link_now(page) != before, what="another frame")
     until(lambda: drawn(page), 60, "the drawing")
     assert not re.search(r"\b(null|undefined|NaN)\b", written(page))
+    speed = "one => [one.selectedOptions[0].text, one.offsetWidth >= 72]"
+    assert page.locator("#speed").evaluate(speed) == ["1×", True]
     assert page.locator(".checks .good").count() == page.locator(".checks li").count() > 0
     wider = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
     assert wider <= 0, "the page is wider than the window"
