@@ -1,12 +1,12 @@
 /**
  * A drawing, a table or a picture that is dropped on the page or chosen: its curves are listed, and each becomes what
- * it
- * is chosen for, the points of a path, an area of the room, or the motion of a cam's follower.
+ * it is chosen for, the points of a path, an area of the room, or the motion of a cam's follower.
  */
 
 import * as api from "./api.js";
 import { el, shown, svg } from "./dom.js";
-import { called, leftOut, rounded, spread } from "./drawing_import.js";
+import { called, leftOut, precise, rounded, spread } from "./drawing_import.js";
+import { brief } from "./figures.js";
 import { segmentsOf } from "./follower_table.js";
 import { t } from "./messages.js";
 import { rolesOf, stateArea } from "./room.js";
@@ -230,7 +230,8 @@ export class CurveImport {
         const points = placed(curve);
         const [width, height] = [spread(points, 0), spread(points, 1)];
         const counted = curve.closed ? t`${points.length} points, closed` : t`${points.length} points, open`;
-        size.textContent = `${shown(width)} × ${shown(height)} ${unit}, ${counted}`;
+        size.textContent = `${brief(width)} × ${brief(height)} ${unit}, ${counted}`;
+        size.title = `${precise(width)} × ${precise(height)} ${unit}`;
       }
       place.disabled =
         this.store.origin !== origin || rows.every(({ use }) => !use.value) || !(laid() || Number.isFinite(factor()));

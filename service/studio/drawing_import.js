@@ -2,8 +2,9 @@
 
 import * as api from "./api.js";
 import { el, shown, svg } from "./dom.js";
+import { brief } from "./figures.js";
 import { outline } from "./hatch.js";
-import { t } from "./messages.js";
+import { number, t } from "./messages.js";
 import { rolesOf, stateArea } from "./room.js";
 import { View } from "./view.js";
 
@@ -104,7 +105,7 @@ export class DrawingImport {
         ? t`the drawing states no unit, and its numbers are taken as ${unit}`
         : t`a unit of the drawing is ${shown(found.millimetres_per_unit)} mm`;
     const counted = found.outlines.length === 1 ? t`1 closed outline` : t`${found.outlines.length} closed outlines`;
-    const rounded = t`Curves are polygons within ${shown(found.tolerance)} ${unit}.`;
+    const rounded = t`Curves are polygons within ${brief(found.tolerance)} ${unit}.`;
     this.said.textContent = `${name}: ${counted}; ${states}. ${rounded}`;
     this.list.replaceChildren(
       el(
@@ -155,9 +156,10 @@ export class DrawingImport {
     );
     const told = (/** @type {number} */ factor, /** @type {string} */ unit) => {
       const [width, height] = [0, 1].map((axis) => factor * spread(points, axis));
-      size.textContent = one.circle
-        ? `⌀ ${shown(width)} ${unit}`
-        : `${shown(width)} × ${shown(height)} ${unit}, ${t`${corners.length} corners`}`;
+      const told = (/** @type {(value: number) => string} */ as) =>
+        one.circle ? `⌀ ${as(width)} ${unit}` : `${as(width)} × ${as(height)} ${unit}`;
+      size.textContent = one.circle ? told(brief) : `${told(brief)}, ${t`${corners.length} corners`}`;
+      size.title = told(precise);
     };
     return { one, node, use, told };
   }
@@ -284,4 +286,9 @@ function scaled([x, y], factor) {
 /** @param {number} value */
 export function rounded(value) {
   return Number(value.toPrecision(DIGITS));
+}
+
+/** All digits that a coordinate has when it is placed. @param {number} value */
+export function precise(value) {
+  return number(rounded(value));
 }

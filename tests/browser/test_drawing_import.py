@@ -14,14 +14,14 @@ from tests.synthesis.test_space import LID
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 
 FRAME = svg(
-    '<g id="FRAME"><rect id="lintel" x="-520" y="-480" width="440" height="80"/>'
+    '<g id="FRAME"><rect id="lintel" x="-520" y="-480" width="440.25" height="80"/>'
     '<circle id="post" cx="1000" cy="0" r="30"/>'
     '<path id="stroke" d="M0 0h9"/></g>',
     width="50mm",
     height="100mm",
     viewBox="0 0 100 200",
 )
-"""In half millimetres: a bar of x -260 to -40, y 300 to 340 mm, and a post of radius 15 mm about (500, 100) mm."""
+"""In half millimetres: a bar of x -260 to -39.875, y 300 to 340 mm, and a post of radius 15 mm about (500, 100) mm."""
 
 WALL = dxf(
     lambda space: space.add_lwpolyline(
@@ -52,7 +52,9 @@ def test_an_obstacle_and_a_zone_come_from_drawings_and_the_answers_keep_them(stu
     assert "2 closed outlines" in told(page)
     assert "a unit of the drawing is 0.5 mm" in told(page)
     assert page.input_value("#drawing-scale") == "0.5"
-    assert "220 × 40 mm, 4 corners" in page.inner_text(".drawn li:has-text('lintel on FRAME')")
+    lintel = page.locator(".drawn li:has-text('lintel on FRAME')")
+    assert "220 × 40 mm, 4 corners" in lintel.inner_text()
+    assert lintel.locator(".note").get_attribute("title") == "220.125 × 40 mm"
     assert "⌀ 30 mm" in page.inner_text(".drawn li:has-text('post on FRAME')")
     page.locator("#drawing summary").click()
     assert "stroke on FRAME: It is open" in page.inner_text("#drawing .reasons")
@@ -72,7 +74,7 @@ def test_an_obstacle_and_a_zone_come_from_drawings_and_the_answers_keep_them(stu
     zone = shapely.Polygon(space["fixed_pivots"]["input"]["polygon"])
     assert zone.bounds == pytest.approx((-500, -50, -20, 600))
     lintel, post = space["obstacles"]
-    assert shapely.Polygon(lintel["polygon"]).bounds == pytest.approx((-260, 300, -40, 340))
+    assert shapely.Polygon(lintel["polygon"]).bounds == pytest.approx((-260, 300, -39.875, 340))
     assert post["circle"] == {"center": pytest.approx([500, 100]), "radius": 15}
     assert page.locator("#sketch .room .area.obstacle").count() == 2
     assert page.locator("#sketch .held.chosen .area.o2").count() == 1
