@@ -289,7 +289,8 @@ function withoutDefaults(value, schema, root) {
       if (typeof of !== "object") return [[name, inner]];
       const open = resolved(of, root);
       // What tells alternatives apart is needed.
-      return open.const === undefined && JSON.stringify(open.default) === JSON.stringify(inner)
+      return (open.const === undefined || options.length === 1) &&
+        JSON.stringify(open.default) === JSON.stringify(inner)
         ? []
         : [[name, withoutDefaults(inner, of, root)]];
     }),

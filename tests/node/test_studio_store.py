@@ -6,6 +6,8 @@ import subprocess
 
 import pytest
 
+from service.stated import filled_in
+from synthesis.registry import KINDS, examples
 from tests.service.running import ROOT
 
 STUDIO = ROOT / "service" / "studio"
@@ -79,3 +81,28 @@ def test_changes_make_statements_steps_and_news(tmp_path):
     other = [True, None, True, False]
     answered, written = [False, None, False, False], [True, "text", True, True]
     assert seen["told"] == [begun, *3 * [canvas], form, answered, *6 * [other], written]
+
+
+SPELT = """
+import { readFileSync } from "node:fs";
+import { spelling } from "./schema.js";
+const cases = JSON.parse(readFileSync("cases.json"));
+console.log(JSON.stringify(cases.map(([schema, ...both]) => both.map((one) => spelling(one, schema)))));
+"""
+
+
+def test_an_example_whose_defaults_are_written_out_is_the_example_yet(tmp_path):
+    cases = [
+        [KINDS[kind].problem.model_json_schema(), one, json.loads(filled_in(kind, json.dumps(one)))]
+        for kind in KINDS
+        for one in examples(kind)
+    ]
+    for name in ("schema.js", "pointer.js"):
+        shutil.copy(STUDIO / name, tmp_path)
+    (tmp_path / "cases.json").write_text(json.dumps(cases))
+    (tmp_path / "package.json").write_text('{"type": "module"}')
+    (tmp_path / "spelt.js").write_text(SPELT)
+    done = subprocess.run(["node", "spelt.js"], cwd=tmp_path, capture_output=True, text=True, timeout=30)
+    assert done.returncode == 0, done.stderr
+    for (_, stated, _), (plain, filled) in zip(cases, json.loads(done.stdout), strict=True):
+        assert filled == plain, stated["kind"]
