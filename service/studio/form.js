@@ -109,6 +109,7 @@ function field(sheet, schema, name, path, required) {
     case "flag":
       return flag(name, note, path, value ?? fallback, set);
     case "number":
+      if (what.nullable && fallback !== null) return shapes(sheet, what, schema, name, note, path, required);
       return labelled(name, unit, note, path, required, numberBox(value, fallback, set));
     case "text":
       return labelled(name, unit, note, path, required, textBox(value, fallback, set, plain));

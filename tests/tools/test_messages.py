@@ -19,6 +19,10 @@ def test_a_language_says_everything_and_nothing_else(language):
     assert [text for text, told in here.items() if not told.strip()] == []
 
 
+def test_what_stays_open_is_told_in_words():
+    assert [text for text in spoken() if re.search(r"\bnull\b", text)] == []
+
+
 def test_each_language_is_listed_in_the_head_of_the_page():
     listed = re.findall(r'hreflang="(\w+)" title="\w+"[^>]* href="/studio/messages/(\w+)\.json"', page())
     assert listed == [(language, language) for language in LANGUAGES]

@@ -227,7 +227,7 @@ class _Task:
         if any(cluster.slides for cluster in self.clusters):
             step = levels[2].low - levels[1].low
             told += [
-                "Of the other speeds all parts are the same, and only stand elsewhere: the query's `speed` shows them.",
+                "All speeds have the same parts, which only stand elsewhere: choose another speed to see where.",
                 f"A cluster of two gears has three places, {step:.4g} mm apart along its feather key: its lower gear "
                 "in mesh, neutral, its upper gear in mesh. A single sliding gear is in mesh in its lower place and "
                 "neutral in the upper. Every other cluster of the stage is brought to neutral first, and at rest: the "

@@ -95,7 +95,8 @@ class BarrelRoller(Statement):
     type: Literal["barrel_roller"]
     roller_radius: PositiveLength
     cylinder_radius: PositiveLength | None = Field(
-        default=None, description="Of the cylinder on which the roller's middle runs; null: the smallest sound one."
+        default=None,
+        description="Of the cylinder on which the roller's middle runs. Left open: the smallest sound one.",
     )
 
 
@@ -118,20 +119,20 @@ class FollowerDynamics(Statement):
     )
     damping_ratio: NonNegative = Field(default=0.0, description="Share of critical damping of mass and spring.")
     preload: Annotated[NonNegative, FORCE] | None = Field(
-        default=None, description="Spring force at zero displacement; null: the least."
+        default=None, description="Spring force at zero displacement. Left open: the least."
     )
     least_force: Annotated[NonNegative, FORCE] = Field(
         default=0.0, description="Contact force that must always be left."
     )
     max_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] | None = Field(
         default=None,
-        description="The contact force is kept at all speeds of the cam from 0 to so many revolutions a minute; null: "
-        "at its stated speed, and for a spring that is chosen at all speeds up to it.",
+        description="The contact force is kept at all speeds of the cam from 0 to so many revolutions a minute. Left "
+        "open: at its stated speed, and for a spring that is chosen at all speeds up to it.",
     )
     train_stiffness: Annotated[PositiveNumber, STIFFNESS] | None = Field(
         default=None,
-        description="Force per length unit of the train between cam and mass, which is what vibrates; null: unknown, "
-        "and nothing is said of vibrations.",
+        description="Force per length unit of the train between cam and mass, which is what vibrates. Left open: "
+        "unknown, and nothing is said of vibrations.",
     )
     train_damping_ratio: Annotated[NonNegative, Field(lt=1.0)] = Field(
         default=0.0, description="Share of critical damping of the mass on its train."

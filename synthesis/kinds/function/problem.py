@@ -87,13 +87,13 @@ class GroundPivots(Statement):
 
 
 class FunctionConstraints(Constraints):
-    """Constraints of a linkage; the link ratio is limited unless it is set to null.
+    """Constraints of a linkage; the link ratio is limited unless it is left open.
 
     Many functions have no best linkage: the longer its links, the smaller the error. The limit is a part of the task.
     """
 
     max_link_ratio: Annotated[float, Field(strict=True, ge=1.0, le=ABSURD)] | None = Field(
-        default=100.0, description="Longest link over shortest link, at most; null for no limit."
+        default=100.0, description="Longest link over shortest link, at most. Left open: there is no limit."
     )
 
 
@@ -171,12 +171,12 @@ class FunctionProblem(LinkageProblem):
     input_range: Degrees | tuple[Degrees, Degrees] | None = Field(
         default=None,
         description="Degrees through which the input turns while x runs over its interval, counter-clockwise positive; "
-        "or its values at both ends; null leaves it open.",
+        "or its values at both ends. It may be left open.",
     )
     output_range: Annotated[Number | tuple[Number, Number] | None, OUTPUT] = Field(
         default=None,
         description="The same for the output: degrees, or length units of a slider. It is positive where the output "
-        "begins to turn counter-clockwise, whether y grows or falls; null leaves it open, and its direction too.",
+        "begins to turn counter-clockwise, whether y grows or falls. Left open, its direction is open too.",
     )
     either_direction: Flag = Field(default=False, description="Also try the output going the other way.")
     range_limits: Annotated[Interval, ANGLE] = Field(
@@ -190,7 +190,7 @@ class FunctionProblem(LinkageProblem):
     scale_limits: Interval = Field(default=(0.25, 4.0), description="Of scales that are left open.")
     zeros: Zeros | Literal["auto"] | None = Field(
         default="auto",
-        description="null leaves both open. `auto` reads two or three pairs as angles from the ground line, of a link "
+        description="Both may be left open. `auto` reads two or three pairs as angles from the ground line, of a link "
         "or its extension, and leaves the zeros open where no such linkage satisfies all demands; it leaves them open "
         "for everything else.",
     )

@@ -122,7 +122,7 @@ class GearboxProblem(StatedProblem):
     )
     tolerance: Annotated[float, Field(strict=True, gt=0.0, lt=0.5)] | None = Field(
         default=None,
-        description="Largest |ln(speed/nominal)|, below half of ln φ; null: a tenth of a step, 0.1 (φ − 1), "
+        description="Largest |ln(speed/nominal)|, below half of ln φ. Left open: a tenth of a step, 0.1 (φ − 1), "
         "or a quarter of ln φ where that is less.",
     )
     module: Module = Field(default=1.0, description="Of all gears, in the length unit.")

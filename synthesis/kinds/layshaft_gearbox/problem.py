@@ -40,7 +40,7 @@ class LayshaftProblem(StatedProblem):
         min_length=1, max_length=12, description="Input over output speed of the forward gears, first gear first."
     )
     reverse: Annotated[float, Field(strict=True, gt=0.05, le=50.0)] | None = Field(
-        default=None, description="Size of the ratio of the reverse gear; null for none."
+        default=None, description="Size of the ratio of the reverse gear. Left open: there is none."
     )
     direct: Flag = Field(default=True, description="A gear of ratio 1 joins input and main shaft, without gears.")
     teeth: ToothRange = ToothRange(min=18, max=80)
@@ -49,7 +49,7 @@ class LayshaftProblem(StatedProblem):
         default="refuse", description="Pairs whose standard teeth would interfere are not used, or used and told."
     )
     tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(
-        default=None, description="Largest relative error of any gear; null takes the best there is."
+        default=None, description="Largest relative error of any gear. Left open: the best there is."
     )
     module: Module = Field(default=1.0, description="Of all gears, in the length unit.")
     pressure_angle: CommonPressureAngle = Field(default=20.0, description="Degrees.")

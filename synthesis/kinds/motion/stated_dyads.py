@@ -54,15 +54,15 @@ class DyadChoices(Statement):
         "line of the ground. RP: a line of the body slides through a block that is pinned to the ground. any: "
         "pins, and a slider where pins cannot do what is asked.",
     )
-    fixed_pivot: PartialPoint | None = Field(default=None, description="null leaves a coordinate open.")
+    fixed_pivot: PartialPoint | None = Field(default=None, description="A coordinate may be left open.")
     moving_pivot: PartialPoint | None = Field(
-        default=None, description="Moving pivot in the first position; null leaves a coordinate open."
+        default=None, description="Moving pivot in the first position; a coordinate may be left open."
     )
     rotations: list[Degrees | None] | None = Field(
         default=None,
         min_length=1,
         max_length=8,
-        description="Rotation of the link from the first position to the 2nd, 3rd, ..., degrees; null leaves one open.",
+        description="Rotation of the link from the first position to the 2nd, 3rd, ..., degrees; any may be left open.",
     )
     link_angle: Degrees | None = Field(
         default=None, description="Angle of the link, fixed pivot to moving pivot, in the first position, degrees."

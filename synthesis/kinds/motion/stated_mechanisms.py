@@ -26,11 +26,11 @@ class Chain(Statement):
     """The chain G–H₁–H₂ that carries the body at H₂; what is left out is drawn by the search."""
 
     links: tuple[PositiveLength | None, PositiveLength | None] | None = Field(
-        default=None, description="Lengths G–H₁ and H₁–H₂; null leaves one open."
+        default=None, description="Lengths G–H₁ and H₁–H₂; one may be left open."
     )
-    fixed_pivot: PartialPoint | None = Field(default=None, description="G; null leaves a coordinate open.")
+    fixed_pivot: PartialPoint | None = Field(default=None, description="G; a coordinate may be left open.")
     moving_pivot: PartialPoint | None = Field(
-        default=None, description="H₂ in the first position; null leaves a coordinate open."
+        default=None, description="H₂ in the first position; a coordinate may be left open."
     )
     elbow: Literal["any", "left", "right"] = Field(
         default="any", description="On which side of the way from G to H₂ the joint H₁ lies in all positions."

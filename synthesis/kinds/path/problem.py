@@ -96,7 +96,7 @@ class PathConstraints(Constraints):
 
 
 class PathPivots(Statement):
-    """Fixed pivots that are given; null leaves a pivot, or one of its coordinates, open."""
+    """Fixed pivots that are given; a pivot, or one of its coordinates, may be left open."""
 
     input: PartialPoint | None = None
     output: PartialPoint | None = None

@@ -114,10 +114,10 @@ class PlanetaryProblem(StatedProblem):
         description="equal: planets at equal angles. nearest: as near to that as the teeth allow them to be put in.",
     )
     input: str | None = Field(
-        default=None, description="The driven-in member, e.g. sun, ring, carrier; null tries all."
+        default=None, description="The driven-in member, e.g. sun, ring, carrier. Left open: all are tried."
     )
-    output: str | None = Field(default=None, description="The member taken off; null tries all.")
-    fixed: str | None = Field(default=None, description="The member held; null tries all.")
+    output: str | None = Field(default=None, description="The member taken off. Left open: all are tried.")
+    fixed: str | None = Field(default=None, description="The member held. Left open: all are tried.")
     teeth: PlanetaryTeeth = PlanetaryTeeth()
     module: Module = Field(default=1.0, description="Module of all gears, in the length unit.")
     modules: list[Module] | None = Field(
@@ -128,7 +128,7 @@ class PlanetaryProblem(StatedProblem):
     )
     pressure_angle: CommonPressureAngle = Field(default=20.0, description="Degrees.")
     tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(
-        default=None, description="Largest relative error of the ratio; null takes the best there is."
+        default=None, description="Largest relative error of the ratio. Left open: the best there is."
     )
     max_size: PositiveLength | None = Field(
         default=None, description="Largest pitch diameter around the axis, planets included, in the length unit."

@@ -69,7 +69,7 @@ class TrainSeriesProblem(StatedProblem):
         "series the one is listed that has the larger ratio first."
     )
     tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(
-        default=None, description="Largest relative error of the ratio; null takes the best there is."
+        default=None, description="Largest relative error of the ratio. Left open: the best there is."
     )
     rank_by: Literal["error", "size"] = Field(
         default="error",
