@@ -17,6 +17,9 @@ const BORE = 1.5;
 const PISTON = 0.6;
 const HEAD = 0.4;
 
+/** From the crank at its lowest to the foot of a cylinder's number, pixels: a pin is between them. */
+const CALLED = 22;
+
 /** @typedef {[number, number]} Point */
 /** @typedef {Schemas["EngineDesign"]["mechanism"]["cylinders"][number]} Cylinder */
 
@@ -101,7 +104,7 @@ export class Engine extends Turning {
       crank,
       ...pins,
       svg("circle", { class: "pin", cx: u, cy: v, r: 3.5 }),
-      svg("text", { class: "called", x: u, y: view.at(x, -1.35 * radius)[1] }, cylinder.number),
+      svg("text", { class: "called", x: u, y: view.at(x, -radius)[1] + CALLED }, cylinder.number),
     );
     return { cylinder, x, node, crank, link, piston, pins };
   }
