@@ -7,7 +7,10 @@ import { comma, pictured } from "./plot_files.js";
 
 const WIDTH = 300;
 const HEIGHT = 120;
-const EDGE = { left: 46, right: 10, top: 8, bottom: 20 };
+const EDGE = { left: 58, right: 10, top: 8, bottom: 20 };
+
+/** Characters that a number beside the plot has room for; one of more is set narrower. */
+const BESIDE = 7;
 
 /** Greatest number of points of a line; more cannot be told apart. */
 const POINTS = 400;
@@ -133,18 +136,16 @@ function plot(plotted, input, lead, unit, { whole = false, range: looked } = {})
       }),
     ),
     low < 0 && high > 0 && svg("line", { class: "zero", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(0), y2: y(0) }),
-    ...ticks.map((value) =>
-      svg(
+    ...ticks.map((value) => {
+      const told = brief(value, 1e-6 * range);
+      const narrower = told.length > BESIDE && { textLength: EDGE.left - 8, lengthAdjust: "spacingAndGlyphs" };
+      return svg(
         "g",
         {},
         svg("line", { class: "grid", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(value), y2: y(value) }),
-        svg(
-          "text",
-          { class: "tick", x: EDGE.left - 5, y: y(value) + 4, "text-anchor": "end" },
-          brief(value, 1e-6 * range),
-        ),
-      ),
-    ),
+        svg("text", { class: "tick", x: EDGE.left - 5, y: y(value) + 4, "text-anchor": "end", ...narrower }, told),
+      );
+    }),
     typeof limit === "number" &&
       svg("line", { class: "limit", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(limit), y2: y(limit) }),
     input && svg("text", { class: "tick", x: EDGE.left, y: HEIGHT - 5 }, `${shown(Math.round(input[start]))}${unit}`),

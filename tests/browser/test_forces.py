@@ -31,7 +31,7 @@ PLACE = 60
 """Of 361 samples of the forces, where the motion is put."""
 
 LINES = "all => all.map(one => ['x1', 'y1', 'x2', 'y2'].map(name => +one.getAttribute(name)))"
-BOX = {"left": 46.0, "width": 300.0 - 56.0}
+BOX = {"left": 58.0, "width": 300.0 - 68.0}
 
 
 def forces_of(studio, server, body=None):

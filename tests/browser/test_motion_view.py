@@ -121,8 +121,8 @@ def test_a_click_in_a_plot_leads_the_motion(studio):
     picture = page.locator(".plot svg").nth(1)
     picture.scroll_into_view_if_needed()
     box = picture.bounding_box()
-    # The plot's own edges: 46 of 300 at the left, 10 at the right.
-    middle = (46 + 0.5 * 244) / 300 * box["width"]
+    # The plot's own edges: 58 of 300 at the left, 10 at the right.
+    middle = (58 + 0.5 * 232) / 300 * box["width"]
     page.mouse.click(box["x"] + middle, box["y"] + box["height"] / 2)
     assert float(page.input_value("#scrub")) == pytest.approx(120, abs=1.5)
     marks = page.locator(".plot .mark").evaluate_all("marks => marks.map(one => one.getAttribute('transform'))")

@@ -109,7 +109,7 @@ def test_the_diagrams_have_their_marks_and_lead(studio, server):
         reading = number(page.locator(".plot .reading").nth(n).inner_text())
         assert reading == pytest.approx(program[name][at], rel=6e-3, abs=1e-3)
     box = page.locator(".plot svg").first.bounding_box()
-    page.mouse.click(box["x"] + (46 + 0.25 * 244) / 300 * box["width"], box["y"] + 20)
+    page.mouse.click(box["x"] + (58 + 0.25 * 232) / 300 * box["width"], box["y"] + 20)
     assert float(page.input_value("#scrub")) == pytest.approx(90, abs=2)
 
 
