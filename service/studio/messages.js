@@ -116,12 +116,21 @@ export function prose(description = "") {
   return said.replace(/\b[a-z]{2,}(_[a-z]+)+\b/g, (name) => term(name));
 }
 
+/** What follows a number after a space, and stays with it. */
+const UNITS = /(\d) (%|mm|cm|m|in|kg|g|J|W|N|s)(?![\p{L}\p{N}])/gu;
+
 /**
- * A text of the service with numbers as the page writes them: 2.34e-06 is 2.34·10⁻⁶, and 2 ° is 2°.
+ * A text of the service with numbers as the page writes them: 2.34e-06 is 2.34·10⁻⁶, 2 ° is 2°, and 5 % and 5 mm are
+ * not divided at the end of a line.
  * @param {string} text
  */
 export function readable(text) {
-  const begun = text.charAt(0).toUpperCase() + text.slice(1).replace(/(\d) °/g, "$1°");
+  const begun =
+    text.charAt(0).toUpperCase() +
+    text
+      .slice(1)
+      .replace(/(\d) °/g, "$1°")
+      .replace(UNITS, "$1\u00a0$2");
   return begun.replace(/(\d)e([+-])0*(\d+)\b/g, (_, digit, sign, power) => {
     const raised = [...power].map((one) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(one)]).join("");
     return `${digit}·10${sign === "-" ? "⁻" : ""}${raised}`;
