@@ -87,13 +87,13 @@ class GroundPivots(Statement):
 
 
 class FunctionConstraints(Constraints):
-    """Constraints of a linkage; the link ratio is limited unless it is left open.
+    """Constraints of a linkage; the link ratio is limited to 100 unless another limit is stated, or none.
 
     Many functions have no best linkage: the longer its links, the smaller the error. The limit is a part of the task.
     """
 
     max_link_ratio: Annotated[float, Field(strict=True, ge=1.0, le=ABSURD)] | None = Field(
-        default=100.0, description="Longest link over shortest link, at most. Left open: there is no limit."
+        default=100.0, description="Longest link over shortest link, at most: 100 where nothing is stated, no limit where it is open."
     )
 
 
