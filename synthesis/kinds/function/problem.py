@@ -93,7 +93,8 @@ class FunctionConstraints(Constraints):
     """
 
     max_link_ratio: Annotated[float, Field(strict=True, ge=1.0, le=ABSURD)] | None = Field(
-        default=100.0, description="Longest link over shortest link, at most: 100 where nothing is stated, no limit where it is open."
+        default=100.0,
+        description="Longest link over shortest link, at most: 100 where nothing is stated, no limit where it is open.",
     )
 
 
