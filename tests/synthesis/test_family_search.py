@@ -154,6 +154,7 @@ def test_descents_put_pivots_where_they_are_asked_for():
 
 
 @pytest.mark.campaign
+@pytest.mark.timeout(400)
 def test_points_that_no_order_of_a_crank_meets_end_honestly():
     points = np.array([0.0, 1.0, 0.001j, 1.0 + 0.001j, 0.002j, 1.0 + 0.002j])
     result = answer(points, constraints={"grashof": "double_crank", "min_transmission_angle": 80}, rounds=1)
