@@ -7,9 +7,16 @@ import pytest
 
 from benchmarks.sixbars.nine_pairs import planted
 from synthesis.dispatch import solve
-from synthesis.kinds.function.nine_pair_system import GROUPS, SCRATCH, SOLUTIONS, nine_pair_system, residuals
-from synthesis.kinds.function.nine_pairs import nine_pair_start
-from synthesis.numerics.continuation import REACHED, follow
+from synthesis.kinds.function.nine_pair_system import (
+    GROUPS,
+    SCRATCH,
+    SOLUTIONS,
+    nine_pair_system,
+    nine_pair_system_extended,
+    residuals,
+)
+from synthesis.kinds.function.nine_pairs import BEND, nine_pair_start
+from synthesis.numerics.continuation import REACHED, follow, refine
 from synthesis.numerics.known import Known
 from synthesis.registry import parse_problem
 from tools.watt_start import nine_pair_problem
@@ -49,6 +56,37 @@ def test_the_compiled_system_is_newtons_step_of_the_couplers_lengths():
         by_p = (gaps(y, p + h * dp) - gaps(y, p - h * dp)) / (2 * h)
         assert np.abs(newton).max() < 1e-9 * np.abs(y).max()
         assert np.abs(tangent - np.linalg.solve(jacobian, -by_p)).max() < 1e-4 * np.abs(tangent).max()
+
+
+def test_a_change_of_the_turns_below_rounding_moves_the_precise_solution():
+    """Newton's step at turns that are off by what a double cannot hold is that change times the tangent."""
+    rng = np.random.default_rng(5)
+    y, p = nine_pair_problem(rng)
+    dp = rng.normal(size=16) + 1j * rng.normal(size=16)
+    zero, work = np.zeros(8, complex), np.empty(SCRATCH, complex)
+    refined, low, _ = refine(nine_pair_system_extended, GROUPS, SCRATCH, y[None], zero[None], p)
+    newton, tangent = np.empty((2, 8), np.complex128)
+    assert nine_pair_system_extended(refined[0], low[0], p, 1e-22 * dp, dp, newton, tangent, work) == 1
+    assert np.abs(newton - 1e-22 * tangent).max() < 1e-3 * np.abs(1e-22 * tangent).max()
+
+
+def test_a_nearly_singular_end_is_reached_along_a_precise_way_alone():
+    """The logarithm over 60° at nine Chebyshev points has such a pair of conjugates."""
+    x = 5.5 - 4.5 * np.cos((2.0 * np.arange(9) + 1.0) * np.pi / 18.0)
+    inputs, outputs = np.radians(60.0 * (x - 1.0) / 9.0), np.radians(60.0 * np.log10(x))
+    turned = np.concatenate([inputs[1:] - inputs[0], outputs[1:] - outputs[0]])
+    p = 2j * np.sin(0.5 * turned) * np.exp(0.5j * turned)
+    rng = np.random.default_rng(0)
+    bend = [BEND * (rng.normal(size=(16, 2)) @ np.array([1.0, 1.0j])) for _ in range(2)][1]
+    begun, one = nine_pair_start(), [1458]
+    way = begun.y[one], begun.p, p, bend
+    rough, fine = (
+        follow(nine_pair_system_extended, GROUPS, SCRATCH, *way, tolerance=1e-4, most_steps=20_000, precise=precise)
+        for precise in (False, True)
+    )
+    assert rough.status[0] != REACHED
+    assert fine.status[0] == REACHED
+    assert np.abs(gaps(fine.y[0], p)).max() < 1e-9
 
 
 def test_the_start_has_all_solutions_each_once():

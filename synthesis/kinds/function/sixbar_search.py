@@ -88,7 +88,7 @@ NEAR, NEARLY_MET = 0.1, 1e-6
 all limits, below the second it is brought to rounding."""
 
 MET_AS_STATED = math.radians(1e-6)
-"""Root mean square error, radians, of what meets pairs as they are stated."""
+"""Greatest error at a pair, radians, of what meets pairs as they are stated."""
 
 FOLLOWED, FOLLOWED_STEPS = 16, 2000
 """So many of these at most are followed, and for so many steps along their valley."""
@@ -196,8 +196,9 @@ class SixbarSearch:
         )
         if through.complete:
             nine = "the nine pairs" if self.places.dense.shape[1] == PAIRS else "nine of the pairs"
-            met = sum(one.error < MET_AS_STATED for one in reached)
-            which = f"{met} of them {agreeing(met, 'meets', 'meet')}" if met else "none of them meets"
+            met = sum(self._greatest_error(one) < MET_AS_STATED for one in reached)
+            at_least = "at least " if met == FOLLOWED else ""
+            which = f"{at_least}{met} of them {agreeing(met, 'meets', 'meet')}" if met else "none of them meets"
             self.told = (
                 f" All {grouped(SOLUTIONS)} Watt II sixbars through {nine} were computed, real and complex; {which} "
                 "all pairs to a millionth of a degree, without a change of assembly."
@@ -222,12 +223,15 @@ class SixbarSearch:
             return best([descents.along(one, 0.0, 2 * ALONG) for one in reached], effort.valleys)
         return best([descents.along(one, WEIGHTS[-1], ALONG) for one in reached], IMPROVED)
 
+    def _greatest_error(self, one: Found) -> float:
+        """Of a sixbar at the places where the criterion measures, radians; NaN where it does not close at one."""
+        return float(np.abs(followed(KINDS[one.type], one.assembly, one.at, *self.places.dense).errors).max())
+
     def _improved(self, one: Found) -> Found:
         """A sixbar improved by the criterion, under all limits."""
-        kind = KINDS[one.type]
-        errors = followed(kind, one.assembly, one.at, *self.places.dense).errors
-        if self.exact or np.abs(errors).max() < MET:
-            return one._replace(error=float(np.abs(errors).max()))
+        kind, greatest = KINDS[one.type], self._greatest_error(one)
+        if self.exact or greatest < MET:
+            return one._replace(error=greatest)
         follower = SixbarFollower(kind, one.assembly, *self.places.dense)
         limits = SixbarLimits(self.task, kind, one.assembly, self.places.points[0], self.least, every=self.square)
         free = OWN[kind].copy()
