@@ -15,8 +15,10 @@ import pytest
 from scipy.optimize import least_squares
 
 from benchmarks.sixbars.motion import on_a_way
+from benchmarks.sixbars.planted_motion import planted
 from synthesis.kinds.motion import by_type
 from synthesis.kinds.motion.design import MotionResult
+from synthesis.kinds.motion.sixbar_makes import MAKES
 from synthesis.model.answer import Search
 from synthesis.model.sixbars import IN_WORDS
 from tests.campaign import further
@@ -235,6 +237,30 @@ def test_of_nine_positions_the_ends_are_met_and_the_rest_nearer_than_by_fourbars
     errors = [one["metrics"]["rms_residual"] for one in (designs[0], *alone)]
     assert all(2.0 * errors[0] < error for error in errors[1:])
     assert errors[0] < 0.05
+
+
+@pytest.mark.campaign
+@pytest.mark.timeout(700)
+def test_many_positions_of_a_sixbar_are_met_again_under_its_demands(client):
+    """24 of a planted Watt I, which transmits with 20° and stays within a box."""
+    positions = planted(np.random.default_rng(0), [make.type for make in MAKES].index("watt_1"), 24)
+    size = max(abs(complex(p["x"] - q["x"], p["y"] - q["y"])) for p in positions for q in positions)
+    far = 6.0 * size
+    box = [[-far, -far], [far, far]]
+    demands = {"constraints": {"min_transmission_angle": 20.0}, "space": {"box": box}}
+    body = finished(client, TASK | demands | {"positions": positions}, 600.0)
+    best = passed(body)[0]
+    assert best["metrics"]["rms_residual"] < 1e-6
+    assert best["metrics"]["min_transmission_angle"] >= 20.0
+    inputs = np.radians([target["input_angle"] for target in best["targets"]])
+    met = Loops(best["mechanism"]["skeleton"]).followed(inputs - inputs[0])
+    assert met.branch > 0.0
+    assert len(inputs) == 24
+    assert np.abs(met.points - [complex(p["x"], p["y"]) for p in positions]).max() < 1e-5 * size
+    turned = np.exp(1j * met.turns) - np.exp(1j * np.radians([p["angle"] - positions[0]["angle"] for p in positions]))
+    assert np.abs(turned).max() < 1e-5
+    places = np.array([list(place.values()) for place in met.places])
+    assert max(np.abs(places.real).max(), np.abs(places.imag).max()) <= far
 
 
 @pytest.mark.campaign
