@@ -59,7 +59,7 @@ SORTS: dict[str, Callable[[np.random.Generator], Task]] = {
 
 
 def solved(task: Task, **more: Any) -> tuple[MotionResult, float, float]:
-    problem = parse_problem({"kind": "motion", "positions": task, "max_designs": 3, **more})
+    problem = parse_problem({"kind": "motion", "positions": task, **({"max_designs": 3} | more)})
     wall, processor = time.perf_counter(), time.process_time()
     result = solve(problem)
     return result, time.process_time() - processor, time.perf_counter() - wall

@@ -1,9 +1,9 @@
 """Planted motion: positions of random sixbars of each type, and for how many a sound one of that type is found.
 
 Planted sixbars close over a random turn of their input, transmit with 20° at least and are no larger than five sizes of
-their task. Of five positions at random turns, found is a sound sixbar; of 24 at equal ones, a sound one off by a
-millionth of the task's size at most, root mean square. Each answer is driven once more by its loops; ``false`` counts
-what they do not confirm.
+their task. Of five positions at random turns, found is a sound sixbar; of 24 at equal ones, of which one design is
+wanted, a sound one off by a millionth of the task's size at most, root mean square. Each answer is driven once more by
+its loops; ``false`` counts what they do not confirm.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def planted(rng: np.random.Generator, make: int, count: int) -> Task:
 
 def tried(kind: str, task: Task) -> tuple[bool, float, list[str]]:
     """Whether a task has a sound sixbar of a type, what that took, and what is not confirmed of each."""
-    result, processor, _ = solved(task, mechanisms=[kind])
+    result, processor, _ = solved(task, mechanisms=[kind], max_designs=3 if len(task) == FEW else 1)
     designs = sound(result)
     found = [design for design in designs if len(task) == FEW or error_of(design) <= FOUND]
     return bool(found), processor, [false_claim(design, task) for design in designs]
