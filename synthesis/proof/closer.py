@@ -99,7 +99,9 @@ def extremes_of(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) 
 def least_angles(
     at: Callable[[Real], MechanismMotion], inputs: Real, motion: MechanismMotion | None = None
 ) -> dict[str, float]:
-    """The least transmission angle at each closure between the first input and the last; 0 where nothing closes.
+    """The least transmission angle at each closure between the first input and the last.
+
+    It is 0 where nothing closes, and where the closure fails between places of the grid at which it closes.
 
     Parameters
     ----------
@@ -119,7 +121,9 @@ def least_angles(
     for link, sines in (at(inputs) if motion is None else motion).sines.items():
 
         def sine(closer: Real, link: str = link) -> Real:
-            return np.abs(at(closer).sines[link])
+            there = at(closer)
+            # Beyond its limit a closure has no sine: it was nought on the way there.
+            return np.where(there.margins[link][0] < 0.0, 0.0, np.abs(there.sines[link]))
 
         _, least = least_near(sine, inputs, np.abs(sines))
         angles[link] = 0.0 if math.isnan(least) else math.asin(min(least, 1.0))

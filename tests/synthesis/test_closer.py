@@ -5,8 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from kinematics.linkage.fourbar.closed_form import Fourbar
+from kinematics.linkage.planar import catalogue
+from kinematics.linkage.planar.drive import drive
 from synthesis.dispatch import solve
-from synthesis.proof.closer import least_near
+from synthesis.proof.closer import GRID, least_angles, least_near
 from synthesis.registry import parse_problem
 
 
@@ -40,6 +43,19 @@ def test_what_has_no_value_is_passed_over():
 
     assert least_near(broken, grid, broken(grid))[0] == pytest.approx(0.71, abs=1e-5)
     assert math.isnan(least_near(lambda at: at * math.nan, grid, grid * math.nan)[1])
+
+
+@pytest.mark.parametrize("gap", [3e-3, 1e-3, 1e-5])
+def test_a_gap_between_the_places_of_a_grid_is_no_least_angle(gap):
+    """Crank and ground are together longer than coupler and output by so little that a narrow stretch is missing."""
+    crank, coupler, output = 1.0, 2.5, 1.9
+    ground = coupler + output - crank + 0.25 * gap**2 / 2.0
+    mechanism = catalogue.fourbar(Fourbar(0j, complex(ground), crank, coupler, output), 0.43)
+    inputs = 0.43 + np.linspace(0.0, math.tau, GRID)
+    motion = drive(mechanism, inputs, order=1)
+    assert motion.valid.all()
+    assert not drive(mechanism, [math.pi], order=0).valid.any()
+    assert least_angles(lambda at: drive(mechanism, at, order=0), inputs, motion) == {"coupler": 0.0}
 
 
 def test_the_steering_error_is_the_greatest_of_all_peaks():

@@ -10,11 +10,12 @@ from pydantic import ValidationError
 
 from synthesis.dispatch import solve
 from synthesis.kinds.dwell.arcs import arcs, lines
-from synthesis.kinds.dwell.design import DwellDesign, DwellResult
+from synthesis.kinds.dwell.design import DwellDesign, DwellMechanism, DwellResult
 from synthesis.kinds.dwell.problem import DwellProblem
 from synthesis.kinds.dwell.rests import _means, _ranges
 from synthesis.kinds.dwell.verification import verify_dwell
 from synthesis.model.statement import ContradictionError
+from synthesis.proof.rebuilt import rebuilt
 from synthesis.registry import parse_problem
 from tests.campaign import further
 from tests.cases import Case, cases
@@ -221,6 +222,48 @@ def test_verification_notices_a_wrong_length() -> None:
     sound = verify_dwell(problem, design.mechanism)
     assert sound is not None
     assert sound.verification.passed
+
+
+def test_a_slide_that_may_stand_still_all_the_time_is_no_mechanism() -> None:
+    """Link 5 as long as the rocker's arm holds D at O4 for any crank angle: a change point."""
+    joints = {
+        "O2": (0.0, 0.0),
+        "O4": (50.781557445816915, 0.0),
+        "A": (-12.618447062120692, 36.213757806058126),
+        "B": (36.509579009515214, 41.747165876164985),
+        "P": (32.55819136577709, 66.21399423572109),
+        "D": (50.781557445811245, -1.4263016765352523e-12),
+    }
+    links = {
+        "ground": ("O2", "O4"),
+        "input": ("O2", "A"),
+        "coupler": ("A", "B"),
+        "rocker": ("O4", "B", "P"),
+        "link_5": ("P", "D"),
+    }
+    lengths = {name: math.dist(joints[first], joints[second]) for name, (first, second, *_) in links.items()}
+    lengths["rocker_arm"] = math.dist(joints["O4"], joints["P"])
+    assert lengths["rocker_arm"] == pytest.approx(lengths["link_5"], rel=1e-13)
+    problem = stated(dwells=[{"angle": 240.0, "at": "low"}], dwell_angle=None, output=slider(50.0), mechanism="watt_2")
+    slide = {"joint": "D", "link": "ground", "point": joints["D"], "angle": 332.619775392158}
+    skeleton = {
+        "joints": joints,
+        "links": [{"name": name, "joints": pins} for name, pins in links.items()],
+        "slides": [slide],
+        "gears": [],
+        "input_link": "input",
+    }
+    mechanism = DwellMechanism.model_validate(
+        {
+            "type": "dwell_watt_slider",
+            "fixed_pivots": {name: joints[name] for name in ("O2", "O4")},
+            "links": lengths,
+            "reference_input_angle": 109.2105571929753,
+            "skeleton": skeleton,
+        }
+    )
+    assert rebuilt(mechanism) is not None
+    assert verify_dwell(problem, mechanism) is None
 
 
 @pytest.mark.parametrize("window", [2, 7, 8, 31])

@@ -79,7 +79,9 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
     low, high = extremes_of(mechanism, inputs, values, output)
     way = high - low
     transmission = least_angles(partial(drive, mechanism, order=0), inputs, motion)
-    turns = closed and turned <= 0.5 * way and min(transmission.values()) > NO_TOGGLE
+    if not min(transmission.values()) > NO_TOGGLE:
+        return None
+    turns = closed and turned <= 0.5 * way
 
     def at(angles: Real) -> Real:
         return output(drive(mechanism, angles, order=0))
