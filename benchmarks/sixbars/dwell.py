@@ -47,6 +47,11 @@ SOUND, RATIO = 20.0, 8.0
 REACH, LEASTS = (60, 120, 180, 240, 300), (15.0, 25.0)
 """Lengths of a single dwell, and least transmission angles, degrees."""
 
+LONG, FLAT, WIDE_RATIO = 300, (1.0, 3.0, 6.0, 10.0, 15.0), 30.0
+"""The longest dwell, and what it costs: least transmission angles, degrees, with the greatest link ratio there."""
+
+SHAPES: list[dict[str, Any]] = [{"type": "rocker", "swing": 50.0}, {"type": "slider", "stroke": 50.0}]
+
 
 def drawn(kind: Kind, carrier: Carrier, turning: Turning, rng: np.random.Generator) -> np.ndarray:
     """Random shapes of a type, most of which are no sixbars that turn."""
@@ -130,7 +135,7 @@ def _width(inside: np.ndarray, at: int) -> float:
     return 360.0 / STEPS * (after + before - 1)
 
 
-def _stillest(wide: float, shape: dict[str, Any], least: float) -> str:
+def _stillest(wide: float, shape: dict[str, Any], least: float, **limits: float) -> str:
     """The least movement that is found, in percent of the way, whether or not it is within the tolerance."""
     asked = parse_problem(
         {
@@ -140,7 +145,7 @@ def _stillest(wide: float, shape: dict[str, Any], least: float) -> str:
             "tolerance": 0.01,
             "include_failed": True,
             "max_designs": 50,
-            "constraints": {"min_transmission_angle": least},
+            "constraints": {"min_transmission_angle": least, **limits},
         }
     )
     assert isinstance(asked, DwellProblem)
@@ -171,13 +176,12 @@ def table(tasks: int, seed: int) -> None:
             f"{f'{name} {kind}, {turning}':>28} {sound:>3}/{len(statements)} {f'{min(angles)} to {max(angles)}':>18} "
             f"{statistics.median(times):6.1f}"
         )
+    columns = [f"{shape['type']} {least:g}°" for shape in SHAPES for least in LEASTS]
     print("\nA single dwell at an end of a stroke or of a swing of 50°: least movement in percent of the way")
-    print(
-        f"{'dwell':>6} " + " ".join(f"{f'{kind} {least:g}°':>14}" for kind in ("rocker", "slider") for least in LEASTS)
-    )
+    print(f"{'dwell':>6} " + " ".join(f"{column:>14}" for column in columns))
     for wide in REACH:
-        row = []
-        for shape in ({"type": "rocker", "swing": 50.0}, {"type": "slider", "stroke": 50.0}):
-            for least in LEASTS:
-                row.append(_stillest(wide, shape, least))
-        print(f"{wide:5d}° " + " ".join(row))
+        print(f"{wide:5d}° " + " ".join(_stillest(wide, shape, least) for shape in SHAPES for least in LEASTS))
+    print(f"\nOne of {LONG}° by the least transmission angle, with link ratios up to {WIDE_RATIO:g}")
+    print(f"{'angle':>6} " + " ".join(f"{shape['type']:>14}" for shape in SHAPES))
+    for least in FLAT:
+        print(f"{least:5g}° " + " ".join(_stillest(LONG, shape, least, max_link_ratio=WIDE_RATIO) for shape in SHAPES))
