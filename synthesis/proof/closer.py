@@ -122,8 +122,9 @@ def least_angles(
 
         def sine(closer: Real, link: str = link) -> Real:
             there = at(closer)
-            # Beyond its limit a closure has no sine: it was nought on the way there.
-            return np.where(there.margins[link][0] < 0.0, 0.0, np.abs(there.sines[link]))
+            # Beyond its limit a closure has no sine: it was nought on the way there. A triad has no margin of its own.
+            beyond = there.margins[link][0] < 0.0 if link in there.margins else ~there.valid
+            return np.where(beyond, 0.0, np.abs(there.sines[link]))
 
         _, least = least_near(sine, inputs, np.abs(sines))
         angles[link] = 0.0 if math.isnan(least) else math.asin(min(least, 1.0))

@@ -14,6 +14,7 @@ from synthesis.kinds.function import sixbar_rows as fit
 from synthesis.kinds.function.sixbar_build import built
 from synthesis.kinds.function.sixbar_descents import KINDS, Found
 from synthesis.kinds.function.sixbar_followers import followed
+from synthesis.kinds.function.sixbar_lengths import LENGTHS, log_lengths
 from synthesis.kinds.function.task import function_task
 from synthesis.numerics.geodesic import follow_valley
 from synthesis.numerics.levenberg import descend
@@ -77,6 +78,44 @@ def test_derivatives_are_those_of_differences(kind):
         assert there.slopes[:, n] == pytest.approx((ends[0].errors - ends[1].errors) / (2.0 * step), abs=1e-6)
         by = (ends[0].cosines - ends[1].cosines) / (2.0 * step)
         assert there.by_cosine[:, :, n] == pytest.approx(by, abs=2e-4)
+
+
+def lengths(kind: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    logs, slopes = np.empty(LENGTHS), np.empty((LENGTHS, kernels.NUMBERS))
+    count = log_lengths(kind, at, logs, slopes)
+    return logs[:count], slopes[:count]
+
+
+@pytest.mark.parametrize("kind", range(3))
+@pytest.mark.parametrize("seed", range(3))
+def test_lengths_are_all_distances_between_pins_of_a_link(kind, seed):
+    found = drawn(kind, seed)
+    mechanism, _ = built(TASK, found)
+    logs, _ = lengths(kind, found.at)
+    whole = mechanism.links
+    if kind == kernels.WATT_2:
+        # The ternary link in the middle holds both fourbars; how they stand to one another is chosen later.
+        one, other = (
+            [whole[name] for name in names]
+            for names in (
+                ("ground", "input", "coupler", "rocker"),
+                ("ground_side", "rocker_arm", "link_5", "output"),
+            )
+        )
+        for part, stands in ((one, logs[:4]), (other, logs[4:])):
+            assert np.sort(np.log(part) - math.log(part[0])) == pytest.approx(np.sort(stands - stands[0]), abs=1e-9)
+        return
+    scale = math.log(whole["ground"])
+    assert np.sort(np.log(list(whole.values())) - scale) == pytest.approx(np.sort(logs), abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", range(3))
+def test_derivatives_of_lengths_are_those_of_differences(kind):
+    found, step = drawn(kind, 7), 1e-6
+    _, slopes = lengths(kind, found.at)
+    for n in range(kernels.NUMBERS):
+        ends = [lengths(kind, stepped(found, n, side))[0] for side in (step, -step)]
+        assert slopes[:, n] == pytest.approx((ends[0] - ends[1]) / (2.0 * step), abs=1e-8)
 
 
 def test_a_curved_valley_is_followed_to_its_end():

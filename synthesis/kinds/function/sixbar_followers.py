@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from synthesis.kinds.function import sixbar_kernels as kernels
 from synthesis.kinds.function.limits import INSIDE, GeneratorLimits
 from synthesis.kinds.function.sixbar_kernels import LOGARITHMIC, NUMBERS, STEPHENSON_2, WATT_2
+from synthesis.kinds.function.sixbar_lengths import LENGTHS, log_lengths
 from synthesis.kinds.function.structural_error import STEPS
 from synthesis.kinds.function.task import FunctionTask
 
@@ -124,22 +125,13 @@ class SixbarLimits:
         return np.concatenate([g for g, _ in parts]), np.concatenate([slopes for _, slopes in parts])
 
     def _ratios(self, at: Real) -> tuple[Real, Real]:
-        """Ratios of the lengths that the rows of the fourbar do not have."""
-        columns = lengths_of(self.kind)
-        logs = np.array([0.0 if column < 0 else math.log(at[column]) for column in columns])
-        by = np.zeros((len(columns), NUMBERS))
-        for n, column in enumerate(columns):
-            if column >= 0:
-                by[n, column] = 1.0
-        one, other = np.nonzero(~np.eye(len(columns), dtype=np.bool_))
+        """Ratios of the lengths, each to each other; of a Watt II those of the second fourbar."""
+        logs, by = np.empty(LENGTHS), np.empty((LENGTHS, NUMBERS))
+        count = log_lengths(self.kind, at, logs, by)
+        own = slice(count // 2 if self.kind == WATT_2 else 0, count)
+        logs, by = logs[own], by[own]
+        one, other = np.nonzero(~np.eye(len(logs), dtype=np.bool_))
         return logs[one] - logs[other] - self.logratio, by[one] - by[other]
-
-
-def lengths_of(kind: int) -> list[int]:
-    """Columns of the lengths whose ratios are limited beside those of the first fourbar; −1 for a ground of 1."""
-    if kind == WATT_2:
-        return [-1, 7, 8, 9]
-    return [-1, 0, 1, 2, *((9, 10) if kind == STEPHENSON_2 else (11, 12))]
 
 
 def greatest_cosine(least: float) -> float:

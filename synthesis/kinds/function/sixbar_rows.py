@@ -13,18 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.compiling import njit
-from synthesis.kinds.function.sixbar_kernels import (
-    LOGARITHMIC,
-    NUMBERS,
-    STEPHENSON_3,
-    WATT_2,
-    A,
-    B,
-    C,
-    K,
-    L,
-    follow,
-)
+from synthesis.kinds.function.sixbar_kernels import LOGARITHMIC, NUMBERS, WATT_2, K, L, follow
+from synthesis.kinds.function.sixbar_lengths import LENGTHS, log_lengths
 from synthesis.numerics.levenberg import ROWS
 
 Real = NDArray[np.float64]
@@ -39,9 +29,6 @@ SETTING = FREE + NUMBERS
 WIDEST, INSIDE = 1e3, 1e-6
 """Link ratio that is kept where no limit is given, and what is kept of the logarithm of a given one."""
 
-LISTED = 8
-"""Lengths of a type that its link ratio is steered by, at most."""
-
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def unlogged(kind: int, x: Real, setting: Real, state: Real, at: Real) -> None:
@@ -54,28 +41,10 @@ def unlogged(kind: int, x: Real, setting: Real, state: Real, at: Real) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _groups(kind: int, columns: NDArray[np.int64]) -> int:
-    """Columns of the lengths whose ratios are limited, −1 for a ground of length 1; how many there are.
-
-    Watt II has two fourbars, the size of the second beside the first being free: they stand one after the other.
-    """
-    columns[0], columns[1], columns[2], columns[3] = -1, A, B, C
-    if kind == WATT_2:
-        columns[4], columns[5], columns[6], columns[7] = -1, 7, 8, 9
-        return 8
-    columns[4], columns[5] = (11, 12) if kind == STEPHENSON_3 else (9, 10)
-    return 6
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _ratio_row(
-    at: Real, columns: NDArray[np.int64], begin: int, end: int, most: float, weight: float, row: Real
-) -> float:
+def _ratio_row(logs: Real, slopes: Real, begin: int, end: int, most: float, weight: float, row: Real) -> float:
     """What the longest and the shortest of some lengths are beyond a ratio, weighed, with its derivatives."""
     low, high = begin, begin
-    logs = np.empty(LISTED)
     for j in range(begin, end):
-        logs[j] = 0.0 if columns[j] < 0 else math.log(at[columns[j]])
         if logs[j] < logs[low]:
             low = j
         if logs[j] > logs[high]:
@@ -84,10 +53,8 @@ def _ratio_row(
     over = logs[high] - logs[low] - most
     if not over > 0.0:
         return 0.0
-    if columns[high] >= 0:
-        row[columns[high]] = weight
-    if columns[low] >= 0:
-        row[columns[low]] = -weight
+    for n in range(NUMBERS):
+        row[n] = weight * (slopes[high, n] - slopes[low, n])
     return float(weight * over)
 
 
@@ -119,11 +86,12 @@ def rows(x: Real, points: Real, setting: Real, _multipliers: Real, state: Real, 
             if over > 0.0:
                 jacobian[count] = math.copysign(limited[j] * strict, cosines[j, d]) * by_cosine[j, d] * free
             count += 1
-    columns = np.empty(LISTED, np.int64)
-    listed = _groups(kind, columns)
-    step = 4 if kind == WATT_2 else listed
-    for begin in range(0, listed, step):
-        residuals[count] = _ratio_row(at, columns, begin, begin + step, setting[RATIO], strict, jacobian[count])
+    logs, by_step = np.empty(LENGTHS), np.empty((LENGTHS, NUMBERS))
+    listed = log_lengths(kind, at, logs, by_step)
+    # The size of a Watt II's second fourbar beside the first is free.
+    group = listed // 2 if kind == WATT_2 else listed
+    for begin in range(0, listed, group):
+        residuals[count] = _ratio_row(logs, by_step, begin, begin + group, setting[RATIO], strict, jacobian[count])
         jacobian[count] *= free
         count += 1
     return count
