@@ -39,12 +39,12 @@ class Effort(NamedTuple):
     moves: int
 
 
-MUCH = Effort(60_000, (1000, 100), (150, 500), (16, 2000), 200)
+MUCH = Effort(60_000, (1000, 100), (150, 500), (16, 2000), 60)
 
 EFFORTS: dict[Sixbar, Effort] = {
     "watt_2": MUCH,
     "stephenson_3": MUCH,
-    "stephenson_2": Effort(60_000, (400, 100), (60, 500), (12, 2000), 60),
+    "stephenson_2": Effort(60_000, (400, 100), (60, 500), (12, 2000), 20),
 }
 """A Stephenson II, whose place is a root, takes three times as long as the others."""
 

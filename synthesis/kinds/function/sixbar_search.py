@@ -93,6 +93,10 @@ MET_AS_STATED = math.radians(1e-6)
 FOLLOWED, FOLLOWED_STEPS = 16, 2000
 """So many of these at most are followed, and for so many steps along their valley."""
 
+SEARCHES, NEARLY = 2, 1e-3
+"""Searches towards pairs at most, one after the other, and the root mean square error, radians, from which on there is
+no other."""
+
 MET = 1e-10
 """Greatest error, radians, that is rounding: nothing is left to improve."""
 
@@ -158,22 +162,36 @@ class SixbarSearch:
 
     def of_type(self, name: Sixbar, rng: np.random.Generator, progress: Progress) -> list[Found]:
         """The best sixbars of a type that were found, the best first."""
-        pairs = self.task.problem.function is None and not self.exact
-        count = FOR_PAIRS[name].drawn if pairs else DRAWN[name]
-        drawn = starts(KINDS[name], self.task, self.places.points[0], self.places.points[1], count, rng, wider=pairs)
-        self.weighed += len(drawn.at)
-        progress(0.1, f"{len(drawn.at)} sixbars of type {name}")
-        if pairs:
-            exact = self.task.problem.follows_watts
-            searching = part_of(progress, 0.0, BEFORE_NINE) if exact else progress
-            reached = self._pairs.arrived(name, drawn, IMPROVED, rng, searching)
-            if exact and not (reached and reached[0].error < MET):
-                reached = best([*self._through_nine(rng, progress), *reached], IMPROVED)
+        if self.task.problem.function is None and not self.exact:
+            reached = self._towards_pairs(name, rng, progress)
         else:
-            reached = self._descended(name, drawn, progress)
+            reached = self._descended(name, self._drawn(name, DRAWN[name], rng, progress), progress)
         improved = [self._improved(one) for one in reached]
         improved.sort(key=lambda one: one.error)
         return [one for one in improved if math.isfinite(one.error)]
+
+    def _drawn(
+        self, name: Sixbar, count: int, rng: np.random.Generator, progress: Progress, *, wider: bool = False
+    ) -> Starts:
+        drawn = starts(KINDS[name], self.task, self.places.points[0], self.places.points[1], count, rng, wider=wider)
+        self.weighed += len(drawn.at)
+        progress(0.1, f"{len(drawn.at)} sixbars of type {name}")
+        return drawn
+
+    def _towards_pairs(self, name: Sixbar, rng: np.random.Generator, progress: Progress) -> list[Found]:
+        """Sixbars towards pairs; where they nearly meet them, so that others might, others are drawn."""
+        follows = self.task.problem.follows_watts
+        searching = part_of(progress, 0.0, BEFORE_NINE) if follows else progress
+        reached: list[Found] = []
+        for n in range(SEARCHES):
+            if reached and not MET < reached[0].error < NEARLY:
+                break
+            part = part_of(searching, n / SEARCHES, (n + 1) / SEARCHES)
+            drawn = self._drawn(name, FOR_PAIRS[name].drawn, rng, part, wider=True)
+            reached = best([*reached, *self._pairs.arrived(name, drawn, IMPROVED, rng, part)], IMPROVED)
+        if follows and not (reached and reached[0].error < MET):
+            reached = best([*self._through_nine(rng, progress), *reached], IMPROVED)
+        return reached
 
     def _through_nine(self, rng: np.random.Generator, progress: Progress) -> list[Found]:
         """What the nearest of all Watt II sixbars through nine pairs lead to."""

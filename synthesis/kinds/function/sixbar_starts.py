@@ -27,6 +27,13 @@ Real = NDArray[np.float64]
 WIDEST, WIDER, SELDOM = 1.3, 2.1, 0.3
 """Logarithm of the drawn lengths, either way, in grounds; and of the share of them that are drawn wider, if asked."""
 
+FROM_A, FROM_MIDDLE = (0.15, 3.0), (0.1, 4.0)
+"""How far C of a Stephenson III is drawn from A, and O6 from the middle of O2 O4, at least and at most, in sizes of the
+fourbar."""
+
+FROM_O2, FROM_B = (0.15, 3.0), (0.15, 3.0)
+"""The same of C of a Stephenson II from O2, and of E from B, in lengths of B D."""
+
 LEAST_SWING, GREATEST_SWING = 0.15, math.radians(170.0)
 """What the rocker of a Watt II, the first step, turns at least, as a share of the input, and at most."""
 
@@ -113,9 +120,10 @@ def _watts(task: FunctionTask, at: Real, signs: Real, angles: Real, outputs: Rea
 def _third_stephensons(
     at: Real, signs: Real, angles: Real, inputs: Real, outputs: Real, rng: np.random.Generator
 ) -> Starts:
-    count = len(at)
-    at[:, 7:9] = rng.uniform(-2.0, 2.0, (count, 2))
-    at[:, 9:11] = rng.uniform(-3.0, 3.0, (count, 2))
+    size = _sizes(at)
+    at[:, 7:9] = _around(size, FROM_A, rng)
+    at[:, 9:11] = _around(size, FROM_MIDDLE, rng)
+    at[:, 9] += 0.5
     theta = at[:, kernels.START, None] + at[:, kernels.K, None] * inputs
     pin = at[:, :1] * np.exp(1j * theta)
     unit = (1.0 + at[:, 2:3] * np.exp(1j * angles) - pin) / at[:, 1:2]
@@ -140,9 +148,22 @@ def _third_stephensons(
 
 def _second_stephensons(at: Real, rng: np.random.Generator) -> Starts:
     count = len(at)
+    size = _sizes(at)
     at[:, kernels.ZERO] = rng.uniform(-math.pi, math.pi, count)
-    at[:, 7:9] = rng.uniform(-1.5, 1.5, (count, 2))
-    at[:, 9:11] = np.exp(rng.uniform(-1.0, 1.0, (count, 2)))
-    at[:, 11:13] = rng.uniform(-1.5, 1.5, (count, 2))
+    at[:, 7:9] = _around(size, FROM_O2, rng)
+    at[:, 9:11] = size[:, None] * np.exp(rng.uniform(-1.0, 1.0, (count, 2)))
+    at[:, 11:13] = _around(at[:, 9], FROM_B, rng)
     at[:, 13] = rng.uniform(-math.pi, math.pi, count)
     return Starts(at, rng.integers(4, size=count))
+
+
+def _sizes(at: Real) -> Real:
+    """Geometric means of the links of fourbars, with their grounds."""
+    return np.asarray(np.exp(0.25 * np.log(at[:, :3]).sum(axis=1)))
+
+
+def _around(size: Real, ends: tuple[float, float], rng: np.random.Generator) -> Real:
+    """Places in any direction, by the logarithm as likely near as far, between shares of a size: (n, 2)."""
+    away = size * np.exp(rng.uniform(math.log(ends[0]), math.log(ends[1]), len(size)))
+    angle = rng.uniform(-math.pi, math.pi, len(size))
+    return np.asarray((away * np.array([np.cos(angle), np.sin(angle)])).T)
