@@ -2,8 +2,9 @@
 
 Two bars that meet in a pin: the acute angle between them. A bar to a pin on a line of the ground: the acute angle
 between the bar and the line's normal. A link about a pin that slides past another pin: what the acute angle between its
-line and the way from pin to pin lacks of a right one. A coupler that is pushed at a point, where no pair of links
-follows: the acute angle between the pushing bar and the normal of the point's path, which passes the instant centre.
+line and the way from pin to pin lacks of a right one. A coupler on three bars, where no pair of links follows: at each
+the acute angle between the bar and the normal of its pin's path, which passes the instant centre where the two others
+meet.
 """
 
 from __future__ import annotations
@@ -34,12 +35,11 @@ def closures(drive: Drive) -> dict[frozenset[str], Angle]:
     done = {name for name, joints in moving.items() if set(joints) <= known}
     found: dict[frozenset[str], Angle] = {}
     while len(done) < len(moving):
-        new = _sliding(drive, moving, known, done) or _pair(moving, known, done) or _triad(drive, moving, known, done)
+        new = _sliding(drive, moving, known, done) or _pair(moving, known, done) or _triad(moving, known, done)
         if new is None:
             raise ValueError("no closure for " + ", ".join(sorted(set(moving) - done)))
-        links, angle = new
-        found[links] = angle
-        for name in links:
+        found.update(new)
+        for name in frozenset().union(*new):
             known.update(moving[name])
         done |= {name for name, joints in moving.items() if set(joints) <= known}
     return found
@@ -47,46 +47,44 @@ def closures(drive: Drive) -> dict[frozenset[str], Angle]:
 
 def _sliding(
     drive: Drive, moving: dict[str, list[int]], known: set[int], done: set[str]
-) -> tuple[frozenset[str], Angle] | None:
+) -> dict[frozenset[str], Angle] | None:
     for joint, link, _, along in drive.slides:
         if link == "ground" and joint not in known:
             for name, joints in moving.items():
                 held = [k for k in joints if k in known]
                 if joint in joints and held:
-                    return frozenset({name}), _to_line(held[0], joint, along)
+                    return {frozenset({name}): _to_line(held[0], joint, along)}
         elif link != "ground" and link not in done and joint in known:
             held = [k for k in moving[link] if k in known]
             if held:
                 i, j = moving[link][:2]
-                return frozenset({link}), _past(held[0], joint, i, j, along / (drive.home[j] - drive.home[i]))
+                return {frozenset({link}): _past(held[0], joint, i, j, along / (drive.home[j] - drive.home[i]))}
     return None
 
 
-def _pair(moving: dict[str, list[int]], known: set[int], done: set[str]) -> tuple[frozenset[str], Angle] | None:
+def _pair(moving: dict[str, list[int]], known: set[int], done: set[str]) -> dict[frozenset[str], Angle] | None:
     for one, other in combinations([name for name in moving if name not in done], 2):
         shared = (set(moving[one]) & set(moving[other])) - known
         ends = [[k for k in moving[name] if k in known] for name in (one, other)]
         if shared and all(ends):
-            return frozenset({one, other}), _between(min(shared), ends[0][0], ends[1][0])
+            return {frozenset({one, other}): _between(min(shared), ends[0][0], ends[1][0])}
     return None
 
 
-def _triad(
-    drive: Drive, moving: dict[str, list[int]], known: set[int], done: set[str]
-) -> tuple[frozenset[str], Angle] | None:
-    """A coupler on two links of the ground that a bar from the input pushes."""
-    ground = set(drive.links["ground"])
+def _triad(moving: dict[str, list[int]], known: set[int], done: set[str]) -> dict[frozenset[str], Angle] | None:
+    """A coupler on three links that the ground or the input hold."""
     for coupler in (name for name in moving if name not in done):
-        legs: list[tuple[str, int, int]] = []
+        legs: dict[str, tuple[int, int]] = {}
         for name in (name for name in moving if name not in done and name != coupler):
             pins = set(moving[name]) & set(moving[coupler])
             ends = [k for k in moving[name] if k in known]
             if pins and ends:
-                legs.append((name, ends[0], min(pins)))
+                legs[name] = ends[0], min(pins)
         if len(legs) == 3:
-            pusher = next(leg for leg in legs if leg[1] not in ground)
-            one, other = (leg for leg in legs if leg != pusher)
-            return frozenset({coupler, *(leg[0] for leg in legs)}), _pushed(one[1:], other[1:], pusher[1:])
+            return {
+                frozenset({coupler, name}): _pushed(*(legs[other] for other in legs if other != name), leg)
+                for name, leg in legs.items()
+            }
     return None
 
 
@@ -106,7 +104,7 @@ def _between(pin: int, first: int, second: int) -> Angle:
 
 
 def _pushed(one: tuple[int, int], other: tuple[int, int], pusher: tuple[int, int]) -> Angle:
-    """A coupler on two links of the ground, and the bar that pushes it: each from its outer pin to the coupler's."""
+    """A coupler on two bars, and the one that pushes it: each from its outer pin to the coupler's."""
 
     def angle(z: Complex) -> Real:
         # The instant centre lies on both links.

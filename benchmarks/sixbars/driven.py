@@ -11,13 +11,8 @@ CLOSE = 0.1
 
 
 def transmits(design: Any, loops: Loops, met: Followed, at: dict[str, str]) -> bool:
-    """Whether a design transmits as it says: at the pins ``at`` where a link is driven by a dyad, and at an output that
-    is not by the forces at all pins."""
-    for link, angle in design.metrics.transmission_angles.items():
-        if link == "output":
-            seen = min(loops.pushed(places, link) for places in met.places)
-        else:
-            seen = min(value for (joint, *on), value in met.angles.items() if joint == at[link] and link in on)
-        if seen < angle - CLOSE:
-            return False
-    return True
+    """Whether a design transmits as it says: at the pins ``at`` where a link is driven by a dyad, and at the legs of a
+    triad by the forces at all pins."""
+    told = design.metrics.transmission_angles
+    seen = loops.transmission(met, at)
+    return told.keys() == seen.keys() and all(seen[link] >= angle - CLOSE for link, angle in told.items())

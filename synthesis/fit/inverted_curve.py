@@ -41,7 +41,7 @@ from synthesis.fit.sixbar_curve import (
     pins_with_slopes,
     turn_of,
 )
-from synthesis.fit.triad_slant import cross, dot, pushed, pushed_rate, slant, slant_rate
+from synthesis.fit.triad_slant import cross, dot, slant, slant_rate_at
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -58,7 +58,7 @@ SHOWN = 6
 def inverted_joints(
     x: Real, lengths: Real, sign: float, carrier: int, side: float, theta: float, places: Complex
 ) -> tuple[bool, float, float]:
-    """Whether a Stephenson II closes with link 3 at θ, and the cosine and sine of the angle at which it is pushed.
+    """Whether a Stephenson II closes with link 3 at θ, and the cosine and sine of its least transmission angle.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def inverted_joints(
     o2 = complex(x[0], x[1])
     places[A0], places[A], places[B] = o2 - back * d, o2 + back * (a - d), o2 + back * (b - d)
     places[B0], places[PIN], places[POINT] = o2 + back * (pivot - d), o2 + back * (c - d), o2 + back * (p - d)
-    cosine, sine = slant(c, e, 0j, a, pivot, b)
+    cosine, sine, _ = slant(c, e, 0j, a, pivot, b)
     return True, cosine, sine
 
 
@@ -229,11 +229,9 @@ def seen_from_ground(x: Real, joint: int, turns: Real, places: Complex, by: Comp
 
 @njit(**OPTIONS)
 def slant_with_slopes(places: Complex, by: Complex, row: Real) -> float:
-    """The cosine of the angle at which the output is pushed, and its derivatives by the unknowns (15,)."""
-    q, j, o2, a, o4, b = places[PIN], places[PIVOT], places[A0], places[A], places[B0], places[B]
-    leg, way = q - j, pushed(q, o2, a, o4, b)
+    """The cosine of the least transmission angle, and its derivatives by the unknowns (15,)."""
+    pins = places[PIN], places[PIVOT], places[A0], places[A], places[B0], places[B]
+    cosine, _, leg = slant(*pins)
     for k in range(UNKNOWNS):
-        by_way = pushed_rate(q, o2, a, o4, b, by[PIN, k], by[A0, k], by[A, k], by[B0, k], by[B, k])
-        row[k] = slant_rate(leg, way, by[PIN, k] - by[PIVOT, k], by_way)
-    cosine: float = cross(leg, way) / (abs(leg) * abs(way))
+        row[k] = slant_rate_at(leg, pins, (by[PIN, k], by[PIVOT, k], by[A0, k], by[A, k], by[B0, k], by[B, k]))
     return cosine

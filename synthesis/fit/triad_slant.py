@@ -1,9 +1,10 @@
-"""How slantwise a Stephenson II sixbar pushes its output, seen from its input link, with rates.
+"""How slantwise the three legs of a Stephenson II's triad push its link 4, seen from the input link, with rates.
 
-Link 4 moves on the input link by the links 3 and 5, legs O₂A and O₄B, and pushes the output by a pin q; the output's
-other pin j is on the ground. The triad transmits by the angle between the output and the normal of the way on which q
-is pushed (:mod:`kinematics.linkage.planar.triad_transmission`, by whose formula the core measures it; here the way is
-that about the pole of link 4 and the input). As long as its sine does not vanish, the input goes on where link 3 does.
+Link 4 moves on the input link by the links 3 and 5, legs O₂A and O₄B, and on the ground by the output, leg jq: j is the
+output's pin on the ground, q its other one. The transmission angle at a leg is that between it and the normal of the
+way on which its pin on link 4 is moved by the other two (:mod:`kinematics.linkage.planar.triad_transmission`, by whose
+formula the core measures it; here the way is that about the pole, where the other two legs meet). As long as the sines
+do not vanish, which they do together, the input goes on where link 3 does.
 """
 
 from __future__ import annotations
@@ -36,11 +37,42 @@ def pushed(q: complex, o2: complex, a: complex, o4: complex, b: complex) -> comp
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def slant(q: complex, j: complex, o2: complex, a: complex, o4: complex, b: complex) -> tuple[float, float]:
-    """Cosine and signed sine of the transmission angle at the output; NaN where its pin cannot move."""
-    way, leg = pushed(q, o2, a, o4, b), q - j
-    size = abs(way) * abs(leg)
-    return cross(leg, way) / size, dot(leg, way) / size
+def third(
+    leg: int, q: complex, j: complex, o2: complex, a: complex, o4: complex, b: complex
+) -> tuple[complex, complex, complex, complex, complex, complex]:
+    """The same pins, or their rates, with a leg in the output's place and the others after it in a circle.
+
+    ``leg``: 0 for the output, 1 for link 3, 2 for link 5.
+    """
+    if leg == 1:
+        return a, o2, o4, b, j, q
+    if leg == 2:
+        return b, o4, j, q, o2, a
+    return q, j, o2, a, o4, b
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def slant_at(leg: int, q: complex, j: complex, o2: complex, a: complex, o4: complex, b: complex) -> tuple[float, float]:
+    """Signed cosine and sine of the transmission angle at a leg; NaN where its pin cannot move."""
+    q, j, o2, a, o4, b = third(leg, q, j, o2, a, o4, b)
+    way, bar = pushed(q, o2, a, o4, b), q - j
+    size = abs(way) * abs(bar)
+    return cross(bar, way) / size, dot(bar, way) / size
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def slant(q: complex, j: complex, o2: complex, a: complex, o4: complex, b: complex) -> tuple[float, float, int]:
+    """Cosine and sine of the least of the three transmission angles, and the leg at which it is.
+
+    The sine has the sign of the determinant of the legs' lines, whichever the leg is.
+    """
+    cosine, sine = slant_at(0, q, j, o2, a, o4, b)
+    least = 0
+    for leg in range(1, 3):
+        along, across = slant_at(leg, q, j, o2, a, o4, b)
+        if abs(across) < abs(sine):
+            cosine, sine, least = along, across, leg
+    return cosine, sine, least
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -65,3 +97,15 @@ def slant_rate(leg: complex, way: complex, by_leg: complex, by_way: complex) -> 
     cosine = cross(leg, way) / (long * wide)
     rate = (cross(by_leg, way) + cross(leg, by_way)) / (long * wide)
     return rate - cosine * (dot(leg, by_leg) / (long * long) + dot(way, by_way) / (wide * wide))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def slant_rate_at(
+    leg: int, pins: tuple[complex, complex, complex, complex, complex, complex],
+    rates: tuple[complex, complex, complex, complex, complex, complex],
+) -> float:  # fmt: skip
+    """The rate of the cosine at a leg from the six pins, in the order of :func:`slant`, and theirs."""
+    q, j, o2, a, o4, b = third(leg, *pins)
+    by_q, by_j, by_o2, by_a, by_o4, by_b = third(leg, *rates)
+    by_way = pushed_rate(q, o2, a, o4, b, by_q, by_o2, by_a, by_o4, by_b)
+    return slant_rate(q - j, pushed(q, o2, a, o4, b), by_q - by_j, by_way)

@@ -274,7 +274,8 @@ class MotionMetrics(UsedRange):
     barker: str | None = Field(description="Barker's code of that fourbar, e.g. GCRR.")
     min_transmission_angle: Angle = Field(description="Over the verified motion, degrees.")
     transmission_angles: dict[str, Angle] = Field(
-        description="The least at each dyad of links over that motion, by the name of its first link, degrees."
+        description="The least over that motion, degrees: at each dyad of links by the name of its first link, and at "
+        "each leg of a triad (Stephenson II) by its name."
     )
     full_rotation: bool
     link_ratio: float = Field(description="Longest link over shortest.")

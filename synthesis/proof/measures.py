@@ -70,7 +70,7 @@ class Measures(NamedTuple):
     min_transmission_angle : float
         Over the used range, degrees; the least of ``transmission_angles``.
     transmission_angles : dict of str to float
-        The least at each closure, by the name of its first link, degrees.
+        The least at each closure by the name of its first link, and at each leg of a triad, degrees.
     same_branch, visits_in_order, full_rotation : bool
         Whether no toggle lies on the way, the way is gone through in order, and the input turns through.
     link_ratio : float

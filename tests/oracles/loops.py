@@ -41,8 +41,24 @@ class Loops:
         self.input = skeleton["input_link"]
         self.body = next(name for name, listed in self.links.items() if "P" in listed)
         self.moving = [name for name in self.links if name not in ("ground", self.input)]
+        self.triad = self._legs()
         self.loops = self._loops()
         assert len(self.moving) == 2 * len(self.loops), "a linkage of pins with one freedom"
+
+    def _legs(self) -> list[str]:
+        """The legs of a triad: three moving links with a pin on a fourth, and one on the input or the ground."""
+        for carried in self.moving:
+            ends = [set(self.links["ground"]), set(self.links[self.input])]
+            legs = [
+                name
+                for name in self.moving
+                if name != carried
+                and len(set(self.links[name]) & set(self.links[carried]) - {"P"}) == 1
+                and any(set(self.links[name]) & end for end in ends)
+            ]
+            if len(legs) == 3:
+                return legs
+        return []
 
     def _loops(self) -> list[list[tuple[str, complex]]]:
         """Independent loops: of a tree of links from the ground, one for each pin that the tree leaves out."""
@@ -127,7 +143,7 @@ class Loops:
         return Followed(np.array(points), np.array(turned), float(least), angles, way)
 
     def pushed(self, places: dict[str, complex], link: str) -> float:
-        """The transmission angle at which a link at the ground is pushed, degrees, by the forces at all pins.
+        """The transmission angle of a link at the ground or the input, degrees, by the forces at all pins.
 
         The link alone is loaded, by a torque of 1. Its pin's force f at a distance r from its pivot has the torque
         f r sin μ = 1, whatever the chain between it and the input is.
@@ -149,12 +165,21 @@ class Loops:
         load = np.zeros(len(balance))
         load[3 * bodies.index(link) + 2] = -1.0
         forces = np.linalg.solve(balance, load)
-        pivot, pin = (
-            next(j for j in self.links[link] if (j in self.links["ground"]) == still) for still in (True, False)
-        )
+        held = {*self.links["ground"], *self.links[self.input]}
+        own = [joint for joint, on in pins if link in on]
+        pivot, pin = (next(joint for joint in own if (joint in held) == outer) for outer in (True, False))
         k = next(n for n, (joint, _) in enumerate(pins) if joint == pin)
         lever = np.hypot(*forces[2 * k : 2 * k + 2]) * abs(places[pin] - places[pivot])
         return float(np.degrees(np.arcsin(min(1.0 / lever, 1.0))))
+
+    def transmission(self, met: Followed, dyads: dict[str, str]) -> dict[str, float]:
+        """The least transmission angles on a way, degrees, by links: of dyads by their pins; else at all three legs."""
+        if self.triad:
+            return {link: min(self.pushed(places, link) for places in met.places) for link in self.triad}
+        return {
+            link: min(value for (joint, *on), value in met.angles.items() if joint == pin and link in on)
+            for link, pin in dyads.items()
+        }
 
     def _by_input(self, at: float) -> np.ndarray:
         rates = [sum(1j * z * np.exp(1j * at) for name, z in loop if name == self.input) for loop in self.loops]

@@ -82,10 +82,7 @@ def held_against_loops(design, values, outputs, *, off: float) -> None:
     """The same, and the linkage transmits as it says."""
     loops, met = shown_by_loops(design, values, outputs, off=off)
     told = design["metrics"]["transmission_angles"]
-    last = "output" if design["mechanism"]["type"] == "stephenson_2" else "link_5"
-    seen = {last: min(loops.pushed(places, "output") for places in met.places)}
-    if last == "link_5":
-        seen["coupler"] = min(value for (pin, *on), value in met.angles.items() if pin == "B" and "coupler" in on)
+    seen = loops.transmission(met, {"coupler": "B", "link_5": "D"})
     assert set(told) == set(seen)
     for link, angle in seen.items():
         # Between the steps the least may be a little less.

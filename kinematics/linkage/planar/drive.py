@@ -18,7 +18,7 @@ from kinematics.linkage.planar.closures import RECENT, decompose
 from kinematics.linkage.planar.mechanism import Mechanism, Real, TopologyError
 from kinematics.linkage.planar.program import Frame, Program, Signs, assembly_signs, program_of, unit_frame
 from kinematics.linkage.planar.settling import settle
-from kinematics.linkage.planar.triad_transmission import triad_of, triad_sine
+from kinematics.linkage.planar.triad_transmission import triad_of, triad_sines
 from kinematics.linkage.planar.triads import STALLED, Loops, Track, loop_equations, rates
 
 Jet = NDArray[np.complex128]
@@ -55,7 +55,7 @@ class MechanismMotion:
     sines : dict of str to float, shape S + (N,)
         For each closure, by the name of its link: the sine that vanishes at its limit. Its magnitude is the sine of the
         transmission angle there; its sign changes from assembly to assembly. For a class III mechanism with a triad,
-        by the triad's third leg (:mod:`triad_transmission`).
+        by each leg of the triad (:mod:`triad_transmission`).
     margins : dict of str to float, shape (2,) + S + (N,), or (1,) + S + (N,) without derivatives
         For each closure: a smooth function that is positive where it exists, zero at its limit and negative beyond, and
         its rate; NaN where the closures before it do not exist. Where two links or a link and a slide close, it is the
@@ -196,7 +196,7 @@ def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, sig
     closing = dict(zip(program.closing, sines.reshape(-1, *shape), strict=True))
     triad = triad_of(mechanism) if program.class_iii else None
     if triad is not None:
-        closing[triad.third.link] = triad_sine(triad, {name: jet[0] for name, jet in joints.items()})
+        closing.update(triad_sines(triad, {name: jet[0] for name, jet in joints.items()}))
     return MechanismMotion(
         valid,
         smooth,

@@ -1,15 +1,17 @@
-"""The transmission angle of a triad: a link on three legs, each pinned to the input link or to the ground.
+"""The transmission angles of a triad: a link on three legs, each pinned to the input link or to the ground.
 
 The pin of a two-force member pushes along the leg; the transmission angle there is the angle between the leg and the
-normal of the path on which it pushes (Alt's definition; Norton, Sec. 4.10, for the fourbar). Of the three legs two have
-their outer pins on one link, input or ground, and give the carried link one freedom relative to it. In that motion the
-inner pin of the third leg moves along v, and with the leg's direction e the sine is
+normal of the path on which it pushes (Alt's definition; Norton, Sec. 4.10, for the fourbar). Without one leg the two
+others leave the carried link one freedom beside an input that stands still. In that motion the inner pin of the leg
+moves along v, and with the leg's direction e the sine is
 
     sin μ = e · v / |v|.
 
-It vanishes where the three legs meet in one point or are parallel, which is a toggle. The twist of the carried link,
-(v, ω) with v at the third pin, is at right angles to both other legs' lines: e_i · v + (q_i × e_i) ω = 0, with q_i the
-inner pins from the third one; so it is the vector product of the two rows, legs that are parallel included.
+The three sines vanish together, where the legs meet in one point or are parallel, which is a toggle. Near one they may
+differ much: where two legs meet at the third's pin, that pin is pushed well and hardly moves, and both others point at
+it. So each leg has its angle. The twist of the carried link, (v, ω) with v at the pin, is at right angles to both other
+legs' lines: e_i · v + (q_i × e_i) ω = 0, with q_i the inner pins from that one; so it is the vector product of the two
+rows, legs that are parallel included.
 """
 
 from __future__ import annotations
@@ -33,11 +35,8 @@ class Leg(NamedTuple):
     inner: str
 
 
-class Triad(NamedTuple):
-    """Two legs that guide the carried link relative to one link, and the third."""
-
-    guides: tuple[Leg, Leg]
-    third: Leg
+Triad = tuple[Leg, Leg, Leg]
+"""Two legs on one link, input or ground, and the third."""
 
 
 def triad_of(mechanism: Mechanism) -> Triad | None:
@@ -58,19 +57,26 @@ def triad_of(mechanism: Mechanism) -> Triad | None:
         counts = sorted(len(listed) for listed in legs.values())
         if counts == [1, 2]:
             one, two = sorted(legs.values(), key=len)
-            return Triad((two[0], two[1]), one[0])
+            return two[0], two[1], one[0]
     return None
 
 
-def triad_sine(triad: Triad, joints: dict[str, Complex]) -> Real:
-    """Sine of the transmission angle at the third leg, signed; the joints' shape. 0 where its pin cannot move."""
-    pin = joints[triad.third.inner]
+def triad_sines(triad: Triad, joints: dict[str, Complex]) -> dict[str, Real]:
+    """Sines of the transmission angles by the legs' links, all of one sign, each of the joints' shape.
+
+    0 where a pin is held.
+    """
+    return {leg.link: _sine(joints, leg, triad[n - 2], triad[n - 1]) for n, leg in enumerate(triad)}
+
+
+def _sine(joints: dict[str, Complex], leg: Leg, *others: Leg) -> Real:
+    pin = joints[leg.inner]
     with np.errstate(divide="ignore", invalid="ignore"):  # NaN where the mechanism cannot be assembled
-        e1, e2 = (_direction(joints, leg) for leg in triad.guides)
-        q1, q2 = (joints[leg.inner] - pin for leg in triad.guides)
+        e1, e2 = (_direction(joints, other) for other in others)
+        q1, q2 = (joints[other.inner] - pin for other in others)
         m1, m2 = np.imag(np.conj(q1) * e1), np.imag(np.conj(q2) * e2)
         moved = (e1.imag * m2 - m1 * e2.imag) + 1j * (m1 * e2.real - e1.real * m2)
-        sine = np.real(np.conj(_direction(joints, triad.third)) * moved) / np.abs(moved)
+        sine = np.real(np.conj(_direction(joints, leg)) * moved) / np.abs(moved)
     return np.asarray(np.where(moved == 0.0, 0.0, sine))
 
 
@@ -79,4 +85,4 @@ def _direction(joints: dict[str, Complex], leg: Leg) -> Complex:
     return np.asarray(vector / np.abs(vector))
 
 
-__all__ = ["Leg", "Triad", "triad_of", "triad_sine"]
+__all__ = ["Leg", "Triad", "triad_of", "triad_sines"]

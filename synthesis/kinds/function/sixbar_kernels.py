@@ -16,8 +16,8 @@ and v the unit vector from Q to D,
     cos μ = (d² + e² − r²) / 2de,        δψ = (δd + (δQ − δO − δe e^{iψ}) · v) / (i e e^{iψ} · v),
 
 where the divisor is e times the sine of the transmission angle μ. Of Stephenson II, E has a place in the frame of the
-input for each τ, and |E − O4| = c tells τ; its transmission angle is that of
-:mod:`kinematics.linkage.planar.triad_transmission`.
+input for each τ, and |E − O4| = c tells τ; its transmission angle is the least at the three legs of link 4
+(:mod:`synthesis.fit.triad_slant`).
 
 Assemblies are numbered: bit 0 is the first dyad's, bit 1 the second's; set where D is to the left of the way from Q to
 O. Stephenson II has its only dyad, C D B, in bit 0.
@@ -31,6 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.compiling import njit
+from synthesis.fit.triad_slant import slant, slant_at
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -127,10 +128,10 @@ def _dyad(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _relative_point(at: Real, left: bool, tau: float, by: Complex) -> tuple[complex, complex, bool]:
-    """Stephenson II: E from O2 in the frame of the input, A on +x, and its derivatives by the numbers and by τ.
+def _relative_point(at: Real, left: bool, tau: float, by: Complex) -> tuple[complex, complex, complex, complex, bool]:
+    """Stephenson II: B, D and E from O2 in the frame of the input, A on +x, E's derivative by τ, and whether it closes.
 
-    ``by`` (NUMBERS,) gets the derivatives, the last by τ.
+    ``by`` (NUMBERS,) gets the derivatives of E by the numbers, the last by τ.
     """
     a, b = at[A], at[B]
     c = complex(at[7], at[8])
@@ -144,14 +145,14 @@ def _relative_point(at: Real, left: bool, tau: float, by: Complex) -> tuple[comp
     # The dyad C–D–B: D turns about B.
     angle, _ = _dyad(c, by_c, pin, by_pin, (cd, bd), (10, 9), left, turned, unused)
     if not math.isfinite(angle):
-        return 0j, 0j, False
+        return 0j, 0j, 0j, 0j, False
     unit = complex(math.cos(angle), math.sin(angle))
     arm = complex(at[11], at[12]) * unit
     for n in range(NUMBERS):
         by[n] = by_pin[n] + 1j * arm * turned[n]
     by[11] += unit
     by[12] += 1j * unit
-    return pin + arm, by[NUMBERS - 1], True
+    return pin, pin + bd * unit, pin + arm, by[NUMBERS - 1], True
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -159,7 +160,7 @@ def _settled(at: Real, left: bool, turn: complex, tau: float, by: Complex) -> fl
     """The angle τ with which Stephenson II closes, from one near it; NaN where it is not met."""
     step = math.inf
     for _ in range(NEWTON):
-        point, moves, found = _relative_point(at, left, tau, by)
+        _, _, point, moves, found = _relative_point(at, left, tau, by)
         arm, rate = turn * point - 1.0, turn * moves
         slope = 2.0 * (arm.real * rate.real + arm.imag * rate.imag)
         step = (arm.real * arm.real + arm.imag * arm.imag - at[C] * at[C]) / slope
@@ -173,16 +174,10 @@ def _settled(at: Real, left: bool, turn: complex, tau: float, by: Complex) -> fl
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _slant(arm: complex, rate: complex) -> float:
-    """The cosine of the angle between the output link and the normal of the way on which it is pushed."""
-    return (arm.real * rate.imag - arm.imag * rate.real) / (abs(arm) * abs(rate))
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
 def _triad(
     at: Real, left: bool, phi: float, tau: float, felt: float, by_psi: Real, by_cosine: Real
 ) -> tuple[float, float, float]:
-    """Stephenson II at an input: ψ, τ, and the cosine at the output link; NaN where it does not close nearby.
+    """Stephenson II at an input: ψ, τ, and the cosine of the least angle; NaN where it does not close nearby.
 
     The derivatives of the cosine are left alone where it is less than ``felt``.
     """
@@ -191,7 +186,7 @@ def _triad(
     tau = _settled(at, left, turn, tau, by)
     if not math.isfinite(tau):
         return math.nan, tau, 0.0
-    point, moves, _ = _relative_point(at, left, tau, by)
+    b, d, point, moves, _ = _relative_point(at, left, tau, by)
     arm, rate = turn * point - 1.0, turn * moves
     along = arm.real * rate.real + arm.imag * rate.imag
     square = at[C] * at[C]
@@ -204,7 +199,7 @@ def _triad(
         by_tau[n] = -lack / along
         moved += rate * by_tau[n]
         by_psi[n] = (arm.real * moved.imag - arm.imag * moved.real) / square
-    cosine = _slant(arm, rate)
+    cosine, _, leg = slant(point, turn.conjugate(), complex(at[A], 0.0), b, complex(at[7], at[8]), d)
     if abs(cosine) < felt:
         return math.atan2(arm.imag, arm.real), tau, cosine
     other = at.copy()
@@ -213,9 +208,11 @@ def _triad(
         if n == START:
             turned *= complex(math.cos(DIFFERENCE), math.sin(DIFFERENCE))
         other[n] = at[n] * (1.0 + DIFFERENCE) if LOGARITHMIC[STEPHENSON_2, n] else at[n] + DIFFERENCE
-        point, moves, found = _relative_point(other, left, tau + DIFFERENCE * by_tau[n], by)
+        b, d, point, _, found = _relative_point(other, left, tau + DIFFERENCE * by_tau[n], by)
+        o2, o4 = complex(other[A], 0.0), complex(other[7], other[8])
         other[n] = at[n]
-        by_cosine[n] = (_slant(turned * point - 1.0, turned * moves) - cosine) / DIFFERENCE if found else 0.0
+        there, _ = slant_at(leg, point, turned.conjugate(), o2, b, o4, d)
+        by_cosine[n] = (there - cosine) / DIFFERENCE if found else 0.0
     return math.atan2(arm.imag, arm.real), tau, cosine
 
 

@@ -8,7 +8,7 @@ is turned so that the ground stands still. The kernel's joints are then
     O₂ A B O₄    pin of link 3 on the input, and on link 4; pin of link 5 on link 4, and on the input
     Q₁ J Q₂      pin of the output on link 4, and on the ground; pin of the input on the ground
 
-What says whether the input can drive it is how slantwise link 4 pushes the output (:mod:`synthesis.fit.triad_slant`).
+What says whether the input can drive it is how slantwise its legs push link 4 (:mod:`synthesis.fit.triad_slant`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.compiling import njit
-from synthesis.fit.triad_slant import pushed, pushed_rate, slant, slant_rate
+from synthesis.fit.triad_slant import slant, slant_rate_at
 from synthesis.kinds.motion.chain_kernels import O2, O4, Q1, Q2, A, B, J
 
 Real = NDArray[np.float64]
@@ -46,10 +46,10 @@ def on_ground(z: Complex, start: complex, at: Complex, turns: Complex) -> float:
     Returns
     -------
     float
-        The cosine of the transmission angle; beyond 1 where the linkage has turned over at a toggle.
+        The cosine of the least transmission angle; beyond 1 where the linkage has turned over at a toggle.
     """
-    _, first = slant(z[Q1], z[J], z[O2], z[A], z[O4], z[B])
-    cosine, sine = slant(at[2], at[4], z[O2], at[0], z[O4], at[1])
+    _, first, _ = slant(z[Q1], z[J], z[O2], z[A], z[O4], z[B])
+    cosine, sine, _ = slant(at[2], at[4], z[O2], at[0], z[O4], at[1])
     back = ((z[J] - z[Q2]) / (at[4] - at[3])) * (abs(at[4] - at[3]) / abs(z[J] - z[Q2]))
     p = at[0] + turns[1] * (start - z[A])
     at[0], at[1], at[2] = z[Q2] + back * (at[0] - z[Q2]), z[Q2] + back * (at[1] - z[Q2]), z[Q2] + back * (at[2] - z[Q2])
@@ -88,13 +88,13 @@ def rates_on_ground(
     base = z[J] - z[Q2]
     turned = (at[4] - at[3]) / base
     back = turned.conjugate()
-    leg, way = at[2] - at[4], pushed(at[2], z[O2], at[0], z[O4], at[1])
+    pins = at[2], at[4], z[O2], at[0], z[O4], at[1]
+    _, _, leg = slant(*pins)
     p = at[0] + turns[1] * (start - z[A])
     for m in range(len(units)):
         unit = units[m]
         a, b, q, j = moving[0, m], moving[1, m], moving[2, m], moving[4, m]
-        by_way = pushed_rate(at[2], z[O2], at[0], z[O4], at[1], q, unit[O2], a, unit[O4], b)
-        bending[m] = slant_rate(leg, way, q - j, by_way)
+        bending[m] = slant_rate_at(leg, pins, (q, j, unit[O2], a, unit[O4], b))
         moved = (j - unit[Q2] - turned * (unit[J] - unit[Q2])) / base
         spin = (moved * back).imag
         body = a + 1j * through[m] * turns[1] * (start - z[A]) - turns[1] * unit[A]

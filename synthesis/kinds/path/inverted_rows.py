@@ -2,8 +2,8 @@
 
 The unknowns and the motion are those of :mod:`synthesis.fit.inverted_curve`; the rows of points, the way back, and the
 margins of lengths, their ratios and the box are those of other sixbars (:mod:`synthesis.kinds.path.sixbar_rows`), in
-the same places. Instead of the cosines of two dyads it is that of the triad, the slant at which its output is pushed,
-which is kept from above and from below. What turns over on its way is refused: its input would turn back.
+the same places. Instead of the cosines of two dyads it is that of the triad, at the leg with the least transmission
+angle, which is kept from above and from below. What turns over on its way is refused: its input would turn back.
 """
 
 from __future__ import annotations
