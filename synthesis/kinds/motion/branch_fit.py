@@ -43,14 +43,23 @@ Real = NDArray[np.float64]
 OF_FIT, OF_HELD = 0.1, 10.0
 """Weights of a pose beside limits, so that these are kept: one that is fitted, and how much more one that is held."""
 
-WORTH, TIMES = 0.99, 6
-"""Share of a cost that ten steps have to leave at most, and descents at most, one after another."""
+WORTH, TIMES, MOST_STEPS = 0.99, 4, 500
+"""Share of a cost that ten steps have to leave at most; descents at most, one after another; steps of one at most."""
+
+NEARLY_ARRIVED = 1e-14
+"""Sum of squares at which a fit counts as one that meets all positions."""
 
 NO_MATTER = 1e6
 """A tolerance of what is not looked at."""
 
 BY_MISS = 100.0
 """How fast a fit loses value by its error: of two that differ by a hundredth of the task's size at about 1 to 2."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def value_of_fit(error: float) -> float:
+    """The value of a sound fit: from 2 for one that meets all positions towards 1."""
+    return 1.0 + 1.0 / (1.0 + BY_MISS * error)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -89,7 +98,31 @@ def _met(x: Real, points: Real, setting: Real, held: NDArray[np.bool_], room: Ro
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def fitted(poses: Poses, held: NDArray[np.bool_], pool: Pool, found: Found) -> int:
+def _ended(x: Real, points: Real, setting: Real, room: Room) -> float:
+    """Descends to the end of the least squares, in place; the sum of squares there."""
+    counts, before = np.zeros(3, np.int64), np.inf
+    cost = before
+    for _ in range(TIMES):
+        cost = descended(x, points, setting, room, counts, WORTH, MOST_STEPS)
+        if not cost < WORTH * before:
+            break
+        before = cost
+    return cost
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _at_bare_limits(x: Real, points: Real, setting: Real, bare: Real, room: Room) -> None:
+    """Goes on to positions that only what the aims keep aside of the limits holds off, where they are met then."""
+    further, limits = x.copy(), setting.copy()
+    for k in range(COSINE, FIRST_X):
+        limits[k] = bare[k]
+    if _ended(further, points, limits, room) < NEARLY_ARRIVED:
+        for k in range(len(x)):
+            x[k] = further[k]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def fitted(poses: Poses, held: NDArray[np.bool_], pool: Pool, bare: Real, found: Found) -> int:
     """Descends from all of a pool to the end.
 
     Parameters
@@ -100,6 +133,8 @@ def fitted(poses: Poses, held: NDArray[np.bool_], pool: Pool, found: Found) -> i
         Which positions are to be met exactly.
     pool : Pool
         Starts.
+    bare : float, shape (SETTINGS,)
+        Limits of which the aims of the starts keep aside.
     found : Found
         Filled.
 
@@ -114,7 +149,7 @@ def fitted(poses: Poses, held: NDArray[np.bool_], pool: Pool, found: Found) -> i
     x, setting, points = np.empty(unknowns), np.empty(SETTINGS), np.empty((later, OF_POSE))
     most = most_rows(later + 1)
     room = Room(np.empty(most), np.empty(most), np.empty((most, unknowns)), np.empty((most, most)), np.empty(most))
-    joints, counts = np.empty(7, np.complex128), np.zeros(3, np.int64)
+    joints = np.empty(7, np.complex128)
     n = 0
     for row in range(len(pool.costs)):
         if not pool.costs[row] < np.inf:
@@ -129,12 +164,8 @@ def fitted(poses: Poses, held: NDArray[np.bool_], pool: Pool, found: Found) -> i
             x[k] = pool.x[row, k]
         if free > 0:
             x[free], x[free + 1], x[free + 2] = setting[FIRST_X], setting[FIRST_Y], 0.0
-        before = np.inf
-        for _ in range(TIMES):
-            cost = descended(x, points, setting, room, counts, WORTH)
-            if not cost < WORTH * before:
-                break
-            before = cost
+        if _ended(x, points, setting, room) > NEARLY_ARRIVED:
+            _at_bare_limits(x, points, setting, bare, room)
         if held.any() and not _met(x, points, setting, held, room):
             continue
         if free > 0:
@@ -146,6 +177,6 @@ def fitted(poses: Poses, held: NDArray[np.bool_], pool: Pool, found: Found) -> i
             found.joints[n, k] = joints[k]
         found.bodies[n] = complex(setting[FIRST_X], setting[FIRST_Y])
         found.stands[n] = x[free + 2] if free > 0 else 0.0
-        found.values[n] = 1.0 + 1.0 / (1.0 + BY_MISS * error) if value >= 1.0 else value
+        found.values[n] = value_of_fit(error) if value >= 1.0 else value
         n += 1
     return n

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,11 +39,27 @@ REPEATED = 1e-9
 WITHIN = 0.98
 """Share of a tolerance that is used."""
 
-AIM, SIZE = math.radians(2.0), 0.96
-"""A descent aims at so much more than the least transmission angle, and at this share of limits of size."""
 
-SHORTEST = 1.5 * kernels.SHORTEST
-"""Length of a link that is aimed at, at least, task sizes."""
+class Aside(NamedTuple):
+    """How far a descent keeps aside of its limits, so that these hold between the steps of its drive too.
+
+    Attributes
+    ----------
+    angle : float
+        Radians that it transmits with beyond the least angle.
+    size : float
+        Share of limits of size that is used.
+    shortest : float
+        Factor of the shortest link that any sixbar has.
+    """
+
+    angle: float
+    size: float
+    shortest: float
+
+
+AIM, BARE = Aside(math.radians(2.0), 0.96, 1.5), Aside(0.0, 1.0, 1.0)
+"""What descents aim at, and the limits themselves."""
 
 RELAXED_ANGLE, RELAXED_SIZE = math.radians(7.0), 3.0
 """Where nobody states them: the transmission angle of relaxed descents, and how much greater their sizes may be."""
@@ -71,7 +88,8 @@ class BranchSearch:
         self.held: NDArray[np.bool_] = np.all(target.held, axis=1)
         self.each = math.ceil(DESCENTS * min(1.0, MOST_HELD / len(self.held)))
         self.needed, self.limits = needed(task), limits
-        self.settings = _aims(problem, limits, relaxed=False), _aims(problem, limits, relaxed=True)
+        self.settings = _aims(problem, limits, AIM, relaxed=False), _aims(problem, limits, AIM, relaxed=True)
+        self.bare = _aims(problem, limits, BARE, relaxed=False)
         self.pools = _empty(len(self.later)), _empty(len(self.later))
         self.descents = 0
 
@@ -101,7 +119,7 @@ class BranchSearch:
         poses = Poses(self.first, self.later, self.needed, self.limits, self.cranks)
         for pool in self.pools:
             ends = Found.room(len(pool.costs))
-            n = int(fit.fitted(poses, self.held, pool, ends))
+            n = int(fit.fitted(poses, self.held, pool, self.bare, ends))
             found = found.beside(ends.best(np.arange(n)))
             pool.costs[:] = np.inf
         return found
@@ -147,17 +165,18 @@ def _poses(problem: MotionProblem, task: MotionTask, target: Demanded, rng: np.r
     return first / unit, np.concatenate([places, off, weights], axis=1)[1:]
 
 
-def _aims(problem: MotionProblem, limits: Real, *, relaxed: bool) -> Real:
+def _aims(problem: MotionProblem, limits: Real, aside: Aside, *, relaxed: bool) -> Real:
     """What descents aim at: places from :data:`branch_rows.COSINE` on."""
     aims = np.zeros(rows.SETTINGS)
-    angle, reach, ratio = math.asin(limits[kernels.LEAST_SINE]) + AIM, *limits[[kernels.MOST_REACH, kernels.MOST_RATIO]]
+    angle = math.asin(limits[kernels.LEAST_SINE]) + aside.angle
+    reach, ratio = limits[[kernels.MOST_REACH, kernels.MOST_RATIO]]
     if relaxed:
         angle = RELAXED_ANGLE if problem.constraints.min_transmission_angle is None else angle
         ratio *= RELAXED_SIZE if problem.constraints.max_link_ratio is None else 1.0
         reach *= RELAXED_SIZE
-    aims[rows.COSINE], aims[rows.REACH], aims[rows.RATIO] = math.cos(angle), SIZE * reach, SIZE * ratio
-    aims[rows.SHORTEST] = max(SHORTEST, limits[kernels.SHORTEST_LINK] / SIZE)
-    aims[rows.LONGEST] = SIZE * limits[kernels.LONGEST_LINK]
+    aims[rows.COSINE], aims[rows.REACH], aims[rows.RATIO] = math.cos(angle), aside.size * reach, aside.size * ratio
+    aims[rows.SHORTEST] = max(aside.shortest * kernels.SHORTEST, limits[kernels.SHORTEST_LINK] / aside.size)
+    aims[rows.LONGEST] = aside.size * limits[kernels.LONGEST_LINK]
     aims[rows.FIXED_BOX : rows.WANTED_X] = limits[kernels.FIXED_BOX :]
     return aims
 

@@ -197,13 +197,21 @@ def _step(m: int, damping: float, room: Room, step: Real) -> bool:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def descended(x: Real, points: Real, setting: Real, room: Room, counts: NDArray[np.int64], worth: float) -> float:
-    """Descends in place as long as ten steps leave less than ``worth`` of the cost; the sum of squares at the end."""
+def descended(
+    x: Real, points: Real, setting: Real, room: Room, counts: NDArray[np.int64], worth: float, steps: int = STEPS
+) -> float:  # fmt: skip
+    """Descends in place by so many steps at most, as long as ten leave less than ``worth`` of the cost.
+
+    Returns
+    -------
+    float
+        The sum of squares at the end.
+    """
     step, trial = np.empty(x.size), np.empty(x.size)
     cost = _cost(x, points, setting, room)
     m = branch_rows(x, points, setting, room.residuals, room.jacobian)
     before, damping = cost, DAMPING
-    for n in range(STEPS):
+    for n in range(steps):
         if not ARRIVED < cost < np.inf or damping > MOST_DAMPING:
             break
         if n % BLOCK == BLOCK - 1:

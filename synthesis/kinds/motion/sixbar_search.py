@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from synthesis.kinds.motion.branch_fit import value_of_fit
 from synthesis.kinds.motion.branch_search import BranchSearch
 from synthesis.kinds.motion.chain_search import ChainSearch
 from synthesis.kinds.motion.demanded import Real, demanded
@@ -45,6 +46,9 @@ ENOUGH, AND_MORE = 3.0, 0.1
 
 STALE, LOWER = 8, 0.97
 """A fit begins anew where so many rounds leave more than this share of the least cost."""
+
+NEAR_ENOUGH = value_of_fit(1e-6)
+"""Value of a fit that ends the search: its error is a millionth of the task's size and a radian."""
 
 FITTED = 0.5
 """What is spent of a search for fits, whatever it finds."""
@@ -145,6 +149,8 @@ class SixbarSearch:
             least = min(least, self.branches.misses)
             if since >= STALE:
                 found = self._distinct(found.beside(self.branches.fitted()))
+                if np.count_nonzero(found.values >= NEAR_ENOUGH) >= self.problem.max_designs:
+                    return found
                 least, since = math.inf, 0
             progress(n * OF_BRANCHES / FITTED, f"{self.weighed} sixbars looked at")
         return self._distinct(found.beside(self.branches.fitted()))
