@@ -244,7 +244,9 @@ class LinkageAnalysis(Answer):
     points: dict[str, Track] = Field(description="The further points that the request names.")
     slides: dict[str, Travel]
     transmission_angle: list[float | None] = Field(description="Least of the transmission angles, degrees.")
-    transmission_angles: dict[str, list[float | None]] = Field(description="At each dyad and each leg of a triad, by its link.")
+    transmission_angles: dict[str, list[float | None]] = Field(
+        description="At each dyad and each leg of a triad, by its link."
+    )
     torque_ratio: dict[str, list[float | None]] = Field(
         description="Output torque over input torque without losses: the mechanical advantage of each grounded link. "
         "A slider that drives brings a force in place of the torque."
