@@ -24,14 +24,23 @@ PINS = {
 }
 """The joints between which a length is measured, where it is not the greatest of its link in the skeleton."""
 
-OWN_PINS = {
+DWELL = {
+    "ground_arm": ("O2", "O6"),
+    "ground_side": ("O4", "O6"),
+    "coupler_arm": ("A", "P"),
+    "coupler_side": ("B", "P"),
+    "rocker_arm": ("O4", "P"),
+    "rocker_side": ("B", "P"),
+}
+"""The same where P is a pin."""
+
+OWN_PINS: dict[str, dict[str, tuple[str, str]]] = {
     "fourbar": {"output": ("O4", "B")},
     "crank_shaper": {"rocker": ("O4", "C"), "coupler": ("C", "D")},
     "whitworth": {"rocker": ("O4", "C"), "coupler": ("C", "D")},
     "drag_link_rocker": {"output_ground": ("O4", "O6")},
     "geared_fivebar": {"ground": ("O2", "O5"), "coupler_1": ("A", "C")},
-    "dwell_watt_rocker": {"rocker_arm": ("O4", "P")},
-    "dwell_watt_slider": {"rocker_arm": ("O4", "P")},
+    **dict.fromkeys(("dwell_rocker", "dwell_slider", "dwell_slot", "dwell_watt_rocker", "dwell_watt_slider"), DWELL),
 }
 """The same of single types."""
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from synthesis.dispatch import solve
-from synthesis.kinds.dwell.outputs import Carrier, Kind, Turning, output, points
+from synthesis.kinds.dwell.outputs import Carrier, Kind, Turning, lengths_of, output, points
 from synthesis.kinds.dwell.problem import DwellProblem
 from synthesis.kinds.dwell.solver import solve_dwell
 from synthesis.kinds.dwell.verification import verify_dwell
@@ -41,7 +41,7 @@ NEAR = 0.01
 LEAST, SUM = 26.0, 66.0
 """Degrees of each rest, and of both: any output has some 23° within a hundredth of its way at an end."""
 
-SOUND, RATIO = 20.0, 8.0
+SOUND, RATIO = 20.0, 10.0
 """Least transmission angle, degrees, and greatest link ratio of a planted sixbar."""
 
 REACH, LEASTS = (60, 120, 180, 240, 300), (15.0, 25.0)
@@ -95,9 +95,7 @@ def _task(
     name: str, kind: Kind, carrier: Carrier, turning: Turning, shape: np.ndarray, out: np.ndarray, sine: float
 ) -> dict[str, Any] | None:
     b, c, d = shape[:3]
-    lengths = [1.0, b, c, d, *(shape[k] for k in {"rocker": (5, 8), "slider": (5,), "slot": ()}[kind])]
-    if carrier == "rocker":
-        lengths.append(math.hypot(*shape[3:5]))
+    lengths = [1.0, *(float(length[0]) for length in lengths_of(shape[None], kind, carrier))]
     ratio = max(lengths) / min(lengths)
     low, way = out.min(), np.ptp(out)
     widths = [

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from synthesis.model.linkage_answer import SixbarMechanism
 from synthesis.model.linkages import skeleton, to_point
 
-Links = Mapping[str, tuple[str, ...]]
+Links = Mapping[str, Sequence[str]]
 """The joints on each link by its name; P is on the link that carries the body."""
 
 IN_WORDS: Mapping[str, str] = {
@@ -20,15 +20,15 @@ IN_WORDS: Mapping[str, str] = {
 """What each type is called, in sentences and on sheets."""
 
 
-def lengths_of(joints: Mapping[str, complex], links: Links) -> dict[str, float]:
+def lengths_of(joints: Mapping[str, complex], links: Links, *, point: str | None = "P") -> dict[str, float]:
     """Lengths between the first two joints of each link under its name.
 
     Of a link with three pins also those from the first and from the second to the third, under its name with ``_arm``
-    and ``_side``.
+    and ``_side``. ``point`` is no pin.
     """
     lengths: dict[str, float] = {}
     for name, listed in links.items():
-        pins = [joint for joint in listed if joint != "P"]
+        pins = [joint for joint in listed if joint != point]
         lengths[name] = abs(joints[pins[1]] - joints[pins[0]])
         if len(pins) > 2:
             lengths[f"{name}_arm"] = abs(joints[pins[2]] - joints[pins[0]])

@@ -178,13 +178,18 @@ def link_lengths(mechanism: Dimensioned) -> list[float]:
     return [length for length in links.values() if length > 0.0]
 
 
-def reach_of(mechanism: Mechanism) -> float:
-    """Greatest distance between two joints of one link, the ground and the coupler with its point among them."""
-    return max(
+def distances(mechanism: Mechanism) -> list[float]:
+    """Distances between two joints of one link, the ground and the coupler with its point among them."""
+    return [
         abs(complex(mechanism.joints[first] - mechanism.joints[second]))
         for joints in mechanism.links.values()
         for first, second in combinations(joints, 2)
-    )
+    ]
+
+
+def reach_of(mechanism: Mechanism) -> float:
+    """The greatest of :func:`distances`."""
+    return max(distances(mechanism))
 
 
 def reach_of_fourbar(linkage: Fourbar) -> float:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from itertools import combinations
+from typing import Any
 
 import numpy as np
 import pytest
@@ -173,6 +175,32 @@ def test_limits_of_the_client_are_kept() -> None:
     for design in designs:
         assert design.metrics.min_transmission_angle >= 40.0
         assert design.metrics.link_ratio <= 6.0 * (1.0 + 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("kind", "fields"),
+    [
+        ("dwell_rocker", {"mechanism": "pseudo_arc"}),
+        ("dwell_slider", {"mechanism": "pseudo_arc", "output": slider(50.0)}),
+        ("dwell_slot", {"mechanism": "straight_slot"}),
+        ("dwell_watt_rocker", {"mechanism": "watt_2", "output": rocker(50.0)}),
+        ("dwell_watt_slider", {"mechanism": "watt_2", "output": slider(50.0)}),
+    ],
+)
+def test_the_link_ratio_is_that_of_all_distances_between_pins_of_a_link(kind: str, fields: dict[str, Any]) -> None:
+    designs = solved(stated(**fields, constraints={"max_link_ratio": 7.0})).designs
+    assert designs
+    for design in designs:
+        skeleton = design.mechanism.skeleton
+        distances = [
+            math.dist(skeleton.joints[one], skeleton.joints[other])
+            for link in skeleton.links
+            for one, other in combinations(link.joints, 2)
+        ]
+        assert design.mechanism.type == kind
+        assert sorted(design.mechanism.links.values()) == pytest.approx(sorted(distances))
+        assert design.metrics.link_ratio == pytest.approx(max(distances) / min(distances))
+        assert design.metrics.link_ratio <= 7.0 * (1.0 + 1e-6)
 
 
 @pytest.mark.campaign

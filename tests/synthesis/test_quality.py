@@ -160,6 +160,11 @@ def test_a_long_side_of_the_coupler_counts() -> None:
     evans = solve(parse_problem(line("evans"))).designs[0]
     assert evans.metrics.quality == pytest.approx(0.41638, abs=1e-5)
     dwell = solve(parse_problem(CASES["dwell of a slider"][0])).designs[0]
-    coupler = abs(joints_of(dwell.mechanism)["P"] - joints_of(dwell.mechanism)["A"])
-    assert coupler > 1.5 * max(dwell.mechanism.links.values())
-    assert dwell.metrics.quality == pytest.approx(0.0775, abs=1e-4)
+    joints = joints_of(dwell.mechanism)
+    side, crank = abs(joints["P"] - joints["A"]), abs(joints["A"] - joints["O2"])
+    named = {dwell.mechanism.links[name] for name in ("ground", "input", "coupler", "rocker", "link_5")}
+    assert side > 1.5 * max(named)
+    # The crank is shortest, and reaches are in units of the stroke.
+    uneven, bulky = 1.0 + (side / crank / 8.0) ** 2, 1.0 + (side / 50.0 / 3.0) ** 2
+    sine = math.sin(math.radians(dwell.metrics.min_transmission_angle))
+    assert dwell.metrics.quality == pytest.approx(sine / (uneven * bulky), rel=1e-9)

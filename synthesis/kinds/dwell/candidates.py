@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from kinematics.compiling import njit
 from synthesis.kinds.dwell.arcs import arcs, lines
-from synthesis.kinds.dwell.outputs import CYCLE, Carrier, Kind, points
+from synthesis.kinds.dwell.outputs import CYCLE, Carrier, Kind, lengths_of, points
 from synthesis.kinds.dwell.problem import Turning
 from synthesis.kinds.dwell.scoring import ROCKER, SLIDER, SLOT, judge
 
@@ -51,6 +51,9 @@ the arcs' centres; shares of the curve's extent."""
 
 MOST_PAIRS, JUDGED = 1_000_000, 60_000
 """Pairs of pieces that are looked at, and pairs that get an output."""
+
+UNEVEN = 0.3
+"""What a start costs whose links are more uneven than is allowed, times the logarithm of by how much."""
 
 
 class Start(NamedTuple):
@@ -110,8 +113,27 @@ def promising(scores: Real, rows: Integers, most: int) -> Iterator[int]:
             yield int(n)
 
 
+def uneven(lengths: Real) -> Real:
+    """Longest length over shortest, the crank of 1 among them; lengths (n, k)."""
+    return np.asarray(np.maximum(lengths.max(axis=1), 1.0) / np.minimum(lengths.min(axis=1), 1.0))
+
+
+def cost_of_uneven(shapes: Real, tried: Outputs, kind: Kind, carrier: Carrier, link_ratio: float) -> Real:
+    """What outputs cost in their scores that make a sixbar more uneven than is allowed, (n,)."""
+    whole = np.concatenate([shapes[tried.rows], tried.numbers[:, : NUMBERS[kind]]], axis=1)
+    over = uneven(np.stack(lengths_of(whole, kind, carrier), axis=1)) / link_ratio
+    return np.asarray(UNEVEN * np.log(np.maximum(over, 1.0)))
+
+
 def starts(
-    kind: Kind, dwells: int, dwell: float, way: float, transmission: float, rng: np.random.Generator, most: int
+    kind: Kind,
+    dwells: int,
+    dwell: float,
+    way: float,
+    transmission: float,
+    link_ratio: float,
+    rng: np.random.Generator,
+    most: int,
 ) -> list[Start]:
     """The most promising shapes, each of another fourbar; dwell and way in radians, the way NaN for a slider."""
     shapes = drawn(rng, transmission)
@@ -131,6 +153,7 @@ def starts(
         np.empty((len(tried.rows), 2), np.int64),
     )
     judge(CODES[kind], curves, *tried, length, dwells, way, math.sin(transmission), scores, signs, ends)
+    scores += cost_of_uneven(shapes, tried, kind, "coupler", link_ratio)
     found: list[Start] = []
     for n in promising(scores, tried.rows, most):
         angles = beginning(turn[[tried.first[n], tried.second[n]][:dwells]], length, dwell)

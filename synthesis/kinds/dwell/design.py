@@ -26,7 +26,9 @@ class DwellMechanism(Answer):
     fixed_pivots: dict[str, Point] = Field(description="By the names of the joints: O2, O4 and, but for a slider, O6.")
     links: dict[str, Length] = Field(
         description="ground (O2–O4), input, coupler, rocker; link_5 and output, where there are such, the latter of a "
-        "slot to its end; rocker_arm (O4–P), where P is on the rocker."
+        "slot to its end. To the third pin of a link from its first, and from its second: coupler_arm (A–P) and "
+        "coupler_side (B–P), or rocker_arm (O4–P) and rocker_side (B–P); but for a slider, ground_arm (O2–O6) and "
+        "ground_side (O4–O6)."
     )
     coupler_point: CouplerPoint | None = optional("P on the coupler; left out where P is on the rocker.")
     reference_input_angle: Angle = Field(description="Crank angle where the first dwell begins, absolute, degrees.")

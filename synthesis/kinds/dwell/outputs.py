@@ -196,13 +196,22 @@ def _at_place(place: float, low: Real, high: Real, level: Real, way: Real) -> li
     return [AT_END - off, AT_END + off]
 
 
+def lengths_of(shapes: Real, kind: Kind, carrier: Carrier) -> list[Real]:
+    """All distances between two pins of a link but the crank, which is 1; the first three are b, c and d, each (m,)."""
+    b, c, d, x, y = shapes[:, :5].T
+    lengths = [b, c, d, np.hypot(x, y), np.hypot(x - (b if carrier == "coupler" else c), y)]
+    lengths += [shapes[:, k] for k in {"rocker": (5, 8), "slider": (5,), "slot": ()}[kind]]
+    if kind != "slider":
+        at = shapes[:, 6:8] if kind == "rocker" else shapes[:, 5:7]
+        lengths += [np.hypot(at[:, 0], at[:, 1]), np.hypot(at[:, 0] - d, at[:, 1])]
+    return lengths
+
+
 def _fourbar_kept(shapes: Real, task: Task) -> Real:
     """Grashof's conditions, sin² of the transmission angle where it is least and greatest, and the link ratio."""
     b, c, d = shapes[:, 0], shapes[:, 1], shapes[:, 2]
     sines = [1.0 - ((b * b + c * c - (d + k) ** 2) / (2.0 * b * c)) ** 2 - task.transmission**2 for k in (-1.0, 1.0)]
-    lengths = [b, c, d, *(shapes[:, k] for k in {"rocker": (5, 8), "slider": (5,), "slot": ()}[task.kind])]
-    if task.carrier == "rocker":
-        lengths.append(np.hypot(shapes[:, 3], shapes[:, 4]))
+    lengths = lengths_of(shapes, task.kind, task.carrier)
     if task.turning == "double_crank":
         shortest, lengths[2] = d, np.ones_like(d)
         uneven = [task.link_ratio * shortest / length - 1.0 for length in lengths]

@@ -20,6 +20,7 @@ from synthesis.kinds.dwell.candidates import (
     Outputs,
     Start,
     beginning,
+    cost_of_uneven,
     drawn,
     of_arcs,
     of_lines,
@@ -28,6 +29,7 @@ from synthesis.kinds.dwell.candidates import (
     pieces_of,
     promising,
     samples_of,
+    uneven,
 )
 from synthesis.kinds.dwell.outputs import CYCLE, SPARE, Carrier, Kind, points
 from synthesis.kinds.dwell.problem import Turning
@@ -38,9 +40,6 @@ Complex = NDArray[np.complex128]
 
 EACH: dict[Carrier, int] = {"rocker": 24, "coupler": 8}
 """Outputs that are drawn at random for each fourbar, by the link that P is on."""
-
-UNEVEN = 0.3
-"""What a start costs whose links are more uneven than is allowed, times the logarithm of by how much."""
 
 
 def placed_starts(
@@ -76,10 +75,10 @@ def placed_starts(
         Best first.
     """
     shapes = drawn(rng, transmission) if turning == "crank_rocker" else double_cranks(rng, transmission)
-    shapes = shapes[_uneven(shapes[:, :3]) <= link_ratio]
+    shapes = shapes[uneven(shapes[:, :3]) <= link_ratio]
     if carrier == "rocker":
-        # The second loop may have any size and any direction: P is B to begin with.
-        shapes[:, 3], shapes[:, 4] = shapes[:, 1], 0.0
+        # The second loop may have any size and any direction: P is as far from O4 as B, and from B, to begin with.
+        shapes[:, 3], shapes[:, 4] = 0.5 * shapes[:, 1], math.sqrt(0.75) * shapes[:, 1]
     turn = np.linspace(0.0, 2.0 * np.pi, CYCLE, endpoint=False)
     curves = np.ascontiguousarray(points(shapes, turn, carrier))
     lengths = np.array([samples_of(dwell) for dwell in dwells])
@@ -107,20 +106,13 @@ def placed_starts(
         begins,
         ends,
     )
-    links = numbers[:, {"rocker": [0, 3], "slider": [0], "slot": []}[kind]]
-    uneven = _uneven(np.concatenate([shapes[tried.rows, :3], links], axis=1)) / link_ratio
-    scores += UNEVEN * np.log(np.maximum(uneven, 1.0))
+    scores += cost_of_uneven(shapes, tried, kind, carrier, link_ratio)
     found: list[Start] = []
     for n in promising(scores, tried.rows, most):
         angles = beginning(turn[begins[n]], lengths, np.array(dwells))
         shape = np.concatenate([shapes[tried.rows[n]], numbers[n, : NUMBERS[kind]], angles])
         found.append(Start(shape, int(signs[n]), tuple(ends[n].tolist()), float(scores[n]), carrier, turning))
     return found
-
-
-def _uneven(lengths: Real) -> Real:
-    """Longest link over shortest, the crank of 1 among them; lengths (n, k)."""
-    return np.asarray(np.maximum(lengths.max(axis=1), 1.0) / np.minimum(lengths.min(axis=1), 1.0))
 
 
 def double_cranks(rng: np.random.Generator, transmission: float) -> Real:

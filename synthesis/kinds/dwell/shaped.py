@@ -16,6 +16,7 @@ from synthesis.kinds.dwell.problem import DEFAULT_CRANK, DwellProblem
 from synthesis.kinds.dwell.verification import GRID
 from synthesis.model.linkage_answer import CouplerPoint, Slide
 from synthesis.model.linkages import skeleton, slide, to_point
+from synthesis.model.sixbars import lengths_of
 
 Real = NDArray[np.float64]
 
@@ -130,14 +131,11 @@ def mechanism_of(problem: DwellProblem, sixbar: Sixbar) -> DwellMechanism:
             kind = "dwell_slot"
             links.append(("output", ["O6", "C"]))
             slides.append(slide("P", "output", joints["O6"], cmath.phase(joints["P"] - joints["O6"])))
-    lengths = {name: abs(joints[listed[1]] - joints[listed[0]]) for name, listed in links}
-    if on_rocker:
-        lengths["rocker_arm"] = abs(joints["P"] - joints["O4"])
     point = (own["P"] - own["A"]) / ((own["B"] - own["A"]) / abs(own["B"] - own["A"]))
     return DwellMechanism(
         type=kind,
         fixed_pivots={name: to_point(joints[name]) for name in links[0][1]},
-        links=lengths,
+        links=lengths_of(joints, dict(links), point=None),
         coupler_point=None
         if on_rocker
         else CouplerPoint(distance=scale * abs(point), angle=math.degrees(cmath.phase(point))),

@@ -26,8 +26,8 @@ from synthesis.outcome.sifting import OUTRANKED, Sifting, reported
 from synthesis.outcome.usable import usable_first
 from synthesis.proof.measures import link_lengths
 
-LINK_RATIO = 8.0
-"""Longest link over shortest, at most, where the client says nothing; links of practice stay below about that."""
+LINK_RATIO = 10.0
+"""Longest distance of two pins of a link over the shortest, at most, where the client says nothing."""
 
 TRANSMISSION = 25.0
 """Least transmission angle over the turn, degrees, where the client says nothing."""
@@ -132,23 +132,22 @@ def _starts(problem: DwellProblem, search: _Search, rng: np.random.Generator) ->
     """The most promising shapes of a search."""
     way = math.nan if problem.slides else math.radians(problem.way)
     dwells = tuple(math.radians(wanted.angle) for wanted in problem.wanted)
+    angle, ratio = _transmission(problem), _link_ratio(problem)
     if not problem.placed:
-        return starts(search.kind, len(dwells), dwells[0], way, _transmission(problem), rng, STARTS)
+        return starts(search.kind, len(dwells), dwells[0], way, angle, ratio, rng, STARTS)
     places = tuple(math.nan if wanted.place is None else wanted.place for wanted in problem.wanted)
     if problem.dwells is None and len(dwells) == 2:
         places = LOW, HIGH
     kind, carrier, turning = search[1:]
-    return placed_starts(
-        kind, carrier, turning, dwells, places, way, _transmission(problem), _link_ratio(problem), rng, PLACED_STARTS
-    )
+    return placed_starts(kind, carrier, turning, dwells, places, way, angle, ratio, rng, PLACED_STARTS)
 
 
 def warm_up() -> None:
     """Load the kernels: those of arcs and pairs by a rocker with two dwells, those of lines by a slot with one."""
     rng = np.random.default_rng(0)
     placed_starts("slider", "rocker", "crank_rocker", (0.5,), (LOW,), math.nan, 0.3, LINK_RATIO, rng, 1)
-    starts("rocker", 2, 0.5, 0.7, 0.3, rng, 1)
-    starts("slot", 1, 0.5, 0.7, 0.3, rng, 1)
+    starts("rocker", 2, 0.5, 0.7, 0.3, LINK_RATIO, rng, 1)
+    starts("slot", 1, 0.5, 0.7, 0.3, LINK_RATIO, rng, 1)
 
 
 def _transmission(problem: DwellProblem) -> float:

@@ -23,7 +23,7 @@ from synthesis.model.dimension import OUTPUT
 from synthesis.proof.checks import at_most, tolerated
 from synthesis.proof.closer import extremes_of, least_angles, least_near
 from synthesis.proof.constraints import constraint_checks
-from synthesis.proof.measures import Measures, barker_of, diagonal, fixed_pivots, measured, moving_pivots, reach_of
+from synthesis.proof.measures import Measures, barker_of, diagonal, distances, fixed_pivots, measured, moving_pivots
 from synthesis.proof.rebuilt import rebuilt
 
 Real = NDArray[np.float64]
@@ -91,11 +91,11 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
     if not found:
         return None
     rates = [_peak(mechanism, inputs, motion, order, slides=slides) for order in (1, 2)]
-    lengths = _lengths(mechanism, watt=design.type.startswith("dwell_watt"))
+    lengths = distances(mechanism)
     measures = measured(
         lengths,
-        reach_of(mechanism),
-        problem.way if slides else 2.0 * lengths[1],
+        max(lengths),
+        problem.way if slides else 2.0 * abs(complex(mechanism.joints["A"] - mechanism.joints["O2"])),
         transmission,
         places,
         barker=barker_of(mechanism),
@@ -188,12 +188,3 @@ def _peak(mechanism: Mechanism, inputs: Real, motion: MechanismMotion, order: in
 
     known = -magnitude(motion)
     return -least_near(lambda closer: -magnitude(drive(mechanism, closer, order=order)), inputs, known)[1]
-
-
-def _lengths(mechanism: Mechanism, *, watt: bool) -> list[float]:
-    """Lengths of ground (O2–O4), input, coupler, rocker, and of link 5, the output and the rocker's arm to P."""
-    place = {name: complex(z) for name, z in mechanism.joints.items()}
-    pairs = [("O2", "O4"), ("O2", "A"), ("A", "B"), ("O4", "B"), ("P", "D"), ("O6", "D"), ("O6", "C")]
-    if watt:
-        pairs.append(("O4", "P"))
-    return [abs(place[first] - place[second]) for first, second in pairs if first in place and second in place]

@@ -7,8 +7,9 @@ and r the distance of C from the crank's pivot O6, crank a and link b are those 
     a = |rₙ − r₁|/2,    b = (rₙ + r₁)/2,
 
 and the crank turns through, with the body's end positions at its two dead centres, if r is monotonic from C₁ to Cₙ. The
-link pushes along D C; the transmission angle is that between it and the normal of C's path, for both assemblies of the
-dyad at each position of C. C and O6 are free; all pairs of a grid of both are evaluated.
+link pushes along D C; the transmission angle is that between it and the normal of C's path. Input and output are the
+other two legs of a triad, with angles of their own. All three are taken for both assemblies of the dyad at each
+position of C. C and O6 are free; all pairs of a grid of both are evaluated.
 """
 
 from __future__ import annotations
@@ -81,7 +82,9 @@ def coupler_drivers(
         score[~wanted.pivot_region.contains_each(pivots)] = 0.0
         if not score.any():
             return []
-    least_sines(paths, along / np.maximum(np.abs(along), np.finfo(np.float64).tiny), pivots, score)
+    arms = [pin - pivot for pin, pivot in ((at.a, joints[-2]), (at.b, joints[-1]))]
+    bars = np.array([at.a, at.b, *(arm / np.abs(arm) for arm in arms)])
+    least_sines(paths, along / np.maximum(np.abs(along), np.finfo(np.float64).tiny), pivots, bars, score)
     score[score < least] = 0.0
     first, last = (np.abs(paths[:, k, None] - pivots) for k in (0, -1))
     with np.errstate(divide="ignore"):
@@ -120,11 +123,26 @@ def _paths(a: Complex, b: Complex) -> tuple[Complex, Complex]:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def least_sines(paths: Complex, along: Complex, pivots: Complex, least: Real) -> None:
-    """Least sine of the transmission angle into ``least``, pins × pivots; 0 where C's distance turns back on its way.
+def _sine(pin: complex, leg: complex, one: complex, on_one: complex, other: complex, on_other: complex) -> float:
+    """Sine of the angle between a leg and the normal of the way on which two other legs, unit vectors, guide its pin.
+
+    Of the other legs any points of their lines are given (:mod:`kinematics.linkage.planar.triad_transmission`).
+    """
+    arm, other_arm = on_one - pin, on_other - pin
+    moment = arm.real * one.imag - arm.imag * one.real
+    other_moment = other_arm.real * other.imag - other_arm.imag * other.real
+    way = other_moment * one - moment * other
+    size = abs(way)
+    return abs(leg.real * way.imag - leg.imag * way.real) / size if size > 0.0 else 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def least_sines(paths: Complex, along: Complex, pivots: Complex, bars: Complex, least: Real) -> None:
+    """Least sine of the transmission angles into ``least``, pins × pivots; 0 where C's distance turns back on its way.
 
     Where ``least`` is 0 already it stays so: those pivots are not looked at.
-    ``paths`` and their unit tangents ``along`` are pins × steps, ``pivots`` pins × pivots.
+    ``paths`` and their unit tangents ``along`` are pins × steps, ``pivots`` pins × pivots. ``bars`` (4, steps): A, B,
+    and the directions of the input and of the output.
     """
     pins, steps = paths.shape
     for k in range(pins):
@@ -136,7 +154,8 @@ def least_sines(paths: Complex, along: Complex, pivots: Complex, least: Real) ->
             crank, link = 0.5 * abs(last - first), 0.5 * (last + first)
             before, found = first, 1.0
             for n in range(steps):
-                reach = o6 - paths[k, n]
+                c = paths[k, n]
+                reach = o6 - c
                 r = abs(reach)
                 if n and not (r - before) * (last - first) > 0.0:
                     found = 0.0
@@ -147,6 +166,13 @@ def least_sines(paths: Complex, along: Complex, pivots: Complex, least: Real) ->
                 sine = math.sqrt(1.0 - cosine * cosine)
                 one, other = forward.real * cosine - forward.imag * sine, forward.real * cosine + forward.imag * sine
                 found = min(found, abs(one), abs(other))
+                if not found >= LEAST_SINE:
+                    found = 0.0
+                    break
+                a, b, arm, rocker = bars[0, n], bars[1, n], bars[2, n], bars[3, n]
+                for side in (1.0, -1.0):
+                    pushing = reach / r * complex(cosine, side * sine)
+                    found = min(found, _sine(a, arm, rocker, b, pushing, c), _sine(b, rocker, arm, a, pushing, c))
                 if not found >= LEAST_SINE:
                     found = 0.0
                     break

@@ -47,11 +47,14 @@ ENOUGH, AND_MORE = 3.0, 0.1
 STALE, LOWER = 8, 0.97
 """A fit begins anew where so many rounds leave more than this share of the least cost."""
 
-NEAR_ENOUGH = value_of_fit(1e-6)
-"""Value of a fit that ends the search: its error is a millionth of the task's size and a radian."""
+NEAR_ENOUGH, NEARLY_MET = 1e-6, 1e-4
+"""Errors of fits, in task sizes and radians: one that ends the search, and one that makes it go on further."""
+
+AS_FAR = 1.1
+"""What is spent of a search for fits that goes on since positions are nearly met: one that meets them may exist."""
 
 FITTED = 0.5
-"""What is spent of a search for fits, whatever it finds."""
+"""What is spent of a search for fits otherwise."""
 
 RELAXED_FROM, RELAXED_EVERY = 0.5, 3
 """What is spent, none sound yet, from which on every third round takes no limit that nobody stated."""
@@ -136,7 +139,8 @@ class SixbarSearch:
         rng = np.random.default_rng(self.problem.seed)
         found = Found.none()
         least, since, n = math.inf, 0, 0
-        while n * OF_BRANCHES < FITTED:
+        until, enough, nearly = FITTED, value_of_fit(NEAR_ENOUGH), value_of_fit(NEARLY_MET)
+        while n * OF_BRANCHES < until:
             relaxed = n * OF_BRANCHES >= RELAXED_FROM * FITTED and not bool(np.any(found.values >= 1.0))
             met = self.branches.round(rng, relaxed=relaxed)
             # What meets all positions comes before what misses any.
@@ -147,13 +151,15 @@ class SixbarSearch:
                 return found
             since = 0 if self.branches.misses < LOWER * least else since + 1
             least = min(least, self.branches.misses)
-            if since >= STALE:
+            if since >= STALE or n * OF_BRANCHES >= until:
                 found = self._distinct(found.beside(self.branches.fitted()))
-                if np.count_nonzero(found.values >= NEAR_ENOUGH) >= self.problem.max_designs:
+                if np.count_nonzero(found.values >= enough) >= self.problem.max_designs:
                     return found
                 least, since = math.inf, 0
-            progress(n * OF_BRANCHES / FITTED, f"{self.weighed} sixbars looked at")
-        return self._distinct(found.beside(self.branches.fitted()))
+                if np.any(found.values >= nearly):
+                    until = AS_FAR
+            progress(min(n * OF_BRANCHES / AS_FAR, 1.0), f"{self.weighed} sixbars looked at")
+        return found
 
     def _distinct(self, found: Found) -> Found:
         """The best of those that differ from one another, first the sound ones."""
