@@ -35,6 +35,9 @@ TRANSMISSION = 25.0
 ARRIVED = 1e-2
 """Gain of a step, as a share, below which no more are made: the jitter is far below the tolerance, or stays above."""
 
+EVENER = 0.99
+"""Share of a demanded link ratio that is used: the output's pivot is moved a little at last, to make the way exact."""
+
 MARGIN = 1.0
 """Degrees by which a demanded transmission angle is exceeded: between the angles that are looked at it is less."""
 
@@ -157,7 +160,7 @@ def _transmission(problem: DwellProblem) -> float:
 
 def _link_ratio(problem: DwellProblem) -> float:
     stated = problem.constraints.max_link_ratio
-    return LINK_RATIO if stated is None else stated
+    return LINK_RATIO if stated is None else max(EVENER * stated, 1.0)
 
 
 def _ranked(problem: DwellProblem, designs: list[DwellDesign]) -> list[DwellDesign]:
