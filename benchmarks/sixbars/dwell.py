@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from synthesis.dispatch import solve
-from synthesis.kinds.dwell.outputs import Carrier, Kind, Turning, lengths_of, output, points
+from synthesis.kinds.dwell.outputs import Carrier, Kind, Turning, output, pin_distances, points
 from synthesis.kinds.dwell.problem import DwellProblem
 from synthesis.kinds.dwell.solver import solve_dwell
 from synthesis.kinds.dwell.verification import verify_dwell
@@ -95,7 +95,7 @@ def _task(
     name: str, kind: Kind, carrier: Carrier, turning: Turning, shape: np.ndarray, out: np.ndarray, sine: float
 ) -> dict[str, Any] | None:
     b, c, d = shape[:3]
-    lengths = [1.0, *(float(length[0]) for length in lengths_of(shape[None], kind, carrier))]
+    lengths = [1.0, *(float(length[0]) for length in pin_distances(shape[None], kind, carrier))]
     ratio = max(lengths) / min(lengths)
     low, way = out.min(), np.ptp(out)
     widths = [

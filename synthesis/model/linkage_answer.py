@@ -275,7 +275,7 @@ class MotionMetrics(UsedRange):
     min_transmission_angle: Angle = Field(description="Over the verified motion, degrees.")
     transmission_angles: dict[str, Angle] = Field(
         description="The least over that motion, degrees: at each dyad of links by the name of its first link, and at "
-        "each leg of a triad (Stephenson II) by its name."
+        "each leg of a triad (Stephenson II, and a fourbar driven at its coupler) by its name."
     )
     full_rotation: bool
     link_ratio: float = Field(description="Longest link over shortest.")

@@ -24,7 +24,7 @@ def lengths_of(joints: Mapping[str, complex], links: Links, *, point: str | None
     """Lengths between the first two joints of each link under its name.
 
     Of a link with three pins also those from the first and from the second to the third, under its name with ``_arm``
-    and ``_side``. ``point`` is no pin.
+    and ``_side``. ``point`` is no pin; None where P is one.
     """
     lengths: dict[str, float] = {}
     for name, listed in links.items():

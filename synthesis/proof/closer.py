@@ -115,7 +115,7 @@ def least_angles(
     Returns
     -------
     dict of str to float
-        Angles in radians, by the name of the closure's first link.
+        Angles in radians, by the name of the closure's first link or of a triad's leg.
     """
     angles = {}
     for link, sines in (at(inputs) if motion is None else motion).sines.items():

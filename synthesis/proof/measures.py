@@ -74,7 +74,7 @@ class Measures(NamedTuple):
     same_branch, visits_in_order, full_rotation : bool
         Whether no toggle lies on the way, the way is gone through in order, and the input turns through.
     link_ratio : float
-        Longest link over shortest.
+        Longest of ``lengths`` over shortest.
     reach : float or None
         Greatest distance between two joints of one link, in task sizes; None where a task has none.
     size : float
@@ -133,7 +133,7 @@ def measured(
     Parameters
     ----------
     lengths : list of float
-        Of the links, as :func:`link_lengths` lists them.
+        Of the links, as :func:`link_lengths` or :func:`distances` lists them.
     reach : float
         Greatest distance between two joints of one link: of :func:`reach_of` or :func:`reach_of_fourbar`.
     task : float

@@ -87,7 +87,8 @@ def test_the_angles_vanish_at_toggles_and_only_there(name: str) -> None:
         sines = np.array([motion.sines[leg.link] for leg in triad])
         assert np.all(sines > 0.0) or np.all(sines < 0.0)
         if not branch.full:
-            assert np.all(np.abs(sines[:, -2:]).min(axis=0) < 0.05)
+            # Where two legs meet near the pin of the third, its own angle falls last.
+            assert np.all(np.sort(np.abs(sines[:, -2:]), axis=0)[1] < 0.05)
             met += 1
     assert met >= 3
 

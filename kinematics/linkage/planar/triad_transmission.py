@@ -1,9 +1,9 @@
 """The transmission angles of a triad: a link on three legs, each pinned to the input link or to the ground.
 
 The pin of a two-force member pushes along the leg; the transmission angle there is the angle between the leg and the
-normal of the path on which it pushes (Alt's definition; Norton, Sec. 4.10, for the fourbar). Without one leg the two
-others leave the carried link one freedom beside an input that stands still. In that motion the inner pin of the leg
-moves along v, and with the leg's direction e the sine is
+normal of the path on which it pushes (Alt's definition; Norton, Sec. 4.10, for the fourbar). While the input stands
+still, the two other legs alone leave the carried link one freedom. In that motion the inner pin of the leg moves along
+v, and with the leg's direction e the sine is
 
     sin μ = e · v / |v|.
 

@@ -64,7 +64,7 @@ def linkage_sheet(design: Any, problem: Any, title: str) -> str:
 
 
 def _metrics(design: Any, problem: Any, content: Content) -> list[tuple[str, str]]:
-    """What was measured; transmission angles of the dyads where there are several, whose least is listed anyway."""
+    """What was measured; where there are several transmission angles each of them, whose least is listed anyway."""
     metrics, left_out = design.metrics, set(content.left_out)
     if len(getattr(metrics, "transmission_angles", ())) < 2:
         left_out.add("transmission_angles")

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from kinematics.compiling import njit
 from synthesis.kinds.dwell.arcs import arcs, lines
-from synthesis.kinds.dwell.outputs import CYCLE, Carrier, Kind, lengths_of, points
+from synthesis.kinds.dwell.outputs import CYCLE, Carrier, Kind, pin_distances, points
 from synthesis.kinds.dwell.problem import Turning
 from synthesis.kinds.dwell.scoring import ROCKER, SLIDER, SLOT, judge
 
@@ -121,7 +121,7 @@ def uneven(lengths: Real) -> Real:
 def cost_of_uneven(shapes: Real, tried: Outputs, kind: Kind, carrier: Carrier, link_ratio: float) -> Real:
     """What outputs cost in their scores that make a sixbar more uneven than is allowed, (n,)."""
     whole = np.concatenate([shapes[tried.rows], tried.numbers[:, : NUMBERS[kind]]], axis=1)
-    over = uneven(np.stack(lengths_of(whole, kind, carrier), axis=1)) / link_ratio
+    over = uneven(np.stack(pin_distances(whole, kind, carrier), axis=1)) / link_ratio
     return np.asarray(UNEVEN * np.log(np.maximum(over, 1.0)))
 
 

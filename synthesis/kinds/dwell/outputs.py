@@ -160,7 +160,8 @@ def crank_angles(shapes: Real, task: Task, nodes: Real) -> Real:
 def judged(task: Task, nodes: Real, shapes: Real) -> Values:
     """What is minimised, the output's way during the dwells as a share of the whole, and what is kept."""
     theta = crank_angles(shapes, task, nodes)
-    out, sine = output(task.kind, task.sign, shapes, points(shapes, theta, task.carrier))
+    p = points(shapes, theta, task.carrier)
+    out, sine = output(task.kind, task.sign, shapes, p)
     turn = out[:, -CYCLE:]
     low, high = extremes(turn)
     way = high - low
@@ -182,6 +183,7 @@ def judged(task: Task, nodes: Real, shapes: Real) -> Values:
                 np.stack([*at_place, *swing], axis=1),
                 sine[:, ::SPARSE] ** 2 - task.transmission**2,
                 _fourbar_kept(shapes, task),
+                *([_slot_kept(shapes, p, task)] if task.kind == "slot" else []),
             ],
             axis=1,
         )
@@ -196,8 +198,14 @@ def _at_place(place: float, low: Real, high: Real, level: Real, way: Real) -> li
     return [AT_END - off, AT_END + off]
 
 
-def lengths_of(shapes: Real, kind: Kind, carrier: Carrier) -> list[Real]:
-    """All distances between two pins of a link but the crank, which is 1; the first three are b, c and d, each (m,)."""
+def _slot_kept(shapes: Real, p: Complex, task: Task) -> Real:
+    """Room of the link ratio over the slotted link, which is as long as P is far from its pivot at most, (m, 1)."""
+    reach = np.abs(p - (shapes[:, 5] + 1j * shapes[:, 6])[:, None]).max(axis=1)
+    return np.asarray(task.link_ratio / reach - 1.0)[:, None]
+
+
+def pin_distances(shapes: Real, kind: Kind, carrier: Carrier) -> list[Real]:
+    """All distances between two pins of a link but the crank, which is 1: first b, c and d; each (m,)."""
     b, c, d, x, y = shapes[:, :5].T
     lengths = [b, c, d, np.hypot(x, y), np.hypot(x - (b if carrier == "coupler" else c), y)]
     lengths += [shapes[:, k] for k in {"rocker": (5, 8), "slider": (5,), "slot": ()}[kind]]
@@ -211,7 +219,7 @@ def _fourbar_kept(shapes: Real, task: Task) -> Real:
     """Grashof's conditions, sin² of the transmission angle where it is least and greatest, and the link ratio."""
     b, c, d = shapes[:, 0], shapes[:, 1], shapes[:, 2]
     sines = [1.0 - ((b * b + c * c - (d + k) ** 2) / (2.0 * b * c)) ** 2 - task.transmission**2 for k in (-1.0, 1.0)]
-    lengths = lengths_of(shapes, task.kind, task.carrier)
+    lengths = pin_distances(shapes, task.kind, task.carrier)
     if task.turning == "double_crank":
         shortest, lengths[2] = d, np.ones_like(d)
         uneven = [task.link_ratio * shortest / length - 1.0 for length in lengths]

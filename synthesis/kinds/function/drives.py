@@ -61,7 +61,7 @@ class Drive(ABC):
     """Whether the input turns through."""
     barker: BarkerClass | None = None
     dyads: tuple[str, ...] = ("coupler",)
-    """First links of the dyads that are driven."""
+    """First links of the dyads that are driven, or legs of a triad."""
 
     @abstractmethod
     def at(self, angles: Real, assembly: int) -> Driven:
@@ -73,7 +73,7 @@ class Drive(ABC):
 
     @abstractmethod
     def least_transmissions(self, start: float, end: float) -> dict[str, float]:
-        """Least transmission angles on the way, radians, each by the first link of its dyad."""
+        """Least transmission angles on the way, radians, by the links of :attr:`dyads`."""
 
     @abstractmethod
     def one_circuit(self, angles: Real, assemblies: NDArray[np.int64]) -> bool:
@@ -157,7 +157,7 @@ class _Sixbar(Drive):
         self._moving = [name for name in mechanism.joints if name not in ground]
         self.frame = 0.0
         self.full = own.full
-        self.dyads = () if design.type == "stephenson_2" else ("coupler", "link_5")
+        self.dyads = ("link_3", "link_5", "output") if design.type == "stephenson_2" else ("coupler", "link_5")
         self.barker = barker_within(mechanism)
 
     def _near(self, angles: Real | float) -> Real:

@@ -111,12 +111,15 @@ def _ended(x: Real, points: Real, setting: Real, room: Room) -> float:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _at_bare_limits(x: Real, points: Real, setting: Real, bare: Real, room: Room) -> None:
-    """Goes on to positions that only what the aims keep aside of the limits holds off, where they are met then."""
-    further, limits = x.copy(), setting.copy()
+def _at_bare_limits(x: Real, points: Real, setting: Real, bare: Real, poses: Poses, room: Room) -> None:
+    """Goes on, in place, to positions that only the aims hold off, where they are met within the limits themselves."""
+    if setting[COSINE] > bare[COSINE]:
+        return  # These aims are wider than the limits.
+    further, limits, joints = x.copy(), setting.copy(), np.empty(7, np.complex128)
     for k in range(COSINE, FIRST_X):
         limits[k] = bare[k]
-    if _ended(further, points, limits, room) < NEARLY_ARRIVED:
+    met = _ended(further, points, limits, room) < NEARLY_ARRIVED
+    if met and value_of(further, points, limits, poses, joints) >= 1.0:
         for k in range(len(x)):
             x[k] = further[k]
 
@@ -134,7 +137,7 @@ def fitted(poses: Poses, held: NDArray[np.bool_], pool: Pool, bare: Real, found:
     pool : Pool
         Starts.
     bare : float, shape (SETTINGS,)
-        Limits of which the aims of the starts keep aside.
+        The limits, which the aims of the starts keep aside of.
     found : Found
         Filled.
 
@@ -165,7 +168,7 @@ def fitted(poses: Poses, held: NDArray[np.bool_], pool: Pool, bare: Real, found:
         if free > 0:
             x[free], x[free + 1], x[free + 2] = setting[FIRST_X], setting[FIRST_Y], 0.0
         if _ended(x, points, setting, room) > NEARLY_ARRIVED:
-            _at_bare_limits(x, points, setting, bare, room)
+            _at_bare_limits(x, points, setting, bare, poses, room)
         if held.any() and not _met(x, points, setting, held, room):
             continue
         if free > 0:

@@ -58,8 +58,8 @@ class Aside(NamedTuple):
     shortest: float
 
 
-AIM, BARE = Aside(math.radians(2.0), 0.96, 1.5), Aside(0.0, 1.0, 1.0)
-"""What descents aim at, and the limits themselves."""
+AIM, BARE = Aside(math.radians(2.0), 0.96, 1.5), Aside(math.radians(0.02), 0.9999, 1.0)
+"""What descents aim at, and the limits themselves, but for what lies between the places that are looked at."""
 
 RELAXED_ANGLE, RELAXED_SIZE = math.radians(7.0), 3.0
 """Where nobody states them: the transmission angle of relaxed descents, and how much greater their sizes may be."""

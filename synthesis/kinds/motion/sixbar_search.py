@@ -47,14 +47,12 @@ ENOUGH, AND_MORE = 3.0, 0.1
 STALE, LOWER = 8, 0.97
 """A fit begins anew where so many rounds leave more than this share of the least cost."""
 
+FITTED, AS_FAR = 0.5, 1.1
+"""What is spent of a search for fits; and where positions are nearly met, since what meets them may exist."""
+
 NEAR_ENOUGH, NEARLY_MET = 1e-6, 1e-4
-"""Errors of fits, in task sizes and radians: one that ends the search, and one that makes it go on further."""
-
-AS_FAR = 1.1
-"""What is spent of a search for fits that goes on since positions are nearly met: one that meets them may exist."""
-
-FITTED = 0.5
-"""What is spent of a search for fits otherwise."""
+"""Errors of fits, in task sizes and radians: the search ends with as many of the first as are wanted, and goes on
+further with one of the second."""
 
 RELAXED_FROM, RELAXED_EVERY = 0.5, 3
 """What is spent, none sound yet, from which on every third round takes no limit that nobody stated."""
@@ -138,7 +136,7 @@ class SixbarSearch:
         """Rounds until enough sound sixbars meet all positions, or as many as a fit is given; those that miss least."""
         rng = np.random.default_rng(self.problem.seed)
         found = Found.none()
-        least, since, n = math.inf, 0, 0
+        least, since, n, told = math.inf, 0, 0, 0.0
         until, enough, nearly = FITTED, value_of_fit(NEAR_ENOUGH), value_of_fit(NEARLY_MET)
         while n * OF_BRANCHES < until:
             relaxed = n * OF_BRANCHES >= RELAXED_FROM * FITTED and not bool(np.any(found.values >= 1.0))
@@ -158,7 +156,8 @@ class SixbarSearch:
                 least, since = math.inf, 0
                 if np.any(found.values >= nearly):
                     until = AS_FAR
-            progress(min(n * OF_BRANCHES / AS_FAR, 1.0), f"{self.weighed} sixbars looked at")
+            told = max(told, min(n * OF_BRANCHES / until, 1.0))
+            progress(told, f"{self.weighed} sixbars looked at")
         return found
 
     def _distinct(self, found: Found) -> Found:
