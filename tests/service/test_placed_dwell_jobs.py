@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import re
 import xml.etree.ElementTree as ET
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -51,8 +53,16 @@ def test_dwells_are_solved_drawn_and_driven(client, name):
     if "grashof" in demands:
         assert design["metrics"]["grashof"] == demands["grashof"]
     assert design["metrics"]["min_transmission_angle"] >= demands.get("min_transmission_angle", 20.0)
+    joints = design["mechanism"]["skeleton"]["joints"]
+    pins = [
+        math.dist(joints[one], joints[other])
+        for link in design["mechanism"]["skeleton"]["links"]
+        for one, other in combinations(link["joints"], 2)
+    ]
+    assert design["metrics"]["link_ratio"] == pytest.approx(max(pins) / min(pins))
+    assert max(pins) / min(pins) <= demands.get("max_link_ratio", math.inf) * (1.0 + 1e-6)
     if "link_length" in demands:
-        assert max(design["mechanism"]["links"].values()) <= 60.0 + 1e-9
+        assert max(pins) <= 60.0 + 1e-6
     place = f"/v1/jobs/{body['id']}/designs/0"
     drawing = client.get(f"{place}.svg")
     assert drawing.status_code == 200, drawing.text

@@ -240,13 +240,17 @@ def test_no_sixbar_of_many_has_a_defect() -> None:
 
 
 @pytest.mark.parametrize(
-    "limits", further([{"min_transmission_angle": 60.0}, {"max_link_ratio": 3.0}], [{"min_transmission_angle": 60.0}])
+    ("limits", "least"),
+    further(
+        [({"min_transmission_angle": 60.0}, 10), ({"min_transmission_angle": 70.0}, 4), ({"max_link_ratio": 3.0}, 10)],
+        [({"min_transmission_angle": 60.0}, 10)],
+    ),
 )
-def test_the_driver_is_chosen_within_the_limits(limits: dict[str, float]) -> None:
+def test_the_driver_is_chosen_within_the_limits(limits: dict[str, float], least: int) -> None:
     """A small driver that breaks a limit does not stand in the way of one that keeps it."""
     statement = {"kind": "motion", "positions": THREE, "driver_dyad": True, "constraints": limits}
     result = solve(parse_problem(statement))
-    assert len(result.designs) == 10
+    assert len(result.designs) >= least
     for design in result.designs:
         assert design.metrics.min_transmission_angle >= limits.get("min_transmission_angle", 0.0)
         assert design.metrics.link_ratio <= limits.get("max_link_ratio", math.inf) * (1.0 + 1e-9)
