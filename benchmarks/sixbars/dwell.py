@@ -9,15 +9,18 @@ from __future__ import annotations
 import math
 import statistics
 import time
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from synthesis.dispatch import solve
-from synthesis.kinds.dwell.outputs import Carrier, Kind, Turning, output, pin_distances, points
-from synthesis.kinds.dwell.problem import DwellProblem
+from synthesis.kinds.dwell import triad_starts, triads
+from synthesis.kinds.dwell.outputs import CYCLE, Carrier, Kind, output, pin_distances, points
+from synthesis.kinds.dwell.problem import DwellProblem, Turning
 from synthesis.kinds.dwell.solver import solve_dwell
 from synthesis.kinds.dwell.verification import verify_dwell
+from synthesis.model.stated_types import UNCLASSED
 from synthesis.registry import parse_problem
 
 TASKS = 10
@@ -85,18 +88,37 @@ def planted(
         least = sine.min(axis=1)
         kept = np.isfinite(out).all(axis=1) & (least > math.sin(math.radians(SOUND)))
         for shape, course, transmission in zip(shapes[kept], out[kept], least[kept], strict=True):
-            statement = _task(name, kind, carrier, turning, shape, course, float(transmission))
+            b, c, d = shape[:3]
+            cosines = [(b * b + c * c - (d + k) ** 2) / (2.0 * b * c) for k in (-1.0, 1.0)]
+            angle = min(math.asin(transmission), *(math.acos(abs(cosine)) for cosine in cosines))
+            lengths = [1.0, *(float(length[0]) for length in pin_distances(shape[None], kind, carrier))]
+            statement = _task(name, kind, turning, max(lengths) / min(lengths), course, math.degrees(angle))
+            if statement is not None:
+                found.append(statement)
+    return found[:tasks]
+
+
+def planted_triads(tasks: int, rng: np.random.Generator) -> list[dict[str, Any]]:
+    """Statements of what random Stephenson II sixbars do."""
+    found: list[dict[str, Any]] = []
+    nowhere = np.empty((triad_starts.DRAWN, 0))
+    while len(found) < tasks:
+        shapes = triad_starts.drawn(rng, 1)
+        pins = triads.pin_distances(shapes)
+        ratios = pins.max(axis=1) / pins.min(axis=1)
+        least = triads.over_a_turn(shapes, nowhere, CYCLE).sines.min(axis=(1, 2))
+        kept = (least > math.sin(math.radians(SOUND))) & (ratios <= RATIO)
+        driven = triads.over_a_turn(shapes[kept], nowhere[kept], STEPS)
+        for ratio, course, sines in zip(ratios[kept], driven.turn, driven.sines, strict=True):
+            statement = _task(UNCLASSED, "triad", None, float(ratio), course, math.degrees(math.asin(sines.min())))
             if statement is not None:
                 found.append(statement)
     return found[:tasks]
 
 
 def _task(
-    name: str, kind: Kind, carrier: Carrier, turning: Turning, shape: np.ndarray, out: np.ndarray, sine: float
+    name: str, kind: Kind, turning: Turning | None, ratio: float, out: np.ndarray, angle: float
 ) -> dict[str, Any] | None:
-    b, c, d = shape[:3]
-    lengths = [1.0, *(float(length[0]) for length in pin_distances(shape[None], kind, carrier))]
-    ratio = max(lengths) / min(lengths)
     low, way = out.min(), np.ptp(out)
     widths = [
         _width(out - low <= NEAR * way, int(out.argmin())),
@@ -105,8 +127,6 @@ def _task(
     swings = kind != "slider"
     if ratio > RATIO or min(widths) < LEAST or sum(widths) < SUM or (swings and not 0.1 < way < 2.9):
         return None
-    ends = [(b * b + c * c - (d + k) ** 2) / (2.0 * b * c) for k in (-1.0, 1.0)]
-    angle = math.degrees(min(math.asin(sine), *(math.acos(abs(end)) for end in ends)))
     return {
         "kind": "dwell",
         "mechanism": name,
@@ -117,7 +137,7 @@ def _task(
         "constraints": {
             "min_transmission_angle": max(1.0, math.floor(angle) - 1.0) if kind != "slot" else 15.0,
             "max_link_ratio": math.ceil(10.0 * ratio) / 10.0,
-            "grashof": turning,
+            "grashof": turning or "any",
         },
         "max_designs": 3,
     }
@@ -133,13 +153,14 @@ def _width(inside: np.ndarray, at: int) -> float:
     return 360.0 / STEPS * (after + before - 1)
 
 
-def _stillest(wide: float, shape: dict[str, Any], least: float, **limits: float) -> str:
+def _stillest(wide: float, shape: dict[str, Any], least: float, mechanism: str = "auto", **limits: float) -> str:
     """The least movement that is found, in percent of the way, whether or not it is within the tolerance."""
     asked = parse_problem(
         {
             "kind": "dwell",
             "dwells": [{"angle": wide, "at": "low"}],
             "output": shape,
+            "mechanism": mechanism,
             "tolerance": 0.01,
             "include_failed": True,
             "max_designs": 50,
@@ -159,8 +180,12 @@ def table(tasks: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
     print("Planted: two dwells that a random sixbar has, under its own transmission angle, link ratio and class")
     print(f"{'type':>28} {'found':>7} {'angles':>18} {'s CPU':>6}")
-    for name, carrier, kind, turning in TYPES:
-        statements = planted(name, carrier, kind, turning, tasks, rng)
+    rows = [
+        (f"{name} {kind}, {turning}", partial(planted, name, carrier, kind, turning))
+        for name, carrier, kind, turning in TYPES
+    ]
+    for words, statements_of in [*rows, ("stephenson_2 rocker", planted_triads)]:
+        statements = statements_of(tasks, rng)
         times, sound = [], 0
         for statement in statements:
             begun = time.process_time()
@@ -171,15 +196,20 @@ def table(tasks: int, seed: int) -> None:
             sound += bool(again) and all(design is not None and design.verification.passed for design in again)
         angles = [sum(dwell["angle"] for dwell in statement["dwells"]) for statement in statements]
         print(
-            f"{f'{name} {kind}, {turning}':>28} {sound:>3}/{len(statements)} {f'{min(angles)} to {max(angles)}':>18} "
+            f"{words:>28} {sound:>3}/{len(statements)} {f'{min(angles)} to {max(angles)}':>18} "
             f"{statistics.median(times):6.1f}"
         )
     columns = [f"{shape['type']} {least:g}°" for shape in SHAPES for least in LEASTS]
+    columns += [f"triad {least:g}°" for least in LEASTS]
     print("\nA single dwell at an end of a stroke or of a swing of 50°: least movement in percent of the way")
     print(f"{'dwell':>6} " + " ".join(f"{column:>14}" for column in columns))
     for wide in REACH:
-        print(f"{wide:5d}° " + " ".join(_stillest(wide, shape, least) for shape in SHAPES for least in LEASTS))
+        found = [_stillest(wide, shape, least) for shape in SHAPES for least in LEASTS]
+        found += [_stillest(wide, SHAPES[0], least, UNCLASSED) for least in LEASTS]
+        print(f"{wide:5d}° " + " ".join(found))
     print(f"\nOne of {LONG}° by the least transmission angle, with link ratios up to {WIDE_RATIO:g}")
-    print(f"{'angle':>6} " + " ".join(f"{shape['type']:>14}" for shape in SHAPES))
+    searched = [*((shape, "auto") for shape in SHAPES), (SHAPES[0], UNCLASSED)]
+    print(f"{'angle':>6} " + " ".join(f"{name:>14}" for name in ("rocker", "slider", "triad")))
     for least in FLAT:
-        print(f"{least:5g}° " + " ".join(_stillest(LONG, shape, least, max_link_ratio=WIDE_RATIO) for shape in SHAPES))
+        found = [_stillest(LONG, shape, least, name, max_link_ratio=WIDE_RATIO) for shape, name in searched]
+        print(f"{least:5g}° " + " ".join(found))

@@ -89,6 +89,7 @@ class GivenSkeleton(Statement):
         "dwell_slot",
         "dwell_watt_rocker",
         "dwell_watt_slider",
+        "dwell_stephenson_2",
         "peaucellier",
         "hart",
         "scott_russell",

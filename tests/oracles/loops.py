@@ -8,9 +8,11 @@ long as it keeps its sign, the linkage stays on one branch.
 
 from __future__ import annotations
 
+import itertools
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 from scipy.optimize import root
 
 STEP = 0.01
@@ -39,7 +41,7 @@ class Loops:
         self.joints = {name: complex(*place) for name, place in skeleton["joints"].items()}
         self.links = {link["name"]: link["joints"] for link in skeleton["links"]}
         self.input = skeleton["input_link"]
-        self.body = next(name for name, listed in self.links.items() if "P" in listed)
+        self.body = next((name for name, listed in self.links.items() if "P" in listed), None)
         self.moving = [name for name in self.links if name not in ("ground", self.input)]
         self.triad = self._legs()
         self.loops = self._loops()
@@ -127,20 +129,40 @@ class Loops:
         way = [self.places(turns, at)]
         for goal in inputs:
             for step in np.linspace(at, goal, max(2, int(abs(goal - at) / STEP) + 2))[1:]:
-                rate = -np.linalg.solve(self.jacobian(turns, at), self._by_input(at))
-                solved = root(
-                    self.residuals, turns + (step - at) * rate, (step,), method="hybr",
-                    jac=self.jacobian, options={"xtol": 1e-14},
-                )  # fmt: skip
-                size = max(map(abs, self.joints.values()))
-                assert np.abs(self.residuals(solved.x, step)).max() < 1e-9 * size, "the loops do not close"
-                turns, at = solved.x, float(step)
+                turns, at = self._next(turns, at, float(step)), float(step)
                 least = min(least, np.linalg.det(self.jacobian(turns, at)) / start)
                 way.append(self.places(turns, at))
                 self._note(way[-1], angles)
             points.append(way[-1]["P"])
             turned.append(turns[self.moving.index(self.body)])
         return Followed(np.array(points), np.array(turned), float(least), angles, way)
+
+    def _next(self, turns: np.ndarray, at: float, step: float) -> np.ndarray:
+        """Rotations at an input that is near to another one, from those there."""
+        rate = -np.linalg.solve(self.jacobian(turns, at), self._by_input(at))
+        solved = root(
+            self.residuals, turns + (step - at) * rate, (step,), method="hybr",
+            jac=self.jacobian, options={"xtol": 1e-14},
+        )  # fmt: skip
+        size = max(map(abs, self.joints.values()))
+        assert np.abs(self.residuals(solved.x, step)).max() < 1e-9 * size, "the loops do not close"
+        return solved.x
+
+    def turned(self, steps: int) -> dict[str, np.ndarray]:
+        """Rotations of the moving links, radians, at so many even steps of a whole turn of the input, both ends among
+        them: by splines through those of every half degree, and Newton's method from there."""
+        coarse = np.linspace(0.0, 2.0 * np.pi, 721)
+        followed = [np.zeros(len(self.moving))]
+        for at, step in itertools.pairwise(coarse):
+            followed.append(self._next(followed[-1], at, step))
+        inputs = np.linspace(0.0, 2.0 * np.pi, steps)
+        turns = CubicSpline(coarse, np.array(followed))(inputs)
+        for _ in range(3):
+            rows = np.array([self.residuals(at, angle) for at, angle in zip(turns, inputs, strict=True)])
+            slopes = np.array([self.jacobian(at, angle) for at, angle in zip(turns, inputs, strict=True)])
+            turns -= np.linalg.solve(slopes, rows[:, :, None])[:, :, 0]
+        assert np.abs(rows).max() < 1e-9 * max(map(abs, self.joints.values()))
+        return dict(zip(self.moving, turns.T, strict=True))
 
     def pushed(self, places: dict[str, complex], link: str) -> float:
         """The transmission angle of a link at the ground or the input, degrees, by the forces at all pins.

@@ -13,6 +13,7 @@ from tests.service.test_analyses import assert_as_documented
 TASKS = {
     "dwell_rocker": {"mechanism": "pseudo_arc", "output": {"type": "rocker", "swing": 60.0}},
     "dwell_slider": {"output": {"type": "slider", "stroke": 40.0}},
+    "dwell_stephenson_2": {"mechanism": "stephenson_2", "output": {"type": "rocker", "swing": 55.0}, "crank": 12.0},
     "dwell_slot": {"mechanism": "straight_slot", "output": {"type": "rocker", "swing": 50.0}},
 }
 
@@ -69,6 +70,8 @@ def test_dimensions_that_the_skeleton_does_not_have(client, changed, path):
         ({"dwell_angle": 200.0, "count": 2}, "/problem/dwell_angle"),
         ({"output": {"type": "rocker", "swing": 180.0}}, "/problem/output/swing"),
         ({"tolerance": 60.0}, "/problem/tolerance"),
+        ({"mechanism": "stephenson_2", "output": {"type": "slider", "stroke": 9.0}}, "/problem/mechanism"),
+        ({"mechanism": "stephenson_2", "constraints": {"grashof": "crank_rocker"}}, "/problem/constraints/grashof"),
     ],
 )
 def test_what_cannot_be_is_refused_at_its_field(client, fields, path):

@@ -35,6 +35,16 @@ TASKS = {
         },
     },
     "within, as double crank": {**WITHIN, "constraints": {"grashof": "double_crank"}},
+    "unequal by a Stephenson II, even links, in a zone": {
+        **UNEQUAL,
+        "mechanism": "stephenson_2",
+        "constraints": {
+            "min_transmission_angle": 30.0,
+            "max_link_ratio": 4.0,
+            "link_length": {"min": 8.0},
+            "fixed_pivot_region": {"x": [0.0, 200.0], "y": [-200.0, 200.0]},
+        },
+    },
     "unequal, short links, in a box": {
         **UNEQUAL,
         "constraints": {"link_length": {"max": 60.0}},
@@ -62,7 +72,8 @@ def test_dwells_are_solved_drawn_and_driven(client, name):
     assert design["metrics"]["link_ratio"] == pytest.approx(max(pins) / min(pins))
     assert max(pins) / min(pins) <= demands.get("max_link_ratio", math.inf) * (1.0 + 1e-6)
     if "link_length" in demands:
-        assert max(pins) <= 60.0 + 1e-6
+        assert max(pins) <= demands["link_length"].get("max", math.inf) + 1e-6
+        assert min(pins) >= demands["link_length"].get("min", 0.0) - 1e-6
     place = f"/v1/jobs/{body['id']}/designs/0"
     drawing = client.get(f"{place}.svg")
     assert drawing.status_code == 200, drawing.text

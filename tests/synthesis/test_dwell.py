@@ -21,6 +21,7 @@ from synthesis.proof.rebuilt import rebuilt
 from synthesis.registry import parse_problem
 from tests.campaign import further
 from tests.cases import Case, cases
+from tests.oracles.loops import Loops
 from tests.oracles.positions import meet
 from tests.synthesis.driving import constraints_of
 
@@ -50,8 +51,10 @@ def solved(problem: DwellProblem) -> DwellResult:
 
 
 def output_over_a_turn(design: DwellDesign, steps: int) -> np.ndarray:
-    """Output (degrees, or length) from the lengths alone: pins by Newton's iteration, the slot by an angle."""
+    """Output (degrees, or length) from the lengths alone: pins by circles, the slot by an angle, a triad by loops."""
     mechanism = design.mechanism
+    if mechanism.type == "dwell_stephenson_2":
+        return np.degrees(Loops(mechanism.skeleton.model_dump()).turned(steps)["output"])
     joints = {name: complex(*z) for name, z in mechanism.skeleton.joints.items()}
     start = np.angle(joints["A"] - joints["O2"])
     links, point = mechanism.links, mechanism.coupler_point
@@ -119,13 +122,15 @@ TASKS = [
     {"mechanism": "pseudo_arc", "output": rocker(50.0), "count": 2},
     {"mechanism": "straight_slot", "dwell_angle": 40.0, "output": rocker(50.0), "count": 2, "tolerance": 1.0},
     {"output": slider(0.02), "count": 2, "dwell_angle": 50.0, "length_unit": "m"},
+    {"mechanism": "stephenson_2", "dwell_angle": 100.0, "output": rocker(40.0)},
+    {"mechanism": "stephenson_2", "output": rocker(60.0), "count": 2, "dwell_angle": 50.0},
 ]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "fields",
-    further(TASKS, TASKS[:3]),
+    further(TASKS, [*TASKS[:3], TASKS[6]]),
     ids=lambda fields: f"{fields.get('mechanism', 'slider')}-{fields.get('count', 1)}",
 )
 def test_dwells_are_what_was_measured(fields) -> None:
@@ -185,6 +190,7 @@ def test_limits_of_the_client_are_kept() -> None:
         ("dwell_slot", {"mechanism": "straight_slot"}),
         ("dwell_watt_rocker", {"mechanism": "watt_2", "output": rocker(50.0)}),
         ("dwell_watt_slider", {"mechanism": "watt_2", "output": slider(50.0)}),
+        ("dwell_stephenson_2", {"mechanism": "stephenson_2", "output": rocker(50.0)}),
     ],
 )
 def test_the_link_ratio_is_that_of_all_distances_between_pins_of_a_link(kind: str, fields: dict[str, Any]) -> None:
@@ -346,6 +352,8 @@ def test_ill_formed_statements_are_refused_at_their_field(fields, place) -> None
     [
         ({"dwell_angle": 180.0, "count": 2}, "/dwell_angle"),
         ({"output": slider(10.0), "mechanism": "straight_slot"}, "/mechanism"),
+        ({"output": slider(10.0), "mechanism": "stephenson_2"}, "/mechanism"),
+        ({"mechanism": "stephenson_2", "constraints": {"grashof": "crank_rocker"}}, "/constraints/grashof"),
         ({"output": slider(10.0), "crank": 5.0}, "/crank"),
         ({"tolerance": 90.0}, "/tolerance"),
         ({"crank": 1e-9, "pivot": [1e9, 0.0]}, "/crank"),

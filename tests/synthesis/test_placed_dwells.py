@@ -41,6 +41,12 @@ TASKS: dict[str, dict[str, Any]] = {
         "output": slider(80.0),
         "tolerance": 1.6,
     },
+    "stephenson": {
+        "dwells": [{"angle": 60.0, "at": "low"}, {"angle": 40.0, "at": 0.7}],
+        "mechanism": "stephenson_2",
+        "output": rocker(60.0),
+        "tolerance": 1.0,
+    },
     "two of one length": {"dwell_angle": 50.0, "count": 2, "mechanism": "watt_2", "output": rocker(60.0)},
 }
 

@@ -77,6 +77,7 @@ NAMES = {
     "dwell_slot": "Dwell sixbar with a slotted rocker",
     "dwell_watt_rocker": "Watt II dwell sixbar with a rocker",
     "dwell_watt_slider": "Watt II dwell sixbar with a slider",
+    "dwell_stephenson_2": "Stephenson II dwell sixbar",
     "watt_1": "Watt I sixbar for parallel motion",
 }
 """What the types are called on a sheet."""
@@ -325,10 +326,12 @@ def dwell(design: DwellDesign, problem: DwellProblem, linkage: DrivenLinkage) ->
     rotation = rotations[0]
     # The last place is that in which the output stands farthest from its first rest, or the second rest.
     away = begun[1] if len(begun) > 1 else begun[0] + 0.5 * rotation + math.pi
-    traced = [joint for joint in ("P", "D") if joint in linkage.mechanism.joints]
+    # Of a Stephenson II the way of B tells how link 4 turns about E while the output rests.
+    along = "B" if mechanism.type == "dwell_stephenson_2" else "P"
+    traced = [joint for joint in (along, "D") if joint in linkage.mechanism.joints]
     scene = Scene(linkage, np.array([begun[0], begun[0] + rotation, away]), traced)
     spans = [(at, at + wide) for at, wide in zip(begun, rotations, strict=True)]
-    resting = [linkage.path("P", *span, SAMPLES) for span in spans]
+    resting = [linkage.path(along, *span, SAMPLES) for span in spans]
     turned = np.linspace(0.0, 360.0, SAMPLES)
     motion = linkage.driven(begun[0] + np.radians(turned), order=2)
     jet = motion.slides["D"] if slides else motion.angles["output"]
@@ -417,15 +420,17 @@ def _coupler_point(mechanism: Any) -> list[tuple[str, str]]:
 
 
 def _point_of_dwell(mechanism: DwellMechanism) -> list[tuple[str, str]]:
-    """P on the coupler, or on the rocker by its angle at O4: its distance is among the links."""
+    """P on the coupler, or the third pins of links by their angles: their distances are among the links."""
     if mechanism.coupler_point is not None:
         return _coupler_point(mechanism)
-    o4, b, p = (complex(*mechanism.skeleton.joints[name]) for name in ("O4", "B", "P"))
-    turned = math.degrees(cmath.phase((p - o4) / (b - o4)))
-    return [
-        ("angle from O4–B to O4–P", angle(turned)),
-        ("reference input angle", angle(mechanism.reference_input_angle)),
-    ]
+    triad = mechanism.type == "dwell_stephenson_2"
+    corners = [("O2", "A", "C"), ("B", "D", "E")] if triad else [("O4", "B", "P")]
+    angles = []
+    for pin, end, other in corners:
+        at, to, third = (complex(*mechanism.skeleton.joints[name]) for name in (pin, end, other))
+        turned = math.degrees(cmath.phase((third - at) / (to - at)))
+        angles.append((f"angle from {pin}–{end} to {pin}–{other}", angle(turned)))
+    return [*angles, ("reference input angle", angle(mechanism.reference_input_angle))]
 
 
 def balancing(design: BalancedDesign, problem: BalancingProblem, linkage: DrivenLinkage) -> Content:

@@ -1381,7 +1381,7 @@ export interface components {
         };
         DwellMechanism: {
             /** @enum {string} */
-            type: "dwell_rocker" | "dwell_slider" | "dwell_slot" | "dwell_watt_rocker" | "dwell_watt_slider";
+            type: "dwell_rocker" | "dwell_slider" | "dwell_slot" | "dwell_watt_rocker" | "dwell_watt_slider" | "dwell_stephenson_2";
             fixed_pivots: {
                 [key: string]: [
                     number,
@@ -1440,7 +1440,7 @@ export interface components {
             output: components["schemas"]["RockerOutput"] | components["schemas"]["SliderOutput"];
             count?: number;
             /** @enum {string} */
-            mechanism?: "auto" | "pseudo_arc" | "straight_slot" | "watt_2";
+            mechanism?: "auto" | "pseudo_arc" | "straight_slot" | "watt_2" | "stephenson_2";
             tolerance?: number | null;
             crank?: number | null;
             pivot?: [
@@ -5716,7 +5716,7 @@ export interface components {
         };
         GivenSkeleton: {
             /** @enum {string} */
-            type?: "skeleton" | "fourbar" | "slider_crank" | "inverted_slider_crank" | "crank_shaper" | "whitworth" | "geared_fivebar" | "watt_1" | "watt_2" | "stephenson_1" | "stephenson_2" | "stephenson_3" | "drag_link_rocker" | "drag_link_slider" | "davis" | "dwell_rocker" | "dwell_slider" | "dwell_slot" | "dwell_watt_rocker" | "dwell_watt_slider" | "peaucellier" | "hart" | "scott_russell" | "pantograph";
+            type?: "skeleton" | "fourbar" | "slider_crank" | "inverted_slider_crank" | "crank_shaper" | "whitworth" | "geared_fivebar" | "watt_1" | "watt_2" | "stephenson_1" | "stephenson_2" | "stephenson_3" | "drag_link_rocker" | "drag_link_slider" | "davis" | "dwell_rocker" | "dwell_slider" | "dwell_slot" | "dwell_watt_rocker" | "dwell_watt_slider" | "dwell_stephenson_2" | "peaucellier" | "hart" | "scott_russell" | "pantograph";
             skeleton: components["schemas"]["StatedSkeleton"];
             links?: {
                 [key: string]: number;

@@ -11,26 +11,36 @@ from synthesis.model.dimension import Angle, Length, Output, OutputPerRadian, Ou
 from synthesis.model.forces_answer import DesignForces
 from synthesis.model.linkage_answer import LAYOUT, PEAKS, CouplerPoint, Layout, LinkageResult, MotionMetrics, Skeleton
 
-MechanismType = Literal["dwell_rocker", "dwell_slider", "dwell_slot", "dwell_watt_rocker", "dwell_watt_slider"]
+MechanismType = Literal[
+    "dwell_rocker", "dwell_slider", "dwell_slot", "dwell_watt_rocker", "dwell_watt_slider", "dwell_stephenson_2"
+]
 
 
 class DwellMechanism(Answer):
-    """A sixbar with a dwell: a fourbar O2 A B O4 whose crank turns through, and an output that P leaves at rest.
+    """A sixbar with a dwell, whose crank turns through.
+
+    But for the last type a fourbar O2 A B O4, and an output that P leaves at rest.
 
     ``dwell_rocker``: link 5 from P to D, the output O6–D. ``dwell_slider``: link 5 from P to D on a slide.
     ``dwell_slot``: P in a slot of the output, which turns about O6; C marks the slot's end. In these P is on the
     coupler. ``dwell_watt_rocker`` and ``dwell_watt_slider`` are the first two with P on the rocker O4–B.
+
+    ``dwell_stephenson_2``: a crank O2 A C, the links 3 (A–B) and 5 (C–D) from it to link 4 (B D E), and the output
+    O4–E, which rests while link 4 turns about E.
     """
 
     type: MechanismType
-    fixed_pivots: dict[str, Point] = Field(description="By the names of the joints: O2, O4 and, but for a slider, O6.")
+    fixed_pivots: dict[str, Point] = Field(
+        description="By the names of the joints: O2, O4 and, but for a slider and a Stephenson II, O6."
+    )
     links: dict[str, Length] = Field(
         description="ground (O2–O4), input, coupler, rocker; link_5 and output, where there are such, the latter of a "
         "slot to its end. To the third pin of a link from its first, and from its second: coupler_arm (A–P) and "
         "coupler_side (B–P), or rocker_arm (O4–P) and rocker_side (B–P); but for a slider, ground_arm (O2–O6) and "
-        "ground_side (O4–O6)."
+        "ground_side (O4–O6). Of a Stephenson II ground (O2–O4), input (O2–A), link_3, link_4 (B–D), link_5 and output "
+        "(O4–E); input_arm (O2–C), input_side (A–C), link_4_arm (B–E), link_4_side (D–E)."
     )
-    coupler_point: CouplerPoint | None = optional("P on the coupler; left out where P is on the rocker.")
+    coupler_point: CouplerPoint | None = optional("P on the coupler; left out where there is none.")
     reference_input_angle: Angle = Field(description="Crank angle where the first dwell begins, absolute, degrees.")
     skeleton: Skeleton
 

@@ -29,7 +29,7 @@ from synthesis.numerics.narrowing import Values
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-Kind = Literal["rocker", "slider", "slot"]
+Kind = Literal["rocker", "slider", "slot", "triad"]
 Carrier = Literal["coupler", "rocker"]
 
 CYCLE = 72
@@ -162,10 +162,38 @@ def judged(task: Task, nodes: Real, shapes: Real) -> Values:
     theta = crank_angles(shapes, task, nodes)
     p = points(shapes, theta, task.carrier)
     out, sine = output(task.kind, task.sign, shapes, p)
-    turn = out[:, -CYCLE:]
-    low, high = extremes(turn)
+    banded, kept = dwelling(task, len(nodes), out, shapes[:, 2])
+    positive = np.concatenate(
+        [
+            kept,
+            sine[:, ::SPARSE] ** 2 - task.transmission**2,
+            _fourbar_kept(shapes, task),
+            *([_slot_kept(shapes, p, task)] if task.kind == "slot" else []),
+        ],
+        axis=1,
+    )
+    return Values(banded, np.empty((len(shapes), 0)), positive)
+
+
+def dwelling(task: Task, count: int, out: Real, ground: Real) -> tuple[Real, Real]:
+    """How outputs move during the dwells, as shares of their way, and the room that places and way have.
+
+    Parameters
+    ----------
+    task : Task
+    count : int
+        Crank angles of a dwell.
+    out : float, shape (m, dwells · count + CYCLE)
+        The output during the dwells, and after them over the turn.
+    ground : float, shape (m,)
+        Lengths of the ground links.
+
+    Returns
+    -------
+    banded, kept : float, shapes (m, dwells · count) and (m, ...)
+    """
+    low, high = extremes(out[:, -CYCLE:])
     way = high - low
-    count = len(nodes)
     banded, at_place = [], []
     with np.errstate(invalid="ignore", divide="ignore"):
         for k, place in enumerate(task.places):
@@ -173,21 +201,10 @@ def judged(task: Task, nodes: Real, shapes: Real) -> Values:
             level = resting.mean(axis=1)
             banded.append((resting - level[:, None]) / way[:, None])
             at_place += _at_place(place, low, high, level, way)
-        if math.isnan(task.way):
-            # A slide has any stroke in a unit frame, but one that is small beside the linkage makes that large.
-            swing = [way / shapes[:, 2] - LEAST_STROKE]
-        else:
-            swing = [way / task.way - 1.0, 1.0 - way / task.way]
-        positive = np.concatenate(
-            [
-                np.stack([*at_place, *swing], axis=1),
-                sine[:, ::SPARSE] ** 2 - task.transmission**2,
-                _fourbar_kept(shapes, task),
-                *([_slot_kept(shapes, p, task)] if task.kind == "slot" else []),
-            ],
-            axis=1,
-        )
-    return Values(np.concatenate(banded, axis=1), np.empty((len(shapes), 0)), positive)
+        # A slide has any stroke in a unit frame, but one that is small beside the linkage makes that large.
+        slides = math.isnan(task.way)
+        swing = [way / ground - LEAST_STROKE] if slides else [way / task.way - 1.0, 1.0 - way / task.way]
+    return np.concatenate(banded, axis=1), np.stack([*at_place, *swing], axis=1)
 
 
 def _at_place(place: float, low: Real, high: Real, level: Real, way: Real) -> list[Real]:

@@ -9,6 +9,7 @@ from pydantic import ConfigDict, Discriminator, Field, Tag
 
 from synthesis.model.dimension import ANGLE, OUTPUT
 from synthesis.model.linkage_statement import LinkageProblem
+from synthesis.model.stated_types import UNCLASSED, no_class
 from synthesis.model.statement import (
     ROUNDED_OFF,
     Contradiction,
@@ -37,11 +38,11 @@ LOW, HIGH = 0.0, 1.0
 """Places of a dwell at the ends of the way, as shares of it."""
 
 
-SixbarType = Literal["pseudo_arc", "straight_slot", "watt_2"]
+SixbarType = Literal["pseudo_arc", "straight_slot", "watt_2", "stephenson_2"]
 """How an output is kept at rest."""
 
 Turning = Literal["crank_rocker", "double_crank"]
-"""What the fourbar may be that the crank turns through in."""
+"""What the fourbar O2 A B O4 may be that the crank turns through in; a Stephenson II has none."""
 
 
 class Wanted(NamedTuple):
@@ -98,7 +99,8 @@ class DwellProblem(LinkageProblem):
 
     A fourbar's coupler point goes along a circular arc, and a link of the arc's radius leaves the output at rest
     (`pseudo_arc`); or it goes along a straight line in a slot of the output (`straight_slot`); or the fourbar's rocker
-    drives another one that rests near its dead points (`watt_2`). `dwell_angle` and `count` ask for one dwell or two
+    drives another one that rests near its dead points (`watt_2`); or the output hangs on a link that two others join to
+    the crank, a triad (`stephenson_2`). `dwell_angle` and `count` ask for one dwell or two
     of one length at the ends of the way, `dwells` for each by its length and place. Swing, dwells and accelerations are
     measured over the whole turn.
     """
@@ -145,9 +147,10 @@ class DwellProblem(LinkageProblem):
     )
     output: Output = Field(description="What the output is, and how far it goes.")
     count: Annotated[Count, Field(ge=1, le=2)] = Field(default=1, description="Dwells of `dwell_angle` in a turn.")
-    mechanism: Literal["auto", "pseudo_arc", "straight_slot", "watt_2"] = Field(
+    mechanism: Literal["auto", "pseudo_arc", "straight_slot", "watt_2", "stephenson_2"] = Field(
         default="auto",
-        description="How the output is kept at rest. `auto` compares arc and slot for a rocker; with `dwells`, all.",
+        description="How the output is kept at rest. `auto` compares arc and slot for a rocker, and with `dwells` also "
+        "`watt_2`; `stephenson_2`, of a rocker, has to be named.",
     )
     tolerance: Annotated[PositiveNumber, OUTPUT] | None = Field(
         default=None,
@@ -188,7 +191,7 @@ class DwellProblem(LinkageProblem):
     @property
     def placed(self) -> bool:
         """Whether outputs are looked for by where the dwells lie, and how long each is."""
-        return self.dwells is not None or self.mechanism == "watt_2"
+        return self.dwells is not None or self.mechanism in ("watt_2", UNCLASSED)
 
     @property
     def types(self) -> tuple[SixbarType, ...]:
@@ -200,8 +203,10 @@ class DwellProblem(LinkageProblem):
         return ("pseudo_arc", *slot, *pair)
 
     @property
-    def searches(self) -> tuple[tuple[SixbarType, Turning], ...]:
+    def searches(self) -> tuple[tuple[SixbarType, Turning | None], ...]:
         """The types that are to be tried, each with what its fourbar may be, whatever class is demanded."""
+        if self.mechanism == UNCLASSED:
+            return ((UNCLASSED, None),)
         classes: tuple[Turning, ...] = ("crank_rocker", "double_crank") if self.placed else ("crank_rocker",)
         return tuple(
             (name, turning)
@@ -224,6 +229,8 @@ class DwellProblem(LinkageProblem):
         found = [*self.contradicting_demands(), *self._contradicting_dwells()]
         if self.output.type == "slider" and self.mechanism == "straight_slot":
             found.append(Contradiction("/mechanism", "a slotted output swings; take pseudo_arc or a rocker"))
+        if self.output.type == "slider" and self.mechanism == UNCLASSED:
+            found.append(Contradiction("/mechanism", "its output swings; take pseudo_arc, watt_2 or a rocker"))
         if self.output.type == "slider" and self.crank is not None:
             found.append(Contradiction("/crank", "the stroke gives the size; leave the crank out"))
         size, field = (
@@ -233,7 +240,9 @@ class DwellProblem(LinkageProblem):
             found.append(Contradiction(field, "too short beside the coordinates of the pivot; move the origin nearer"))
         if self.tolerance is not None and self.tolerance >= self.way:
             found.append(Contradiction("/tolerance", "as far as the output goes; nothing would have to rest"))
-        classes = {turning for _, turning in self.searches}
+        classes = {turning for _, turning in self.searches if turning is not None}
+        if not classes:
+            return [*found, *no_class(self.constraints)]
         searched = "crank-rockers and double cranks" if "double_crank" in classes else "crank-rockers"
         reason = f"the crank turns through: only {searched} are searched"
         return [*found, *self.constraints.of_another_class(classes, reason)]

@@ -95,14 +95,14 @@ def judge_program(
                 for m in range(n):
                     out[m] = level(kind, out[m])
             score = lacking(0.0, kind, curve, span, way, least, sine)
-            score += _rests(out, low, span, lengths, places, at, share)
+            score += rests(out, low, span, lengths, places, at, share)
             if score < scores[k]:
                 scores[k], signs[k] = score, sign
                 begins[k], ends[k] = at, share
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _rests(out: Real, low: float, span: float, lengths: Integers, places: Real, at: Integers, share: Real) -> float:
+def rests(out: Real, low: float, span: float, lengths: Integers, places: Real, at: Integers, share: Real) -> float:
     """The worst of the dwells, each where it moves least and is nearest to its place; fills in where that is."""
     n, worst = len(out), 0.0
     for dwell in range(len(lengths)):

@@ -10,13 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage.fourbar import OPEN, positions
+from kinematics.linkage.planar.catalogue import SIXBAR_LINKS
+from kinematics.linkage.planar.mechanism import GROUND
+from synthesis.kinds.dwell import triads
 from synthesis.kinds.dwell.design import DwellMechanism, MechanismType
 from synthesis.kinds.dwell.outputs import Carrier, Kind, extremes, fourbars, output, points
 from synthesis.kinds.dwell.problem import DEFAULT_CRANK, DwellProblem
 from synthesis.kinds.dwell.verification import GRID
 from synthesis.model.linkage_answer import CouplerPoint, Slide
 from synthesis.model.linkages import skeleton, slide, to_point
-from synthesis.model.sixbars import lengths_of
+from synthesis.model.sixbars import Links, lengths_of
 
 Real = NDArray[np.float64]
 
@@ -25,6 +28,12 @@ WAY_STEPS = 30
 
 WAY_TOLERANCE, MAX_WAY_ERROR = 1e-11, 1e-8
 """Relative errors of the way at which the secant method has converged, and with which its last step is still used."""
+
+
+TRIAD: Links = {
+    name: tuple(joint for joint in joints if joint != "P") for name, joints in SIXBAR_LINKS["stephenson_2"].items()
+}
+"""The joints on each link of a Stephenson II."""
 
 
 class Sixbar(NamedTuple):
@@ -39,6 +48,8 @@ class Sixbar(NamedTuple):
 
 def way_of(sixbar: Sixbar) -> float:
     """Swing (radians) or stroke over the turn."""
+    if sixbar.kind == "triad":
+        return triads.way_of(sixbar.shape, GRID)
     turn = np.linspace(0.0, 2.0 * np.pi, GRID, endpoint=False)
     p = points(sixbar.shape[None], turn[None], sixbar.carrier)
     low, high = extremes(output(sixbar.kind, sixbar.sign, sixbar.shape[None], p)[0])
@@ -65,6 +76,8 @@ def with_way(sixbar: Sixbar, way: float) -> Sixbar | None:
 
 def _moved(sixbar: Sixbar, factor: float) -> Sixbar:
     """The output's pivot ``factor`` times as far from where the pin, or P, stands when the first dwell begins."""
+    if sixbar.kind == "triad":
+        return sixbar._replace(shape=triads.with_pivot(sixbar.shape, factor))
     shape = sixbar.shape.copy()
     at = slice(5, 7) if sixbar.kind == "slot" else slice(6, 8)
     pivot = complex(*shape[at])
@@ -79,6 +92,8 @@ def _moved(sixbar: Sixbar, factor: float) -> Sixbar:
 
 def _joints(sixbar: Sixbar) -> dict[str, complex]:
     """Joints where the first dwell begins, in the shape's own frame."""
+    if sixbar.kind == "triad":
+        return triads.joints(sixbar.shape)
     shape = sixbar.shape[None]
     begin = np.array([[sixbar.shape[-sixbar.dwells]]])
     at = positions(fourbars(shape), begin, np.array([OPEN]))
@@ -114,31 +129,38 @@ def mechanism_of(problem: DwellProblem, sixbar: Sixbar) -> DwellMechanism:
     own = _joints(sixbar)
     pivot = complex(*(problem.pivot or (0.0, 0.0)))
     joints = {name: pivot + scale * z for name, z in own.items()}
-    on_rocker = sixbar.carrier == "rocker"
-    links = [("ground", ["O2", "O4"]), ("input", ["O2", "A"]), ("coupler", ["A", "B"]), ("rocker", ["O4", "B"])]
-    links[3 if on_rocker else 2][1].append("P")
-    slides: list[Slide] = []
-    kind: MechanismType = "dwell_watt_rocker" if on_rocker else "dwell_rocker"
-    if sixbar.kind == "slider":
-        kind = "dwell_watt_slider" if on_rocker else "dwell_slider"
-        links.append(("link_5", ["P", "D"]))
-        slides.append(slide("D", "ground", joints["D"], float(sixbar.shape[7])))
-    else:
-        links[0][1].append("O6")
-        if sixbar.kind == "rocker":
-            links += [("link_5", ["P", "D"]), ("output", ["O6", "D"])]
-        else:
-            kind = "dwell_slot"
-            links.append(("output", ["O6", "C"]))
-            slides.append(slide("P", "output", joints["O6"], cmath.phase(joints["P"] - joints["O6"])))
-    point = (own["P"] - own["A"]) / ((own["B"] - own["A"]) / abs(own["B"] - own["A"]))
+    kind, links, slides = _linked(sixbar, joints)
+    point = None
+    if "P" in links.get("coupler", ()):
+        arm = (own["P"] - own["A"]) / ((own["B"] - own["A"]) / abs(own["B"] - own["A"]))
+        point = CouplerPoint(distance=scale * abs(arm), angle=math.degrees(cmath.phase(arm)))
     return DwellMechanism(
         type=kind,
-        fixed_pivots={name: to_point(joints[name]) for name in links[0][1]},
-        links=lengths_of(joints, dict(links), point=None),
-        coupler_point=None
-        if on_rocker
-        else CouplerPoint(distance=scale * abs(point), angle=math.degrees(cmath.phase(point))),
+        fixed_pivots={name: to_point(joints[name]) for name in links[GROUND]},
+        links=lengths_of(joints, links, point=None),
+        coupler_point=point,
         reference_input_angle=math.degrees(cmath.phase(own["A"])),
-        skeleton=skeleton(joints, dict(links), slides=slides),
+        skeleton=skeleton(joints, links, slides=slides),
     )
+
+
+def _linked(sixbar: Sixbar, joints: dict[str, complex]) -> tuple[MechanismType, Links, list[Slide]]:
+    """The type of a sixbar, the joints on each of its links, and its slides."""
+    if sixbar.kind == "triad":
+        return "dwell_stephenson_2", TRIAD, []
+    on_rocker = sixbar.carrier == "rocker"
+    links: dict[str, tuple[str, ...]] = {
+        GROUND: ("O2", "O4"),
+        "input": ("O2", "A"),
+        "coupler": ("A", "B") if on_rocker else ("A", "B", "P"),
+        "rocker": ("O4", "B", "P") if on_rocker else ("O4", "B"),
+    }
+    if sixbar.kind == "slider":
+        there = slide("D", GROUND, joints["D"], float(sixbar.shape[7]))
+        return "dwell_watt_slider" if on_rocker else "dwell_slider", links | {"link_5": ("P", "D")}, [there]
+    links[GROUND] = "O2", "O4", "O6"
+    if sixbar.kind == "rocker":
+        links |= {"link_5": ("P", "D"), "output": ("O6", "D")}
+        return "dwell_watt_rocker" if on_rocker else "dwell_rocker", links, []
+    there = slide("P", "output", joints["O6"], cmath.phase(joints["P"] - joints["O6"]))
+    return "dwell_slot", links | {"output": ("O6", "C")}, [there]

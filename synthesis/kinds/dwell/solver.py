@@ -9,22 +9,28 @@ from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from synthesis.kinds.dwell import triads
 from synthesis.kinds.dwell.candidates import Start, starts
 from synthesis.kinds.dwell.design import DwellDesign, DwellResult
 from synthesis.kinds.dwell.outputs import RESTING, Carrier, Kind, Task, judged
 from synthesis.kinds.dwell.placed_starts import placed_starts
 from synthesis.kinds.dwell.problem import HIGH, LOW, DwellProblem, Turning
 from synthesis.kinds.dwell.shaped import Sixbar, mechanism_of, with_way
+from synthesis.kinds.dwell.triad_starts import triad_starts
 from synthesis.kinds.dwell.verification import verify_dwell
 from synthesis.model.counting import counted
 from synthesis.model.kind import Progress
+from synthesis.model.stated_types import UNCLASSED
 from synthesis.numerics.narrowing import narrowest
 from synthesis.outcome.placement import put
 from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import OUTRANKED, Sifting, reported
 from synthesis.outcome.usable import usable_first
 from synthesis.proof.measures import link_lengths
+
+Real = NDArray[np.float64]
 
 LINK_RATIO = 10.0
 """Longest distance of two pins of a link over the shortest, at most, where the client says nothing."""
@@ -44,11 +50,11 @@ MARGIN = 1.0
 STARTS, ENOUGH = 8, 5
 """Starts that are refined for each type at most, and sound designs after which no more are."""
 
-PLACED_STARTS, STILL_ENOUGH = 48, 8
-"""The same of dwells with places of their own, of which fewer starts lead to sound designs: the stillest are driven."""
+STILL_ENOUGH = 8
+"""Shapes within the tolerance after which no more are refined, of dwells with places of their own."""
 
-SHAKES, SHAKEN, SHAKE = 5, 4, 0.06
-"""Times that the stillest shapes are shaken, how many of them, and by which share of each number."""
+SHAKEN = 4
+"""How many of the stillest shapes are shaken at a time."""
 
 ALIKE = 0.02
 """Share of the largest number of a shape by which all numbers of another must not differ for it to be another."""
@@ -65,23 +71,51 @@ FARTHEST = 4.0
 SLACK = 1e-4
 """Violation of a constraint with which a shape still counts as one; verification decides."""
 
+CURVES = "coupler curves drawn at random, outputs on their arcs and lines"
+SIXBARS = "sixbars drawn at random"
+"""Where the starts come from, in words."""
+
 KINDS: dict[tuple[str, str], Kind] = {
     ("pseudo_arc", "rocker"): "rocker",
     ("pseudo_arc", "slider"): "slider",
     ("straight_slot", "rocker"): "slot",
     ("watt_2", "rocker"): "rocker",
     ("watt_2", "slider"): "slider",
+    (UNCLASSED, "rocker"): "triad",
 }
 """The output of each type."""
 
 
 class _Search(NamedTuple):
-    """What is looked for together: a type of mechanism, its output, and what its fourbar is."""
+    """What is looked for together: a type of mechanism, its output, and what its fourbar is, if it has one."""
 
     name: str
     kind: Kind
     carrier: Carrier
-    turning: Turning
+    turning: Turning | None
+
+
+class _Effort(NamedTuple):
+    """What is spent on dwells with places of their own, of which few starts lead to sound designs.
+
+    Attributes
+    ----------
+    starts : int
+        That are refined at most.
+    shakes : int
+        Times that the stillest shapes are shaken.
+    shares : tuple of float
+        By which share of each number.
+    """
+
+    starts: int
+    shakes: int
+    shares: tuple[float, ...]
+
+
+WITH_FOURBAR = _Effort(48, 5, (0.06,))
+TRIADS = _Effort(160, 8, (0.02, 0.06))
+"""Of random sixbars fewer are near to something still, and near these there is more to be found."""
 
 
 class _Refined(NamedTuple):
@@ -98,7 +132,11 @@ def solve_dwell(problem: DwellProblem, progress: Progress) -> DwellResult:
     sifting = Sifting[DwellDesign](problem, undriven="crank_does_not_turn")
     searches = _searches(problem)
     for n, search in enumerate(searches):
-        progress(n / len(searches), f"driving outputs on coupler curves ({search.name.replace('_', ' ')})")
+        name = search.name.replace("_", " ")
+        if search.turning is None:
+            progress(n / len(searches), f"driving random sixbars ({name})")
+        else:
+            progress(n / len(searches), f"driving outputs on coupler curves ({name})")
         begun = _starts(problem, search, rng)
         span = (n + 1.0 / (len(begun) + 1)) / len(searches), (n + 1.0) / len(searches)
         told = reported(begun, progress, span, "refining {next} of at most {all}")
@@ -114,11 +152,10 @@ def solve_dwell(problem: DwellProblem, progress: Progress) -> DwellResult:
         else:
             sifting.sift(told, partial(_driven, problem, search.kind), enough)
     progress(1.0, "verified")
+    drawn = SIXBARS if problem.mechanism == UNCLASSED else CURVES
     return DwellResult(
         designs=sifting.designs(partial(_ranked, problem)),
-        search=sifting.search(
-            "coupler curves drawn at random, outputs on their arcs and lines, sequential linear programming"
-        ),
+        search=sifting.search(f"{drawn}, sequential linear programming"),
         summary=_summary(problem, sifting),
     )
 
@@ -142,7 +179,9 @@ def _starts(problem: DwellProblem, search: _Search, rng: np.random.Generator) ->
     if problem.dwells is None and len(dwells) == 2:
         places = LOW, HIGH
     kind, carrier, turning = search[1:]
-    return placed_starts(kind, carrier, turning, dwells, places, way, angle, ratio, rng, PLACED_STARTS)
+    if turning is None:
+        return triad_starts(dwells, places, way, angle, ratio, rng, TRIADS.starts)
+    return placed_starts(kind, carrier, turning, dwells, places, way, angle, ratio, rng, WITH_FOURBAR.starts)
 
 
 def warm_up() -> None:
@@ -151,6 +190,8 @@ def warm_up() -> None:
     placed_starts("slider", "rocker", "crank_rocker", (0.5,), (LOW,), math.nan, 0.3, LINK_RATIO, rng, 1)
     starts("rocker", 2, 0.5, 0.7, 0.3, LINK_RATIO, rng, 1)
     starts("slot", 1, 0.5, 0.7, 0.3, LINK_RATIO, rng, 1)
+    (start, *_) = triad_starts((0.5,), (LOW,), 0.7, 0.3, LINK_RATIO, rng, 1)
+    triads.way_of(start.shape, 1)
 
 
 def _transmission(problem: DwellProblem) -> float:
@@ -183,7 +224,8 @@ def _enough_refined(
     found: list[_Refined] = []
     tried = 0
     allowed = problem.allowed / problem.way
-    for start in chain(begun, _shaken(found, rng)):
+    effort = TRIADS if kind == "triad" else WITH_FOURBAR
+    for start in chain(begun, _shaken(found, effort, rng)):
         refined = _refined(problem, kind, start)
         tried += 1
         if refined is not None:
@@ -193,12 +235,13 @@ def _enough_refined(
     return found, tried
 
 
-def _shaken(found: list[_Refined], rng: np.random.Generator) -> Iterator[Start]:
+def _shaken(found: list[_Refined], effort: _Effort, rng: np.random.Generator) -> Iterator[Start]:
     """Starts near the stillest of the shapes that were found by the time it is asked."""
-    for _ in range(SHAKES):
+    for _ in range(effort.shakes):
         for one in sorted(found, key=lambda one: one.moved)[:SHAKEN]:
-            shape = one.sixbar.shape * (1.0 + SHAKE * rng.standard_normal(len(one.sixbar.shape)))
-            yield one.start._replace(shape=shape)
+            for share in effort.shares:
+                shape = one.sixbar.shape * (1.0 + share * rng.standard_normal(len(one.sixbar.shape)))
+                yield one.start._replace(shape=shape)
 
 
 def _at_larger_angles(problem: DwellProblem, kind: Kind, refined: list[_Refined]) -> list[_Refined]:
@@ -251,6 +294,18 @@ def _refined(problem: DwellProblem, kind: Kind, start: Start, transmission: floa
     sine = math.sin(_transmission(problem) if transmission is None else transmission)
     task = Task(kind, start.sign, dwells, start.places, way, sine, ratio, start.carrier, start.turning)
     nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(RESTING) / (RESTING - 1))
+    if kind == "triad":
+        judge, (low, high) = triads.judged, triads.bounds(len(start.shape), ratio)
+    else:
+        judge, (low, high) = judged, _bounds(kind, start, ratio)
+    best = narrowest(partial(judge, task, nodes), start.shape, low, high, arrived=ARRIVED)
+    if best is None or best.violation > SLACK:
+        return None
+    return _Refined(Sixbar(kind, start.sign, best.shape, start.carrier, len(dwells)), start, 2.0 * best.half_width)
+
+
+def _bounds(kind: Kind, start: Start, ratio: float) -> tuple[Real, Real]:
+    """Least and greatest numbers of a shape with a fourbar O2 A B O4."""
     high = np.full(len(start.shape), FARTHEST * ratio)
     low = -high
     low[:3], high[:3] = 1.0, ratio
@@ -260,10 +315,7 @@ def _refined(problem: DwellProblem, kind: Kind, start: Start, transmission: floa
         low[5], high[5] = low[2], ratio
     if kind == "rocker":
         low[8], high[8] = low[2], ratio
-    best = narrowest(partial(judged, task, nodes), start.shape, low, high, arrived=ARRIVED)
-    if best is None or best.violation > SLACK:
-        return None
-    return _Refined(Sixbar(kind, start.sign, best.shape, start.carrier, len(dwells)), start, 2.0 * best.half_width)
+    return low, high
 
 
 def _summary(problem: DwellProblem, sifting: Sifting[DwellDesign]) -> str:

@@ -23,7 +23,7 @@ from synthesis.model.dimension import OUTPUT
 from synthesis.proof.checks import at_most, tolerated
 from synthesis.proof.closer import extremes_of, least_angles, least_near
 from synthesis.proof.constraints import constraint_checks
-from synthesis.proof.measures import Measures, barker_of, diagonal, distances, fixed_pivots, measured, moving_pivots
+from synthesis.proof.measures import Measures, barker_within, diagonal, distances, fixed_pivots, measured, moving_pivots
 from synthesis.proof.rebuilt import rebuilt
 
 Real = NDArray[np.float64]
@@ -98,7 +98,7 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
         problem.way if slides else 2.0 * abs(complex(mechanism.joints["A"] - mechanism.joints["O2"])),
         transmission,
         places,
-        barker=barker_of(mechanism),
+        barker=barker_within(mechanism),
         same_branch=turns,
         visits_in_order=turns,  # a turn has one order
         full_rotation=turns,

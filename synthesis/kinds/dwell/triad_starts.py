@@ -1,0 +1,135 @@
+"""Starts for Stephenson II dwell sixbars: random ones that turn through, scored by their motion."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.compiling import njit
+from synthesis.kinds.dwell.candidates import UNEVEN, Start, beginning, promising, samples_of
+from synthesis.kinds.dwell.outputs import CYCLE
+from synthesis.kinds.dwell.programs import WAY_APART, rests
+from synthesis.kinds.dwell.scoring import ROCKER, lacking
+from synthesis.kinds.dwell.triad_turn import BEGIN, FIXED, LEAST, LEGS, B, C, D, E, turned
+from synthesis.kinds.dwell.triads import over_a_turn, pin_distances
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Integers = NDArray[np.int64]
+
+DRAWN, ROUNDS = 200_000, 3
+"""Sixbars that are drawn at a time, of which one in forty turns through, and how often."""
+
+EASED = 0.15
+"""Sine of a transmission angle that a start has at least, whatever is demanded."""
+
+GROUND, INPUT, LEG, ASIDE = (0.5, 5.0), (0.3, 3.0), (0.3, 4.0), (0.2, 2.0)
+"""Ranges in which lengths are drawn: O2–O4, O2–C, links 3 and 5 beside O2–A; E from the middle of B–D beside B–D."""
+
+
+def triad_starts(
+    dwells: tuple[float, ...],
+    places: tuple[float, ...],
+    way: float,
+    transmission: float,
+    link_ratio: float,
+    rng: np.random.Generator,
+    most: int,
+) -> list[Start]:
+    """The most promising shapes, best first.
+
+    Parameters
+    ----------
+    dwells, places : tuple of float
+        Of each dwell its length, radians, and its share of the way; NaN at either end.
+    way, transmission : float
+        Radians.
+    link_ratio : float
+        Longest distance of two pins of a link over the shortest, at most.
+    rng : Generator
+    most : int
+    """
+    lengths, least = np.array([samples_of(dwell) for dwell in dwells]), math.sin(transmission)
+    found: list[Start] = []
+    for _ in range(ROUNDS):
+        shapes = drawn(rng, len(dwells))
+        pins = pin_distances(shapes)
+        scores = UNEVEN * np.log(np.maximum(pins.max(axis=1) / pins.min(axis=1) / link_ratio, 1.0))
+        begins, ends = np.zeros((DRAWN, len(dwells)), np.int64), np.zeros((DRAWN, len(dwells)))
+        _judge(shapes, lengths, np.array(places), way, least, scores, begins, ends)
+        for n in promising(scores, np.arange(DRAWN), most):
+            shapes[n, LEAST] = math.sqrt(pins[n].min() * pins[n].max() / link_ratio)
+            at = shapes[n, BEGIN] + begins[n] * (math.tau / CYCLE)
+            shape = _standing(shapes[n], beginning(at, lengths, np.array(dwells)))
+            found.append(Start(shape, 1, tuple(ends[n].tolist()), float(scores[n])))
+    return sorted(found, key=lambda start: start.score)[:most]
+
+
+def drawn(rng: np.random.Generator, dwells: int) -> Real:
+    """Random shapes for so many dwells, whose input stands anywhere."""
+
+    def arms(low: float, high: float) -> Complex:
+        size = np.exp(rng.uniform(math.log(low), math.log(high), DRAWN))
+        return np.asarray(size * np.exp(2j * np.pi * rng.random(DRAWN)))
+
+    shapes = np.zeros((DRAWN, BEGIN + dwells))
+    crank, carried = np.exp(2j * np.pi * rng.random(DRAWN)), arms(*INPUT)
+    b, d = crank + arms(*LEG), carried * crank + arms(*LEG)
+    e = 0.5 * (b + d) + np.abs(d - b) * arms(*ASIDE)
+    shapes[:, FIXED], shapes[:, BEGIN] = np.abs(arms(*GROUND)), np.angle(crank)
+    for at, pin in ((C, carried), (B, b), (D, d), (E, e)):
+        shapes[:, at], shapes[:, at + 1] = pin.real, pin.imag
+    return shapes
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _judge(
+    shapes: Real,
+    lengths: Integers,
+    places: Real,
+    way: float,
+    least: float,
+    scores: Real,
+    begins: Integers,
+    ends: Real,
+) -> None:
+    """Drive every sixbar through its turn and add to its score what it lacks of rest, way and transmission.
+
+    Parameters
+    ----------
+    shapes : float, shape (m, ...)
+    lengths, places : int and float, shape (k,)
+        Of each dwell its samples, and its share of the way; NaN at either end.
+    way, least : float
+        The way, radians, and the least sine of a transmission angle.
+    scores : float, shape (m,)
+        Added to: infinite for what is no start.
+    begins, ends : int and float, shape (m, k)
+        Filled: first step of each dwell, and its share of the way.
+    """
+    turn, sines = np.empty(CYCLE), np.empty((CYCLE, LEGS))
+    nowhere, no_pins = np.empty(0), np.empty((0, LEGS), np.complex128)
+    no_curve = np.empty(0, np.complex128)
+    at, share = np.empty(len(lengths), np.int64), np.empty(len(lengths))
+    for i in range(len(shapes)):
+        if not turned(shapes[i], nowhere, EASED, no_pins, turn, sines):
+            scores[i] = np.inf
+            continue
+        low, span = turn.min(), turn.max() - turn.min()
+        if not abs(math.log(span / way)) < WAY_APART:
+            scores[i] = np.inf
+            continue
+        scores[i] += rests(turn, low, span, lengths, places, at, share)
+        scores[i] = lacking(scores[i], ROCKER, no_curve, span, way, least, sines.min())
+        begins[i], ends[i] = at, share
+
+
+def _standing(shape: Real, begins: Real) -> Real:
+    """A shape with its pins where the first dwell begins, and with the angles at which the dwells do."""
+    (b, d, e), stood = over_a_turn(shape[None], begins[None, :1], CYCLE).pins[0, 0], shape.copy()
+    for at, pin in ((B, b), (D, d), (E, e)):
+        stood[at], stood[at + 1] = pin.real, pin.imag
+    stood[BEGIN:] = begins
+    return stood
