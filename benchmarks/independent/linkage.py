@@ -40,6 +40,16 @@ OWN_PINS: dict[str, dict[str, tuple[str, str]]] = {
     "whitworth": {"rocker": ("O4", "C"), "coupler": ("C", "D")},
     "drag_link_rocker": {"output_ground": ("O4", "O6")},
     "geared_fivebar": {"ground": ("O2", "O5"), "coupler_1": ("A", "C")},
+    "dwell_stephenson_2": {
+        "output": ("O4", "E"),
+        "input_arm": ("O2", "C"),
+        "input_side": ("A", "C"),
+        "link_3": ("A", "B"),
+        "link_4": ("B", "D"),
+        "link_4_arm": ("B", "E"),
+        "link_4_side": ("D", "E"),
+        "link_5": ("C", "D"),
+    },
     **dict.fromkeys(("dwell_rocker", "dwell_slider", "dwell_slot", "dwell_watt_rocker", "dwell_watt_slider"), DWELL),
 }
 """The same of single types."""

@@ -15,6 +15,7 @@ SWINGS = {
     "dwell_rocker": ("O6", "D"),
     "dwell_watt_rocker": ("O6", "D"),
     "dwell_slot": ("O6", "C"),
+    "dwell_stephenson_2": ("O4", "E"),
 }
 """Pivot and pin of outputs that turn."""
 

@@ -366,6 +366,7 @@ MORE: list[tuple[str, Draw]] = [
     ("slider that dwells", _slider_dwell),
     ("dwells at their places", _placed_dwells),
     ("two dwells", _dwell(count=2, output={"type": "rocker", "swing": 40.0})),
+    ("triad that dwells", _dwell(output={"type": "rocker", "swing": 45.0}, mechanism="stephenson_2", max_designs=4)),
     ("slot that dwells", _dwell(output={"type": "rocker", "swing": 40.0}, mechanism="straight_slot")),
     ("body on a rocker", _body_on_rocker),
     ("demands of quick return", _quick_return),

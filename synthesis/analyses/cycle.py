@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinematics.linkage.planar.branches import Branch, cycle, most_turns
+from kinematics.linkage.planar.branches import Branch, cycle, cycle_on, most_turns
 from kinematics.linkage.planar.limits import branches, holding_reference
 from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
 
@@ -51,9 +51,9 @@ def cycle_of(mechanism: Mechanism) -> tuple[float, float]:
 def cycle_along(mechanism: Mechanism, here: Branch | None) -> tuple[float, float]:
     """First and last input of the cycle on the reference's branch, radians, or lengths along the input slide.
 
-    From the reference through a full turn (or as many as the gears need) where the input is a crank, else from toggle
-    to toggle of the reference's branch. Where the branch is not known a full turn too, and as far as the mechanism is
-    wide where a slider drives it: ``valid`` then tells where the mechanism exists.
+    From the reference through a full turn (or as many as gears or a triad need) where the input is a crank, else from
+    toggle to toggle of the reference's branch. Where the branch is not known a full turn too, and as far as the
+    mechanism is wide where a slider drives it: ``valid`` then tells where the mechanism exists.
     """
     at = float(mechanism.reference_input)
     if (here is None or here.full) and mechanism.driven_by_slide:
@@ -61,7 +61,7 @@ def cycle_along(mechanism: Mechanism, here: Branch | None) -> tuple[float, float
         half = 0.5 * float(np.abs(places[:, None] - places).max())
         return at - half, at + half
     if here is None or here.full:
-        return at, at + cycle(mechanism)
+        return at, at + (cycle(mechanism) if here is None else cycle_on(mechanism, here))
     low = here.low
     if not mechanism.driven_by_slide:
         # Branches are known to full turns, and the turn counts: the reference lies on it.

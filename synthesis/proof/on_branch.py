@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage.planar.branches import Branch, cycle
+from kinematics.linkage.planar.branches import Branch, cycle, cycle_on
 from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import Mechanism
@@ -35,13 +35,14 @@ class OnBranch:
 
     @property
     def range(self) -> tuple[float, float]:
-        """First and last input, the reference's between them; half a cycle to either side of it for a full turn."""
+        """First and last input, the reference's between them; half a cycle to either side of it for full turns."""
         low, high = self.branch.low, self.branch.high
         if self.mechanism.driven_by_slide:
             return low, high
         at, period = float(self.mechanism.reference_input), cycle(self.mechanism)
         if self.branch.full:
-            return at - 0.5 * period, at + 0.5 * period
+            whole = cycle_on(self.mechanism, self.branch)
+            return at - 0.5 * whole, at + 0.5 * whole
         # Branches are known to full turns.
         first = low + period * round((at - 0.5 * (low + high)) / period)
         return first, first + high - low

@@ -26,6 +26,8 @@ def test_every_type_is_solved_drawn_and_driven(client, kind):
     assert body["status"] == "succeeded"
     (design,) = body["result"]["designs"]
     assert design["mechanism"]["type"] == kind
+    if "crank" in problem:
+        assert np.isclose(design["mechanism"]["links"]["input"], problem["crank"])
     place = f"/v1/jobs/{body['id']}/designs/0"
     drawing = client.get(f"{place}.svg")
     assert drawing.status_code == 200, drawing.text

@@ -13,6 +13,7 @@ import pytest
 from synthesis.registry import examples
 from tests.campaign import further
 from tests.service.answers import finished
+from tests.service.stated.linkages import WEIGHED
 
 UNEQUAL = {**examples("dwell")[2], "max_designs": 1}
 HIGH = {
@@ -25,16 +26,6 @@ HIGH = {
 WITHIN = {**HIGH, "dwells": [{"angle": 50.0, "at": 0.5}], "mechanism": "pseudo_arc"}
 TASKS = {
     "unequal": UNEQUAL,
-    "watt, of one class, within a zone": {
-        **HIGH,
-        "constraints": {
-            "grashof": "crank_rocker",
-            "min_transmission_angle": 30.0,
-            "max_link_ratio": 9.0,
-            "fixed_pivot_region": {"x": [0.0, 200.0], "y": [-200.0, 200.0]},
-        },
-    },
-    "within, as double crank": {**WITHIN, "constraints": {"grashof": "double_crank"}},
     "unequal by a Stephenson II, even links, in a zone": {
         **UNEQUAL,
         "mechanism": "stephenson_2",
@@ -45,6 +36,16 @@ TASKS = {
             "fixed_pivot_region": {"x": [0.0, 200.0], "y": [-200.0, 200.0]},
         },
     },
+    "watt, of one class, within a zone": {
+        **HIGH,
+        "constraints": {
+            "grashof": "crank_rocker",
+            "min_transmission_angle": 30.0,
+            "max_link_ratio": 9.0,
+            "fixed_pivot_region": {"x": [0.0, 200.0], "y": [-200.0, 200.0]},
+        },
+    },
+    "within, as double crank": {**WITHIN, "constraints": {"grashof": "double_crank"}},
     "unequal, short links, in a box": {
         **UNEQUAL,
         "constraints": {"link_length": {"max": 60.0}},
@@ -53,7 +54,7 @@ TASKS = {
 }
 
 
-@pytest.mark.parametrize("name", further(list(TASKS), list(TASKS)[:1]))
+@pytest.mark.parametrize("name", further(list(TASKS), list(TASKS)[:2]))
 def test_dwells_are_solved_drawn_and_driven(client, name):
     problem = TASKS[name]
     body = finished(client, problem)
@@ -96,6 +97,57 @@ def test_dwells_are_solved_drawn_and_driven(client, name):
         assert np.isclose(np.ptp(held), told["error"], rtol=0.3, atol=1e-4 * way)
     analysed = client.post("/v1/analyses", json={"mechanism": design["mechanism"]})
     assert analysed.status_code == 200, analysed.text
+
+
+@pytest.mark.campaign
+def test_a_stephenson_ii_keeps_what_is_stated_beside_its_dwells(client):
+    problem = {
+        "kind": "dwell",
+        "mechanism": "stephenson_2",
+        "dwell_angle": 45.0,
+        "count": 2,
+        "output": {"type": "rocker", "swing": 50.0},
+        "length_unit": "m",
+        "crank": 0.02,
+        "pivot": [1.5, -0.5],
+        "rank_by": "planes",
+        "include_failed": True,
+        "max_designs": 3,
+        "layout": {"link_width": 0.004, "pin_diameter": 0.002, "thickness": 0.002},
+        "dynamics": WEIGHED,
+        "constraints": {"moving_pivot_region": {"x": [1.3, 1.7], "y": [-0.7, -0.3]}, "max_joint_force": 1e9},
+        "space": {"box": [[1.2, -0.8], [1.8, -0.2]]},
+    }
+    body = finished(client, problem)
+    assert body["status"] == "succeeded"
+    designs = body["result"]["designs"]
+    assert designs
+    for number, design in enumerate(designs):
+        mechanism = design["mechanism"]
+        assert mechanism["type"] == "dwell_stephenson_2"
+        assert mechanism["links"]["input"] == pytest.approx(0.02)
+        assert mechanism["fixed_pivots"]["O2"] == pytest.approx([1.5, -0.5])
+        assert design["layout"] is not None
+        assert design["forces"] is not None
+        assert set(design["metrics"]["transmission_angles"]) == {"link_3", "link_5", "output"}
+        assert design["metrics"]["grashof"] is None
+        motion = client.get(f"/v1/jobs/{body['id']}/designs/{number}/motion?steps=720").json()
+        if design["verification"]["passed"]:
+            for name in "ABCDE":
+                x, y = (np.array(motion["joints"][name][axis]) for axis in "xy")
+                assert 1.2 - 1e-9 <= x.min() <= x.max() <= 1.8 + 1e-9
+                assert -0.8 - 1e-9 <= y.min() <= y.max() <= -0.2 + 1e-9
+
+
+@pytest.mark.campaign
+def test_of_a_stephenson_ii_out_of_reach_a_shorter_dwell_is_told(client):
+    problem = {**UNEQUAL, "mechanism": "stephenson_2", "dwells": [{"angle": 250.0, "at": "low"}], "tolerance": 0.5}
+    result = finished(client, problem)["result"]
+    assert result["designs"] == []
+    assert "not proven" in result["summary"]
+    (angle,) = result["nearest_miss"]["reachable"]["dwell_angles"]
+    assert 30.0 < angle < 250.0
+    assert result["nearest_miss"]["design"]["mechanism"]["type"] == "dwell_stephenson_2"
 
 
 @pytest.mark.campaign

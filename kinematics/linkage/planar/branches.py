@@ -74,6 +74,15 @@ def cycle(mechanism: Mechanism) -> float:
     return FULL_TURN * turns_until_repeated(*(gear.ratio for gear in mechanism.gears))
 
 
+def cycle_on(mechanism: Mechanism, branch: Branch) -> float:
+    """Input rotation after which a mechanism repeats on a full branch: that of :func:`cycle`, or of class III as many.
+
+    A triad may come to another place in one turn of its input, and back in two.
+    """
+    period = cycle(mechanism)
+    return period * max(1, round((branch.high - branch.low) / period))
+
+
 def most_turns(mechanism: Mechanism) -> float:
     """Turns of the fastest link that gears tie to the input, or of the input, until the mechanism repeats."""
     return max(map(abs, gear_rotations(mechanism, decompose(mechanism).steps).values())) * cycle(mechanism) / FULL_TURN

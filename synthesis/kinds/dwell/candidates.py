@@ -57,7 +57,10 @@ UNEVEN = 0.3
 
 
 class Start(NamedTuple):
-    """A shape of :mod:`outputs`, the sign of its output's assembly, and the place in the way of each dwell."""
+    """A shape of :mod:`outputs` or :mod:`triads`, the sign of its output's assembly, and each dwell's place in the way.
+
+    A triad has no other sign, no link with P and no fourbar.
+    """
 
     shape: Real
     sign: int

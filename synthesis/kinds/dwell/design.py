@@ -19,7 +19,7 @@ MechanismType = Literal[
 class DwellMechanism(Answer):
     """A sixbar with a dwell, whose crank turns through.
 
-    But for the last type a fourbar O2 A B O4, and an output that P leaves at rest.
+    All but the last type are a fourbar O2 A B O4 with an output that P leaves at rest.
 
     ``dwell_rocker``: link 5 from P to D, the output O6–D. ``dwell_slider``: link 5 from P to D on a slide.
     ``dwell_slot``: P in a slot of the output, which turns about O6; C marks the slot's end. In these P is on the
@@ -40,7 +40,9 @@ class DwellMechanism(Answer):
         "ground_side (O4–O6). Of a Stephenson II ground (O2–O4), input (O2–A), link_3, link_4 (B–D), link_5 and output "
         "(O4–E); input_arm (O2–C), input_side (A–C), link_4_arm (B–E), link_4_side (D–E)."
     )
-    coupler_point: CouplerPoint | None = optional("P on the coupler; left out where there is none.")
+    coupler_point: CouplerPoint | None = optional(
+        "P on the coupler; left out where P is on the rocker, and of a Stephenson II."
+    )
     reference_input_angle: Angle = Field(description="Crank angle where the first dwell begins, absolute, degrees.")
     skeleton: Skeleton
 

@@ -99,9 +99,9 @@ class DwellProblem(LinkageProblem):
 
     A fourbar's coupler point goes along a circular arc, and a link of the arc's radius leaves the output at rest
     (`pseudo_arc`); or it goes along a straight line in a slot of the output (`straight_slot`); or the fourbar's rocker
-    drives another one that rests near its dead points (`watt_2`); or the output hangs on a link that two others join to
-    the crank, a triad (`stephenson_2`). `dwell_angle` and `count` ask for one dwell or two
-    of one length at the ends of the way, `dwells` for each by its length and place. Swing, dwells and accelerations are
+    drives another one that rests near its dead points (`watt_2`); or two links from the crank carry a third, which
+    turns about the pin of the resting output (`stephenson_2`). `dwell_angle` and `count` ask for one dwell or two of
+    one length at the ends of the way, `dwells` for each by its length and place. Swing, dwells and accelerations are
     measured over the whole turn.
     """
 

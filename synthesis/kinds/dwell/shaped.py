@@ -1,4 +1,4 @@
-"""A shape of :mod:`outputs` as a sixbar: its joints, its way made exact, and its dimensions in the client's units."""
+"""A shape of :mod:`outputs` or :mod:`triads` as a sixbar: its joints, its exact way, and what the client gets."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ WAY_TOLERANCE, MAX_WAY_ERROR = 1e-11, 1e-8
 """Relative errors of the way at which the secant method has converged, and with which its last step is still used."""
 
 
-TRIAD: Links = {
+STEPHENSON_2: Links = {
     name: tuple(joint for joint in joints if joint != "P") for name, joints in SIXBAR_LINKS["stephenson_2"].items()
 }
 """The joints on each link of a Stephenson II."""
 
 
 class Sixbar(NamedTuple):
-    """A shape in its own frame, with a crank of 1; how many dwells it has, and the link that P is on."""
+    """A shape in its own frame, with a crank of 1; how many dwells it has, and the link that P is on, if it has P."""
 
     kind: Kind
     sign: int
@@ -147,7 +147,7 @@ def mechanism_of(problem: DwellProblem, sixbar: Sixbar) -> DwellMechanism:
 def _linked(sixbar: Sixbar, joints: dict[str, complex]) -> tuple[MechanismType, Links, list[Slide]]:
     """The type of a sixbar, the joints on each of its links, and its slides."""
     if sixbar.kind == "triad":
-        return "dwell_stephenson_2", TRIAD, []
+        return "dwell_stephenson_2", STEPHENSON_2, []
     on_rocker = sixbar.carrier == "rocker"
     links: dict[str, tuple[str, ...]] = {
         GROUND: ("O2", "O4"),

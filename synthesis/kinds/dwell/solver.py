@@ -11,14 +11,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.dwell import triads
+from synthesis.kinds.dwell import triad_starts, triads
 from synthesis.kinds.dwell.candidates import Start, starts
 from synthesis.kinds.dwell.design import DwellDesign, DwellResult
 from synthesis.kinds.dwell.outputs import RESTING, Carrier, Kind, Task, judged
 from synthesis.kinds.dwell.placed_starts import placed_starts
 from synthesis.kinds.dwell.problem import HIGH, LOW, DwellProblem, Turning
 from synthesis.kinds.dwell.shaped import Sixbar, mechanism_of, with_way
-from synthesis.kinds.dwell.triad_starts import triad_starts
+from synthesis.kinds.dwell.triad_turn import C
 from synthesis.kinds.dwell.verification import verify_dwell
 from synthesis.model.counting import counted
 from synthesis.model.kind import Progress
@@ -113,9 +113,10 @@ class _Effort(NamedTuple):
     shares: tuple[float, ...]
 
 
-WITH_FOURBAR = _Effort(48, 5, (0.06,))
-TRIADS = _Effort(160, 8, (0.02, 0.06))
-"""Of random sixbars fewer are near to something still, and near these there is more to be found."""
+ON_CURVES = _Effort(48, 5, (0.06,))
+AT_RANDOM = _Effort(160, 8, (0.02, 0.06))
+"""For outputs on coupler curves, and for triads: of random sixbars fewer are near to something still, and near these
+there is more to be found."""
 
 
 class _Refined(NamedTuple):
@@ -133,7 +134,7 @@ def solve_dwell(problem: DwellProblem, progress: Progress) -> DwellResult:
     searches = _searches(problem)
     for n, search in enumerate(searches):
         name = search.name.replace("_", " ")
-        if search.turning is None:
+        if search.kind == "triad":
             progress(n / len(searches), f"driving random sixbars ({name})")
         else:
             progress(n / len(searches), f"driving outputs on coupler curves ({name})")
@@ -152,7 +153,7 @@ def solve_dwell(problem: DwellProblem, progress: Progress) -> DwellResult:
         else:
             sifting.sift(told, partial(_driven, problem, search.kind), enough)
     progress(1.0, "verified")
-    drawn = SIXBARS if problem.mechanism == UNCLASSED else CURVES
+    drawn = SIXBARS if any(search.kind == "triad" for search in searches) else CURVES
     return DwellResult(
         designs=sifting.designs(partial(_ranked, problem)),
         search=sifting.search(f"{drawn}, sequential linear programming"),
@@ -180,18 +181,17 @@ def _starts(problem: DwellProblem, search: _Search, rng: np.random.Generator) ->
         places = LOW, HIGH
     kind, carrier, turning = search[1:]
     if turning is None:
-        return triad_starts(dwells, places, way, angle, ratio, rng, TRIADS.starts)
-    return placed_starts(kind, carrier, turning, dwells, places, way, angle, ratio, rng, WITH_FOURBAR.starts)
+        return triad_starts.triad_starts(dwells, places, way, angle, ratio, rng, AT_RANDOM.starts)
+    return placed_starts(kind, carrier, turning, dwells, places, way, angle, ratio, rng, ON_CURVES.starts)
 
 
 def warm_up() -> None:
-    """Load the kernels: those of arcs and pairs by a rocker with two dwells, those of lines by a slot with one."""
+    """Load the kernels: of arcs and pairs by a rocker with two dwells, of lines by a slot with one, and of triads."""
     rng = np.random.default_rng(0)
     placed_starts("slider", "rocker", "crank_rocker", (0.5,), (LOW,), math.nan, 0.3, LINK_RATIO, rng, 1)
     starts("rocker", 2, 0.5, 0.7, 0.3, LINK_RATIO, rng, 1)
     starts("slot", 1, 0.5, 0.7, 0.3, LINK_RATIO, rng, 1)
-    (start, *_) = triad_starts((0.5,), (LOW,), 0.7, 0.3, LINK_RATIO, rng, 1)
-    triads.way_of(start.shape, 1)
+    triad_starts.warm_up()
 
 
 def _transmission(problem: DwellProblem) -> float:
@@ -224,7 +224,7 @@ def _enough_refined(
     found: list[_Refined] = []
     tried = 0
     allowed = problem.allowed / problem.way
-    effort = TRIADS if kind == "triad" else WITH_FOURBAR
+    effort = AT_RANDOM if kind == "triad" else ON_CURVES
     for start in chain(begun, _shaken(found, effort, rng)):
         refined = _refined(problem, kind, start)
         tried += 1
@@ -267,8 +267,15 @@ def _worth_driving(problem: DwellProblem, refined: list[_Refined]) -> list[_Refi
 
 def _alike(one: Sixbar, other: Sixbar) -> bool:
     """Whether two sixbars of a search are nearly the same; when in the turn their dwells begin is not looked at."""
-    first, second = one.shape[: -one.dwells], other.shape[: -other.dwells]
+    first, second = _numbers(one), _numbers(other)
     return one.sign == other.sign and float(np.abs(first - second).max()) <= ALIKE * float(np.abs(first).max())
+
+
+def _numbers(sixbar: Sixbar) -> Real:
+    """What tells sixbars apart; of a triad C on the crank beside the distances, which its mirror image has too."""
+    if sixbar.kind != "triad":
+        return sixbar.shape[: -sixbar.dwells]
+    return np.append(triads.pin_distances(sixbar.shape[None])[0], sixbar.shape[C : C + 2])
 
 
 def _verified(problem: DwellProblem, refined: _Refined) -> DwellDesign | str | None:
@@ -321,7 +328,7 @@ def _bounds(kind: Kind, start: Start, ratio: float) -> tuple[Real, Real]:
 def _summary(problem: DwellProblem, sifting: Sifting[DwellDesign]) -> str:
     unit = f" {problem.length_unit}" if problem.output.type == "slider" else "°"
     if not sifting.passed:
-        reasons = sifting.listed() or "no curve rests it"
+        reasons = sifting.listed() or "none comes to rest"
         return f"No dwell sixbar was found that meets every demand ({reasons}); that none exists is not proven."
     shown, count = _ranked(problem, sifting.passed), len(sifting.passed)
     if problem.listed_later:

@@ -12,7 +12,7 @@ from synthesis.kinds.dwell.candidates import UNEVEN, Start, beginning, promising
 from synthesis.kinds.dwell.outputs import CYCLE
 from synthesis.kinds.dwell.programs import WAY_APART, rests
 from synthesis.kinds.dwell.scoring import ROCKER, lacking
-from synthesis.kinds.dwell.triad_turn import BEGIN, FIXED, LEAST, LEGS, B, C, D, E, turned
+from synthesis.kinds.dwell.triad_turn import BEGIN, FIXED, LEGS, SHORTEST, B, C, D, E, turned
 from synthesis.kinds.dwell.triads import over_a_turn, pin_distances
 
 Real = NDArray[np.float64]
@@ -25,7 +25,7 @@ DRAWN, ROUNDS = 200_000, 3
 EASED = 0.15
 """Sine of a transmission angle that a start has at least, whatever is demanded."""
 
-GROUND, INPUT, LEG, ASIDE = (0.5, 5.0), (0.3, 3.0), (0.3, 4.0), (0.2, 2.0)
+GROUND, CRANK, LEG, ASIDE = (0.5, 5.0), (0.3, 3.0), (0.3, 4.0), (0.2, 2.0)
 """Ranges in which lengths are drawn: O2–O4, O2–C, links 3 and 5 beside O2–A; E from the middle of B–D beside B–D."""
 
 
@@ -54,28 +54,28 @@ def triad_starts(
     lengths, least = np.array([samples_of(dwell) for dwell in dwells]), math.sin(transmission)
     found: list[Start] = []
     for _ in range(ROUNDS):
-        shapes = drawn(rng, len(dwells))
+        shapes = drawn(rng, DRAWN, len(dwells))
         pins = pin_distances(shapes)
         scores = UNEVEN * np.log(np.maximum(pins.max(axis=1) / pins.min(axis=1) / link_ratio, 1.0))
         begins, ends = np.zeros((DRAWN, len(dwells)), np.int64), np.zeros((DRAWN, len(dwells)))
-        _judge(shapes, lengths, np.array(places), way, least, scores, begins, ends)
+        judge_triads(shapes, lengths, np.array(places), way, least, scores, begins, ends)
         for n in promising(scores, np.arange(DRAWN), most):
-            shapes[n, LEAST] = math.sqrt(pins[n].min() * pins[n].max() / link_ratio)
+            shapes[n, SHORTEST] = math.sqrt(pins[n].min() * pins[n].max() / link_ratio)
             at = shapes[n, BEGIN] + begins[n] * (math.tau / CYCLE)
             shape = _standing(shapes[n], beginning(at, lengths, np.array(dwells)))
             found.append(Start(shape, 1, tuple(ends[n].tolist()), float(scores[n])))
     return sorted(found, key=lambda start: start.score)[:most]
 
 
-def drawn(rng: np.random.Generator, dwells: int) -> Real:
-    """Random shapes for so many dwells, whose input stands anywhere."""
+def drawn(rng: np.random.Generator, count: int, dwells: int) -> Real:
+    """So many random shapes for so many dwells, whose crank stands anywhere."""
 
     def arms(low: float, high: float) -> Complex:
-        size = np.exp(rng.uniform(math.log(low), math.log(high), DRAWN))
-        return np.asarray(size * np.exp(2j * np.pi * rng.random(DRAWN)))
+        size = np.exp(rng.uniform(math.log(low), math.log(high), count))
+        return np.asarray(size * np.exp(2j * np.pi * rng.random(count)))
 
-    shapes = np.zeros((DRAWN, BEGIN + dwells))
-    crank, carried = np.exp(2j * np.pi * rng.random(DRAWN)), arms(*INPUT)
+    shapes = np.zeros((count, BEGIN + dwells))
+    crank, carried = np.exp(2j * np.pi * rng.random(count)), arms(*CRANK)
     b, d = crank + arms(*LEG), carried * crank + arms(*LEG)
     e = 0.5 * (b + d) + np.abs(d - b) * arms(*ASIDE)
     shapes[:, FIXED], shapes[:, BEGIN] = np.abs(arms(*GROUND)), np.angle(crank)
@@ -85,7 +85,7 @@ def drawn(rng: np.random.Generator, dwells: int) -> Real:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _judge(
+def judge_triads(
     shapes: Real,
     lengths: Integers,
     places: Real,
@@ -109,19 +109,20 @@ def _judge(
     begins, ends : int and float, shape (m, k)
         Filled: first step of each dwell, and its share of the way.
     """
-    turn, sines = np.empty(CYCLE), np.empty((CYCLE, LEGS))
+    course, sines = np.empty(CYCLE), np.empty((CYCLE, LEGS))
     nowhere, no_pins = np.empty(0), np.empty((0, LEGS), np.complex128)
     no_curve = np.empty(0, np.complex128)
     at, share = np.empty(len(lengths), np.int64), np.empty(len(lengths))
     for i in range(len(shapes)):
-        if not turned(shapes[i], nowhere, EASED, no_pins, turn, sines):
+        if not turned(shapes[i], nowhere, EASED, no_pins, course, sines):
             scores[i] = np.inf
             continue
-        low, span = turn.min(), turn.max() - turn.min()
-        if not abs(math.log(span / way)) < WAY_APART:
+        low, span = course.min(), course.max() - course.min()
+        # What swings by half a turn may as well go all round.
+        if not (span < math.pi and abs(math.log(span / way)) < WAY_APART):
             scores[i] = np.inf
             continue
-        scores[i] += rests(turn, low, span, lengths, places, at, share)
+        scores[i] += rests(course, low, span, lengths, places, at, share)
         scores[i] = lacking(scores[i], ROCKER, no_curve, span, way, least, sines.min())
         begins[i], ends[i] = at, share
 
@@ -131,5 +132,13 @@ def _standing(shape: Real, begins: Real) -> Real:
     (b, d, e), stood = over_a_turn(shape[None], begins[None, :1], CYCLE).pins[0, 0], shape.copy()
     for at, pin in ((B, b), (D, d), (E, e)):
         stood[at], stood[at + 1] = pin.real, pin.imag
-    stood[BEGIN:] = begins
+    stood[BEGIN:] = np.remainder(begins + math.pi, math.tau) - math.pi
     return stood
+
+
+def warm_up() -> None:
+    """Load the kernels."""
+    shapes = drawn(np.random.default_rng(0), 64, 1)
+    begins, ends = np.zeros((64, 1), np.int64), np.zeros((64, 1))
+    judge_triads(shapes, np.array([5]), np.zeros(1), 1.0, 0.4, np.zeros(64), begins, ends)
+    over_a_turn(shapes, np.empty((64, 0)), CYCLE)

@@ -1,13 +1,13 @@
-"""Stephenson II sixbars driven through the turn of their input, in compiled loops.
+"""Stephenson II sixbars driven through the turn of their crank, in compiled loops.
 
-Link 4 hangs on three legs: the links 3 (A–B) and 5 (C–D) on the input O2 A C, and the output O4–E on the ground. With
+Link 4 hangs on three legs: the links 3 (A–B) and 5 (C–D) on the crank O2 A C, and the output O4–E on the ground. With
 its inner pins q_k, its outer ones j_k and the leg's length l_k the place of link 4, B and its direction γ, is that at
 which
 
     |q_k − j_k|² = l_k²,  k = 1, 2, 3.
 
 It is followed from step to step by Newton's method, so that no dyad of the mechanism has to close by itself: links
-3 and 5 may swing to and fro beside the input as they like. The turn is no motion where a sine of a transmission angle
+3 and 5 may swing to and fro beside the crank as they like. The turn is no motion where a sine of a transmission angle
 vanishes or changes its sign, or where link 4 is not back where it began.
 """
 
@@ -24,36 +24,37 @@ from synthesis.fit.triad_slant import slant_at
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-FIXED, C, B, D, E, LEAST, BEGIN = 0, 1, 3, 5, 7, 9, 10
-"""Where a shape holds its numbers, by the first of each: distance of O4 from O2; C in the frame of the input, from O2
+FIXED, C, B, D, E, SHORTEST, BEGIN = 0, 1, 3, 5, 7, 9, 10
+"""Where a shape holds its numbers, by the first of each: distance of O4 from O2; C in the frame of the crank, from O2
 and with the real axis to A; B, D and E where the first dwell begins, with O4 on the real axis; the least distance of
-two pins of a link; and the angle of the input where the first dwell begins, with those of the others after it."""
+two pins of a link; and the angle of the crank where the first dwell begins, with those of the others after it."""
 
 LEGS = 3
 
-NEWTON, SETTLED, FARTHEST = 12, 1e-12, 0.5
-"""Steps at most, the last of them, and the most that link 4 turns in one, radians."""
+NEWTON, SETTLED, MOST_TURNED = 12, 1e-12, 0.5
+"""Steps at most, the last of them as a share of the sixbar's size, and the most that link 4 turns in one, radians."""
 
 SWEPT = 0.7
-"""Radians that link 4 turns at most between two steps of the input."""
+"""Radians that link 4 turns at most between two steps of the crank."""
 
 BACK = 1e-6
-"""How far link 4 may be from its first place after a turn."""
+"""How far link 4 may be from its first place after a turn, as a share of the size and in radians."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _settled(outer: Complex, legs: Real, inner: Complex, place: Real, work: Real) -> bool:
+def _settled(outer: Complex, legs: Real, inner: Complex, pose: Real, work: Real) -> bool:
     """Link 4 where its three legs have their lengths, near a place (x and y of B, γ), which is moved there.
 
     ``inner``: its pins in its own frame, the first of them B, its origin; ``work`` (4, LEGS): to be written over.
     """
     f, px, py, moment = work
+    size = 1.0 + legs.max()
     for _ in range(NEWTON):
-        along = complex(math.cos(place[2]), math.sin(place[2]))
+        along = complex(math.cos(pose[2]), math.sin(pose[2]))
         for k in range(LEGS):
             arm = along * inner[k]
-            px[k] = place[0] + arm.real - outer[k].real
-            py[k] = place[1] + arm.imag - outer[k].imag
+            px[k] = pose[0] + arm.real - outer[k].real
+            py[k] = pose[1] + arm.imag - outer[k].imag
             moment[k] = arm.real * py[k] - arm.imag * px[k]
             f[k] = 0.5 * (px[k] * px[k] + py[k] * py[k] - legs[k] * legs[k])
         # Cramer's rule; the first pin is the origin, so that the first row has no moment.
@@ -63,58 +64,60 @@ def _settled(outer: Complex, legs: Real, inner: Complex, place: Real, work: Real
         determinant = px[0] * one - py[0] * two
         x = (f[0] * one - py[0] * lack) / determinant
         y = (px[0] * lack - f[0] * two) / determinant
-        turned = px[0] * (py[1] * f[2] - f[1] * py[2]) - py[0] * (px[1] * f[2] - f[1] * px[2])
-        turned = (turned + f[0] * (px[1] * py[2] - py[1] * px[2])) / determinant
-        if not math.isfinite(turned):
+        rotated = px[0] * (py[1] * f[2] - f[1] * py[2]) - py[0] * (px[1] * f[2] - f[1] * px[2])
+        rotated = (rotated + f[0] * (px[1] * py[2] - py[1] * px[2])) / determinant
+        if not math.isfinite(rotated):
             return False
-        share = min(1.0, FARTHEST / max(abs(turned), FARTHEST))
-        place[0] -= share * x
-        place[1] -= share * y
-        place[2] -= share * turned
-        if abs(x) + abs(y) + abs(turned) < SETTLED:
+        share = min(1.0, MOST_TURNED / max(abs(rotated), MOST_TURNED))
+        pose[0] -= share * x
+        pose[1] -= share * y
+        pose[2] -= share * rotated
+        if (abs(x) + abs(y)) / size + abs(rotated) < SETTLED:
             return True
     return False
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def turned(shape: Real, at: Real, least: float, pins: Complex, turn: Real, sines: Real) -> bool:
+def turned(shape: Real, at: Real, least: float, pins: Complex, course: Real, sines: Real) -> bool:
     """Drive a sixbar through a turn; whether it goes through it as one that transmits.
 
     Parameters
     ----------
     shape : float, shape (BEGIN + ...,)
     at : float, shape (n,)
-        Angles of the input at which link 4 is wanted beside the steps of the turn.
+        Angles of the crank at which link 4 is wanted beside the steps of the turn.
     least : float
         Sine of a transmission angle at and below which it is given up.
     pins : complex, shape (n, LEGS)
         Filled: B, D and E there.
-    turn : float, shape (N,)
+    course : float, shape (N,)
         Filled: the angle of the output from where the first dwell begins, at N even steps of the turn from there on.
     sines : float, shape (N, LEGS)
         Filled: magnitudes of the sines of the transmission angles there, of output, link 3 and link 5.
     """
-    steps, begin = len(turn), shape[BEGIN]
+    steps, begin = len(course), shape[BEGIN]
     crank, c, o4 = complex(math.cos(begin), math.sin(begin)), complex(shape[C], shape[C + 1]), complex(shape[FIXED])
     outer = np.array([crank, c * crank, o4])
     b, d, e = complex(shape[B], shape[B + 1]), complex(shape[D], shape[D + 1]), complex(shape[E], shape[E + 1])
+    if not (abs(d - b) > 0.0 and abs(e - o4) > 0.0):
+        return False
     carried = np.array([b, d, e])
     legs, inner = np.abs(carried - outer), (carried - b) * (d - b).conjugate() / abs(d - b)
-    places, work = np.empty((steps + 1, 3)), np.empty((4, LEGS))
-    places[0, 0], places[0, 1], places[0, 2] = b.real, b.imag, math.atan2((d - b).imag, (d - b).real)
-    place, first, hand = places[0].copy(), e - o4, 0.0
+    poses, work = np.empty((steps + 1, 3)), np.empty((4, LEGS))
+    poses[0, 0], poses[0, 1], poses[0, 2] = b.real, b.imag, math.atan2((d - b).imag, (d - b).real)
+    pose, first, hand = poses[0].copy(), e - o4, 0.0
     for n in range(steps + 1):
         angle = begin + 2.0 * math.pi * n / steps
         crank = complex(math.cos(angle), math.sin(angle))
         outer[0], outer[1] = crank, c * crank
         if n > 0:
             for j in range(3):
-                place[j] = 2.0 * places[n - 1, j] - places[n - 2, j] if n > 1 else places[0, j]
-            if not _settled(outer, legs, inner, place, work) or abs(place[2] - places[n - 1, 2]) > SWEPT:
+                pose[j] = 2.0 * poses[n - 1, j] - poses[n - 2, j] if n > 1 else poses[0, j]
+            if not _settled(outer, legs, inner, pose, work) or abs(pose[2] - poses[n - 1, 2]) > SWEPT:
                 return False
-            places[n] = place
-        b = complex(place[0], place[1])
-        along = complex(math.cos(place[2]), math.sin(place[2]))
+            poses[n] = pose
+        b = complex(pose[0], pose[1])
+        along = complex(math.cos(pose[2]), math.sin(pose[2]))
         d, e = b + inner[1] * along, b + inner[2] * along
         for leg in range(LEGS):
             _, sine = slant_at(leg, e, o4, outer[0], b, outer[1], d)
@@ -126,9 +129,10 @@ def turned(shape: Real, at: Real, least: float, pins: Complex, turn: Real, sines
                 sines[n, leg] = abs(sine)
         if n < steps:
             arm = (e - o4) / first
-            turn[n] = math.atan2(arm.imag, arm.real)
-    whole = places[steps] - places[0]
+            course[n] = math.atan2(arm.imag, arm.real)
+    whole = poses[steps] - poses[0]
     whole[2] -= 2.0 * math.pi * round(whole[2] / (2.0 * math.pi))
+    whole[:2] /= 1.0 + legs.max()
     if not np.abs(whole).sum() < BACK:
         return False
     for n in range(len(at)):
@@ -136,20 +140,20 @@ def turned(shape: Real, at: Real, least: float, pins: Complex, turn: Real, sines
         share = (share - math.floor(share)) * steps
         before = min(int(share), steps - 1)
         for j in range(3):
-            place[j] = places[before, j] + (share - before) * (places[before + 1, j] - places[before, j])
+            pose[j] = poses[before, j] + (share - before) * (poses[before + 1, j] - poses[before, j])
         crank = complex(math.cos(at[n]), math.sin(at[n]))
         outer[0], outer[1] = crank, c * crank
-        if not _settled(outer, legs, inner, place, work):
+        if not _settled(outer, legs, inner, pose, work):
             return False
-        along = complex(math.cos(place[2]), math.sin(place[2]))
+        along = complex(math.cos(pose[2]), math.sin(pose[2]))
         for leg in range(LEGS):
-            pins[n, leg] = complex(place[0], place[1]) + inner[leg] * along
+            pins[n, leg] = complex(pose[0], pose[1]) + inner[leg] * along
     return True
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def each_turned(shapes: Real, at: Real, pins: Complex, turn: Real, sines: Real) -> None:
+def each_turned(shapes: Real, at: Real, pins: Complex, course: Real, sines: Real) -> None:
     """:func:`turned` for shapes (m, ...); NaN where one does not go through its turn."""
     for i in range(len(shapes)):
-        if not turned(shapes[i], at[i], 0.0, pins[i], turn[i], sines[i]):
-            pins[i], turn[i], sines[i] = np.nan, np.nan, np.nan
+        if not turned(shapes[i], at[i], 0.0, pins[i], course[i], sines[i]):
+            pins[i], course[i], sines[i] = np.nan, np.nan, np.nan

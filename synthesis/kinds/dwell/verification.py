@@ -13,7 +13,10 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.errors import MechanismError
+from kinematics.linkage.planar.branches import FULL_TURN, cycle_on
 from kinematics.linkage.planar.drive import MechanismMotion, drive
+from kinematics.linkage.planar.limits import branches, holding_reference
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.kinds.dwell.design import DwellDesign, DwellMechanism, DwellMetrics, PlacedDwell, Rest
 from synthesis.kinds.dwell.problem import END, DwellProblem
@@ -62,7 +65,13 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
     mechanism = rebuilt(design)
     if mechanism is None:
         return None
-    inputs = float(mechanism.reference_input) + np.linspace(0.0, 2.0 * np.pi, GRID + 1)
+    try:
+        here = holding_reference(mechanism, branches(mechanism))
+    except MechanismError:
+        return None
+    if here is None or not here.full or cycle_on(mechanism, here) != FULL_TURN:
+        return None
+    inputs = float(mechanism.reference_input) + np.linspace(0.0, FULL_TURN, GRID + 1)
     motion = drive(mechanism, inputs, order=2)
     if not motion.smooth.all():
         return None
@@ -81,7 +90,8 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
     transmission = least_angles(partial(drive, mechanism, order=0), inputs, motion)
     if not min(transmission.values()) > NO_TOGGLE:
         return None
-    turns = closed and turned <= 0.5 * way
+    if turned > 0.5 * way:
+        return None
 
     def at(angles: Real) -> Real:
         return output(drive(mechanism, angles, order=0))
@@ -99,9 +109,9 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
         transmission,
         places,
         barker=barker_within(mechanism),
-        same_branch=turns,
-        visits_in_order=turns,  # a turn has one order
-        full_rotation=turns,
+        same_branch=closed,
+        visits_in_order=closed,  # a turn has one order
+        full_rotation=closed,
         used=(float(inputs[0]), float(inputs[-1])),
     )
     metrics = DwellMetrics(

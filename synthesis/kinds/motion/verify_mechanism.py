@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.errors import MechanismError
-from kinematics.linkage.planar.branches import Branch, cycle
+from kinematics.linkage.planar.branches import Branch, cycle_on
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.limits import branches, holding_reference, limit_positions
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
@@ -194,7 +194,7 @@ def _way(mechanism: Mechanism, here: Branch, inputs: Real) -> _Way:
     if not here.full or mechanism.driven_by_slide:
         steps = np.diff(inputs)
         return _Way(inputs, bool(np.all(steps > 0.0) or np.all(steps < 0.0)))
-    period = cycle(mechanism)
+    period = cycle_on(mechanism, here)
     onward = np.mod(inputs - inputs[0], period)
     onward[0] = 0.0
     backward = np.where(onward > 0.0, onward - period, 0.0)

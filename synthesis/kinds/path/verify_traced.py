@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 
 from kinematics.errors import MechanismError
-from kinematics.linkage.planar.branches import cycle
+from kinematics.linkage.planar.branches import cycle_on
 from kinematics.linkage.planar.limits import branches, holding_reference
 from kinematics.linkage.planar.mechanism import GROUND
 from synthesis.kinds.path.design import PathDesign
@@ -57,7 +57,7 @@ def verify_traced(problem: PathProblem, design: TracedMechanism) -> PathDesign |
     driven = OnBranch(mechanism, here)
     place = partial(driven.joint, "P")
     points = np.array([point.point for point in problem.points])
-    period = cycle(mechanism) if here.full else None
+    period = cycle_on(mechanism, here) if here.full else None
     inputs = ordered_run(place, points, *driven.range, period)
     motion = driven.at(inputs)
     if not motion.valid.all():
@@ -65,7 +65,7 @@ def verify_traced(problem: PathProblem, design: TracedMechanism) -> PathDesign |
     joints = {name: jet[0] for name, jet in motion.joints.items()}
     misses = np.abs(joints["P"] - points)
     whole = here.full and problem.closed
-    used = (float(inputs[0]), float(inputs[0]) + cycle(mechanism))
+    used = (float(inputs[0]), float(inputs[0]) + cycle_on(mechanism, here))
     used = used if whole else (float(inputs.min()), float(inputs.max()))
     steps = np.diff(inputs)
     measures = measured(
