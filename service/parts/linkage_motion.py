@@ -65,7 +65,8 @@ class LinkageMotion:
         low, high = self.low / unit, self.high / unit
         near = ROUNDED * (high - low)
         if not slides:
-            value = low + (value - low + near) % math.degrees(cycle(self.mechanism)) - near
+            period = high - low if self.closed else math.degrees(cycle(self.mechanism))
+            value = low + (value - low + near) % period - near
         if self.closed:
             return float(value * unit)
         if not low - near <= value <= high + near:

@@ -20,7 +20,7 @@ import numpy as np
 
 from kinematics.errors import MechanismError
 from kinematics.linkage.layout import Division, divisions, laid_out, laid_out_divided
-from kinematics.linkage.planar.branches import cycle
+from kinematics.linkage.planar.limits import cycle_from_reference
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from service.parts.building import Planes, Slot, assembled, keyway_reach
 from service.parts.fitting import Fitting, Trial, fault_of
@@ -302,7 +302,7 @@ def _range(mechanism: Mechanism, design: Any, over: str | None) -> tuple[float, 
         raise NotMade(f"The mechanism cannot be driven: {error}.") from None
     if not valid:
         raise NotMade("The mechanism cannot be assembled all over the motion.", "/query/over")
-    turn = math.inf if slides else cycle(mechanism)
+    turn = math.inf if slides else cycle_from_reference(mechanism)
     return low, high, abs(high - low - turn) <= 1e-9 * turn
 
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from kinematics.errors import MechanismError
 from kinematics.linkage import layout as core
-from kinematics.linkage.planar.branches import cycle
 from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.limits import cycle_from_reference
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.analyses.cycle import cycle_of
 from synthesis.model.layout import LayoutSizes
@@ -46,7 +46,7 @@ def layout_of(mechanism: Mechanism, stated: LayoutSizes, used: tuple[float, floa
         inputs = np.linspace(low, high, DRIVEN + 2)[1:-1] if high > low else np.array([low])
         if not drive(mechanism, inputs, order=0).valid.all():
             return _without("the mechanism cannot be assembled all over the motion")
-        turn = math.inf if slides else cycle(mechanism)
+        turn = math.inf if slides else cycle_from_reference(mechanism)
         found = core.laid_out(
             mechanism,
             low,

@@ -14,8 +14,8 @@ from scipy.interpolate import CubicSpline
 
 from kinematics.dynamics.loads import Course, JointForce
 from kinematics.errors import MechanismError as KinematicsError
-from kinematics.linkage.planar.branches import cycle
 from kinematics.linkage.planar.drive import RealJet, drive
+from kinematics.linkage.planar.limits import cycle_from_reference
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism, Real
 from synthesis.model.dynamics import WeighedLinkage
 from synthesis.model.loads import FULL_TURN, ForceCourse, GasPressure, Interpolation, TorqueCourse, period_fault
@@ -28,7 +28,7 @@ STEPS = 360
 
 def turns_of(course: ForceCourse | TorqueCourse, mechanism: Mechanism) -> int:
     """Turns of the input after which a table repeats."""
-    return course.turns or round(cycle(mechanism) / (2.0 * math.pi))
+    return course.turns or round(cycle_from_reference(mechanism) / (2.0 * math.pi))
 
 
 def repeated_after(block: WeighedLinkage, mechanism: Mechanism) -> int:
@@ -36,7 +36,7 @@ def repeated_after(block: WeighedLinkage, mechanism: Mechanism) -> int:
     if mechanism.driven_by_slide:
         return 0
     try:
-        turns = [round(cycle(mechanism) / (2.0 * math.pi))]
+        turns = [round(cycle_from_reference(mechanism) / (2.0 * math.pi))]
     except KinematicsError:
         return 0
     for load in block.loads:

@@ -10,9 +10,10 @@ import pytest
 
 from kinematics.linkage.planar.branches import cycle, cycle_on
 from kinematics.linkage.planar.drive import drive
-from kinematics.linkage.planar.limits import branches, holding_reference
+from kinematics.linkage.planar.limits import branches, cycle_from_reference, holding_reference
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.analyses.cycle import cycle_of
+from synthesis.analyses.layout import layout_of
 from synthesis.kinds.dwell import triads
 from synthesis.kinds.dwell.candidates import Start
 from synthesis.kinds.dwell.design import DwellMechanism
@@ -23,6 +24,9 @@ from synthesis.kinds.dwell.solver import _alike
 from synthesis.kinds.dwell.triad_starts import EASED, triad_starts
 from synthesis.kinds.dwell.triad_turn import BEGIN, FIXED, SHORTEST, B, D, E
 from synthesis.kinds.dwell.verification import verify_dwell
+from synthesis.mechanisms.courses import repeated_after
+from synthesis.model.dynamics import WeighedLinkage
+from synthesis.model.layout import LayoutSizes
 from synthesis.proof.on_branch import OnBranch
 from synthesis.registry import parse_problem
 
@@ -125,6 +129,17 @@ def test_a_triad_that_comes_back_in_two_turns_has_a_cycle_of_two() -> None:
     assert np.abs(np.diff(b)).max() < 0.03
     assert abs(b[-1] - b[0]) < 1e-9
     assert abs(b[2000] - b[0]) > 0.1
+
+
+def test_what_is_told_of_a_cycle_of_two_turns_is_of_both() -> None:
+    mechanism = built(np.array(ELSEWHERE))
+    assert cycle_from_reference(mechanism) == 2.0 * math.tau
+    assert repeated_after(WeighedLinkage.model_validate({"gravity": {}}), mechanism) == 2
+    sizes = {"link_width": 0.01, "pin_diameter": 0.005, "thickness": 0.01, "over": "cycle"}
+    layout = layout_of(mechanism, LayoutSizes.model_validate(sizes), None)
+    assert layout.free_range is not None
+    # Parts meet in one place of two turns; the way without begins anywhere, and cut at the reference it has 594°.
+    assert 650.0 < layout.free_range[1] - layout.free_range[0] < 720.0
 
 
 @pytest.mark.parametrize("rule", ["comes to another place", "meets a toggle", "B on D", "E on O4"])

@@ -75,7 +75,7 @@ def cycle(mechanism: Mechanism) -> float:
 
 
 def cycle_on(mechanism: Mechanism, branch: Branch) -> float:
-    """Input rotation after which a mechanism repeats on a full branch: that of :func:`cycle`, or of class III as many.
+    """Input rotation after which a mechanism repeats on a full branch: :func:`cycle`, or with a triad a multiple of it.
 
     A triad may come to another place in one turn of its input, and back in two.
     """

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage.planar.branches import Branch, cycle, dyadic_branches
+from kinematics.linkage.planar.branches import Branch, cycle, cycle_on, dyadic_branches
 from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.drive import assembly_signs, drive, drive_one, followed_to
 from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
@@ -84,6 +84,20 @@ def holding_reference(mechanism: Mechanism, branches: list[Branch]) -> Branch | 
             if any(_reaches_just(mechanism, low, low + length) for low in at - offset - again):
                 return branch
     return None
+
+
+def cycle_from_reference(mechanism: Mechanism) -> float:
+    """Input rotation after which a mechanism is back in its reference configuration; with a triad its branch says that.
+
+    Where the reference's branch is not known, or not full, that of :func:`~.branches.cycle`.
+    """
+    if mechanism.driven_by_slide or not decompose(mechanism).left:
+        return cycle(mechanism)
+    try:
+        here = holding_reference(mechanism, branches(mechanism))
+    except TopologyError:
+        here = None
+    return cycle(mechanism) if here is None or not here.full else cycle_on(mechanism, here)
 
 
 def _reaches_just(mechanism: Mechanism, low: float, high: float) -> bool:

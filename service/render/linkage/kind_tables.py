@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from kinematics.linkage.planar.branches import cycle
+from kinematics.linkage.planar.limits import cycle_from_reference
 from kinematics.linkage.planar.mechanism import GROUND
 from service.render.linkage import fourbar_tables
 from service.render.linkage.content import Content
@@ -127,7 +127,7 @@ def guided(design: LinkageDesign, problem: MotionProblem | PathProblem, linkage:
         )
     inputs, target, demands = linkage.targets(design), target_curve(problem), demands_of(problem)
     if isinstance(problem, PathProblem) and problem.matched:
-        last = inputs[0] + cycle(linkage.mechanism) if problem.closed else inputs[-1]
+        last = inputs[0] + cycle_from_reference(linkage.mechanism) if problem.closed else inputs[-1]
         inputs, demands = np.array([inputs[0], last]), demands[:1]
     scene = Scene(linkage, inputs, ["P"], "P", demands, target)
     slides = linkage.mechanism.driven_by_slide

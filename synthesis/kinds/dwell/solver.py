@@ -96,7 +96,7 @@ class _Search(NamedTuple):
 
 
 class _Effort(NamedTuple):
-    """What is spent on dwells with places of their own, of which few starts lead to sound designs.
+    """What is spent where the stillest of many refined shapes are driven, since few starts lead to sound designs.
 
     Attributes
     ----------

@@ -20,7 +20,7 @@ Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]
 
 DRAWN, ROUNDS = 200_000, 3
-"""Sixbars that are drawn at a time, of which one in forty turns through, and how often."""
+"""Sixbars that are drawn at a time, of which one in forty turns through and transmits enough, and how often."""
 
 EASED = 0.15
 """Sine of a transmission angle that a start has at least, whatever is demanded."""

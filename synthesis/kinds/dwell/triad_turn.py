@@ -8,7 +8,8 @@ which
 
 It is followed from step to step by Newton's method, so that no dyad of the mechanism has to close by itself: links
 3 and 5 may swing to and fro beside the crank as they like. The turn is no motion where a sine of a transmission angle
-vanishes or changes its sign, or where link 4 is not back where it began.
+vanishes or changes its sign at a step, or where link 4 is not back where it began. Between the steps the verification
+looks.
 """
 
 from __future__ import annotations

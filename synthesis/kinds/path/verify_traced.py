@@ -65,8 +65,9 @@ def verify_traced(problem: PathProblem, design: TracedMechanism) -> PathDesign |
     joints = {name: jet[0] for name, jet in motion.joints.items()}
     misses = np.abs(joints["P"] - points)
     whole = here.full and problem.closed
-    used = (float(inputs[0]), float(inputs[0]) + cycle_on(mechanism, here))
-    used = used if whole else (float(inputs.min()), float(inputs.max()))
+    used = float(inputs.min()), float(inputs.max())
+    if whole:
+        used = float(inputs[0]), float(inputs[0]) + cycle_on(mechanism, here)
     steps = np.diff(inputs)
     measures = measured(
         link_lengths(design),
