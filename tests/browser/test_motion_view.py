@@ -271,3 +271,34 @@ def test_other_linkages_have_their_parts(studio, kind, n, kind_of_link):
     links = page.locator(".live .link").evaluate_all("links => links.map(one => one.getAttribute('d'))")
     assert all(links), "every link is drawn"
     studio.screen(f"view-{kind}-{n}")
+
+
+LINKS = """all => all.map(one => one.getAttribute("d").match(/-?[0-9.]+/g).map(Number))"""
+
+
+def test_a_stephenson_ii_rests_on_the_page_while_its_crank_turns(studio):
+    problem = {
+        "kind": "dwell",
+        "mechanism": "stephenson_2",
+        "dwell_angle": 60,
+        "output": {"type": "rocker", "swing": 45},
+        "max_designs": 1,
+    }
+    solved(studio, problem)
+    page = studio.page
+    begin = page.locator(".moving .live .link").evaluate_all(LINKS)
+    page.evaluate("""() => {
+        const scrub = document.querySelector("#scrub");
+        const { min, max } = scrub;
+        scrub.value = Number(min) + (Number(max) - Number(min)) * 50 / 360;
+        scrub.dispatchEvent(new Event("input", { bubbles: true }));
+    }""")
+    page.wait_for_timeout(300)
+    later = page.locator(".moving .live .link").evaluate_all(LINKS)
+    assert len(begin) == len(later) == 5
+    moved = sorted(
+        max(abs(a - b) for a, b in zip(one, other, strict=True)) for one, other in zip(begin, later, strict=True)
+    )
+    assert moved[0] < 0.5, "the output rests"
+    assert moved[1] > 2.0, "all others move"
+    studio.screen("dwell-stephenson-2")
