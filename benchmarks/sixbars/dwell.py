@@ -103,13 +103,13 @@ def planted_triads(tasks: int, rng: np.random.Generator) -> list[dict[str, Any]]
     found: list[dict[str, Any]] = []
     nowhere = np.empty((triad_starts.DRAWN, 0))
     while len(found) < tasks:
-        shapes = triad_starts.drawn(rng, 1)
+        shapes = triad_starts.at_random(rng, triad_starts.DRAWN, 1)
         pins = triads.pin_distances(shapes)
         ratios = pins.max(axis=1) / pins.min(axis=1)
         least = triads.over_a_turn(shapes, nowhere, CYCLE).sines.min(axis=(1, 2))
         kept = (least > math.sin(math.radians(SOUND))) & (ratios <= RATIO)
         driven = triads.over_a_turn(shapes[kept], nowhere[kept], STEPS)
-        for ratio, course, sines in zip(ratios[kept], driven.turn, driven.sines, strict=True):
+        for ratio, course, sines in zip(ratios[kept], driven.course, driven.sines, strict=True):
             statement = _task(UNCLASSED, "triad", None, float(ratio), course, math.degrees(math.asin(sines.min())))
             if statement is not None:
                 found.append(statement)

@@ -28,6 +28,12 @@ EASED = 0.15
 GROUND, CRANK, LEG, ASIDE = (0.5, 5.0), (0.3, 3.0), (0.3, 4.0), (0.2, 2.0)
 """Ranges in which lengths are drawn: O2–O4, O2–C, links 3 and 5 beside O2–A; E from the middle of B–D beside B–D."""
 
+PARALLEL, UNLIKE = 0.2, 0.1
+"""Share of what is drawn that are nearly parallelograms, and how far their pins are from that, beside O2–A."""
+
+OPPOSITE, LONG_LEG, OUTPUT = (0.5, 2.0), (1.5, 5.0), (0.4, 2.0)
+"""Ranges of their lengths: O2–C, which goes on from A–O2, links 3 and 5, and O4–E."""
+
 
 def triad_starts(
     dwells: tuple[float, ...],
@@ -68,18 +74,46 @@ def triad_starts(
 
 
 def drawn(rng: np.random.Generator, count: int, dwells: int) -> Real:
-    """So many random shapes for so many dwells, whose crank stands anywhere."""
+    """So many random shapes for so many dwells: at random, and some near parallelograms."""
+    near = round(PARALLEL * count)
+    return np.concatenate([near_parallelograms(rng, near, dwells), at_random(rng, count - near, dwells)])
 
-    def arms(low: float, high: float) -> Complex:
-        size = np.exp(rng.uniform(math.log(low), math.log(high), count))
-        return np.asarray(size * np.exp(2j * np.pi * rng.random(count)))
 
-    shapes = np.zeros((count, BEGIN + dwells))
-    crank, carried = np.exp(2j * np.pi * rng.random(count)), arms(*CRANK)
-    b, d = crank + arms(*LEG), carried * crank + arms(*LEG)
-    e = 0.5 * (b + d) + np.abs(d - b) * arms(*ASIDE)
-    shapes[:, FIXED], shapes[:, BEGIN] = np.abs(arms(*GROUND)), np.angle(crank)
-    for at, pin in ((C, carried), (B, b), (D, d), (E, e)):
+def at_random(rng: np.random.Generator, count: int, dwells: int) -> Real:
+    """Shapes whose crank stands anywhere, and their pins beside it."""
+    crank, carried = np.exp(2j * np.pi * rng.random(count)), _arms(rng, count, CRANK)
+    b, d = crank + _arms(rng, count, LEG), carried * crank + _arms(rng, count, LEG)
+    e = 0.5 * (b + d) + np.abs(d - b) * _arms(rng, count, ASIDE)
+    return _shapes(crank, carried, b, d, e, np.abs(_arms(rng, count, GROUND)).astype(np.complex128), dwells)
+
+
+def near_parallelograms(rng: np.random.Generator, count: int, dwells: int) -> Real:
+    """Shapes in which A B D C is nearly a parallelogram, and E to it as O2 is, between A and C.
+
+    In the parallelogram E stands still while the crank turns.
+    """
+
+    def off() -> Complex:
+        return np.asarray(UNLIKE * (rng.standard_normal(count) + 1j * rng.standard_normal(count)))
+
+    crank, carried = np.exp(2j * np.pi * rng.random(count)), off() - np.abs(_arms(rng, count, OPPOSITE))
+    leg = _arms(rng, count, LONG_LEG)
+    b, d, e = crank + leg + off(), carried * crank + leg + off(), leg + off()
+    return _shapes(crank, carried, b, d, e, e + _arms(rng, count, OUTPUT), dwells)
+
+
+def _arms(rng: np.random.Generator, count: int, lengths: tuple[float, float]) -> Complex:
+    """Vectors in all directions, of lengths whose logarithms are evenly spread."""
+    size = np.exp(rng.uniform(math.log(lengths[0]), math.log(lengths[1]), count))
+    return np.asarray(size * np.exp(2j * np.pi * rng.random(count)))
+
+
+def _shapes(crank: Complex, carried: Complex, b: Complex, d: Complex, e: Complex, o4: Complex, dwells: int) -> Real:
+    """Shapes from pins with O2 at the origin; ``carried`` is C in the frame of the crank."""
+    back = np.conj(o4) / np.abs(o4)
+    shapes = np.zeros((len(crank), BEGIN + dwells))
+    shapes[:, FIXED], shapes[:, BEGIN] = np.abs(o4), np.angle(crank * back)
+    for at, pin in ((C, carried), (B, b * back), (D, d * back), (E, e * back)):
         shapes[:, at], shapes[:, at + 1] = pin.real, pin.imag
     return shapes
 
