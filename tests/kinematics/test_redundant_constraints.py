@@ -167,6 +167,7 @@ def test_circuits_are_not_listed() -> None:
 
 
 @pytest.mark.campaign
+@pytest.mark.timeout(600)
 def test_a_link_beside_its_like_leaves_a_long_chain_its_motion() -> None:
     """Of two chains of twenty dyads the second is nearly singular all the way, and has its limits near by."""
     drawn = np.random.default_rng(20)
