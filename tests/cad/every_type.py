@@ -94,7 +94,6 @@ MADE: dict[Key, Row] = {
     ("dwell", "dwell_slider"): Row({**DWELL, **SLIDES, "max_designs": 1}),
     ("dwell", "dwell_slot"): Row({**DWELL, "mechanism": "straight_slot"}),
     ("dwell", "dwell_watt_rocker"): Row({**PLACED_DWELL, **TURNS}),
-    ("dwell", "dwell_stephenson_2"): Row({**DWELL, "mechanism": "stephenson_2"}),
     ("dwell", "dwell_watt_slider"): Row({**PLACED_DWELL, **SLIDES, "max_designs": 6}, 5),
     ("parallel_motion", "watt_1"): _example("parallel_motion", "watt_1")._replace(number=2),
     ("gear_train", "gear_train"): Row(PAIR),
@@ -133,6 +132,7 @@ STAGES: dict[Key, Row] = {
 """Trains whose shafts are not parallel, which have the type of all trains: by the type of their stage."""
 
 REFUSED: dict[Key, tuple[Row, str]] = {
+    ("dwell", "dwell_stephenson_2"): (Row({**DWELL, "mechanism": "stephenson_2"}), "cannot be built in planes"),
     ("balancing", "rotor"): (_example("balancing", "rotor"), "no shape of it"),
     ("engine", "engine"): (_example("engine", "engine"), "no diameter or width of a bore, journal or web"),
 }  # fmt: skip
