@@ -14,6 +14,7 @@ from synthesis.registry import examples
 from tests.campaign import further
 from tests.service.answers import finished
 from tests.service.stated.linkages import WEIGHED
+from tests.synthesis.test_triad_dwells import ELSEWHERE, built
 
 UNEQUAL = {**examples("dwell")[2], "max_designs": 1}
 HIGH = {
@@ -203,3 +204,24 @@ def test_what_cannot_be_is_refused_at_its_field(client, changed, path):
 def test_a_class_that_one_of_the_types_can_have_is_not_refused(client):
     problem = {**UNEQUAL, "mechanism": "auto", "constraints": {"grashof": "double_crank"}}
     assert client.post("/v1/jobs", json={"problem": problem}).status_code == 202
+
+
+def test_the_cycle_of_a_given_linkage_that_comes_back_in_two_turns_is_both(client):
+    """Its crank meets no toggle, but link 4 is elsewhere after one turn."""
+    mechanism = built(np.array(ELSEWHERE))
+    joints = {name: [complex(z).real, complex(z).imag] for name, z in mechanism.joints.items()}
+    links = [{"name": name, "joints": list(pins)} for name, pins in mechanism.links.items()]
+    skeleton = {"joints": joints, "links": links, "slides": [], "gears": [], "input_link": "input"}
+    start = float(np.degrees(mechanism.reference_input))
+    over = {"from": start, "to": start + 720.0, "steps": 144}
+    layout = {"link_width": 0.01, "pin_diameter": 0.005, "thickness": 0.01, "over": "cycle"}
+    asked = {"mechanism": {"type": "skeleton", "skeleton": skeleton}, "motion": over, "layout": layout}
+    answer = client.post("/v1/analyses", json=asked)
+    assert answer.status_code == 200, answer.text
+    motion = answer.json()
+    assert all(motion["valid"])
+    b = np.array([motion["joints"]["B"][axis] for axis in "xy"])
+    assert np.allclose(b[:, 0], b[:, -1], atol=1e-9)
+    assert np.abs(b[:, 72] - b[:, 0]).max() > 0.1
+    free = motion["layout"]["free_range"]
+    assert 650.0 < free[1] - free[0] < 720.0
