@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from synthesis.dispatch import solve
+from synthesis.kinds.dwell.candidates import Asked
 from synthesis.kinds.dwell.design import DwellResult
 from synthesis.kinds.dwell.outputs import CYCLE, Task, judged, output, points
 from synthesis.kinds.dwell.placed_starts import placed_starts
@@ -122,7 +123,7 @@ def test_the_kernel_finds_the_stretches_that_plain_numpy_finds(kind: Any, number
     carrier = "rocker" if kind == "rocker" else "coupler"
     way = math.nan if kind == "slider" else 0.9
     dwells, places = (1.1, 0.7), (0.0, 0.6)
-    found = placed_starts(kind, carrier, turning, dwells, places, way, 0.35, 8.0, rng, 5)
+    found = placed_starts(kind, carrier, turning, Asked(dwells, places, way, 0.35, 8.0), rng, 5)
     assert found
     lengths = np.array([14, 9])
     for start in found:

@@ -15,7 +15,7 @@ from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.analyses.cycle import cycle_of
 from synthesis.analyses.layout import layout_of
 from synthesis.kinds.dwell import triads
-from synthesis.kinds.dwell.candidates import Start
+from synthesis.kinds.dwell.candidates import Asked, Start
 from synthesis.kinds.dwell.design import DwellMechanism
 from synthesis.kinds.dwell.outputs import CYCLE, RESTING, Task
 from synthesis.kinds.dwell.problem import DwellProblem
@@ -35,7 +35,7 @@ DWELLS, PLACES, WAY, ANGLE, RATIO = (1.2, 0.7), (0.0, 0.6), 0.9, 0.4, 8.0
 
 @pytest.fixture(scope="module")
 def begun() -> list[Start]:
-    found = triad_starts(DWELLS, PLACES, WAY, ANGLE, RATIO, np.random.default_rng(3), 12)
+    found = triad_starts(Asked(DWELLS, PLACES, WAY, ANGLE, RATIO), np.random.default_rng(3), 12)
     assert len(found) == 12
     return found
 

@@ -70,6 +70,26 @@ class Start(NamedTuple):
     turning: Turning = "crank_rocker"
 
 
+class Asked(NamedTuple):
+    """What starts are for.
+
+    Attributes
+    ----------
+    dwells, places : tuple of float
+        Of each dwell its length, radians, and its share of the way; NaN at either end.
+    way, transmission : float
+        Radians; the way is NaN for a slider.
+    link_ratio : float
+        Longest distance of two pins of a link over the shortest, at most.
+    """
+
+    dwells: tuple[float, ...]
+    places: tuple[float, ...]
+    way: float
+    transmission: float
+    link_ratio: float
+
+
 class Pieces(NamedTuple):
     """All pieces of curves that are ``length`` samples long: the arc or line of each, shapes (m, N).
 
@@ -128,18 +148,10 @@ def cost_of_uneven(shapes: Real, tried: Outputs, kind: Kind, carrier: Carrier, l
     return np.asarray(UNEVEN * np.log(np.maximum(over, 1.0)))
 
 
-def starts(
-    kind: Kind,
-    dwells: int,
-    dwell: float,
-    way: float,
-    transmission: float,
-    link_ratio: float,
-    rng: np.random.Generator,
-    most: int,
-) -> list[Start]:
-    """The most promising shapes, each of another fourbar; dwell and way in radians, the way NaN for a slider."""
-    shapes = drawn(rng, transmission)
+def starts(kind: Kind, asked: Asked, rng: np.random.Generator, most: int) -> list[Start]:
+    """The most promising shapes for one dwell or two of one length at ends of the way, each of another fourbar."""
+    dwells, dwell, way = len(asked.dwells), asked.dwells[0], asked.way
+    shapes = drawn(rng, asked.transmission)
     turn = np.linspace(0.0, 2.0 * np.pi, CYCLE, endpoint=False)
     curves = np.ascontiguousarray(points(shapes, turn, "coupler"))
     length = samples_of(dwell if dwells == 1 else max(dwell, LONG))
@@ -155,8 +167,8 @@ def starts(
         np.empty(len(tried.rows), np.int64),
         np.empty((len(tried.rows), 2), np.int64),
     )
-    judge(CODES[kind], curves, *tried, length, dwells, way, math.sin(transmission), scores, signs, ends)
-    scores += cost_of_uneven(shapes, tried, kind, "coupler", link_ratio)
+    judge(CODES[kind], curves, *tried, length, dwells, way, math.sin(asked.transmission), scores, signs, ends)
+    scores += cost_of_uneven(shapes, tried, kind, "coupler", asked.link_ratio)
     found: list[Start] = []
     for n in promising(scores, tried.rows, most):
         angles = beginning(turn[[tried.first[n], tried.second[n]][:dwells]], length, dwell)

@@ -17,6 +17,7 @@ from synthesis.kinds.dwell.candidates import (
     DRAWN,
     LONG,
     NUMBERS,
+    Asked,
     Outputs,
     Start,
     beginning,
@@ -46,11 +47,7 @@ def placed_starts(
     kind: Kind,
     carrier: Carrier,
     turning: Turning,
-    dwells: tuple[float, ...],
-    places: tuple[float, ...],
-    way: float,
-    transmission: float,
-    link_ratio: float,
+    asked: Asked,
     rng: np.random.Generator,
     most: int,
 ) -> list[Start]:
@@ -60,12 +57,7 @@ def placed_starts(
     ----------
     kind, carrier, turning : str
         Output, the link that P is on, and what the fourbar is.
-    dwells, places : tuple of float
-        Of each dwell its length, radians, and its share of the way; NaN at either end.
-    way, transmission : float
-        Radians; the way is NaN for a slider.
-    link_ratio : float
-        Longest link over shortest, at most.
+    asked : Asked
     rng : Generator
     most : int
 
@@ -74,6 +66,7 @@ def placed_starts(
     list of Start
         Best first.
     """
+    dwells, places, way, transmission, link_ratio = asked
     shapes = drawn(rng, transmission) if turning == "crank_rocker" else double_cranks(rng, transmission)
     shapes = shapes[uneven(shapes[:, :3]) <= link_ratio]
     if carrier == "rocker":
@@ -91,14 +84,13 @@ def placed_starts(
     count, numbers = len(tried.rows), tried.numbers
     scores, signs = np.empty(count), np.empty(count, np.int64)
     begins, ends = np.zeros((count, len(dwells)), np.int64), np.zeros((count, len(dwells)))
-    asked = np.array(places)
     judge_program(
         CODES[kind],
         curves,
         tried.rows,
         numbers,
         lengths,
-        asked,
+        np.array(places),
         way,
         math.sin(transmission),
         scores,

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.kinds.dwell import triad_starts, triads
-from synthesis.kinds.dwell.candidates import Start, starts
+from synthesis.kinds.dwell.candidates import Asked, Start, starts
 from synthesis.kinds.dwell.design import DwellDesign, DwellResult
 from synthesis.kinds.dwell.outputs import RESTING, Carrier, Kind, Task, judged
 from synthesis.kinds.dwell.placed_starts import placed_starts
@@ -173,24 +173,25 @@ def _starts(problem: DwellProblem, search: _Search, rng: np.random.Generator) ->
     """The most promising shapes of a search."""
     way = math.nan if problem.slides else math.radians(problem.way)
     dwells = tuple(math.radians(wanted.angle) for wanted in problem.wanted)
-    angle, ratio = _transmission(problem), _link_ratio(problem)
-    if not problem.placed:
-        return starts(search.kind, len(dwells), dwells[0], way, angle, ratio, rng, STARTS)
     places = tuple(math.nan if wanted.place is None else wanted.place for wanted in problem.wanted)
     if problem.dwells is None and len(dwells) == 2:
         places = LOW, HIGH
+    asked = Asked(dwells, places, way, _transmission(problem), _link_ratio(problem))
+    if not problem.placed:
+        return starts(search.kind, asked, rng, STARTS)
     kind, carrier, turning = search[1:]
     if turning is None:
-        return triad_starts.triad_starts(dwells, places, way, angle, ratio, rng, AT_RANDOM.starts)
-    return placed_starts(kind, carrier, turning, dwells, places, way, angle, ratio, rng, ON_CURVES.starts)
+        return triad_starts.triad_starts(asked, rng, AT_RANDOM.starts)
+    return placed_starts(kind, carrier, turning, asked, rng, ON_CURVES.starts)
 
 
 def warm_up() -> None:
     """Load the kernels: of arcs and pairs by a rocker with two dwells, of lines by a slot with one, and of triads."""
     rng = np.random.default_rng(0)
-    placed_starts("slider", "rocker", "crank_rocker", (0.5,), (LOW,), math.nan, 0.3, LINK_RATIO, rng, 1)
-    starts("rocker", 2, 0.5, 0.7, 0.3, LINK_RATIO, rng, 1)
-    starts("slot", 1, 0.5, 0.7, 0.3, LINK_RATIO, rng, 1)
+    one, two = (Asked(count * (0.5,), (LOW, HIGH)[:count], 0.7, 0.3, LINK_RATIO) for count in (1, 2))
+    placed_starts("slider", "rocker", "crank_rocker", one._replace(way=math.nan), rng, 1)
+    starts("rocker", two, rng, 1)
+    starts("slot", one, rng, 1)
     triad_starts.warm_up()
 
 

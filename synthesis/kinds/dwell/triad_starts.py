@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.compiling import njit
-from synthesis.kinds.dwell.candidates import UNEVEN, Start, beginning, promising, samples_of
+from synthesis.kinds.dwell.candidates import UNEVEN, Asked, Start, beginning, promising, samples_of
 from synthesis.kinds.dwell.outputs import CYCLE
 from synthesis.kinds.dwell.programs import WAY_APART, rests
 from synthesis.kinds.dwell.scoring import ROCKER, lacking
@@ -35,28 +35,9 @@ OPPOSITE, LONG_LEG, OUTPUT = (0.5, 2.0), (1.5, 5.0), (0.4, 2.0)
 """Ranges of their lengths: O2–C, which goes on from A–O2, links 3 and 5, and O4–E."""
 
 
-def triad_starts(
-    dwells: tuple[float, ...],
-    places: tuple[float, ...],
-    way: float,
-    transmission: float,
-    link_ratio: float,
-    rng: np.random.Generator,
-    most: int,
-) -> list[Start]:
-    """The most promising shapes, best first.
-
-    Parameters
-    ----------
-    dwells, places : tuple of float
-        Of each dwell its length, radians, and its share of the way; NaN at either end.
-    way, transmission : float
-        Radians.
-    link_ratio : float
-        Longest distance of two pins of a link over the shortest, at most.
-    rng : Generator
-    most : int
-    """
+def triad_starts(asked: Asked, rng: np.random.Generator, most: int) -> list[Start]:
+    """The most promising shapes, best first."""
+    dwells, places, way, transmission, link_ratio = asked
     lengths, least = np.array([samples_of(dwell) for dwell in dwells]), math.sin(transmission)
     found: list[Start] = []
     for _ in range(ROUNDS):
