@@ -1,8 +1,8 @@
-"""Which kernels have been compiled on this machine: marks on disk, beside the kernels themselves.
+"""Marks on disk that record which kernels have been compiled on this machine, in the kernels' own cache folder.
 
-Kernels are compiled by parts, such as all those of a kind of problem. Whoever has compiled a part leaves a mark; a mark
-counts as long as the sources, the compiler and the processor are those that it was made with. Several processes share
-parts out by locks, which end with the process that holds them.
+Kernels are compiled in parts, for example all kernels of one kind of problem. The process that compiles a part leaves a
+mark, which is valid only for the same sources, compiler and processor. Processes divide the parts among themselves by
+file locks, which the system releases when the process that holds them ends.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ from kinematics.compiling import LOCATORS
 ROOT = Path(__file__).resolve().parents[1]
 
 LINKAGES = "linkages"
-"""The part that is the analysis of linkages, which most of the other parts call."""
+"""Name of the part that holds the analysis of linkages; most other parts call its kernels."""
 
 PACKAGES = ("kinematics", "synthesis")
-"""The folders that hold kernels, or constants that kernels contain."""
+"""Folders that hold kernels, or constants that are compiled into kernels."""
 
 
 def is_compiled(part: str) -> bool:
-    """Whether the kernels of a part have been compiled from the present sources, for this machine."""
+    """Return whether the kernels of a part have been compiled from the present sources for this machine."""
     return _mark(part).exists()
 
 
 def mark_compiled(part: str) -> None:
-    """Say that all kernels of a part have been compiled.
+    """Record that all kernels of a part have been compiled.
 
     Raises
     ------
     OSError
-        Where the kernels' own folder cannot be written.
+        If the kernels' cache folder cannot be written.
     """
     _mark(part).parent.mkdir(parents=True, exist_ok=True)
     _mark(part).touch()
@@ -48,9 +48,10 @@ def mark_compiled(part: str) -> None:
 
 @contextmanager
 def claimed(part: str) -> Iterator[bool]:
-    """Whether the part is this process's to compile; False where another process is at it."""
+    """Yield True if this process may compile the part, False if another process is compiling it."""
     mark = _mark(part)
     mark.parent.mkdir(parents=True, exist_ok=True)
+    # The lock belongs to the open file, so the system releases it even when this process is killed.
     with open(mark.with_suffix(".lock"), "w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -66,16 +67,18 @@ def _mark(part: str) -> Path:
 
 @cache
 def _folder() -> Path:
-    """Where the kernels of this package are kept."""
+    """Return the folder in which the kernels of this package are cached."""
+    # Use the first locator that accepts this file, as numba does, so that marks and kernels share one folder.
     found = (locator.from_function(is_compiled, __file__) for locator in LOCATORS)
     return Path(next(locator.get_cache_path() for locator in found if locator is not None))
 
 
 @cache
 def _state() -> str:
-    """A digest of all that compiled kernels depend on."""
+    """Return a digest of everything that compiled kernels depend on."""
     files = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
     target = cpu_target.target_context.codegen().magic_tuple()  # the system, the processor and what it can do
     parts = [sys.version, version("numba"), version("llvmlite"), *target]
+    # Any changed source invalidates all marks: inlined callees and constants come from other files.
     parts += [sha256(path.read_bytes()).hexdigest() for path in files]
     return sha256("\n".join(parts).encode()).hexdigest()[:16]

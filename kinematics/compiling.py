@@ -1,9 +1,9 @@
-"""Compilation of kernels, and when a compiled kernel on disk is still the one of the sources.
+"""Compilation of kernels, with a disk cache that notices changes in imported files.
 
-`numba` keeps compiled kernels on disk and compiles again when the file of the kernel changes. A kernel
-also contains the code of the kernels that it calls and the constants that it reads, which may stand in other files:
-after an upgrade in place it would go on with their old code. Here a kernel's sources are its own file and every file
-of the project that it imports, directly or through others. Kernels take `njit` from this module.
+`numba` caches compiled kernels on disk and recompiles a kernel when its own file changes. But a kernel also contains
+the code of the kernels that it calls and the constants that it reads, which may be defined in other files: after an
+upgrade in place it would keep running their old code. Here the sources of a kernel are its own file and every project
+file that it imports, directly or indirectly. All kernels take `njit` from this module.
 """
 
 import re
@@ -31,12 +31,13 @@ def _text(source: Path) -> bytes:
 
 @cache
 def _imports(root: Path, source: Path) -> frozenset[Path]:
-    """Files of the project below `root` that `source` imports, packages by their `__init__`."""
+    """Return the project files below `root` that `source` imports; packages are represented by `__init__`."""
     files = set()
     for module, names, whole in _IMPORT.findall(_text(source)):
         place = root.joinpath(*(module or whole).decode().split("."))
         if place.is_dir():
             files.add(place / "__init__.py")
+            # A name imported from a package may be a submodule; names that are no file are dropped below.
             files.update(place / f"{name.decode()}.py" for name in re.findall(rb"\w+", names))
         else:
             files.add(place.with_suffix(".py"))
@@ -45,9 +46,9 @@ def _imports(root: Path, source: Path) -> frozenset[Path]:
 
 @cache
 def sources(root: Path, source: Path) -> tuple[Path, ...]:
-    """`source` and all files of the project that it imports, directly or through others, in the order of their paths.
+    """Return `source` and all project files that it imports, directly or indirectly, sorted by path.
 
-    `root` is the folder of the top-level packages.
+    `root` is the folder that contains the top-level packages.
     """
     reached = {source}
     waiting = [source]
@@ -60,17 +61,17 @@ def sources(root: Path, source: Path) -> tuple[Path, ...]:
 
 @cache
 def digest(root: Path, source: Path) -> str:
-    """A digest of the text of `sources`: equal where a kernel compiled before is still the one of the sources."""
+    """Return a digest of the text of `sources`; it changes whenever a kernel has to be compiled again."""
     return sha256(b"".join(sha256(_text(file)).digest() for file in sources(root, source))).hexdigest()
 
 
 def _root(source: Path) -> Path:
-    """The folder of the top-level package of a source."""
+    """Return the folder that contains the top-level package of a source file."""
     return next(folder for folder in source.parents if not (folder / "__init__.py").exists())
 
 
 class _BySources:
-    """What a locator of `numba`'s cache says of a kernel's sources."""
+    """Mixin for a cache locator of `numba`: stamps a kernel with the digest of all its sources."""
 
     _py_file: str
 
@@ -80,30 +81,30 @@ class _BySources:
 
 
 class InStatedFolder(_BySources, UserProvidedCacheLocator):
-    """Kernels in the folder that `NUMBA_CACHE_DIR` names, where it is set."""
+    """Locator of the folder named by `NUMBA_CACHE_DIR`, if that is set."""
 
 
 class BesideSources(_BySources, InTreeCacheLocator):
-    """Kernels in the `__pycache__` beside their sources, where that can be written."""
+    """Locator of the `__pycache__` next to the sources, if that is writable."""
 
 
 class InCheckout(BesideSources):
-    """The same where the sources are a checkout of the project; what is installed is left as it was."""
+    """Locator of `__pycache__` in a checkout of the project; installed packages are left untouched."""
 
     @classmethod
     def from_function(cls, py_func: Any, py_file: str) -> Any:
-        """As numba asks; None where this is no place for the kernel."""
+        """Return the locator for a kernel (the hook that numba calls), or None outside a checkout."""
         in_checkout = (_root(Path(py_file).resolve()) / "pyproject.toml").exists()
         beside: Any = super()  # numba annotates nothing
         return beside.from_function(py_func, py_file) if in_checkout else None
 
 
 class OfUser(_BySources, UserWideCacheLocator):
-    """Kernels in the user's cache folder, where there is one."""
+    """Locator of the user's cache folder, if there is one."""
 
 
 LOCATORS: tuple[Any, ...] = (InStatedFolder, InCheckout, OfUser, BesideSources)
-"""Where kernels may be kept, in the order in which places are tried."""
+"""Cache locators in the order in which they are tried."""
 
 _LOCATORS = ",".join(f"{__name__}.{locator.__name__}" for locator in LOCATORS)
 
@@ -112,21 +113,23 @@ _Dispatcher: Any = CPUDispatcher
 
 
 class _Declared(_Dispatcher):
-    """A kernel of one declared signature, which is compiled when the kernel is first used, not when it is imported."""
+    """A kernel of one declared signature that is compiled at its first use instead of at import."""
 
     declared: Any = None
-    """The signature as long as it has not been compiled."""
+    """The declared signature until it has been compiled, then None."""
 
     def _settle(self) -> None:
         if self.declared is not None:
+            # Check again under the lock: another thread may have compiled it meanwhile.
             with global_compiler_lock:
                 if self.declared is not None:
                     super().compile(self.declared)
+                    # Other argument types must fail instead of compiling a second version with other digits.
                     self.disable_compile()
                     self.declared = None
 
     def _compile_for_args(self, *args: Any, **named: Any) -> Any:
-        # The dispatcher, which is C, asks here for what to call where it has found no compiled signature.
+        # The C dispatcher calls this when it finds no compiled signature for the arguments.
         if self.declared is None:
             return super()._compile_for_args(*args, **named)
         self._settle()
@@ -150,12 +153,12 @@ class _Declared(_Dispatcher):
 
 
 def _njit(*signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """`numba.njit`, its cache held against all sources of the kernel, and its options all stated.
+    """Wrap `numba.njit`: check its cache against all sources of the kernel and set every option explicitly.
 
-    What a kernel leaves open, `numba` takes from the kernel that it is compiled for: the same kernel would have other
-    code, and answers other digits, wherever another one was compiled first. A multiplication that is fused with an
-    addition is no option at all: even of the compiler's own functions, such as the division of complex numbers, one
-    version is kept for all kernels of a process, that of the first.
+    An option that a callee leaves open is inherited from the kernel it is first compiled for, so results would differ
+    in the last digits with the order of compilation. Fused multiply-add is not available as an option at all: even
+    the compiler's own functions, such as complex division, are compiled once per process, with the options of the
+    first kernel that needs them.
     """
     if options.get("fastmath"):
         raise ValueError("a kernel is compiled by the rules of IEEE 754, as all others are")

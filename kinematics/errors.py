@@ -1,4 +1,4 @@
-"""Errors of wrong calls. Mathematics does not raise: a mechanism that cannot be assembled is a ``valid`` of False.
+"""Errors for wrong calls. Mathematics does not raise: a mechanism that cannot be assembled has ``valid`` False.
 
 ::
 
@@ -15,7 +15,7 @@ class MechanismError(Exception):
 
 
 class DimensionError(MechanismError, ValueError):
-    """A dimension that no mechanism can have; carries the name and the value."""
+    """A dimension that no mechanism can have, with its name and value."""
 
     def __init__(self, name: str, expected: str, value: object) -> None:
         self.name = name
@@ -24,7 +24,7 @@ class DimensionError(MechanismError, ValueError):
 
 
 class ShapeError(MechanismError, ValueError):
-    """Arrays that do not broadcast to one batch; carries the shapes."""
+    """Arrays that do not broadcast to one batch, with their shapes."""
 
     def __init__(self, **shapes: tuple[int, ...]) -> None:
         self.shapes = shapes

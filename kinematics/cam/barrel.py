@@ -28,7 +28,7 @@ class BarrelCam:
     program : Program
         Displacement along the axis.
     radius : float
-        Of the cylinder on which the roller's middle runs.
+        Radius of the cylinder on which the roller's middle runs.
     roller_radius : float
         Half the groove's width; 0 for a thin pin.
     """
@@ -44,16 +44,17 @@ class BarrelCam:
             raise DimensionError("roller radius", "at least 0", self.roller_radius)
 
     def pressure_angle(self, angle: ArrayLike) -> Real:
-        """Radians, positive in a rise."""
+        """Return the pressure angle in radians, positive in a rise."""
         return np.asarray(np.arctan(self.program.motion(angle).v / self.radius))
 
     def pitch_curve(self, angle: ArrayLike) -> Complex:
-        """Unrolled: along the circumference the real part, along the axis the imaginary one."""
+        """Return the unrolled pitch curve: real part along the circumference, imaginary part along the axis."""
         theta = np.asarray(angle, dtype=np.float64)
         return np.asarray(self.radius * theta + 1j * self.program.motion(theta).s)
 
     def wall(self, angle: ArrayLike, side: int) -> Complex:
-        """A wall of the groove, unrolled: on the side (1) to which the follower rises or the other (−1)."""
+        """Return an unrolled wall of the groove, on the side to which the follower rises (1) or the other (−1)."""
         theta = np.asarray(angle, dtype=np.float64)
+        # The wall is the offset curve of the pitch curve by the roller radius, along its normal i·tangent.
         tangent = self.radius + 1j * self.program.motion(theta).v
         return np.asarray(self.pitch_curve(theta) + side * self.roller_radius * 1j * tangent / np.abs(tangent))

@@ -1,26 +1,25 @@
-"""Curvature of a finished profile: how fast the normals of its contacts turn along it.
+"""Curvature of a finished profile, as the rate at which the contact normals turn along it.
 
-With φ the angle of the normal that the follower asks for at a point (:mod:`contact_normals`) and s the length of the
-profile,
+With φ the angle of the normal that the follower requires at a point (:mod:`contact_normals`) and s the arc length of
+the profile,
 
     κ = dφ/ds = φ′/|P′|,
 
-both derivatives by the cam angle, of curves of the fifth degree through φ and P at six neighbouring points. Points are
-rounded to ε p, with p their distance from the cam's centre and ε = 2⁻⁵³. Over chords of h the second derivative of P,
-which the curvature of a curve through points takes, is off by some 10 ε p/h². The first is by ε p/h, and so is φ′, but
-for the arm of the normal: where points are a ten-thousandth of p apart κ has eleven digits instead of seven.
+both derivatives by the cam angle, taken from quintics through φ and P at six neighbouring points. Points are rounded to
+ε p, with p their distance from the cam's centre and ε = 2⁻⁵³. Over chords of length h the second derivative of P, which
+the curvature of a curve through points needs, has an error of about 10 ε p/h². The first derivative has an error of
+ε p/h, and so has φ′ apart from the arm of the normal: with points spaced by p/10,000, κ has eleven digits, not seven.
 
-It is the points that are measured, and no relation of the program or of the solver is used. But φ is where the normal
-has to be if the follower touches the point at its angle, and a wrong profile does not keep to that. Whether it does
-shows in the chords: from a point to the next one the profile leads
+Only the points are used, no relation of the program or of the solver. But φ is the direction that the normal must have
+if the follower touches the point at its angle, and a wrong profile violates that. The chords show whether it does: from
+one point to the next the profile leads
 
     D = ∫ |P′| i e^{iφ} dτ,
 
-and the chord itself has another direction by the mean of what the true normals are off φ. The difference of that
-between neighbouring chords, over the distance of their middles, is what the curvature is off: of it as much as is more
-than the rounding of the points is *unexplained*, and :func:`~kinematics.cam.settled.doubt` adds it to the curvature
-and has the points put closer, in case it comes of the curves. What is less than rounding is in no profile that these
-points describe.
+and the chord itself deviates from D by the mean error of φ. The change of that deviation between neighbouring chords,
+over the distance of their middles, is the error of the curvature. The part that exceeds the rounding of the points is
+*unexplained*: :func:`~kinematics.cam.settled.doubt` adds it to the curvature and requests closer points, in case the
+interpolation causes it. A deviation below the rounding cannot be resolved by these points.
 """
 
 from __future__ import annotations
@@ -46,25 +45,26 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 ROUNDED = 8.0 * float(np.finfo(np.float64).eps)
-"""Of a point, as a share of its distance from the centre: both coordinates, the cam angle (written in degrees), and
-what was rounded before these, with some room."""
+"""Rounding error of a point, as a share of its distance from the centre: 8 ε covers both coordinates, the cam angle
+(written in degrees) and earlier roundings."""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+# Move Gauss's rule from [−1, 1] to the share of a chord, [0, 1].
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 
 
 @dataclass(frozen=True, eq=False)
 class Bends:
-    """Curvature along a profile of n points, cut into chords.
+    """Curvature along a profile of n points, chord by chord.
 
     Attributes
     ----------
     chords : complex, shape (n,)
         From each point to the next, in the frame of a cam that turns clockwise.
     sizes : float, shape (n,)
-        Whose ROUNDED-th part the points are rounded by.
+        Lengths of which the points are rounded to the share ROUNDED.
     arm : float, shape (n,)
-        Of the normals.
+        Arms of the normals, see :class:`~kinematics.cam.contact_normals.Normals`.
     velocity : complex, shape (n, 5)
         P′ on each chord: coefficients in the share τ of the chord, constant first, derivative by τ.
     turn : float, shape (n, 6)
@@ -82,25 +82,28 @@ class Bends:
         return differentiated(self.turn)
 
     def along(self, chord: ArrayLike, share: ArrayLike) -> Real:
-        """dφ/ds at shares of chords, 0 to 1; both of any shape that go together."""
+        """Return the curvature dφ/ds at shares (0 to 1) of chords; arguments of any shapes that broadcast."""
         chosen, tau = np.asarray(chord, dtype=np.int64), np.asarray(share, dtype=np.float64)
+        # Both derivatives are by the share of the chord, which cancels in the quotient.
         speed = np.abs(curve_value(self.velocity[chosen], tau))
         return curve_value(self._turning[chosen], tau) / speed
 
     def room(self, greatest: float) -> Real:
-        """Length of each chord, and what its normals turn by, as a share of what the points are rounded by; (n,).
+        """Return the size of each chord in units of the rounding of its points, shape (n,).
 
-        Of the smaller one, in ROUNDED-th parts, where the curvature is the ``greatest``.
+        The size is the chord's length or, if smaller, that length times arm × ``greatest`` curvature, which is how
+        far the normals turn along it. The unit is the share ROUNDED of ``sizes``.
         """
+        # The smaller arm of the chord's two ends is the more sensitive one.
         arm = np.minimum(self.arm, np.roll(self.arm, -1))
         return np.asarray(np.abs(self.chords) * np.minimum(arm * greatest, 1.0) / self.sizes)
 
     def rounding(self, chord: ArrayLike, share: ArrayLike) -> Real:
-        """By how much the curvature there may be off by rounding; arguments as for :meth:`along`.
+        """Return the error bound of the curvature by rounding; arguments as for :meth:`along`.
 
-        Of κ = φ′/|P′|, derivatives by the share of the chord, the denominator is off by ROUNDED p, the numerator by
-        that over the arm, and by the rounding of the cam angle itself. At the end of six points a first derivative of
-        the fifth degree takes 17 times their error at most, and seven times its scatter.
+        In κ = φ′/|P′| (derivatives by the share of the chord) the denominator has an error of ROUNDED p, the numerator
+        that error over the arm plus the rounding of the cam angle. At the end of six points the first derivative of a
+        quintic amplifies their error at most 17 times, and its scatter 7 times.
         """
         chosen, tau = np.asarray(chord, dtype=np.int64), np.asarray(share, dtype=np.float64)
         speed = np.abs(curve_value(self.velocity[chosen], tau))
@@ -110,27 +113,31 @@ class Bends:
 
     @cached_property
     def unexplained(self) -> Real:
-        """By how much κ may differ from dφ/ds on each chord, since the chords have other directions; shape (n,)."""
+        """Largest error of κ = dφ/ds on each chord, judged by the directions of the chords; shape (n,)."""
         turn = curve_value(self.turn[:, None], _NODES)
         ahead = (np.abs(curve_value(self.velocity[:, None], _NODES)) * np.exp(1j * turn)) @ _WEIGHTS
         length = np.abs(self.chords)
+        # Deviation of the chord from the direction that the normals predict; its change per length is a curvature.
         off = np.angle(self.chords * np.conj(1j * ahead))
+        # Rounding of the chord's direction, plus that of the normals.
         rounded = ROUNDED * self.sizes * (1.0 / length + 1.0 / self.arm)
+        # Subtract what rounding of both chords can explain.
         more = np.abs(np.roll(off, -1) - off) - rounded - np.roll(rounded, -1)
         beyond = np.maximum(more, 0.0) / (0.5 * (length + np.roll(length, -1)))
-        # Between a chord and the next one, and the one before.
+        # A chord takes the larger discrepancy of its two ends.
         return np.asarray(np.maximum(beyond, np.roll(beyond, 1)))
 
 
 def bends_of_profile(contour: Contour, follower: Follower, rotation: Rotation) -> Bends:
-    """Of a profile with its cam angles, under its follower; curvature is positive where it is convex.
+    """Measure the curvature of a profile from its cam angles and its follower; positive where convex.
 
     Raises
     ------
     DimensionError
-        A profile without cam angles; a knife edge.
+        For a profile without cam angles, or a knife edge.
     """
     at = contour.given_at
+    # All relations hold for a cam that turns clockwise; the other sense is its mirror image.
     points = np.conj(contour.points) if rotation == "ccw" else contour.points
     velocity = differentiated(contour.curves)
     return _bends(
@@ -145,7 +152,7 @@ def bends_of_profile(contour: Contour, follower: Follower, rotation: Rotation) -
 
 
 def bends_of_wall(wall: UnrolledWall, roller_radius: float, side: Side) -> Bends:
-    """Of a wall with its cam angles, under a roller on that side; curvature is positive where it bends toward +y.
+    """Measure the curvature of a wall from its cam angles and the roller on one side; positive toward +y.
 
     Raises
     ------
@@ -154,7 +161,7 @@ def bends_of_wall(wall: UnrolledWall, roller_radius: float, side: Side) -> Bends
     """
     at, count = wall.given_at, len(wall.points)
     normals = wall_normals(wall.period / TURN, roller_radius, side, wall.points, at)
-    # The normals point up; i e^{iφ} is to lead along the wall.
+    # The normals point to +y, but i e^{iφ} must point along the wall (+x), so φ is a quarter turn less.
     upward = Normals(normals.lean - 0.5 * math.pi, normals.arm)
     sizes, still = np.full(count, wall.period), np.zeros(count)
     return _bends(wall.chords, sizes, upward, differentiated(wall.curves), wall.fitted, still, still)
@@ -169,10 +176,11 @@ def _bends(
     start: Real,
     step: Real,
 ) -> Bends:
-    """With the angle at which the frame of the normals stands at each point, and how far it turns to the next one."""
+    """Build the curvature, given the angle of the normals' frame at each point and its turn to the next."""
     if not np.isfinite(normals.lean).all():
         raise DimensionError("profile", "touched by the follower at the angles of its points", normals.lean)
     turn = fitted(normals.lean)
+    # Add the frame's own rotation, linear in the share of the chord, to the constant and linear coefficients.
     turn[:, 0] += start
     turn[:, 1] += step
     return Bends(chords, sizes, normals.arm, velocity, turn)

@@ -1,8 +1,8 @@
-"""Conjugate (desmodromic) cams: two on one shaft, each with a roller of one follower, so that one pushes each way.
+"""Conjugate (desmodromic) cams: two cams on one shaft, whose rollers sit on one follower and push it both ways.
 
 The second roller is fixed to the first, on the other side of the cam: on the same slide at a distance D, or on a second
-arm at a fixed angle γ from the first. Where the first roller is at s, the second, as its own cam sees it, is at
-s₂ = s_max − s:
+arm at a fixed angle γ from the first. When the first roller is at s, the second is at s₂ = s_max − s with respect to
+its own cam:
 
     D = d + d₂ + s_max        on a slide: its cam is that of an offset −e, turned by half a turn on the shaft
     γ = ψ₀ + ψ₀₂ + s_max      on arms: that of a follower of the other sense, with the same pivot
@@ -23,13 +23,13 @@ Complex = NDArray[np.complex128]
 
 
 def opposed(program: Program) -> Program:
-    """What the second roller does: s_max − s, 0 where the first one is highest."""
+    """Return the program of the second roller: s_max − s, which is 0 where the first is highest."""
     top = program.peaks[0].greatest
     return Program([Segment(one.name, one.pieces.scaled(one.angle, -1.0, top)) for one in program.segments])
 
 
 def span(first: Roller, second: Roller, top: float) -> float:
-    """D, or γ in radians, from the displacement s_max of the first."""
+    """Return D, or γ in radians, from the maximum displacement s_max of the first roller."""
     if isinstance(first, TranslatingRoller) and isinstance(second, TranslatingRoller):
         return first.height + second.height + top
     assert isinstance(first, OscillatingRoller)
@@ -38,5 +38,6 @@ def span(first: Roller, second: Roller, top: float) -> float:
 
 
 def turned(follower: Roller, points: Complex) -> Complex:
-    """From the second cam's own frame, in which its roller lies on +x, to that of the first, and back."""
+    """Transform points between the frame of the second cam, whose roller lies on +x, and that of the first."""
+    # On a slide the second roller is on the opposite side: half a turn, which is its own inverse.
     return -points if isinstance(follower, TranslatingRoller) else points

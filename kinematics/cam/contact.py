@@ -1,11 +1,11 @@
-"""What a finished profile does: the follower is laid against it, from its points alone.
+"""Motion of a follower laid against a finished profile, from the points of the profile alone.
 
-Nothing here knows the program or how the profile was made. A curve of the fifth degree runs through each six
-neighbouring points (:mod:`local_curves`), over the cam's angle where it is given with the points, else over the length
-of the chords. At each cam angle every point of the curve that the follower could
-touch asks for a displacement; the follower stands at the greatest of them, because at any smaller one the cam would
-be inside it. So a point elsewhere on the cam that is in the way is found, and so is a hollow too narrow for the roller.
-With P the point in the ground's frame, C the pivot's distance, D = |P − C| and β the angle of P at the pivot:
+Nothing here uses the program or the construction of the profile. A quintic runs through each six neighbouring points
+(:mod:`local_curves`), over the cam angle if it is given with the points, else over the length of the chords. At each
+cam angle every point of the curve that the follower could touch requires a displacement; the follower stands at the
+maximum, because at any smaller one the cam would penetrate it. This finds interference elsewhere on the cam, and
+hollows too narrow for the roller.
+With P the point in the ground's frame, C the distance of the pivot, D = |P − C| and β the angle of P at the pivot:
 
     translating roller    x = P_x + √(r² − (P_y − e)²)
     oscillating roller    ψ = β + arccos((L² + D² − r²)/(2 L D))
@@ -51,26 +51,26 @@ Complex = NDArray[np.complex128]
 Indices = NDArray[np.int64]
 
 FEWEST = 16
-"""Points of the smallest profile that can be called a curve."""
+"""Minimum number of points of a profile: fewer do not describe a curve."""
 
 NARROW = 4.0
-"""Chords that a roller's radius must span, so that points of the profile lie on both sides of its contact."""
+"""Minimum radius of a roller in chords, so that points of the profile lie on both sides of its contact."""
 
 CUSP = math.pi / 3.0
-"""Turn between neighbouring chords that no sound profile shows: at a cusp the next chord runs back."""
+"""Angle between neighbouring chords, radians, above which a profile has a cusp: there the next chord runs back."""
 
 TRANSLATING_ROLLER, OSCILLATING_ROLLER, TRANSLATING_FACE, OSCILLATING_FACE = range(4)
 TRANSLATING_WITHIN, OSCILLATING_WITHIN = 4, 5
-"""Rollers inside the outer wall of a groove; their coordinates are negated, so that the greatest is looked for too."""
+"""Rollers inside the outer wall of a groove; their coordinates are negated, so that the maximum is needed here too."""
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 NARROWINGS = 42
-"""Steps of the golden section: 1e-9 of the chord, whose square is below rounding."""
+"""Steps of the golden section: they locate the maximum to 1e-9 of a chord, an error whose square is below rounding."""
 
 
 class ContactMotion(NamedTuple):
-    """Where the follower stands at each cam angle; NaN where it touches nothing.
+    """Position of the follower at each cam angle; NaN where it touches nothing.
 
     ``s``, ``v``, ``a`` its displacement and derivatives by the cam angle, ``point`` the contact and ``normal`` the
     outward unit normal there, in the cam's frame, ``pressure_angle`` without its sign and ``radius`` of curvature of
@@ -87,7 +87,7 @@ class ContactMotion(NamedTuple):
 
     @property
     def valid(self) -> NDArray[np.bool_]:
-        """Whether there is a contact."""
+        """Whether there is a contact, by angle."""
         return np.isfinite(self.s)
 
 
@@ -109,10 +109,10 @@ class Contour:
         In order around the cam, either way, the first not repeated at the end.
     at : float, shape (n,), optional
         A parameter in which the curve is smooth between breaks, ascending within a turn: the cam angles at which the
-        follower stands at the points. The length of the chords if left out.
+        follower stands at the points; by default the length of the chords.
     breaks : int, shape (b,), optional
-        Points at which a derivative of the curve may jump, ascending. They only say where the local curves end: where
-        they are wrong the curve runs through all points nevertheless.
+        Points at which a derivative of the curve may jump, ascending. They only limit the local curves: even with
+        wrong breaks the curve passes through all points.
 
     Raises
     ------
@@ -132,6 +132,7 @@ class Contour:
         if self.at is not None:
             if self.at.shape != self.points.shape:
                 raise ShapeError(points=self.points.shape, at=self.at.shape)
+            # Including the step back to the first point: the angles stay within one turn.
             if not (np.diff(np.append(self.at, self.at[0] + TURN)) > 0.0).all():
                 raise DimensionError("angles of the points", "ascending within a turn", self.at)
         if not np.isfinite(self.points).all() or not (self.chords > 0.0).all():
@@ -154,7 +155,7 @@ class Contour:
         Raises
         ------
         DimensionError
-            Where the profile has none.
+            If the profile has none.
         """
         if self.at is None:
             raise DimensionError("angles of the points", "given with them", None)
@@ -170,18 +171,19 @@ class Contour:
         return straightened(self._through(self.points, self.at), self.at, self.breaks)
 
     def fitted(self, values: Real) -> Real:
-        """Curves of values at the points over the cam angle, like those through the points themselves; shape (n, 6)."""
+        """Fit quintics to values at the points over the cam angle, as through the points themselves; (n, 6)."""
         return np.ascontiguousarray(self._through(values.astype(np.complex128), self.given_at).real)
 
     @cached_property
     def _stencils(self) -> tuple[Indices, Indices]:
-        """The first point of each chord's curve, and all six; beyond the last point those of the next turn."""
+        """First point of each chord's curve, and all six; indices beyond the last point belong to the next turn."""
         first = stencils(len(self.points), self.breaks)
         return first, first[:, None] + np.arange(STENCIL)
 
     def _through(self, values: Complex, at: Real) -> Complex:
-        """Local curves over the cam angle."""
+        """Fit local curves over the cam angle."""
         (first, index), n = self._stencils, len(self.points)
+        # Points of the next turn have angles beyond 2π, so that the parameter ascends.
         return local_curves(values[index % n], at[index % n] + TURN * (index // n), np.arange(n) - first)
 
     @cached_property
@@ -194,15 +196,16 @@ class Contour:
     def turns_ccw(self) -> bool:
         """Whether the points run counter-clockwise."""
         following = np.roll(self.points, -1)
+        # Twice the enclosed area has the sign of the orientation.
         return bool((np.conj(self.points) * following).imag.sum() > 0.0)
 
     def curvature(self, per_chord: int = 4) -> Real:
-        """Curvature of the profile at equal shares of every chord, positive where convex; shape (n · per_chord,)."""
+        """Return the curvature at equal shares of every chord, positive where convex; shape (n · per_chord,)."""
         share = np.arange(per_chord) / per_chord
         return self.along(np.arange(len(self.points))[:, None], share).curvature.reshape(-1)
 
     def along(self, chord: ArrayLike, share: ArrayLike) -> CurvePoint:
-        """Points of the profile at shares of its chords, 0 to 1; both of any shape that go together."""
+        """Evaluate the profile at shares (0 to 1) of its chords; arguments of any shapes that broadcast."""
         curves = self.curves[np.asarray(chord, dtype=np.int64)]
         tau = np.asarray(share, dtype=np.float64)
         first, second = curve_derivatives(curves, tau)
@@ -224,8 +227,9 @@ class Contour:
 
     @cached_property
     def crossings(self) -> Complex:
-        """Points where the profile crosses itself; none on a sound cam."""
+        """Points where the profile crosses itself; a sound cam has none."""
         p = self.points
+        # One crossing per chord is enough to report; the kernel stops counting when the array is full.
         crossings = np.empty(len(p), dtype=np.complex128)
         return crossings[: _crossings(p, crossings)]
 
@@ -235,21 +239,23 @@ class Contour:
         Parameters
         ----------
         follower : Follower
-            Its dimensions; the prime or base radius says where its displacement is zero.
+            Its dimensions; its displacement counts from the prime or base radius.
         angle : array_like
             Cam angles of any shape, as :class:`~kinematics.cam.profile.Cam` counts them.
         rotation : {"ccw", "cw"}
-            The way the cam turns.
+            Sense in which the cam turns.
 
         Raises
         ------
         DimensionError
-            A roller so small that it fits between the points, other than a knife edge.
+            For a roller so small that it fits between the points, except a knife edge.
         """
         theta = np.asarray(angle, dtype=np.float64)
         kind, sizes, zero = dimensions(follower)
         mirrored = rotation == "ccw"
+        # Mirroring reduces a counter-clockwise cam to the clockwise case.
         curves = np.conj(self.curves) if mirrored else self.curves
+        # An arm that swings against the cam is the mirror image of one that swings with it.
         flipped = getattr(follower, "sense", 1) == -1
         roller = isinstance(follower, TranslatingRoller | OscillatingRoller)
         if roller and 0.0 < sizes[2] < NARROW * self.chords.max():
@@ -258,6 +264,7 @@ class Contour:
         shares: Real = np.empty(theta.size)
         pieces = np.empty(theta.size, dtype=np.int64)
         flat = np.ascontiguousarray(theta.reshape(-1))
+        # A knife edge touches where its path crosses the profile: no tangency, hence another search.
         edge = roller and sizes[2] == 0.0
         _lay(np.ascontiguousarray(curves), flat, kind, sizes, flipped, edge, values, pieces, shares)
         values = values.reshape(theta.shape)
@@ -265,7 +272,9 @@ class Contour:
         point = curve_value(local, share)
         first, second = curve_derivatives(local, share)
         valid = np.isfinite(values)
+        # Mirroring also reverses the orientation of the points.
         orientation = 1.0 if self.turns_ccw != mirrored else -1.0
+        # A straight stretch has an infinite radius; angles without contact divide NaN.
         with np.errstate(divide="ignore", invalid="ignore"):
             radius = np.where(valid, np.abs(first) ** 3 / (orientation * (np.conj(first) * second).imag), np.nan)
             normal = np.where(valid, -1j * orientation * first / np.abs(first), np.nan)
@@ -278,19 +287,19 @@ class Contour:
         return ContactMotion(values - zero, v, a, own(point), own(normal), pressure, radius)
 
     def within(self, follower: Follower, angle: ArrayLike, rotation: Rotation = "ccw") -> Real:
-        """Lay a roller from within against this curve, the outer wall of a groove.
+        """Lay a roller from inside against this curve, the outer wall of a groove.
 
         The wall's points are taken on the follower's side of the cam. Parameters as for :meth:`follow`.
 
         Returns
         -------
         float
-            The least displacement at which the roller touches, NaN where it touches nothing.
+            The smallest displacement at which the roller touches, NaN where it touches nothing.
 
         Raises
         ------
         DimensionError
-            A follower without a roller, or one whose roller fits between the points.
+            For a follower without a roller, or a roller so small that it fits between the points.
         """
         theta = np.asarray(angle, dtype=np.float64)
         kind, sizes, zero = dimensions(follower)
@@ -304,12 +313,14 @@ class Contour:
         _lay(
             curves, flat, kinds[kind], sizes, flipped, False, values, np.empty(flat.size, np.int64), np.empty(flat.size)
         )
+        # The kernel maximizes negated coordinates for a roller inside a wall.
         return -values.reshape(theta.shape) - zero
 
 
 def rates(follower: Follower, s: Real, contact: Complex, normal: Complex, radius: Real) -> tuple[Real, Real]:
-    """v and a from the contact, the profile's normal and its radius of curvature there, in the ground's frame."""
+    """Compute v and a from the contact, the profile's normal and its radius of curvature, in the ground's frame."""
     if isinstance(follower, TranslatingRoller):
+        # The roller's centre moves along the offset curve, whose tangent is that of the profile.
         height, tangent = follower.height + s, 1j * normal
         across = height / tangent.imag * tangent.real
         v = follower.offset + across
@@ -320,6 +331,7 @@ def rates(follower: Follower, s: Real, contact: Complex, normal: Complex, radius
         arm = -follower.arm * np.exp(turn * (follower.start_angle + s))
         p, tangent, swing = follower.pivot_distance + arm, 1j * normal, turn * arm
         v = -(1j * p * np.conj(tangent)).imag / (swing * np.conj(tangent)).imag
+        # Tangent of the pitch curve in the ground's frame; |w|³ κ gives the equation for a.
         w = v * swing + 1j * p
         rest = (np.conj(w) * (-(v**2) * arm + 2j * v * swing - p)).imag
         bend = np.abs(w) ** 3 / (radius + follower.roller_radius)
@@ -335,7 +347,7 @@ def rates(follower: Follower, s: Real, contact: Complex, normal: Complex, radius
 
 
 def dimensions(follower: Follower) -> tuple[int, tuple[float, float, float], float]:
-    """The kind, its three lengths for the kernels, and its coordinate at zero displacement."""
+    """Return the kind of follower, its three lengths for the kernels, and its coordinate at zero displacement."""
     if isinstance(follower, TranslatingRoller):
         return TRANSLATING_ROLLER, (follower.offset, 0.0, follower.roller_radius), follower.height
     if isinstance(follower, OscillatingRoller):
@@ -347,7 +359,7 @@ def dimensions(follower: Follower) -> tuple[int, tuple[float, float, float], flo
 
 
 def motion_direction(follower: Follower, value: Real, contact: Complex) -> Complex:
-    """Unit vector, in the ground's frame, of the motion of the roller's centre or of the face's point in contact."""
+    """Return the unit vector of the motion of the roller's centre or the face's contact, in the ground's frame."""
     if isinstance(follower, TranslatingRoller | TranslatingFlat):
         return np.ones_like(contact)
     turn = -1j * follower.sense
@@ -359,12 +371,13 @@ def motion_direction(follower: Follower, value: Real, contact: Complex) -> Compl
 
 @njit(cache=True, nogil=True)
 def _stand(x: float, y: float, kind: int, sizes: tuple[float, float, float]) -> float:
-    """The follower's coordinate when it touches (x, y), −∞ where it cannot."""
+    """Return the follower's coordinate when it touches (x, y), −∞ where it cannot."""
     if kind == TRANSLATING_FACE:
         return x
     if kind == TRANSLATING_WITHIN:
         across = y - sizes[0]
         square = sizes[2] * sizes[2] - across * across
+        # Only the half of the wall on the roller's side of the centre can be touched from inside.
         return math.sqrt(square) - x if square >= 0.0 and x > 0.0 else -math.inf
     if kind == TRANSLATING_ROLLER:
         across = y - sizes[0]
@@ -384,7 +397,7 @@ def _stand(x: float, y: float, kind: int, sizes: tuple[float, float, float]) -> 
 
 @njit(cache=True, nogil=True)
 def _at(curves: Complex, piece: int, share: float, turn: complex, flipped: bool) -> tuple[float, float]:
-    """A point of the profile in the ground's frame."""
+    """Return a point of the profile in the ground's frame."""
     z = curves[piece, STENCIL - 1]
     for k in range(STENCIL - 2, -1, -1):
         z = z * share + curves[piece, k]
@@ -396,7 +409,7 @@ def _at(curves: Complex, piece: int, share: float, turn: complex, flipped: bool)
 def _along(
     curves: Complex, base: int, t: float, turn: complex, flipped: bool, kind: int, sizes: tuple[float, float, float]
 ) -> float:
-    """The coordinate asked for at t chords from the point ``base``, −1 ≤ t ≤ 1."""
+    """Return the coordinate required at t chords from the point ``base``, −1 ≤ t ≤ 1."""
     n = curves.shape[0]
     piece, share = (base, t) if t >= 0.0 else ((base - 1) % n, t + 1.0)
     x, y = _at(curves, piece, share, turn, flipped)
@@ -407,12 +420,13 @@ def _along(
 def _touched(
     curves: Complex, asked: Real, turn: complex, flipped: bool, kind: int, sizes: tuple[float, float, float]
 ) -> tuple[float, int, float]:
-    """Greatest coordinate over the profile: every local maximum over the points is closed in by golden section."""
+    """Find the maximum coordinate over the profile: refine every local maximum over the points by golden section."""
     n = curves.shape[0]
     for k in range(n):
         z = curves[k, 0] * turn
         asked[k] = _stand(z.real, -z.imag if flipped else z.imag, kind, sizes)
     best, where, share = -math.inf, 0, 0.0
+    # All local maxima are refined, since the largest sample need not belong to the largest maximum.
     for k in range(n):
         here = asked[k]
         if here == -math.inf or here < asked[k - 1] or here < asked[(k + 1) % n]:
@@ -431,6 +445,7 @@ def _touched(
                 left = high - GOLDEN * (high - low)
                 at_left = _along(curves, k, left, turn, flipped, kind, sizes)
         found, t = (at_left, left) if at_left > at_right else (at_right, right)
+        # The two neighbouring curves meet at the point, where their maximum may be a corner.
         if here > found:
             found, t = here, 0.0
         if found > best:
@@ -441,7 +456,7 @@ def _touched(
 
 @njit(cache=True, nogil=True)
 def _off(x: float, y: float, kind: int, sizes: tuple[float, float, float]) -> tuple[float, float]:
-    """How far a point is from the path of a knife edge, and the coordinate of the edge at its foot there."""
+    """Return the distance of a point from the path of a knife edge, and the edge's coordinate at the foot."""
     if kind == TRANSLATING_ROLLER:
         return y - sizes[0], x
     dx = sizes[1] - x
@@ -452,14 +467,16 @@ def _off(x: float, y: float, kind: int, sizes: tuple[float, float, float]) -> tu
 def _crossed(
     curves: Complex, turn: complex, flipped: bool, kind: int, sizes: tuple[float, float, float]
 ) -> tuple[float, int, float]:
-    """A knife edge: the farthest crossing of its path with the profile."""
+    """Find the farthest crossing of a knife edge's path with the profile."""
     best, where, share = -math.inf, 0, 0.0
     for k in range(curves.shape[0]):
         a, _ = _off(*_at(curves, k, 0.0, turn, flipped), kind, sizes)
         b, _ = _off(*_at(curves, k, 1.0, turn, flipped), kind, sizes)
+        # Both ends on the same side of the edge's path: no crossing on this chord.
         if (a > 0.0) == (b > 0.0):
             continue
         low, high = 0.0, 1.0
+        # Bisection to the last bit of a double.
         for _ in range(60):
             middle = 0.5 * (low + high)
             m, _ = _off(*_at(curves, k, middle, turn, flipped), kind, sizes)
@@ -485,7 +502,7 @@ def _lay(
     pieces: NDArray[np.int64],
     shares: Real,
 ) -> None:
-    """Where the follower stands at each cam angle, and the piece and the share of it where it touches."""
+    """Fill the follower's position at each cam angle, and the piece and its share where it touches."""
     asked = np.empty(curves.shape[0])
     for i in range(angles.size):
         turn = complex(math.cos(angles[i]), -math.sin(angles[i]))
@@ -499,7 +516,7 @@ def _lay(
 
 @njit(cache=True, nogil=True)
 def _crossings(points: Complex, found: Complex) -> int:
-    """Crossings of chords that are no neighbours, as many as there is room for."""
+    """Find crossings of chords that are not neighbours, at most as many as the array holds."""
     n = points.size
     count = 0
     for i in range(n):
@@ -507,15 +524,18 @@ def _crossings(points: Complex, found: Complex) -> int:
         left, right = min(a.real, b.real), max(a.real, b.real)
         low, high = min(a.imag, b.imag), max(a.imag, b.imag)
         for k in range(i + 2, n):
+            # The last chord is a neighbour of the first.
             if i == 0 and k == n - 1:
                 continue
             c, d = points[k], points[(k + 1) % n]
+            # Bounding boxes first: most pairs of chords are far from each other.
             if max(c.real, d.real) < left or min(c.real, d.real) > right:
                 continue
             if max(c.imag, d.imag) < low or min(c.imag, d.imag) > high:
                 continue
             u, v, w = b - a, d - c, c - a
             area = u.real * v.imag - u.imag * v.real
+            # Parallel chords: overlapping ones are reported by their neighbours.
             if area == 0.0:
                 continue
             s = (w.real * v.imag - w.imag * v.real) / area

@@ -1,6 +1,6 @@
-"""The outward normals that a follower asks for where it touches a finished cam, from the points alone.
+"""Outward normals that a follower requires where it touches a finished cam, from the points alone.
 
-The cam angle of a point of the profile is given with it, and so the follower's path is known in the cam's frame. A
+Each point of the profile comes with its cam angle, so the follower's path is known in the cam's frame. A
 roller that touches at a point q (in the ground's frame) has its centre on its path at a distance r from q, and a face
 lies at its distance f from its pivot C: the direction n = e^{iλ} of the normal follows from q without a derivative.
 With D = |C − q|, β the angle of q at the pivot, and σ the sense in which the arm swings outward,
@@ -12,8 +12,8 @@ With D = |C − q|, β the angle of q at the pivot, and σ the sense in which th
     roller in a groove    sin λ = ±(q_x − R θ)/r, λ from the axis
 
 (the relations of :mod:`contact`, solved for the normal instead of the displacement). In the cam's frame, turned
-clockwise, the normal stands at θ + λ. Nothing here says that the profile really is touched there:
-:mod:`bends` holds the normals against the chords.
+clockwise, the normal stands at θ + λ. This does not prove that the profile is touched there: :mod:`bends` compares the
+normals with the chords.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ class Normals(NamedTuple):
     lean : float, shape (n,)
         λ, radians; NaN where the follower cannot touch the point at its angle.
     arm : float, shape (n,)
-        By how far a point has to move to turn its normal, length by radian: a point that is ε off has a normal that is
-        ε/arm off at most.
+        Displacement of a point per rotation of its normal, length by radian: an error ε of a point turns its normal
+        by at most ε/arm.
     """
 
     lean: Real
@@ -51,15 +51,16 @@ class Normals(NamedTuple):
 
 
 def contact_normals(follower: Follower, points: Complex, at: Real) -> Normals:
-    """Normals at the points of a cam that turns clockwise, touched at cam angles ``at`` (radians); shapes (n,).
+    """Compute the normals at points of a cam that turns clockwise, touched at cam angles ``at`` (radians), shape (n,).
 
     Raises
     ------
     DimensionError
-        A knife edge, which asks for no normal.
+        For a knife edge, which determines no normal.
     """
     q = points * np.exp(-1j * at)
     if isinstance(follower, TranslatingFlat):
+        # The face keeps its direction wherever it touches, so errors of the point do not turn the normal.
         return Normals(np.zeros(len(q)), np.full(len(q), math.inf))
     if isinstance(follower, OscillatingFlat):
         sense, to_pivot = follower.sense, follower.pivot_distance - q
@@ -73,20 +74,22 @@ def contact_normals(follower: Follower, points: Complex, at: Real) -> Normals:
         return _across((follower.offset - q.imag) / radius, radius)
     to_pivot = follower.pivot_distance - q
     distance = np.abs(to_pivot)
+    # Factored, since distance² − arm² would cancel.
     square = (distance - follower.arm) * (distance + follower.arm) + radius**2
     with np.errstate(invalid="ignore"):
         inner = np.arccos(square / (2.0 * distance * radius))
     lean = np.angle(to_pivot) + follower.sense * inner
+    # Wrap to (−π, π], as the sum of two angles may exceed it.
     return Normals(np.angle(np.exp(1j * lean)), radius * np.sin(inner))
 
 
 def wall_normals(radius: float, roller_radius: float, side: Side, points: Complex, at: Real) -> Normals:
-    """Normals toward +y at the points of a wall of a groove, unrolled; as :func:`contact_normals`.
+    """Compute the normals toward +y at points of an unrolled wall of a groove; see :func:`contact_normals`.
 
     Parameters
     ----------
     radius : float
-        Of the cylinder.
+        Radius of the cylinder.
     side : {1, -1}
         1: the roller lies on the wall; −1: under it.
     """
@@ -96,11 +99,12 @@ def wall_normals(radius: float, roller_radius: float, side: Side, points: Comple
 
 def _across(sine: Real, radius: float) -> Normals:
     with np.errstate(invalid="ignore"):
+        # NaN where the point is beyond the roller's reach; callers check.
         lean = np.arcsin(sine)
     return Normals(lean, radius * np.cos(lean))
 
 
 def _rolling(radius: float) -> float:
     if not radius > 0.0:
-        raise DimensionError("roller radius", "positive, since a knife edge asks for no normal", radius)
+        raise DimensionError("roller radius", "positive, since a knife edge determines no normal", radius)
     return radius

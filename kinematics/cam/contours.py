@@ -30,11 +30,11 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 TANGENT = 1e-9
-"""Share of the base radius by which the ends of neighbouring parts may miss each other."""
+"""Largest gap between the ends of neighbouring parts, as a share of the base radius: rounding of given numbers."""
 
 
 class Arc(NamedTuple):
-    """A circular arc: its centre and radius, negative where it is hollow; from the outward normal's angle on."""
+    """A circular arc: its centre, its radius (negative if hollow) and the angle of the normal at its start."""
 
     centre: complex
     radius: float
@@ -42,7 +42,7 @@ class Arc(NamedTuple):
 
 
 class Flank(NamedTuple):
-    """A straight flank with the given angle of its outward normal, at a distance from the cam's centre."""
+    """A straight flank with its distance from the cam's centre and the angle of its outward normal."""
 
     distance: float
     start: float
@@ -55,7 +55,7 @@ class SpecifiedContour:
     Parameters
     ----------
     base_radius : float
-        Of the base circle, from which displacements are counted.
+        Radius of the base circle, from which displacements count.
     parts : tuple of Arc or Flank
         Counter-clockwise around the cam; the outward normal of each at its start is that of the one before at its end.
     """
@@ -72,13 +72,14 @@ class SpecifiedContour:
                 normal = np.exp(-1j * part.start)
                 turn = np.exp(1j * self.parts[(k + 1) % len(self.parts)].start) * normal - 1.0
                 ends = np.array([before * normal, after * normal]).real - part.distance
+                # A flank must lie at its distance at both ends, and the next normal must be its own.
                 off = max(np.abs(ends).max(), abs(turn) * self.base_radius)
             if not off <= TANGENT * self.base_radius:
                 raise DimensionError("contour", "of parts that are tangent to their neighbours", (k, float(off)))
 
     @property
     def joints(self) -> Complex:
-        """Where each part begins, shape (parts,)."""
+        """Points at which the parts begin, shape (parts,)."""
         return np.array([self._end(k - 1) for k in range(len(self.parts))])
 
     @property
@@ -87,7 +88,7 @@ class SpecifiedContour:
         return min(part.radius for part in self.parts if isinstance(part, Arc) and part.radius > 0.0)
 
     def points(self, count: int) -> Complex:
-        """Points along the contour, about ``count`` of them, every joint included."""
+        """Return about ``count`` points along the contour, every joint included."""
         found: list[NDArray[Any]] = []
         lengths = [abs(self._length(k)) for k in range(len(self.parts))]
         for k, part in enumerate(self.parts):
@@ -101,21 +102,21 @@ class SpecifiedContour:
         return np.concatenate(found)
 
     def breaks(self, follower: TranslatingRoller | TranslatingFlat, rotation: Rotation = "ccw") -> Real:
-        """Cam angles between which the follower stays on one part, ascending from 0 to 2π."""
+        """Return the cam angles between which the follower stays on one part, ascending from 0 to 2π."""
         starts = np.mod(self._starts(follower, rotation)[0], TURN)
         return np.unique(np.concatenate([[0.0], starts, [TURN]]))
 
     def motion(
         self, follower: TranslatingRoller | TranslatingFlat, angle: ArrayLike, rotation: Rotation = "ccw"
     ) -> Motion:
-        """s, v, a, j of the follower at cam angles, per radian.
+        """Return s, v, a, j of the follower at cam angles, per radian.
 
-        s is counted from the base circle: zero where a roller's centre is on the prime circle.
+        s counts from the base circle: it is zero where a roller's centre is on the prime circle.
 
         Raises
         ------
         DimensionError
-            A prime or base radius that does not belong to this contour, or a roller too large, or a face, for a hollow.
+            For a prime or base radius of another contour, or a roller too large, or a face, for a hollow.
         """
         own = follower.base_radius if isinstance(follower, TranslatingFlat) else follower.prime_radius
         roller = 0.0 if isinstance(follower, TranslatingFlat) else follower.roller_radius
@@ -123,6 +124,7 @@ class SpecifiedContour:
             raise DimensionError("prime or base radius", f"{self.base_radius + roller} for this contour", own)
         theta = np.asarray(angle, dtype=np.float64)
         starts, parts = self._starts(follower, rotation)
+        # The parts begin in cyclic order; sorted by angle, the last one wraps around to angle 0 (index −1).
         order = np.argsort(np.mod(starts, TURN))
         index = order[np.searchsorted(np.mod(starts, TURN)[order], np.mod(theta, TURN), side="right") - 1]
         result = np.zeros((4, *theta.shape))
@@ -135,18 +137,20 @@ class SpecifiedContour:
     def _starts(
         self, follower: TranslatingRoller | TranslatingFlat, rotation: Rotation
     ) -> tuple[Real, tuple[Arc | Flank, ...]]:
-        """Cam angles at which the follower comes to each part, and the parts, for a cam that turns clockwise."""
+        """Return the cam angles at which the follower reaches each part, and the parts, for a clockwise cam."""
         contour = self if rotation == "cw" else self._mirrored()
         normals = np.array([part.start for part in contour.parts])
         if isinstance(follower, TranslatingFlat):
             if any(isinstance(part, Arc) and part.radius <= 0.0 for part in self.parts):
                 raise DimensionError("contour under a flat face", "nowhere hollow", self.parts)
             arcs = [k for k, part in enumerate(contour.parts) if isinstance(part, Arc)]
+            # A flat face stands at the angle of the contour's normal, so it passes a flank in an instant.
             return normals[arcs], tuple(contour.parts[k] for k in arcs)
         hollows = [-part.radius for part in self.parts if isinstance(part, Arc) and part.radius < 0.0]
         if hollows and follower.roller_radius >= min(hollows):
             raise DimensionError("roller radius", f"less than the hollow's, {min(hollows)}", follower.roller_radius)
         centre = contour.joints + follower.roller_radius * np.exp(1j * normals)
+        # The roller's centre reaches a joint's offset point when this lies on the slide, e off the centre.
         return np.angle(centre) - np.arcsin(follower.offset / np.abs(centre)), contour.parts
 
     def _mirrored(self) -> SpecifiedContour:
@@ -160,7 +164,7 @@ class SpecifiedContour:
         return SpecifiedContour(self.base_radius, tuple(parts))
 
     def _turn(self, k: int) -> float:
-        """Angle through which the normal turns on a part; negative on a hollow, a whole turn on a single arc."""
+        """Return the angle by which the normal turns on a part: negative on a hollow, 2π on a single arc."""
         part, following = self.parts[k], self.parts[(k + 1) % len(self.parts)]
         if isinstance(part, Flank):
             return 0.0
@@ -170,7 +174,7 @@ class SpecifiedContour:
         return turn or TURN
 
     def _end(self, k: int) -> complex:
-        """Where a part ends: an arc where its normal is the next part's, a flank where the next arc begins."""
+        """Return the end of a part: of an arc where its normal is the next part's, of a flank the next arc's start."""
         part, following = self.parts[k], self.parts[(k + 1) % len(self.parts)]
         if isinstance(part, Flank):
             if isinstance(following, Flank):
@@ -186,14 +190,14 @@ class SpecifiedContour:
 
 
 def eccentric_circle(radius: float, eccentricity: float) -> SpecifiedContour:
-    """A circle that turns about a point off its centre; its base circle is the inscribed one about that point."""
+    """Build a circle that turns about a point off its centre; the base circle is inscribed about that point."""
     if not (math.isfinite(radius) and 0.0 <= eccentricity < radius):
         raise DimensionError("eccentricity", f"at least 0 and less than the radius {radius}", eccentricity)
     return SpecifiedContour(radius - eccentricity, (Arc(complex(eccentricity), radius, 0.0),))
 
 
 def tangent_cam(base_radius: float, nose_radius: float, nose_distance: float) -> SpecifiedContour:
-    """Straight flanks tangent to the base circle and to a nose whose centre is at a distance (Rao §5.7)."""
+    """Build a cam with straight flanks tangent to the base circle and to a nose at a distance (Rao §5.7)."""
     _check_nose(base_radius, nose_radius, nose_distance)
     normal = math.acos((base_radius - nose_radius) / nose_distance)
     nose, base = complex(nose_distance), 0j
@@ -211,13 +215,14 @@ def tangent_cam(base_radius: float, nose_radius: float, nose_distance: float) ->
 def circular_arc_cam(
     base_radius: float, nose_radius: float, nose_distance: float, flank_radius: float
 ) -> SpecifiedContour:
-    """Flanks that are arcs tangent to the base circle and to the nose; a negative flank radius is hollow.
+    """Build a cam whose flanks are arcs tangent to base circle and nose; a negative flank radius is hollow.
 
     The flank's centre is at flank_radius − base_radius from the cam's centre and flank_radius − nose_radius from the
     nose's.
     """
     _check_nose(base_radius, nose_radius, nose_distance)
     to_base, to_nose = abs(flank_radius - base_radius), abs(flank_radius - nose_radius)
+    # The centres of base circle, nose and flank must form a triangle.
     closes = abs(to_base - to_nose) < nose_distance < to_base + to_nose
     convex = flank_radius > max(base_radius, nose_radius)
     if not (math.isfinite(flank_radius) and closes and (convex or flank_radius < 0.0)):
@@ -242,13 +247,14 @@ def circular_arc_cam(
 
 
 def flank_radius_of(base_radius: float, nose_radius: float, nose_distance: float, half_action: float) -> float:
-    """Radius of the flanks of a circular-arc cam whose rise takes an angle, radians; infinite for a tangent cam.
+    """Compute the flank radius of a circular-arc cam from the angle of its rise, radians; infinite for a tangent cam.
 
     The base circle ends at the half action angle from the nose, where the flank is tangent to it.
     """
     _check_nose(base_radius, nose_radius, nose_distance)
     if not 0.0 < half_action < math.pi:
         raise DimensionError("half action angle", "between 0 and π", half_action)
+    # Law of cosines in the triangle of base, nose and flank centres, solved for the flank's radius.
     along = nose_distance * math.cos(half_action)
     top = base_radius**2 + nose_distance**2 - nose_radius**2 - 2.0 * base_radius * along
     bottom = 2.0 * (base_radius - nose_radius - along)
@@ -266,7 +272,7 @@ def _check_nose(base_radius: float, nose_radius: float, nose_distance: float) ->
 
 
 def _on(part: Arc | Flank, follower: TranslatingRoller | TranslatingFlat, theta: Real) -> Real:
-    """s, v, a, j on one part; dγ/dθ = dβ/dθ = −1."""
+    """Evaluate s, v, a, j on one part; dγ/dθ = dβ/dθ = −1."""
     if isinstance(part, Flank):
         # Under a flat face a flank is passed in an instant, and no angle comes here.
         assert isinstance(follower, TranslatingRoller), "a flat face stays on no flank"
@@ -284,6 +290,7 @@ def _on(part: Arc | Flank, follower: TranslatingRoller | TranslatingFlat, theta:
         return np.stack([p + part.radius - follower.base_radius, p1, -p, -p1])
     radius, q = part.radius + follower.roller_radius, p1 - follower.offset
     q2, q3 = -p1, p
+    # A hollow (negative radius) touches the roller on the other branch of the root.
     w = math.copysign(1.0, radius) * np.sqrt(radius**2 - q**2)
     w1 = -q * q1 / w
     w2 = -(q1**2 + q * q2 + w1**2) / w

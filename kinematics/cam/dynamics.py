@@ -1,6 +1,6 @@
 """Forces between cam and follower at a speed: contact force, spring and preload, camshaft torque, flywheel.
 
-The follower is a mass that the cam carries through its program (Norton, *Design of Machinery*, §15.2, eq. 15.4),
+The follower is a mass that the cam moves through its program (Norton, *Design of Machinery*, §15.2, eq. 15.4),
 
     F(θ) = m ω² a + c ω v + k s + F0,        T(θ) = F v,
 
@@ -29,20 +29,20 @@ from kinematics.errors import DimensionError
 Real = NDArray[np.float64]
 
 APART = 1e-13
-"""Radians below which two angles are one: between closer ones there is nothing but rounding."""
+"""Radians below which two breaks are merged: a closer pair differs only by rounding."""
 
 SAME = 1e-10
-"""Radians within which joints of several cams are one; share of the lift that is rounding."""
+"""Radians within which joints of several cams coincide: they come from angles in degrees with phases added."""
 
 
 PRESSED = 1e-6
-"""Share of the greatest force from which a force presses the follower to a wall; less is what a motion that was found
-by a convex program has instead of none, and no play would show it."""
+"""Share of the maximum force above which the follower is pressed to a wall. Motions from a convex program have smaller
+forces where the true one is zero, and no play would show them."""
 
 
 @dataclass(frozen=True)
 class FollowerLoad:
-    """What the cam has to move.
+    """Inertia, spring and friction that the cam works against.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class FollowerLoad:
     preload : float
         Force of spring and constant load at s = 0, toward the cam.
     damping : float
-        c, of viscous friction.
+        Coefficient c of viscous friction.
     """
 
     mass: float
@@ -69,7 +69,7 @@ class FollowerLoad:
                 raise DimensionError(name.replace("_", " "), expected, value)
 
     def damped(self, ratio: float) -> FollowerLoad:
-        """With the damping of a ratio ζ: c = 2 ζ √(k m)."""
+        """Return the load with the damping c = 2 ζ √(k m) of a ratio ζ."""
         if not (math.isfinite(ratio) and ratio >= 0.0):
             raise DimensionError("damping ratio", "at least 0", ratio)
         return replace(self, damping=2.0 * ratio * math.sqrt(self.spring_rate * self.mass))
@@ -80,22 +80,23 @@ class FollowerLoad:
         return math.sqrt(self.spring_rate / self.mass)
 
     def weakest_speed(self, motion: Motion, top_speed: float) -> Real:
-        """The speed from 0 to a top speed at which F is least, at a program's s, v, a."""
+        """Return the speed between 0 and a top speed at which F is minimal, given a program's s, v, a."""
         curving = 2.0 * self.mass * motion.a
         vertex = -self.damping * motion.v / np.where(curving > 0.0, curving, 1.0)
+        # Without a minimum inside, compare F at the top speed with F at 0 (divided by the speed).
         at_end = self.damping * motion.v + self.mass * top_speed * motion.a < 0.0
         end = np.where(at_end, top_speed, 0.0)
         return np.asarray(np.where(curving > 0.0, np.clip(vertex, 0.0, top_speed), end))
 
     def force(self, motion: Motion, speed: ArrayLike) -> Real:
-        """F at a program's s, v, a and at a speed, or at one for each."""
+        """Return F at a program's s, v, a and at one speed, or at a speed for each."""
         w = np.asarray(speed, dtype=np.float64)
         inertia = self.mass * w**2 * motion.a
         return np.asarray(inertia + self.damping * w * motion.v + self.spring_rate * motion.s + self.preload)
 
 
 class WeakestContact(NamedTuple):
-    """Where the contact force is least over angles and speeds: the force, the cam angle and the speed."""
+    """Minimum contact force over angles and speeds, with the cam angle and the speed at which it occurs."""
 
     force: float
     angle: float
@@ -111,7 +112,7 @@ class RunningCam:
     program : Program
     load : FollowerLoad
     speed : float
-        Of the camshaft, radians per unit of time, positive.
+        Speed of the camshaft, radians per unit of time, positive.
     phase : float
         Camshaft angle at which the program begins, for several cams on one shaft.
     """
@@ -128,17 +129,17 @@ class RunningCam:
             raise DimensionError("phase", "finite", self.phase)
 
     def force(self, angle: ArrayLike) -> Real:
-        """F along the follower's motion at cam angles; the normal force is F over the cosine of the pressure angle."""
+        """Return F along the follower's motion at cam angles; the normal force is F/cos(pressure angle)."""
         return self.load.force(self.program.motion(angle), self.speed)
 
     def torque(self, angle: ArrayLike) -> Real:
-        """Torque that turns the camshaft against the follower, at cam angles."""
+        """Return the torque that turns the camshaft against the follower, at cam angles."""
         motion = self.program.motion(angle)
         return np.asarray(self.load.force(motion, self.speed) * motion.v)
 
     @cached_property
     def force_extremes(self) -> Extremes:
-        """Exact extremes of F; not above zero the follower leaves a cam that is closed by force."""
+        """Exact extremes of F; where F ≤ 0 the follower leaves a force-closed cam."""
         return extremes(self.force, self.program.breaks)
 
     @cached_property
@@ -147,27 +148,28 @@ class RunningCam:
         return extremes(self.torque, self.program.breaks)
 
     def reversals(self) -> Real:
-        """Angles from which F has the other sign than before: a form-closed follower crosses to the other wall there.
+        """Find the angles where F changes sign: there a form-closed follower crosses to the other wall.
 
-        Where F is zero in between, as in a rest without spring and preload, it is where that ends; where F only comes
-        to zero, or has one sign before a rest and after it, there is none. F has one sign between two neighbouring
-        roots or breaks. The last sign of a turn is the one before its first.
+        If F stays at zero in between, as in a dwell without spring and preload, the angle is the end of that zone. If F
+        only touches zero, or has the same sign before and after a dwell, there is no reversal.
         """
+        # F has one sign between neighbouring roots or breaks, so its value in the middle decides.
         pieces = np.unique(np.concatenate([roots(self.force, self.program.breaks), self.program.breaks]))
         force = self.force(0.5 * (pieces[:-1] + pieces[1:]))
         pressed = np.flatnonzero(np.abs(force) > PRESSED * self.force_extremes.largest)
+        # The program is periodic: the piece before the first is the last of the previous turn.
         changed = force[pressed] * force[np.roll(pressed, 1)] < 0.0
         return np.asarray(np.mod(pieces[:-1][pressed[changed]], TURN))
 
     def least_preload(self, floor: float = 0.0) -> float:
-        """The preload with which F is nowhere below a floor, the rest of the load as it is; 0 where none is needed."""
+        """Compute the smallest preload, at least 0, that keeps F at or above a floor; the rest is unchanged."""
         return max(0.0, floor + self.load.preload - self.force_extremes.least)
 
     def weakest_contact(self, top_speed: float) -> WeakestContact:
-        """The least F at all cam angles and all speeds from 0 to a top speed; the given speed does not matter.
+        """Find the minimum F over all cam angles and all speeds from 0 to a top speed; the running speed is irrelevant.
 
-        At one angle F is a parabola in the speed: least at its vertex where a > 0 and the vertex is between, else at an
-        end.
+        At one angle F is a parabola in the speed: minimal at its vertex if a > 0 and the vertex lies in the range, else
+        at an end.
         """
         load, motion = self.load, self.program.motion
         c, m = load.damping, load.mass
@@ -180,6 +182,7 @@ class RunningCam:
             now = motion(angle)
             return np.asarray(c * now.v + m * top_speed * now.a)
 
+        # Where the minimizing speed switches between vertex and ends, the minimum over speeds has a kink: split there.
         switches = [lambda angle: motion(angle).a]
         if c > 0.0:
             switches += [lambda angle: motion(angle).v, turning, changing]
@@ -192,17 +195,18 @@ class RunningCam:
             return load.force(now, load.weakest_speed(now, top_speed))
 
         found = extremes(least, breaks[apart])
+        # At a break the minimum may be a limit from either side.
         sides = [motion(found.at_least, before=side) for side in (False, True)]
         speeds = [float(load.weakest_speed(now, top_speed)) for now in sides]
         forces = [float(load.force(now, speed)) for now, speed in zip(sides, speeds, strict=True)]
         return WeakestContact(found.least, found.at_least, speeds[int(np.argmin(forces))])
 
     def jump_speed(self, floor: float = 0.0) -> float:
-        """The speed at which F first falls to a floor; the given speed does not matter.
+        """Find the speed at which F first falls to a floor; the running speed is irrelevant.
 
-        With q = k s + F0 − floor > 0 and u = 1/ω the force falls to it at one angle where q u² + c v u + m a = 0, first
-        at the greater root; the answer is the greatest u of all angles that have a positive one. 0 where the follower
-        does not even rest on the cam, infinite where nothing throws it off.
+        With q = k s + F0 − floor > 0 and u = 1/ω the force at one angle equals the floor where q u² + c v u + m a = 0.
+        As ω rises from 0 (u falls from ∞) the larger root comes first; the result is the largest positive u over all
+        angles. The speed is 0 if the follower does not even rest on the cam, infinite if it never leaves it.
         """
         load, motion = self.load, self.program.motion
         c, m, breaks = load.damping, load.mass, self.program.breaks
@@ -212,11 +216,13 @@ class RunningCam:
 
         _, v, a = self.program.peaks[:3]
         resting = extremes(spare, breaks).least
+        # Neither deceleration nor damping pulls the follower off at any speed.
         if m * max(-a.least, 0.0) + c * v.largest <= 0.0:
             return math.inf if resting >= 0.0 else 0.0
         if resting <= 0.0:
             return 0.0
         if c == 0.0:
+            # Without damping u² itself is smooth; taking the root at the end avoids the kink at zero.
             square = extremes(lambda angle: -m * motion(angle).a / spare(angle), breaks).greatest
             return 1.0 / math.sqrt(square)
 
@@ -230,6 +236,7 @@ class RunningCam:
             return np.where(square >= 0.0, np.maximum(root, 0.0), 0.0)
 
         breaks = np.unique(np.concatenate([breaks, roots(inner, breaks)]))
+        # The larger root exists only where the discriminant is positive; its roots are kinks and become breaks.
         u = extremes(slowness, breaks[np.append(True, np.diff(breaks) > APART)]).greatest
         return 1.0 / u if u > 0.0 else math.inf
 
@@ -246,7 +253,7 @@ class Camshaft:
 
     @property
     def speed(self) -> float:
-        """Of the shaft."""
+        """Speed of the shaft, radians per unit of time."""
         return self.cams[0].speed
 
     @cached_property
@@ -255,11 +262,12 @@ class Camshaft:
         shifted = [np.mod(cam.program.breaks + cam.phase, TURN) for cam in self.cams]
         angles = np.unique(np.concatenate([[0.0], *shifted, [TURN]]))
         kept: Real = angles[np.append(True, np.diff(angles) > SAME)]
+        # The end of the turn must stay exact even if its neighbour was merged into it.
         kept[-1] = TURN
         return kept
 
     def torque(self, angle: ArrayLike) -> Real:
-        """Sum of the cams' torques at shaft angles."""
+        """Return the sum of the cams' torques at shaft angles."""
         at = np.asarray(angle, dtype=np.float64)
         return np.asarray(np.sum([cam.torque(at - cam.phase) for cam in self.cams], axis=0))
 
@@ -270,12 +278,12 @@ class Camshaft:
 
     @cached_property
     def mean_torque(self) -> float:
-        """Over a turn: what friction takes, since masses and springs give all back."""
+        """Mean torque over a turn: only friction contributes, since masses and springs return their energy."""
         return float(self._work(self.breaks).sum()) / TURN
 
     @cached_property
     def energy_fluctuation(self) -> float:
-        """Greatest difference of the energy that the shaft gives and takes around its mean, over a turn.
+        """Largest swing of the energy exchanged with the shaft about its mean, over a turn.
 
         The energy ∫(T − T̄) dθ has its extremes where the torque crosses its mean (Norton §11.11).
         """
@@ -287,13 +295,13 @@ class Camshaft:
         return float(energy.max() - energy.min())
 
     def flywheel_inertia(self, fluctuation: float) -> float:
-        """Moment of inertia that keeps (ω_max − ω_min)/ω at a coefficient k: E/(k ω²) (Norton eq. 11.22)."""
+        """Compute the inertia that keeps (ω_max − ω_min)/ω at a coefficient k: E/(k ω²) (Norton eq. 11.22)."""
         if not (math.isfinite(fluctuation) and fluctuation > 0.0):
             raise DimensionError("coefficient of fluctuation", "positive", fluctuation)
         return self.energy_fluctuation / (fluctuation * self.speed**2)
 
     def _work(self, at: Real) -> Real:
-        """∫ T dθ between neighbouring angles, by Gauss's rule on quarters of each."""
+        """Integrate the torque between neighbouring angles by Gauss's rule on quarters of each interval."""
         nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
         low, step = at[:-1, None], np.diff(at)[:, None] / PARTS
         middles = low + step * (np.arange(PARTS) + 0.5)
@@ -303,4 +311,4 @@ class Camshaft:
 
 GAUSS = 12
 PARTS = 4
-"""Nodes of Gauss's rule and parts of each smooth stretch: torques of all laws are integrated to rounding."""
+"""Nodes of Gauss's rule and parts of each smooth stretch: enough to integrate the torque of every law to rounding."""

@@ -1,10 +1,10 @@
-"""All stationary points of a piecewise smooth function of one number, so that a worst value is exact and not sampled.
+"""All stationary points of a piecewise smooth function of one variable: worst values are exact, not sampled.
 
-On each piece the function is replaced by the polynomial through Chebyshev's points, the piece being halved until the
+On each piece the function is replaced by the polynomial through Chebyshev points; the piece is halved until the
 polynomial agrees to rounding (Battles & Trefethen, SIAM J. Sci. Comput. 25 (2004) 1743,
 doi:10.1137/S1064827503430126); the derivative's roots are the eigenvalues of its colleague matrix (Good 1961; Boyd,
 *Solving Transcendental Equations*, SIAM 2014, ch. 2). Values are the polynomial's, so that at a jump they are limits
-from within the piece; at a stationary point they err by the square of the point's error, which is to say by rounding.
+from within the piece; at a stationary point their error is the square of the point's error, that is, rounding.
 """
 
 from __future__ import annotations
@@ -19,33 +19,35 @@ Real = NDArray[np.float64]
 Function = Callable[[Real], Real]
 
 DEGREE = 16
-"""Of the local polynomials: high enough that a law's piece needs one or two, low enough for quick eigenvalues."""
+"""Degree of the local polynomials: high enough that a piece of a law needs one or two, low enough for fast
+eigenvalues."""
 
 RESOLVED = 1e-13
 """Size of the last coefficients, relative to the function's largest value, at which a polynomial is accepted."""
 
 ROUNDED = 8.0 * float(np.finfo(np.float64).eps)
-"""Error of a point by rounding, as a share of it, with some room."""
+"""Rounding error of a point, as a share of its value: 8 ε, a generous bound."""
 
 HALVINGS = 24
-"""At most; a kink or a jump inside a piece, which no polynomial fits, is closed in to 1e-7 of the piece."""
+"""Maximum number of halvings; a kink or jump inside a piece, which no polynomial fits, is located to 1e-7 of it."""
 
 CROWDED = 4096
-"""Parts still open, beyond those that the breaks ask for, at which the rest is taken as it is: kinks leave a few open
-in each round, and only a function that is rounding from end to end leaves so many, which no halving mends."""
+"""Number of unresolved parts, beyond two per break, at which the rest is accepted unresolved: kinks leave a few in each
+round; only a function that consists of rounding noise leaves this number, and halving does not help there."""
 
 NEGLIGIBLE = 1e-15
 """Share of a polynomial's largest coefficient below which a leading one is rounding and is dropped."""
 
 NEAR_REAL = 1e-4
-"""Imaginary part up to which an eigenvalue is taken as a real root. A root too many costs one value of the function,
-a double root that is split by rounding lies within the square root of it."""
+"""Imaginary part up to which an eigenvalue counts as a real root. A spurious root costs one evaluation, whereas
+rounding splits a double root by the square root of ε, about 1e-8."""
 
 NEAR_ROOT = 1e-9
-"""Value, relative to the largest, up to which a real eigenvalue is a root and not the real part of a pair."""
+"""Function value, relative to the largest, up to which a candidate is a root and not the real part of a complex
+pair."""
 
 SAME = 1e-12
-"""Distance of one root found twice, relative to the whole interval."""
+"""Distance below which two roots are the same, relative to the whole interval."""
 
 _NODES = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
 _FIT = np.cos(np.outer(np.arange(DEGREE + 1), np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1)))
@@ -56,7 +58,7 @@ _ENDS = np.stack([(-1.0) ** np.arange(DEGREE + 1), np.ones(DEGREE + 1)])
 
 @dataclass(frozen=True)
 class Extremes:
-    """Least and greatest value over all pieces, and where they are; of equal ones the first."""
+    """Minimum and maximum over all pieces, and where they occur; of equal values the first."""
 
     least: float
     greatest: float
@@ -70,17 +72,17 @@ class Extremes:
 
 
 def extremes(function: Function, breaks: ArrayLike) -> Extremes:
-    """Least and greatest value of a function that is smooth between breaks, one-sided limits at the breaks included.
+    """Find the minimum and maximum of a function that is smooth between breaks, one-sided limits included.
 
     Parameters
     ----------
     function : callable
-        Takes points of any shape and gives finite values of the same shape. It is never called at a break.
+        Maps points of any shape to finite values of the same shape. It is never called at a break.
     breaks : float, shape (n + 1,)
         Ascending.
     """
     low, high, series, owner = _fit(function, np.asarray(breaks, dtype=np.float64))
-    # Chebyshev polynomials are at most 1: a part whose series cannot leave the range of what is known holds no extreme.
+    # Chebyshev polynomials are at most 1 in size: a part whose series stays within the known range holds no extreme.
     ends = series @ _ENDS.T
     swing = np.abs(series[:, 1:]).sum(axis=1) * (1.0 + ROUNDED)
     beyond = (series[:, 0] - swing <= ends.min()) | (series[:, 0] + swing >= ends.max())
@@ -90,7 +92,7 @@ def extremes(function: Function, breaks: ArrayLike) -> Extremes:
 
 
 def stationary_points(function: Function, breaks: ArrayLike) -> tuple[Real, Real]:
-    """Every point where the derivative vanishes, and both sides of every break, ascending, with the values there.
+    """Find every point where the derivative vanishes, and both sides of every break, ascending, with their values.
 
     Returns
     -------
@@ -104,12 +106,13 @@ def stationary_points(function: Function, breaks: ArrayLike) -> tuple[Real, Real
 def _stationary(
     low: Real, high: Real, series: Real, owner: NDArray[np.int64], where: NDArray[np.bool_]
 ) -> tuple[Real, Real]:
-    """Points and values where some of the series have no slope, and at the ends of all; ascending."""
+    """Find points and values where selected series have zero slope, and at the ends of all series; ascending."""
     some = np.flatnonzero(where)
     row, root = _roots(_differentiated(series[some]))
     row = some[row]
     inner = _within(low[row], high[row], root)
     points = np.concatenate([low, inner, high])
+    # T_k(cos x) = cos k x.
     at_inner = (series[row] * np.cos(np.arange(DEGREE + 1) * np.arccos(root)[:, None])).sum(axis=1)
     ends = series @ _ENDS.T
     values = np.concatenate([ends[:, 0], at_inner, ends[:, 1]])
@@ -118,9 +121,9 @@ def _stationary(
 
 
 def roots(function: Function, breaks: Real) -> Real:
-    """Every root of a function that is smooth between breaks, ascending; a jump through zero at a break is none.
+    """Find every root of a function that is smooth between breaks, ascending; a jump through zero at a break is none.
 
-    Where the function vanishes on a whole piece nothing is reported for it. A double root may appear twice.
+    A piece on which the function vanishes identically has no roots. A double root may appear twice.
     """
     low, high, series, _ = _fit(function, breaks)
     row, root = _roots(series)
@@ -133,7 +136,7 @@ def roots(function: Function, breaks: Real) -> Real:
 
 
 def _fit(function: Function, breaks: Real) -> tuple[Real, Real, Real, NDArray[np.int64]]:
-    """Ends and Chebyshev series of parts so small that the series hold to rounding, and the piece each is part of."""
+    """Halve pieces until their Chebyshev series hold to rounding; return ends, series and the piece of each part."""
     low, high = breaks[:-1], breaks[1:]
     owner = np.arange(len(low))
     done: list[tuple[Real, Real, Real, NDArray[np.int64]]] = []
@@ -142,11 +145,12 @@ def _fit(function: Function, breaks: Real) -> tuple[Real, Real, Real, NDArray[np
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         values = function(middle[:, None] + half[:, None] * _NODES)
         size = max(size, float(np.abs(values).max(initial=0.0)))
-        # Less the first value of each row, so that a constant has no rounding at all.
+        # Subtract the first value of each row, so that a constant has no rounding at all.
         series = (values - values[:, :1]) @ _FIT.T
         series[:, 0] += values[:, 0]
-        # The argument is rounded too, which no halving mends: on a short steep piece its rounding is all there is left.
+        # Rounding of the argument does not shrink by halving: on a short steep piece it dominates.
         rounding = ROUNDED * np.abs(middle) / half * np.ptp(values, axis=1)
+        # Three coefficients, because every second one vanishes for an odd or even function.
         good = np.abs(series[:, -3:]).max(axis=1) <= RESOLVED * size + rounding
         if step == HALVINGS or len(low) > CROWDED + 2 * len(breaks):
             good[:] = True
@@ -161,12 +165,12 @@ def _fit(function: Function, breaks: Real) -> tuple[Real, Real, Real, NDArray[np
 
 
 def _within(low: Real, high: Real, root: Real) -> Real:
-    """Points of pieces from roots in [−1, 1]; rounding does not carry them over an end."""
+    """Map roots in [−1, 1] to points of pieces, clipped so that rounding cannot move them over an end."""
     return np.clip(0.5 * (low + high) + 0.5 * (high - low) * root, low, high)
 
 
 def _differentiated(series: Real) -> Real:
-    """Chebyshev series of the derivatives, one order shorter: d_{k−1} = d_{k+1} + 2 k c_k."""
+    """Differentiate Chebyshev series, one order shorter: d_{k−1} = d_{k+1} + 2 k c_k."""
     n = series.shape[1] - 1
     result = np.zeros((len(series), n + 2))
     for k in range(n, 0, -1):
@@ -176,8 +180,9 @@ def _differentiated(series: Real) -> Real:
 
 
 def _roots(series: Real) -> tuple[NDArray[np.int64], Real]:
-    """Rows and roots in [−1, 1] of Chebyshev series, batched by their true degree."""
+    """Find rows and roots in [−1, 1] of Chebyshev series, batched by their true degree."""
     size = np.abs(series)
+    # A constant term larger than the sum of all others excludes a root.
     possible = (size[:, 0] <= size[:, 1:].sum(axis=1)) & (size.max(axis=1) > 0.0)
     large = size > NEGLIGIBLE * size.max(axis=1, keepdims=True)
     degree = series.shape[1] - 1 - np.argmax(large[:, ::-1], axis=1)
@@ -186,6 +191,7 @@ def _roots(series: Real) -> tuple[NDArray[np.int64], Real]:
         rows = np.flatnonzero(possible & (degree == n))
         if not len(rows):
             continue
+        # The colleague matrix: eigenvalues are the roots of a series in Chebyshev polynomials.
         matrix = np.zeros((len(rows), n, n))
         if n == 1:
             matrix[:, 0, 0] = -series[rows, 0] / series[rows, 1]

@@ -1,11 +1,11 @@
-"""The worst values over a finished profile: curvature, pressure angle, the width that a contact sweeps, the radius.
+"""Worst values over a finished profile: curvature, pressure angle, the width that a contact sweeps, the radius.
 
-At a point P of the profile with the outward normal n the follower's place follows without a search. A roller's centre
-is C = P + r n, and its distance from the cam's centre says where on its path it stands; a face stands where the
-distance of the tangent from the cam's centre is that of the face. So each value is a function of the place on the
+At a point P of the profile with the outward normal n the follower's position follows without a search. A roller's
+centre is C = P + r n, and its distance from the cam's centre determines its position on its path; the position of a
+face follows from the distance of the tangent from the cam's centre. So each value is a function of the position on the
 profile, smooth on every chord, and its extremes over all chords are exact (:mod:`extremes`), both sides of every point
-included. Curvature is that of :mod:`bends`. Through every second point runs another curve; how far its values are off
-says how far the first one's may be (:mod:`settled`).
+included. Curvature is that of :mod:`bends`. A second curve runs through every second point; the difference of its
+values estimates the error of the first one's (:mod:`settled`).
 """
 
 from __future__ import annotations
@@ -31,43 +31,43 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 AT_REST = 1e-7
-"""Share of the greatest velocity below which the follower counts as resting, as in a dwell but for rounding."""
+"""Share of the maximum velocity below which the follower counts as at rest: a dwell with rounding."""
 
 BISECTIONS = 30
-"""To 1e-9 of a chord: where in it the follower turns back. The pressure angle is the same on both sides."""
+"""Bisections that locate a reversal of the follower to 1e-9 of a chord; the pressure angle is continuous there."""
 
 SAMPLES = np.array([1e-3, 0.25, 0.5, 0.75, 0.999])
-"""Of a part, where a function is asked at first."""
+"""Shares of a part at which a function is sampled before its exact extremes are computed."""
 
 AT_END = 1e-9
-"""Share of a chord that is its end, on its own side of the point there."""
+"""Distance from the end of a chord, as a share of it, that selects the chord's own side of the point there."""
 
 CLOSEST = 1e-7
-"""Length of a chord, or what its normals turn by times their arm, as a share of what the points are rounded by, below
-which points are put no closer: the curvature then has no more than eight digits."""
+"""Size of a chord relative to the rounding of its points (:meth:`Bends.room`) below which it is not divided further:
+the curvature then has no more than eight digits."""
 
 
 @dataclass(frozen=True)
 class Worst:
-    """The worst values over a profile, each made worse by how far it may be off.
+    """Worst values over a profile, each increased by the bound of its error.
 
     Attributes
     ----------
     convex, concave : float
-        Greatest curvature where the profile is convex, and where it is hollow (a positive number); 0 where none is.
+        Maximum curvature of the convex parts and of the hollow parts (as a positive number); 0 without such parts.
     rising, falling : float
-        Greatest pressure angles of a roller, radians, 0 of a face; a follower at rest counts as rising.
+        Maximum pressure angles of a roller, radians, 0 for a face; a follower at rest counts as rising.
     sweep : float
         Length on a flat face that the contact sweeps; 0 for a roller.
     radius : float
-        Greatest distance of the profile from the cam's centre.
+        Maximum distance of the profile from the cam's centre.
     rounded : float
-        Share of the greatest curvature by which it is made worse for the rounding of the points.
+        Share of the maximum curvature that was added for the rounding of the points.
     unsettled : float, shape (n,)
-        By how many times what is allowed the curvature of each chord depends on how close the points stand, where it
-        may be the greatest; 0 elsewhere.
+        Discretization error of the curvature of each chord as a multiple of the tolerance, where the curvature may be
+        the maximum; 0 elsewhere.
     unsteady : float, shape (n,)
-        The same of the pressure angle, or under a face of how far the contact reaches.
+        The same for the pressure angle, or under a face for the extent of the contact.
     """
 
     convex: float
@@ -82,20 +82,21 @@ class Worst:
 
 
 def worst(contour: Contour, follower: Follower, rotation: Rotation, stretches: Stretches) -> Worst:
-    """The worst values over a profile whose points' cam angles are known.
+    """Find the worst values over a profile whose points have known cam angles.
 
     Parameters
     ----------
     contour : Contour
         With ``at``.
     follower : Follower
-        That touches the profile everywhere.
+        The follower, which touches the profile everywhere.
     rotation : {"ccw", "cw"}
-        The way the cam turns.
+        Sense in which the cam turns.
     stretches : Stretches
-        Between whose breaks the local curves run.
+        The breaks that limit the local curves.
     """
     fine, coarse = (_Standing(curve, follower, rotation) for curve in (contour, contour.coarser))
+    # Both curves are compared at the same cam angles, hence the shares of the coarser chords.
     places = np.arange(len(contour.points))[:, None], SHARES
     coarser = coarser_places(contour.given_at, contour.coarser.given_at, SHARES)
     bends = [bends_of_profile(curve, follower, rotation) for curve in (contour, contour.coarser)]
@@ -104,6 +105,7 @@ def worst(contour: Contour, follower: Follower, rotation: Rotation, stretches: S
     rising, falling = (
         here + GAINED * abs(here - wide) for here, wide in zip(fine.steepest(), coarse.steepest(), strict=True)
     )
+    # Each value is increased by the estimated error of its own discretization.
     sweep, wider = fine.sweep(), coarse.sweep()
     return Worst(
         max(greatest, 0.0),
@@ -119,38 +121,41 @@ def worst(contour: Contour, follower: Follower, rotation: Rotation, stretches: S
 
 
 Places = tuple[NDArray[np.int64], Real]
-"""Chords and shares of them."""
+"""Positions on a profile: chords, and shares of them."""
 
 
 def _curvatures(
     fine: Bends, coarse: Bends, places: Places, coarser: Places, stretches: Stretches
 ) -> tuple[tuple[float, float], float, Real]:
-    """Least and greatest curvature, made worse by how far they may be off, the share of the greater one that is
-    rounding, and how unsettled each chord is."""
+    """Bound the curvature: its minimum and maximum, both widened by their errors, the share of the larger one that is
+    rounding, and the unsettledness of each chord."""
     near, wide = fine.along(*places), coarse.along(*coarser)
+    # Chords between very close breaks carry no measurable curvature and are left out.
     measured = ~stretches.narrow
     grain = fine.rounding(*places)[measured]
     bottom, top = float(near[measured].min()), float(near[measured].max())
     size = max(abs(bottom), abs(top))
     above, below, unsettled = doubt(near, wide, fine.unexplained, fine.room(size) / CLOSEST, stretches)
+    # Rounding counts only where it can raise the extreme itself.
     up = float((near[measured] + grain).max()) - top
     down = bottom - float((near[measured] - grain).min())
-    # What a curve has between the places of a chord may be more than at them.
+    # Between the compared places the curvature may be larger, so take the exact extremes too.
     exact = range_of(lambda u: fine.along(*_chord(u)), chords(len(near))[measured])
     worst_two = min(bottom, exact[0]) - below - down, max(top, exact[1]) + above + up
     return worst_two, max(up, down) / size, unsettled
 
 
 def _compared(fine: _Standing, places: Places, coarse: _Standing, coarser: Places) -> tuple[Real, Real, Real]:
-    """What has a limit at the same places of two curves, without its sign, and the sign on the first.
+    """Evaluate the limited quantity at the same places of two curves, unsigned, and its sign on the first.
 
-    The pressure angle of a roller, with the sign of the velocity; how far the contact on a face is from the middle of
-    its sweep.
+    For a roller it is the pressure angle, with the sign of the velocity; for a face the distance of the contact from
+    the middle of its sweep.
     """
     v, near, ground = fine.states(*places)
     _, wide, ground_of_coarser = coarse.states(*coarser)
     if isinstance(fine.follower, TranslatingRoller | OscillatingRoller):
         return near, wide, np.sign(v)
+    # The sweep is bounded on both sides: compare distances from its middle.
     reach, other = fine.reach(ground), coarse.reach(ground_of_coarser)
     middle = 0.5 * (reach.min() + reach.max())
     return np.abs(reach - middle), np.abs(other - middle), np.sign(reach - middle)
@@ -158,16 +163,16 @@ def _compared(fine: _Standing, places: Places, coarse: _Standing, coarser: Place
 
 @dataclass(frozen=True)
 class WorstOfWall:
-    """The worst values over a wall of a barrel cam's groove, as of :class:`Worst`.
+    """Worst values over a wall of a barrel cam's groove; see :class:`Worst`.
 
     Attributes
     ----------
     up, down : float
-        Greatest curvatures where the wall bends toward +y and away from it (both positive); 0 where none is.
+        Maximum curvatures where the wall bends toward +y and away from it (both positive); 0 without such parts.
     rising, falling : float
-        Greatest pressure angles, radians.
+        Maximum pressure angles, radians.
     lowest, highest : float
-        Between which the wall lies on the axis.
+        Range of the wall along the axis.
     rounded : float
     unsettled, unsteady : float, shape (n,)
     """
@@ -184,16 +189,16 @@ class WorstOfWall:
 
 
 def worst_of_wall(wall: UnrolledWall, roller_radius: float, side: Side, stretches: Stretches) -> WorstOfWall:
-    """The worst values over a wall whose points' cam angles are known: its slope is the pressure angle.
+    """Find the worst values over a wall whose points have known cam angles: its slope is the pressure angle.
 
     Parameters
     ----------
     wall : UnrolledWall
         With ``at``.
     roller_radius : float
-        That touches the wall everywhere.
+        Radius of the roller, which touches the wall everywhere.
     side : {1, -1}
-        1: it lies on the wall; −1: under it.
+        1: the roller lies on the wall; −1: under it.
     stretches : Stretches
         As for :func:`worst`.
     """
@@ -222,7 +227,7 @@ def worst_of_wall(wall: UnrolledWall, roller_radius: float, side: Side, stretche
 
 
 def _slopes(wall: UnrolledWall) -> tuple[float, float]:
-    """Greatest slope up and down, radians."""
+    """Find the maximum slopes up and down, radians."""
 
     def states(u: Real) -> tuple[Real, Real]:
         tangent, _ = wall.along(*_chord(u))
@@ -233,39 +238,41 @@ def _slopes(wall: UnrolledWall) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class _Standing:
-    """Where a follower stands at each place of a profile that it touches, u chords from the first point."""
+    """State of a follower at each place of a profile that it touches, u chords from the first point."""
 
     contour: Contour
     follower: Follower
     rotation: Rotation
 
     def states(self, chord: ArrayLike, share: ArrayLike) -> tuple[Real, Real, Complex]:
-        """Velocity, pressure angle without its sign, and the contact in the ground's frame."""
+        """Return the velocity, the unsigned pressure angle, and the contact in the ground's frame."""
         place = self.contour.along(chord, share)
         point, normal = place.point, place.normal
+        # The formulas hold for a cam that turns clockwise; mirror the other one.
         if self.rotation == "ccw":
             point, normal = np.conj(point), np.conj(normal)
         value, turn = _stand(self.follower, point, normal)
         ground, upright = turn * point, turn * normal
+        # The velocity does not depend on the radius of curvature, so any radius will do.
         v, _ = rates(self.follower, value - dimensions(self.follower)[2], ground, upright, np.ones_like(value))
         direction = motion_direction(self.follower, value, ground)
         return v, np.abs(np.angle(upright * np.conj(direction))), ground
 
     def steepest(self) -> tuple[float, float]:
-        """Greatest pressure angles of a roller, rising or at rest and falling, radians; 0 without a move."""
+        """Find the maximum pressure angles of a roller, rising or at rest and falling, radians; 0 without motion."""
         if isinstance(self.follower, TranslatingFlat | OscillatingFlat):
             return 0.0, 0.0
         return _steepest(lambda u: self.states(*_chord(u))[:2], len(self.contour.points))
 
     def sweep(self) -> float:
-        """Length on a flat face that the contact sweeps; 0 for a roller."""
+        """Return the length that the contact sweeps on a flat face; 0 for a roller."""
         if isinstance(self.follower, TranslatingRoller | OscillatingRoller):
             return 0.0
         least, greatest = range_of(lambda u: self.reach(self.states(*_chord(u))[2]), chords(len(self.contour.points)))
         return greatest - least
 
     def reach(self, ground: Complex) -> Real:
-        """How far along a face it is touched."""
+        """Return the position of the contact along a face."""
         if not isinstance(self.follower, OscillatingFlat):
             return np.asarray(ground.imag)
         square = np.abs(ground - self.follower.pivot_distance) ** 2 - self.follower.face_offset**2
@@ -273,11 +280,14 @@ class _Standing:
 
 
 def _steepest(states: Callable[[Real], tuple[Real, Real]], count: int) -> tuple[float, float]:
-    """Greatest angle while rising or at rest, and while falling, of velocities and angles on so many chords."""
+    """Find the maximum angle while rising or at rest, and while falling, over ``count`` chords."""
     chord = np.arange(float(count))
+    # Just inside the ends, since neighbouring chords may differ in velocity at a break.
     low, high = states(chord + AT_END)[0], states(chord + 1.0 - AT_END)[0]
     rest = AT_REST * max(float(np.abs(low).max()), float(np.abs(high).max()))
+    # Rounding around a dwell must not look like reversals.
     low, high = (np.where(np.abs(v) <= rest, 0.0, v) for v in (low, high))
+    # Chords on which the follower reverses are split there, so that each part belongs to one direction.
     turns = np.flatnonzero(low * high < 0.0)
     left, right = chord[turns] + AT_END, chord[turns] + 1.0 - AT_END
     for _ in range(BISECTIONS):
@@ -292,26 +302,27 @@ def _steepest(states: Callable[[Real], tuple[Real, Real]], count: int) -> tuple[
 
 
 def chords(count: int) -> Real:
-    """Where each chord begins and ends, in chords from the first point; shape (n, 2)."""
+    """Return the start and end of each chord, in chords from the first point; shape (n, 2)."""
     first = np.arange(float(count))
     return np.stack([first, first + 1.0], axis=1)
 
 
 def range_of(function: Callable[[Real], Real], parts: Real) -> tuple[float, float]:
-    """Least and greatest value over parts on each of which the function is smooth, the ends' limits included.
+    """Find the minimum and maximum over parts on which a function is smooth, limits at their ends included.
 
-    Exact values are looked for only where a few samples leave room for one.
+    Exact extremes are computed only on parts whose samples come near the extreme.
 
     Parameters
     ----------
     function : callable
-        Of chords from the first point, any shape; never called at an end of a part.
+        Function of chords from the first point, of any shape; never called at an end of a part.
     parts : float, shape (n, 2)
     """
     low, span = parts[:, :1], np.diff(parts, axis=1)
     values = function(low + span * SAMPLES)
     least, greatest = values.min(axis=1), values.max(axis=1)
     swing = greatest - least
+    # Assume that between samples a smooth function exceeds them by at most their own range.
     some = np.flatnonzero((greatest + swing >= greatest.max()) | (least - swing <= least.min()))
     low, span = low[some, 0], span[some, 0]
 
@@ -324,16 +335,17 @@ def range_of(function: Callable[[Real], Real], parts: Real) -> tuple[float, floa
 
 
 def _chord(u: Real) -> tuple[NDArray[np.int64], Real]:
-    """The chord and its share at u chords from the first point."""
+    """Split u, in chords from the first point, into the chord and its share."""
     chord = np.floor(u).astype(np.int64)
     return chord, u - chord
 
 
 def _stand(follower: Follower, point: Complex, normal: Complex) -> tuple[Real, Complex]:
-    """The follower's coordinate when it touches at a point of a cam that turns clockwise, and the cam's turn then."""
+    """Return the follower's coordinate when it touches at a point of a clockwise cam, and the cam's rotation factor."""
     if isinstance(follower, TranslatingRoller):
         centre = point + follower.roller_radius * normal
         height = np.sqrt(np.maximum(np.abs(centre) ** 2 - follower.offset**2, 0.0))
+        # The distance of the centre from the cam's centre fixes its height on the slide.
         return height, (height + 1j * follower.offset) / centre
     if isinstance(follower, OscillatingRoller):
         centre = point + follower.roller_radius * normal

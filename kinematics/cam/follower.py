@@ -1,10 +1,10 @@
-"""Followers of radial cams: where the trace point is, its pressure angle, and the curvature that it gives the cam.
+"""Followers of radial cams: their trace point, their pressure angle, and the curvature of the cam under them.
 
-The cam turns about the origin; its angle θ counts the way it turns. Here it turns clockwise, so that in the cam's own
-frame the follower walks around it counter-clockwise; :mod:`profile` mirrors this for the other sense. At θ = 0 the
-cam's frame is the ground's. A translating follower moves along the +x axis of the ground; the pivot of an oscillating
-one lies on that axis. Displacements s are of the trace point (a length) or of the arm (radians), from the position
-where a roller's centre is on the prime circle, or a flat face touches the base circle.
+The cam turns about the origin; its angle θ counts in its sense of rotation. Here it turns clockwise, so that in the
+cam's own frame the follower walks around it counter-clockwise; :mod:`profile` mirrors this for the other sense. At θ =
+0 the cam's frame is the ground's. A translating follower moves along the +x axis of the ground; the pivot of an
+oscillating one lies on that axis. Displacements s are of the trace point (a length) or of the arm (radians), from the
+position where a roller's centre is on the prime circle, or a flat face touches the base circle.
 
 With p(θ) the roller's centre in the ground's frame, the pitch curve is z = e^{iθ} p, and
 
@@ -49,7 +49,7 @@ class TranslatingRoller:
     Parameters
     ----------
     prime_radius : float
-        Of the prime circle, on which the roller's centre lies at s = 0.
+        Radius of the prime circle, on which the roller's centre lies at s = 0.
     roller_radius : float
         0 for a knife edge.
     offset : float
@@ -59,7 +59,7 @@ class TranslatingRoller:
     Raises
     ------
     DimensionError
-        A prime radius that is not larger than the roller's, or not larger than the offset.
+        If the prime radius is not larger than the roller's, or not larger than the offset.
     """
 
     prime_radius: float
@@ -73,22 +73,24 @@ class TranslatingRoller:
 
     @property
     def height(self) -> float:
-        """d: the trace point at s = 0, measured along the slide."""
+        """Distance d of the trace point at s = 0, measured along the slide."""
+        # Factored difference of squares: exact for an offset close to the prime radius.
         return math.sqrt((self.prime_radius - self.offset) * (self.prime_radius + self.offset))
 
     @property
     def span(self) -> tuple[float, float]:
-        """Displacements between which the follower works."""
+        """Range of displacements in which the follower works."""
         return -self.height, math.inf
 
     def trace(self, motion: Motion) -> Trace:
-        """p = d + s + i e."""
+        """Return p = d + s + i e and its derivatives."""
         one = np.ones_like(motion.s, dtype=np.complex128)
         p = (self.height + 1j * self.offset) * one + motion.s
         return Trace(p, motion.v * one, motion.a * one, one)
 
     def pressure_angle(self, motion: Motion) -> Real:
-        """Between the contact force and the follower's motion; positive in a rise without offset. Radians."""
+        """Return the angle between contact force and follower motion, radians; positive in a rise without offset."""
+        # arctan2 stays finite when the trace point passes the cam's centre line.
         return np.asarray(np.arctan2(motion.v - self.offset, self.height + motion.s))
 
     def pitch_curvature(self, motion: Motion) -> Real:
@@ -103,19 +105,18 @@ class OscillatingRoller:
     Parameters
     ----------
     prime_radius, roller_radius : float
-        As for the translating roller.
+        See :class:`TranslatingRoller`.
     arm : float
-        From the pivot to the roller's centre.
+        Distance from the pivot to the roller's centre.
     pivot_distance : float
-        From the cam's centre to the pivot.
+        Distance from the cam's centre to the pivot.
     sense : {1, -1}
-        1 where the arm swings outward in the sense in which the cam turns, −1 where against it.
+        1: the arm swings outward in the sense in which the cam turns; −1: against it.
 
     Raises
     ------
     DimensionError
-        Lengths that make no triangle of cam centre, pivot and roller at s = 0, or a roller larger than the prime
-        circle.
+        If cam centre, pivot and roller form no triangle at s = 0, or the roller is larger than the prime circle.
     """
 
     prime_radius: float
@@ -136,17 +137,18 @@ class OscillatingRoller:
 
     @property
     def start_angle(self) -> float:
-        """ψ0, between the arm and the line of centres at s = 0."""
+        """Angle ψ0 between the arm and the line of centres at s = 0."""
         c, arm = self.pivot_distance, self.arm
         return math.acos((c * c + arm * arm - self.prime_radius**2) / (2.0 * c * arm))
 
     @property
     def span(self) -> tuple[float, float]:
-        """Displacements between which the arm is off the line of centres."""
+        """Range of displacements in which the arm does not reach the line of centres."""
         return -self.start_angle, math.pi - self.start_angle
 
     def trace(self, motion: Motion) -> Trace:
-        """p = C − L e^{∓i (ψ0 + s)}."""
+        """Return p = C − L e^{∓i (ψ0 + s)} and its derivatives."""
+        # Multiplication by this rotates the arm in its outward sense.
         turn = -1j * self.sense
         arm = -self.arm * np.exp(turn * (self.start_angle + motion.s))
         p1 = turn * motion.v * arm
@@ -154,9 +156,10 @@ class OscillatingRoller:
         return Trace(self.pivot_distance + arm, p1, p2, turn * arm / self.arm)
 
     def pressure_angle(self, motion: Motion) -> Real:
-        """Between the contact force and the roller's motion, a quarter turn from the arm. Radians."""
+        """Return the angle between contact force and roller motion (a quarter turn from the arm), radians."""
         trace = self.trace(motion)
         normal = -1j * (trace.p1 + 1j * trace.p)
+        # The sign makes the angle positive in a rise, as for the translating follower.
         return np.asarray(-np.angle(normal * np.conj(trace.direction)))
 
     def pitch_curvature(self, motion: Motion) -> Real:
@@ -168,7 +171,7 @@ Roller = TranslatingRoller | OscillatingRoller
 
 
 class Face(NamedTuple):
-    """A flat face: its normal's angle in the ground's frame, its distance h, dh/dα, and ρ of the cam under it."""
+    """A flat face: angle of its normal in the ground's frame, its distance h, dh/dα, and ρ of the cam under it."""
 
     normal: Real
     h: Real
@@ -198,16 +201,16 @@ class TranslatingFlat:
 
     @property
     def span(self) -> tuple[float, float]:
-        """Displacements between which the face is on its side of the cam's centre."""
+        """Range of displacements in which the face stays on its side of the cam's centre."""
         return -self.base_radius, math.inf
 
     def face(self, motion: Motion) -> Face:
-        """h = base_radius + s, α = θ, ρ = base_radius + s + a."""
+        """Return the face with h = base_radius + s, α = θ, ρ = base_radius + s + a."""
         h = self.base_radius + motion.s
         return Face(np.zeros_like(h), h, motion.v, h + motion.a)
 
     def pressure_angle(self, motion: Motion) -> Real:
-        """Zero."""
+        """Return zero: the contact force is parallel to the motion."""
         return np.zeros_like(motion.s)
 
 
@@ -242,18 +245,19 @@ class OscillatingFlat:
 
     @property
     def start_angle(self) -> float:
-        """ψ0, between the face and the line of centres at s = 0."""
+        """Angle ψ0 between the face and the line of centres at s = 0."""
         return math.asin((self.base_radius + self.face_offset) / self.pivot_distance)
 
     @property
     def span(self) -> tuple[float, float]:
-        """Displacements between which the face touches on the cam's side of the pivot and beside its centre."""
+        """Range of displacements in which the face touches on the cam's side of the pivot, off the cam's centre."""
         least = math.asin(min(1.0, max(0.0, self.face_offset) / self.pivot_distance))
         return least - self.start_angle, 0.5 * math.pi - self.start_angle
 
     def face(self, motion: Motion) -> Face:
-        """h = C sin ψ − offset, dα/dθ = 1 ∓ v."""
+        """Return the face with h = C sin ψ − offset, dα/dθ = 1 ∓ v."""
         angle = self.start_angle + motion.s
+        # dα/dθ: it vanishes where the face turns with the cam.
         rate = 1.0 - self.sense * motion.v
         x, y = self.pivot_distance * np.cos(angle), self.pivot_distance * np.sin(angle)
         bend = (x * motion.a / rate - y * motion.v**2) / rate**2
@@ -261,12 +265,12 @@ class OscillatingFlat:
         return Face(self.sense * (0.5 * math.pi - angle), h, x * motion.v / rate, h + bend)
 
     def reach(self, motion: Motion) -> Real:
-        """Where on the face the contact is: its distance along the face from the foot of the pivot."""
+        """Return the distance of the contact along the face from the foot of the pivot."""
         angle = self.start_angle + motion.s
         return np.asarray(self.pivot_distance * np.cos(angle) / (1.0 - self.sense * motion.v))
 
     def pressure_angle(self, motion: Motion) -> Real:
-        """Zero unless the face is offset from the pivot. Radians."""
+        """Return the pressure angle, radians; zero unless the face is offset from the pivot."""
         return np.asarray(np.arctan2(self.face_offset, self.reach(motion)))
 
 
@@ -275,6 +279,7 @@ Follower = Roller | Flat
 
 
 def _curvature(trace: Trace) -> Real:
+    # Derivatives in the cam's frame, rotated back to the ground's.
     tangent = trace.p1 + 1j * trace.p
     bend = trace.p2 + 2j * trace.p1 - trace.p
     return np.asarray((np.conj(tangent) * bend).imag / np.abs(tangent) ** 3)

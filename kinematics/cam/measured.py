@@ -1,7 +1,7 @@
-"""The motion program that a finished profile gives its follower.
+"""Motion program measured from a finished profile.
 
-Displacement, velocity and acceleration are measured at equal cam angles by the contact search and joined by polynomials
-of the fifth degree, so that forces, torques and vibrations can be had of a cam that nobody has a program of.
+Displacement, velocity and acceleration are measured at equal cam angles by the contact search and joined by quintics,
+so that forces, torques and vibrations can be computed for a cam whose program is unknown.
 """
 
 from __future__ import annotations
@@ -29,17 +29,18 @@ HERMITE = np.array(
 
 
 def measured_program(contour: Contour, follower: Follower, rotation: Rotation, count: int) -> Program:
-    """The program of a profile under a follower, from so many equal cam angles.
+    """Measure the program of a profile under a follower at ``count`` equal cam angles.
 
     Raises
     ------
     DimensionError
-        Where the follower touches nothing at some angle.
+        If the follower touches nothing at some angle.
     """
     found = contour.follow(follower, even_angles(count), rotation)
     if not found.valid.all():
         raise DimensionError("profile", "touched by the follower at every cam angle", int((~found.valid).sum()))
     h = TURN / count
+    # Derivatives by the share of a step, as the Hermite matrix expects.
     states = np.stack([found.s, h * found.v, h * h * found.a], axis=1)
     ends = np.concatenate([states, np.roll(states, -1, axis=0)], axis=1)
     coefficients = (ends @ HERMITE.T) / h ** np.arange(6)

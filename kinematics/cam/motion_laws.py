@@ -42,21 +42,21 @@ class Law:
     Parameters
     ----------
     name : str
-        The field's name of it.
+        Name of the law in requests.
     pieces : Pieces
-        From 0 to 1, with s(0) = 0 and s(1) = 1.
+        The motion from 0 to 1, with s(0) = 0 and s(1) = 1.
     """
 
     name: str
     pieces: Pieces
 
     def motion(self, at: float | list[float] | np.ndarray) -> Motion:
-        """s, v, a, j at shares of the angle; at an inner jump the values after it."""
+        """Return s, v, a, j at shares of the angle; at an inner jump the values after it."""
         return self.pieces.motion(at)
 
     @cached_property
     def factors(self) -> tuple[Extremes, Extremes, Extremes]:
-        """Exact extremes of v, a, j within the law; its meeting with its neighbours is not part of it.
+        """Exact extremes of v, a, j within the law, excluding jumps at its ends.
 
         >>> [round(factor.largest, 6) for factor in LAWS["polynomial_345"].factors]
         [1.875, 5.773503, 60.0]
@@ -67,6 +67,7 @@ class Law:
         jerk = a.derivative()
         extremes = [_extremes(f, self.pieces.start) for f in (v, a, jerk)]
         inner = self.pieces.start[1:-1]
+        # A jump of the acceleration means infinite jerk, with the sign of the jump.
         jump = self.pieces.motion(inner).a - self.pieces.motion(inner, before=True).a
         if np.any(np.abs(jump) > JUMP * extremes[1].largest):
             down, up = float(inner[jump.argmin()]), float(inner[jump.argmax()])
@@ -76,31 +77,34 @@ class Law:
         return extremes[0], extremes[1], extremes[2]
 
     def reversed(self, name: str) -> Law:
-        """1 − s(1 − u): the law whose fall is this one's rise seen in a mirror."""
+        """Return 1 − s(1 − u): the law whose fall is the mirror image of this one's rise."""
         mirrored = self.pieces.reversed()
         return Law(name, mirrored.scaled(1.0, -1.0, 1.0))
 
 
 JUMP = 1e-9
-"""Share of the greatest acceleration above which a step of it inside a law is a jump and not rounding."""
+"""Share of the maximum acceleration above which a step of it inside a law is a jump and not rounding."""
 
 
 def _extremes(function: Pieces, breaks: np.ndarray) -> Extremes:
-    """Of the values of a function in pieces."""
+    """Find the extremes of the values of a function in pieces."""
     return extremes(lambda u: function.motion(u).s, breaks)
 
 
 def sine_constant_cosine(name: str, p1: float, p2: float, p3: float) -> Law:
-    """The law with a quarter sine over p1, constant acceleration over p2 and a quarter cosine over p3 in each half.
+    """Build the law with a quarter sine over p1, constant acceleration over p2, a quarter cosine over p3 in each half.
 
-    ``p1 + p2 + p3`` is at most 1/2; what is left runs at constant velocity in the middle.
+    ``p1 + p2 + p3`` is at most 1/2; the remainder runs at constant velocity in the middle.
     """
+    # The tolerance 1e-12 absorbs the rounding of fractions such as 1/16 + 3/16.
     rest = 0.5 - (p1 + p2 + p3)
     if min(p1, p2, p3) < 0.0 or rest < -1e-12 or p1 + p2 + p3 <= 0.0:
         raise DimensionError("parts of the law", "at least 0, one positive, with a sum of at most 1/2", (p1, p2, p3))
     parts: list[tuple[float, list[float], tuple[float, float, float]]] = []
+    # Integrate unit acceleration piece by piece; the lift is scaled to 1 at the end.
     s, v = 0.0, 0.0
     if p1 > 0.0:
+        # A quarter sine over p1 has the frequency 1/k.
         k = p1 / HALF_PI
         parts.append((p1, [0.0, k], (-k * k, 1.0 / k, 0.0)))
         s, v = k * (p1 - k), k
@@ -115,22 +119,24 @@ def sine_constant_cosine(name: str, p1: float, p2: float, p3: float) -> Law:
         parts.append((rest, [s, v], (0.0, 0.0, 0.0)))
         s += v * rest
     half = joined([harmonic_piece(*part) for part in parts])
+    # Scale the half to a rise of 1/2; the second half is its point reflection.
     first = half.scaled(0.5, 0.5 / s)
     return Law(name, joined([first, first.reversed().scaled(0.5, -1.0, 1.0)]))
 
 
 def polynomial(name: str, *coefficients: float) -> Law:
-    """The law Σ c_k u^k, constant first."""
+    """Build the law Σ c_k u^k, constant first."""
     return Law(name, polynomial_pieces([0.0, 1.0], [coefficients]))
 
 
 RAMP = 1.0 / 8.0
-"""Length of the linear ramps of the trapezoidal law."""
+"""Length of the linear ramps of the trapezoidal law, as a share of its angle."""
 
 
 def _trapezoidal() -> Law:
-    """Constant acceleration with linear ramps at both ends of each half (Norton Fig. 8-14)."""
+    """Build constant acceleration with linear ramps at both ends of each half (Norton Fig. 8-14)."""
     flat = 0.5 - 2.0 * RAMP
+    # The area of the acceleration trapezoid gives the velocity, and its integral the lift of 1/2.
     peak = 2.0 / (0.5 - RAMP)
     jerk = peak / RAMP
     v, s = 0.5 * peak * RAMP, peak * RAMP**2 / 6.0
@@ -148,7 +154,7 @@ def _laws() -> dict[str, Law]:
     cosine = HALF_PI
     double = harmonic_piece(1.0, [0.375], (-0.5, pi, cosine), (0.125, 2.0 * pi, cosine))
     double_harmonic = Law("double_harmonic", double)
-    # Kloomok and Muffley's P-1, with the printed coefficients, which satisfy the end conditions exactly.
+    # Kloomok and Muffley's P-1: the printed coefficients satisfy the end conditions exactly.
     eighth = polynomial("eighth_power", 0.0, 0.0, 0.0, 6.09755, 0.0, -20.78040, 26.73155, -13.60965, 2.56095)
     laws = [
         polynomial("constant_velocity", 0.0, 1.0),
@@ -177,4 +183,4 @@ def _laws() -> dict[str, Law]:
 
 LAWS = MappingProxyType(_laws())
 """Every named law. ``*_start`` begins at rest and ends with a velocity, ``*_end`` the other way; a ``*_reversed`` law
-is for the fall that mirrors its rise."""
+gives the fall that mirrors the rise."""

@@ -3,7 +3,7 @@
     s(x) = Σ c_k x^k + Σ A_m sin(w_m x + φ_m).
 
 Every law of cam motion is of this form, and so is each of its derivatives: all of them are evaluated by one kernel,
-scaled, put one after the other and searched for stationary points without regard to the law's name.
+scaled, concatenated and searched for stationary points without regard to the law's name.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from kinematics.errors import DimensionError
 Real = NDArray[np.float64]
 
 HARMONICS = 2
-"""Sine terms that a piece can have; the double harmonic needs two."""
+"""Maximum number of sine terms of a piece; the double harmonic needs two."""
 
 DERIVATIVES = 4
-"""Values that the kernel gives at each point: s, v, a, j."""
+"""Number of values that the kernel returns at each point: s, v, a, j."""
 
 
 class Motion(NamedTuple):
@@ -44,11 +44,11 @@ class Pieces:
     Parameters
     ----------
     start : float, shape (n + 1,)
-        Where each piece begins, ascending, and where the last one ends.
+        Start of each piece, ascending, and end of the last one.
     polynomial : float, shape (n, degree + 1)
         Coefficients c_k, constant first, of the distance from the piece's start.
     amplitude, frequency, phase : float, shape (n, 2)
-        A_m, w_m, φ_m of the sine terms; an amplitude of zero where there is none.
+        A_m, w_m, φ_m of the sine terms; unused terms have amplitude zero.
     """
 
     start: Real
@@ -68,14 +68,14 @@ class Pieces:
         return float(self.start[-1] - self.start[0])
 
     def motion(self, at: ArrayLike, *, before: bool = False) -> Motion:
-        """Values and first three derivatives.
+        """Return values and the first three derivatives.
 
         Parameters
         ----------
         at : array_like
             Points of any shape. Outside the pieces the first or the last one is continued.
         before : bool
-            At a joint of two pieces the values of the piece that ends there; otherwise of the one that begins.
+            At a joint, use the piece that ends there instead of the one that begins.
         """
         points = np.asarray(at, dtype=np.float64)
         values = np.empty((DERIVATIVES, points.size))
@@ -84,32 +84,35 @@ class Pieces:
         return Motion(*values.reshape(DERIVATIVES, *points.shape))
 
     def derivative(self) -> Pieces:
-        """The function's derivative, again in pieces."""
+        """Return the derivative, again in pieces."""
         degree = self.polynomial.shape[1] - 1
         polynomial = self.polynomial[:, 1:] * np.arange(1, degree + 1) if degree else np.zeros((self.count, 1))
+        # (A sin u)' = A w sin(u + π/2): the form of the pieces is preserved.
         amplitude = self.amplitude * self.frequency
         return Pieces(self.start, polynomial, amplitude, self.frequency, self.phase + 0.5 * math.pi)
 
     def scaled(self, length: float, factor: float, constant: float = 0.0) -> Pieces:
-        """constant + factor·s, stretched to a length and moved to begin at zero."""
+        """Return constant + factor·s, stretched to a length and shifted to begin at zero."""
         stretch = length / self.length
         polynomial = factor * self.polynomial / stretch ** np.arange(self.polynomial.shape[1])
         polynomial[:, 0] += constant
         start = (self.start - self.start[0]) * stretch
+        # Exact end: the product above may be off by rounding.
         start[-1] = length
         return Pieces(start, polynomial, factor * self.amplitude, self.frequency / stretch, self.phase)
 
     def reversed(self) -> Pieces:
-        """s(start + end − t): the same function run through from its end."""
+        """Return s(start + end − t): the same function traversed from its end."""
         spans = np.diff(self.start)[::-1]
         start = self.start[0] + self.start[-1] - self.start[::-1]
         polynomial = _mirrored(self.polynomial[::-1], spans)
         amplitude, frequency, phase = self.amplitude[::-1], self.frequency[::-1], self.phase[::-1]
+        # sin(w (L − y) + φ) = −sin(w y − φ − w L).
         return Pieces(start, polynomial, -amplitude, frequency, -(phase + frequency * spans[:, None]))
 
 
 def polynomial_pieces(start: ArrayLike, coefficients: ArrayLike) -> Pieces:
-    """Piecewise polynomial from its breaks, shape (n + 1,), and local coefficients, shape (n, degree + 1)."""
+    """Build a piecewise polynomial from breaks, shape (n + 1,), and local coefficients, shape (n, degree + 1)."""
     breaks, polynomial = np.array(start, dtype=np.float64), np.array(coefficients, dtype=np.float64)
     if polynomial.ndim != 2 or breaks.shape != (len(polynomial) + 1,) or not len(polynomial):
         raise DimensionError("breaks", "one more than the rows of coefficients", breaks.shape)
@@ -120,7 +123,7 @@ def polynomial_pieces(start: ArrayLike, coefficients: ArrayLike) -> Pieces:
 
 
 def harmonic_piece(length: float, polynomial: Sequence[float], *harmonics: tuple[float, float, float]) -> Pieces:
-    """One piece from 0 to a length: polynomial coefficients and up to two (amplitude, frequency, phase)."""
+    """Build one piece from 0 to a length: polynomial coefficients and up to two (amplitude, frequency, phase)."""
     terms = np.zeros((HARMONICS, 3))
     terms[: len(harmonics)] = np.reshape(harmonics, (-1, 3))
     amplitude, frequency, phase = terms.T[:, None, :]
@@ -128,7 +131,8 @@ def harmonic_piece(length: float, polynomial: Sequence[float], *harmonics: tuple
 
 
 def joined(parts: Sequence[Pieces]) -> Pieces:
-    """Functions one after the other, each moved to begin where the one before ends; the first begins at zero."""
+    """Concatenate functions, each shifted to begin at the end of its predecessor; the first begins at zero."""
+    # Pad lower degrees with zeros, so that all pieces share one array.
     degree = max(part.polynomial.shape[1] for part in parts)
     ends = np.cumsum([0.0, *(part.length for part in parts)])
     starts = [part.start[:-1] - part.start[0] + end for part, end in zip(parts, ends, strict=False)]
@@ -143,7 +147,7 @@ def joined(parts: Sequence[Pieces]) -> Pieces:
 
 
 def _mirrored(polynomial: Real, spans: Real) -> Real:
-    """Coefficients of p(L − y) from those of p(x), each row with its own L; Horner in the ring of polynomials."""
+    """Return the coefficients of p(L − y) from those of p(x), each row with its own L, by Horner's scheme."""
     mirrored = np.zeros_like(polynomial)
     for k in range(polynomial.shape[1] - 1, -1, -1):
         shifted = mirrored * spans[:, None]
@@ -157,13 +161,14 @@ def _mirrored(polynomial: Real, spans: Real) -> Real:
 def _evaluate(
     start: Real, polynomial: Real, amplitude: Real, frequency: Real, phase: Real, at: Real, before: bool, values: Real
 ) -> None:
-    """Fill s, v, a, j at each point: Taylor's coefficients by repeated Horner, and the sines."""
+    """Fill s, v, a, j at each point: Taylor coefficients by repeated Horner, plus the sines."""
     last = start.size - 2
     terms = polynomial.shape[1]
     for i in range(at.size):
         low, high = 0, last
         while low < high:
             middle = (low + high + 1) // 2
+            # Binary search; a point outside stays on the first or last piece, which is extrapolated.
             if start[middle] < at[i] or (not before and start[middle] == at[i]):
                 low = middle
             else:
@@ -175,9 +180,11 @@ def _evaluate(
             a = a * x + v
             v = v * x + s
             s = s * x + polynomial[low, k]
+        # Horner yields Taylor coefficients s″/2 and s‴/6.
         a, j = 2.0 * a, 6.0 * j
         for m in range(amplitude.shape[1]):
             size = amplitude[low, m]
+            # Unused harmonics have amplitude 0; skip their sine and cosine.
             if size != 0.0:
                 w = frequency[low, m]
                 turn = w * x + phase[low, m]

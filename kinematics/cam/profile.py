@@ -1,9 +1,9 @@
-"""The radial cam that gives a follower its program: pitch curve, profile, cutter path and what they must satisfy.
+"""Radial cam that moves a follower by its program: pitch curve, profile, cutter path and their conditions.
 
 Everything is in the cam's own frame, see :mod:`follower`. The curve at a distance along the outward normal of the pitch
 curve is the path of a roller or cutter of another size: −roller_radius gives the profile, cutter_radius − roller_radius
 the cutter's centre. Where the pitch curve's radius of curvature is convex and not larger than the roller's, the profile
-has a cusp or is undercut (Norton §8.7); a flat face asks for ρ = h + d²h/dα² > 0.
+has a cusp or is undercut (Norton §8.7); a flat face requires ρ = h + d²h/dα² > 0.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Cam:
     Raises
     ------
     DimensionError
-        A program that carries the follower over the cam's centre or the arm over the line of centres, or turns a flat
+        If the program moves the follower over the cam's centre or the arm over the line of centres, or turns a flat
         face as fast as the cam.
     """
 
@@ -50,11 +50,13 @@ class Cam:
     def __post_init__(self) -> None:
         if self.rotation not in ("ccw", "cw"):
             raise DimensionError("rotation", "ccw or cw", self.rotation)
+        # Exact extremes, so that no sample between angles can violate the limits.
         s, v = self.program.peaks[:2]
         low, high = self.follower.span
         if not low < s.least <= s.greatest < high:
             raise DimensionError("displacement", f"between {low} and {high} for this follower", (s.least, s.greatest))
         if isinstance(self.follower, OscillatingFlat):
+            # dα/dθ = 1 − sense · v must stay positive.
             rate = v.greatest if self.follower.sense == 1 else -v.least
             if not rate < 1.0:
                 raise DimensionError("velocity of a flat face's arm", "less than the cam's (1 rad/rad)", rate)
@@ -69,17 +71,17 @@ class Cam:
 
     @property
     def roller_radius(self) -> float:
-        """0 for a flat face."""
+        """Radius of the roller; 0 for a flat face."""
         follower = self.follower
         return follower.roller_radius if isinstance(follower, TranslatingRoller | OscillatingRoller) else 0.0
 
     def offset_curve(self, angle: ArrayLike, distance: float = 0.0) -> Complex:
-        """Points at a distance along the outward normal: of the pitch curve for a roller, of the profile for a face.
+        """Return points at a distance along the outward normal of the pitch curve (roller) or the profile (face).
 
         Parameters
         ----------
         angle : array_like
-            Cam angles at which the follower stands there.
+            Cam angles of the follower.
         distance : float
             0 gives the curve itself.
         """
@@ -88,27 +90,27 @@ class Cam:
         return self._mirrored(z + distance * normal)
 
     def pitch_curve(self, angle: ArrayLike) -> Complex:
-        """Centres of the roller; for a flat face the contact points, which are the profile."""
+        """Return the centres of the roller; for a flat face the contact points, which are the profile."""
         return self.offset_curve(angle)
 
     def profile(self, angle: ArrayLike) -> Complex:
-        """Contact points."""
+        """Return the contact points."""
         return self.offset_curve(angle, -self.roller_radius)
 
     def outer_wall(self, angle: ArrayLike) -> Complex:
-        """The other wall of the groove of a form-closed cam, on the far side of the roller."""
+        """Return the other wall of the groove of a form-closed cam, on the far side of the roller."""
         return self.offset_curve(angle, self.roller_radius)
 
     def normal(self, angle: ArrayLike) -> Complex:
-        """Outward unit normals at the contact points."""
+        """Return the outward unit normals at the contact points."""
         return self._mirrored(self._curve(np.asarray(angle, dtype=np.float64))[1])
 
     def pressure_angle(self, angle: ArrayLike) -> Real:
-        """Between the contact force and the follower's motion, radians; positive in a rise without offset."""
+        """Return the angle between contact force and follower motion, radians; positive in a rise without offset."""
         return self.follower.pressure_angle(self.program.motion(angle))
 
     def pitch_curvature(self, angle: ArrayLike) -> Real:
-        """Curvature of the pitch curve, positive where convex; for a flat face that of the profile."""
+        """Return the curvature of the pitch curve (for a flat face, of the profile), positive where convex."""
         follower, motion = self.follower, self.program.motion(angle)
         if isinstance(follower, TranslatingFlat | OscillatingFlat):
             return _inverse(follower.face(motion).radius)
@@ -116,7 +118,7 @@ class Cam:
 
     @cached_property
     def pitch_curvature_extremes(self) -> Extremes:
-        """Exact extremes of a roller's pitch curvature: the greatest belongs to the least convex radius."""
+        """Exact extremes of a roller's pitch curvature: the maximum belongs to the smallest convex radius."""
         follower = self.follower
         if isinstance(follower, TranslatingFlat | OscillatingFlat):
             raise DimensionError("follower", "a roller; a flat face has radius_extremes", type(follower).__name__)
@@ -124,34 +126,37 @@ class Cam:
 
     @cached_property
     def radius_extremes(self) -> Extremes:
-        """Exact extremes of the profile's radius of curvature under a flat face; not above zero is undercut."""
+        """Exact extremes of the profile's radius of curvature under a flat face; a minimum ≤ 0 means undercut."""
         flat = self.follower
         if not isinstance(flat, TranslatingFlat | OscillatingFlat):
             raise DimensionError("follower", "flat-faced", type(flat).__name__)
         return extremes(lambda angle: flat.face(self.program.pieces.motion(angle)).radius, self.program.breaks)
 
     def _curve(self, theta: Real) -> tuple[Complex, Complex]:
-        """Trace or contact points and outward normals, for a cam that turns clockwise."""
+        """Return trace or contact points and outward normals, for a cam that turns clockwise."""
         motion, follower = self.program.motion(theta), self.follower
         if isinstance(follower, TranslatingFlat | OscillatingFlat):
             face = follower.face(motion)
+            # Support function: the contact lies h along the normal and dh/dα along the face.
             normal = np.exp(1j * (theta + face.normal))
             return normal * (face.h + 1j * face.h1), normal
+        # The normal is the tangent turned clockwise, since the pitch curve runs counter-clockwise.
         turn, trace = np.exp(1j * theta), follower.trace(motion)
         tangent = trace.p1 + 1j * trace.p
         return turn * trace.p, -1j * turn * tangent / np.abs(tangent)
 
     def _mirrored(self, points: Complex) -> Complex:
+        # All formulas hold for a clockwise cam; the other sense is its mirror image.
         return np.conj(points) if self.rotation == "ccw" else points
 
 
 def even_angles(count: int) -> Real:
-    """Cam angles of equal steps once around, 0 included, a turn not."""
+    """Return cam angles of equal steps once around, from 0 inclusive to 2π exclusive."""
     return np.arange(count, dtype=np.float64) * (TURN / count)
 
 
 def _inverse(values: Real) -> Real:
-    """1/x with infinity for zero."""
+    """Return 1/x, infinity for zero."""
     infinite: Real = np.full(values.shape, np.inf)
     np.divide(1.0, values, out=infinite, where=values != 0.0)
     return infinite

@@ -24,32 +24,32 @@ Real = NDArray[np.float64]
 TURN = 2.0 * math.pi
 
 CLOSED = 1e-9
-"""Radians by which the segments' angles may miss a full turn: rounding of degrees, far less than a cam can show."""
+"""Radians by which the segments' angles may miss a full turn: rounding of degrees, invisible on a cam."""
 
 CONTINUOUS = 1e-6
-"""Jump, relative to the derivative's largest value, up to which it counts as continuous: statements carry about seven
+"""Jump, relative to the derivative's largest value, up to which it counts as continuous: requests carry about seven
 digits, and a cam no more."""
 
 BENDING = 1e-6
-"""Jump of a derivative, relative to its largest value at the breaks, from which a profile is said to bend there."""
+"""Jump of a derivative, relative to its largest value at the breaks, above which a break counts as a bend."""
 
 SHARP = 0.03
-"""Such a jump from which no curve may be fitted over the bend. Optimal motions have hundreds of smaller ones, steps of
-a control that changes little by little."""
+"""Relative jump above which no curve may be fitted across a bend. Optimal motions have hundreds of smaller jumps, the
+steps of a control that changes gradually."""
 
 
 @dataclass(frozen=True)
 class Joint:
-    """What happens where two segments meet, or at a jump within one.
+    """Continuity where two segments meet, or at a jump within one.
 
     Parameters
     ----------
     angle : float
-        From the program's start; the last segment meets the first one at 0.
+        Angle from the program's start; the last segment meets the first one at 0.
     segments : tuple of two ints
-        The one that ends and the one that begins; equal within a segment.
+        The segment that ends and the one that begins; equal within a segment.
     before, after : tuple of four floats
-        s, v, a, j on both sides.
+        s, v, a, j on either side.
     continuous : tuple of four bools
         Whether each of them is the same on both sides.
     """
@@ -78,13 +78,14 @@ class Program:
     Raises
     ------
     DimensionError
-        No segment, or angles that do not sum to 2π.
+        If there is no segment, or the angles do not sum to 2π.
     """
 
     segments: Sequence[Segment]
 
     def __post_init__(self) -> None:
         total = math.fsum(segment.angle for segment in self.segments)
+        # "not <=" also rejects NaN.
         if not abs(total - TURN) <= CLOSED:
             raise DimensionError("sum of the segments' angles", "one turn (360 degrees)", math.degrees(total))
 
@@ -92,6 +93,7 @@ class Program:
     def pieces(self) -> Pieces:
         """All segments as one function from 0 to 2π."""
         pieces = joined([segment.pieces for segment in self.segments])
+        # Remove the rounding of the sum, so that the last break is exactly a full turn.
         pieces.start[-1] = TURN
         return pieces
 
@@ -107,19 +109,21 @@ class Program:
 
     @property
     def sharp_bends(self) -> Real:
-        """Those of the bends that no curve runs over unnoticed."""
+        """The bends across which no curve may be fitted, see :data:`SHARP`."""
         return np.asarray(self.breaks[:-1][self._jumps > SHARP])
 
     @cached_property
     def velocity_jumps(self) -> Real:
         """Angles at which the velocity jumps, ascending from 0 and less than 2π."""
+        # At angle 0 the value before the break is the one at the end of the turn.
         before = self.pieces.motion(np.append(TURN, self.breaks[1:-1]), before=True).v
         after = self.pieces.motion(self.breaks[:-1]).v
         return np.asarray(self.breaks[:-1][np.abs(after - before) > CONTINUOUS * self.peaks[1].largest])
 
     @cached_property
     def _jumps(self) -> Real:
-        """At each break but the last the greatest jump of a derivative, relative to its largest value at the breaks."""
+        """Largest relative jump of any derivative at each break but the last, see :data:`BENDING`."""
+        # The second derivative's own a and j are the fourth and fifth derivatives of s.
         fourth = self.pieces.derivative().derivative()
         before, after = (
             np.array([*self.pieces.motion(at, before=side), *fourth.motion(at, before=side)[2:]])
@@ -135,7 +139,7 @@ class Program:
         return np.asarray(self.pieces.start[counts])
 
     def motion(self, angle: ArrayLike, *, before: bool = False) -> Motion:
-        """s, v, a, j at any cam angles, of any shape; at a joint those after it unless ``before``."""
+        """Return s, v, a, j at cam angles of any shape; at a joint the values after it unless ``before``."""
         at = np.mod(np.asarray(angle, dtype=np.float64), TURN)
         # np.mod rounds a small negative angle up to a whole turn.
         at = np.where(at == 0.0, TURN, at) if before else np.where(at == TURN, 0.0, at)
@@ -160,12 +164,14 @@ class Program:
         counts = np.cumsum([0, *(segment.pieces.count for segment in self.segments)])
         before = np.array(self.pieces.motion(np.append(self.breaks[1:-1], TURN), before=True))
         after = np.array(self.pieces.motion(np.append(self.breaks[1:-1], 0.0)))
+        # Each derivative has its own scale; the displacement's scale is the lift.
         allowed = CONTINUOUS * np.array([self.lift, *(peak.largest for peak in self.peaks[1:])])
         same = np.abs(after - before) <= allowed[:, None]
         found = []
         for piece in range(self.pieces.count):
             index = int(np.searchsorted(counts, piece, side="right")) - 1
             following = int(np.searchsorted(counts, piece + 1, side="right")) - 1
+            # Inner breaks of a law, where only the jerk jumps, are no joints.
             if index == following and same[:3, piece].all():
                 continue
             s, v, a, j = (bool(value) for value in same[:, piece])
@@ -182,7 +188,7 @@ class Program:
 
     @property
     def smoothness(self) -> int:
-        """How many of s, v, a, j, in this order, are continuous at every joint."""
+        """Number of s, v, a, j, in this order, that are continuous at every joint."""
         for order in range(DERIVATIVES):
             if not all(joint.continuous[order] for joint in self.continuity):
                 return order

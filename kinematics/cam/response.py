@@ -7,7 +7,7 @@ its lag and primes for derivatives by the cam angle,
     y″ + 2 ζ r y′ + r² y = −a − (k_s s + F0)/(m ω²),    r = ω_n/ω,  ω_n² = (k + k_s)/m,  2 ζ ω_n = c/m.
 
 On each step the right side is replaced by the cubic with its values and slopes at both ends, and the equation is solved
-exactly; the state that a turn leads back to itself is the steady motion.
+exactly; the steady motion starts from the state that one turn maps to itself.
 """
 
 from __future__ import annotations
@@ -27,16 +27,17 @@ from kinematics.errors import DimensionError
 Real = NDArray[np.float64]
 
 STEPS_A_TURN = 1440
-"""Least number of steps; the cubic of the right side then errs by 1e-9 of it."""
+"""Minimum number of steps per turn; the cubic then approximates the right side to 1e-9 of it."""
 
 STEPS_A_SWING = 24
-"""Least number of steps in a period of the natural frequency, so that its swings are drawn."""
+"""Minimum number of steps per period of the natural frequency, so that the oscillation is resolved in plots."""
 
 MOST_STEPS = 50_000
-"""Of a train so stiff that nobody looks at its single swings; the solution is exact on steps of any length."""
+"""Maximum number of steps, for a very stiff train whose single oscillations need not be resolved; the solution is exact
+on steps of any length."""
 
 RESONANT = 1e-9
-"""Least singular value of 1 less the turn's transfer matrix, below which no steady motion exists."""
+"""Smallest singular value of 1 − (transfer matrix of a turn) below which no steady motion exists."""
 
 LOW_RATIO = 10.0
 """Ratio of natural frequency to speed below which the program's harmonics excite the train markedly (Norton §15.3)."""
@@ -51,9 +52,9 @@ class FollowerTrain:
     mass, stiffness : float
         Reduced to the follower; stiffness of the train between cam and mass.
     damping : float
-        Of the train, c.
+        Damping coefficient c of the train.
     spring_rate, preload : float
-        Of the return spring on the mass, 0 for a form-closed joint.
+        Return spring on the mass; 0 for a form-closed joint.
     """
 
     mass: float
@@ -71,12 +72,12 @@ class FollowerTrain:
 
     @property
     def natural_frequency(self) -> float:
-        """ω_n, of the mass on its train and spring."""
+        """Natural frequency ω_n of the mass on its train and spring."""
         return math.sqrt((self.stiffness + self.spring_rate) / self.mass)
 
     @property
     def damping_ratio(self) -> float:
-        """ζ."""
+        """Damping ratio ζ."""
         return 0.5 * self.damping / (self.mass * self.natural_frequency)
 
 
@@ -89,12 +90,12 @@ class Response:
     program : Program
     train : FollowerTrain
     speed : float
-        Of the cam, radians per unit of time.
+        Speed of the cam, radians per unit of time.
 
     Raises
     ------
     DimensionError
-        A speed that is not positive, or a train that is damped critically or more: it does not vibrate.
+        If the speed is not positive, or the train is damped critically or more: it does not vibrate.
     """
 
     program: Program
@@ -109,7 +110,7 @@ class Response:
 
     @property
     def frequency_ratio(self) -> float:
-        """r, of the natural frequency to the speed."""
+        """Ratio r of the natural frequency to the speed."""
         return self.train.natural_frequency / self.speed
 
     @property
@@ -120,6 +121,7 @@ class Response:
     @cached_property
     def angle(self) -> Real:
         """Cam angles of the steps from 0 to 2π, every break of the program among them."""
+        # Fine enough for both the program and the oscillation, but bounded.
         step = TURN / min(max(STEPS_A_TURN, STEPS_A_SWING * self.frequency_ratio), MOST_STEPS)
         breaks = self.program.breaks
         parts = [
@@ -133,9 +135,12 @@ class Response:
         r, zeta = self.frequency_ratio, self.train.damping_ratio
         steps = np.diff(self.angle)
         transfer = _free(r, zeta, steps)
+        # Linear recurrence y_{k+1} = T_k y_k + f_k; the periodic solution solves (1 − ΠT) y₀ = Σ.
         driven = self._driven(steps, transfer)
+        # The turn's transfer matrix, column by column, from unit initial states without forcing.
         columns = [_march(transfer, push, start) for push, start in ((0.0 * driven, e) for e in np.eye(2))]
         gap = np.eye(2) - np.stack([column[-1] for column in columns], axis=1)
+        # Near resonance the periodic solution grows without bound; report NaN instead.
         if np.linalg.svd(gap, compute_uv=False).min() <= RESONANT:
             return np.full((2, len(self.angle)), np.nan)
         start = np.linalg.solve(gap, _march(transfer, driven, np.zeros(2))[-1])
@@ -143,17 +148,17 @@ class Response:
 
     @property
     def resonant(self) -> bool:
-        """Whether the undamped train is met by a harmonic of the speed."""
+        """Whether a harmonic of the speed coincides with the natural frequency of the undamped train."""
         return bool(np.isnan(self.state).any())
 
     @property
     def displacement(self) -> Real:
-        """x at the angles."""
+        """Displacement x of the mass at the angles."""
         return np.asarray(self.program.motion(self.angle).s + self.state[0])
 
     @property
     def acceleration(self) -> Real:
-        """Of the mass, per radian squared: x″."""
+        """Acceleration x″ of the mass, per radian squared."""
         train, (y, rate) = self.train, self.state
         s = self.program.motion(self.angle).s
         spring = (train.spring_rate * (s + y) + train.preload) / (train.mass * self.speed**2)
@@ -162,25 +167,28 @@ class Response:
 
     @property
     def contact_force(self) -> Real:
-        """Of the cam on the train at the angles; not above zero the follower leaves the cam."""
+        """Force of the cam on the train at the angles; where it is ≤ 0 the follower leaves the cam."""
         y, rate = self.state
         return np.asarray(-self.train.stiffness * y - self.train.damping * self.speed * rate)
 
     def residual(self) -> Real:
-        """Amplitude of the free vibration at the start of each segment; the dwells are what it matters for."""
+        """Return the amplitude of the free vibration at the start of each segment; it matters in dwells."""
         index = np.searchsorted(self.angle, self.program.joints[:-1])
         r, zeta, train = self.frequency_ratio, self.train.damping_ratio, self.train
         y, rate = self.state[:, index]
         s = self.program.motion(self.program.joints[:-1]).s
+        # Static deflection; the free vibration is measured about it.
         rest = -(train.spring_rate * s + train.preload) / (train.stiffness + train.spring_rate)
         lag = y - rest
         return np.asarray(np.hypot(lag, (rate + zeta * r * lag) / (r * math.sqrt(1.0 - zeta**2))))
 
     def _driven(self, steps: Real, transfer: Real) -> Real:
-        """What each step adds to y, y′: the particular cubic's end less the free motion from its start."""
+        """Compute the forcing of each step on y, y′: end of the particular cubic minus the free motion from its
+        start."""
         r, zeta, train = self.frequency_ratio, self.train.damping_ratio, self.train
         scale = 1.0 / (train.mass * self.speed**2)
         at_start = self.program.motion(self.angle[:-1])
+        # One-sided values, because steps end at breaks of the program.
         at_end = self.program.motion(self.angle[1:], before=True)
         f0, f1 = (-m.a - scale * (train.spring_rate * m.s + train.preload) for m in (at_start, at_end))
         g0, g1 = (-m.j - scale * train.spring_rate * m.v for m in (at_start, at_end))
@@ -197,7 +205,8 @@ class Response:
 
 
 def _free(r: float, zeta: float, h: Real) -> Real:
-    """Transfers of y, y′ over steps of free vibration, shape (n, 2, 2)."""
+    """Build the transfer matrices of y, y′ over steps of free vibration, shape (n, 2, 2)."""
+    # Damped frequency per radian of cam rotation; ζ < 1 is checked on construction.
     w = r * math.sqrt(1.0 - zeta**2)
     decay, sine, cosine = np.exp(-zeta * r * h), np.sin(w * h), np.cos(w * h)
     lag = zeta * r / w * sine
@@ -207,7 +216,7 @@ def _free(r: float, zeta: float, h: Real) -> Real:
 
 @njit(cache=True, nogil=True)
 def _march(transfer: Real, driven: Real, start: Real) -> Real:
-    """States after each step, the start first."""
+    """Return the states after each step, the start first."""
     states = np.empty((len(transfer) + 1, 2))
     states[0] = start
     for k in range(len(transfer)):

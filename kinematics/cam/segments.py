@@ -22,11 +22,11 @@ from kinematics.errors import DimensionError
 Real = NDArray[np.float64]
 
 INDEPENDENT = 1e-12
-"""Least singular value, relative to the largest, of conditions that determine a polynomial; below it they do not."""
+"""Smallest relative singular value of conditions that determine a polynomial; below it they are dependent."""
 
 
 class Condition(NamedTuple):
-    """The derivative of an order at an angle from the segment's start has a value; order 0 is the displacement."""
+    """A value of the derivative of an order at an angle from the segment's start; order 0 is the displacement."""
 
     angle: float
     order: int
@@ -35,7 +35,7 @@ class Condition(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Segment:
-    """A part of a motion program: what it is called, and its motion from angle 0 on."""
+    """A part of a motion program: its name, and its motion from angle 0 on."""
 
     name: str
     pieces: Pieces
@@ -46,12 +46,12 @@ class Segment:
         return self.pieces.length
 
     def extremes(self, order: int) -> Extremes:
-        """Exact extremes of s, v, a or j (order 0 to 3) within the segment; angles are from its start."""
+        """Find the exact extremes of s, v, a or j (order 0 to 3) within the segment; angles count from its start."""
         return extremes(lambda angle: self.pieces.motion(angle)[order], self.pieces.start)
 
 
 def law_segment(law: Law, angle: float, start: float, end: float) -> Segment:
-    """A rise or fall by a law; a fall is the law upside down.
+    """Build a rise or fall by a law; a fall is the law upside down.
 
     Peak velocity and acceleration of a cycloidal rise of 1 in 1 rad are 2 and 2π (Norton, Table 8-3):
 
@@ -64,25 +64,25 @@ def law_segment(law: Law, angle: float, start: float, end: float) -> Segment:
 
 
 def dwell(angle: float, position: float) -> Segment:
-    """A rest."""
+    """Build a dwell."""
     return Segment("dwell", polynomial_pieces([0.0, _angle(angle)], [[_finite("position", position)]]))
 
 
 def polynomial_segment(angle: float, conditions: Sequence[Condition]) -> Segment:
-    """The polynomial of least degree through conditions anywhere in the segment (Norton §8.3, §8.5).
+    """Build the polynomial of minimum degree through conditions anywhere in the segment (Norton §8.3, §8.5).
 
     n conditions determine n coefficients; degree n − 1.
 
     Raises
     ------
     DimensionError
-        A condition outside the segment, or conditions that do not determine one polynomial.
+        For a condition outside the segment, or conditions that do not determine one polynomial.
     """
     return Segment("polynomial", _through(_angle(angle), conditions))
 
 
 def knot_segment(knots: ArrayLike, coefficients: ArrayLike) -> Segment:
-    """A piecewise polynomial: angles of its knots from 0, shape (n + 1,), and local coefficients, shape (n, k)."""
+    """Build a piecewise polynomial from knot angles starting at 0, shape (n + 1,), and local coefficients (n, k)."""
     pieces = polynomial_pieces(knots, coefficients)
     if pieces.start[0] != 0.0:
         raise DimensionError("first knot", "0", float(pieces.start[0]))
@@ -90,11 +90,12 @@ def knot_segment(knots: ArrayLike, coefficients: ArrayLike) -> Segment:
 
 
 def _through(angle: float, conditions: Sequence[Condition]) -> Pieces:
-    """The polynomial in θ/β from one square linear system, whose rows are scaled to 1 and refined once."""
+    """Solve for the polynomial in θ/β: one square linear system, rows scaled to 1, refined once."""
     if not conditions:
         raise DimensionError("conditions", "at least one", [])
     terms = len(conditions)
     matrix, values = np.zeros((terms, terms)), np.zeros(terms)
+    # Values in units of the largest one, so that the conditioning does not depend on the unit of length.
     scale = max(abs(c.value) * angle**c.order for c in conditions) or 1.0
     for row, (at, order, value) in enumerate(conditions):
         if not (0.0 <= at <= angle and math.isfinite(value) and 0 <= order < terms):
@@ -104,16 +105,19 @@ def _through(angle: float, conditions: Sequence[Condition]) -> Pieces:
         matrix[row] = _powers(at / angle, terms, order)
         values[row] = value * angle**order / scale
     size = np.abs(matrix).max(axis=1)
+    # Row scaling: derivatives of high order have much larger coefficients than values.
     matrix, values = matrix / size[:, None], values / size
+    # Conditions may repeat or imply each other, such as three positions of a line.
     if np.linalg.cond(matrix) > 1.0 / INDEPENDENT:
         raise DimensionError("conditions", "such that they determine one polynomial", [tuple(c) for c in conditions])
     coefficients = np.linalg.solve(matrix, values)
+    # One step of iterative refinement: high-order conditions make the matrix ill-conditioned.
     coefficients += np.linalg.solve(matrix, values - matrix @ coefficients)
     return polynomial_pieces([0.0, angle], [coefficients * scale / angle ** np.arange(terms)])
 
 
 def _powers(x: float, terms: int, order: int) -> Real:
-    """The derivative of an order of 1, x, x², ... at x."""
+    """Return the derivatives of an order of 1, x, x², ... at x."""
     return np.array([math.perm(k, order) * x ** (k - order) if k >= order else 0.0 for k in range(terms)])
 
 

@@ -1,9 +1,8 @@
-"""By how much what is measured of a finished profile depends on how close its points stand.
+"""Discretization error of values measured on a finished profile.
 
-Two curves run through the points: one through all of them, one through every second. Where they agree the measure is
-settled. Where they do not, and the worst value may be there, points have to be put closer, and a share of what they
-differ by is added to it. An error of the fourth order, as one beside the end of a stretch has it, is divided by sixteen
-when points stand twice as close.
+Two curves are fitted: one through all points, one through every second point. Where they agree the value is *settled*.
+Where they differ and the worst value may be there, the points must be closer, and a share of the difference is added to
+the value. An error of fourth order, as next to the end of a stretch, is divided by sixteen when the spacing is halved.
 """
 
 from __future__ import annotations
@@ -18,57 +17,57 @@ from kinematics.cam.program import TURN
 Real = NDArray[np.float64]
 
 SETTLED = 1e-6
-"""Relative difference of the curvatures through all points and through every second one at which the first is right."""
+"""Relative difference of the curvatures of the two curves up to which the finer one counts as exact."""
 
 FAINT = 0.02
-"""Curvature, as a share of the greatest, below which another one is right to that share of its own: a profile is hollow
-or convex there by so little that nothing hangs on it."""
+"""Curvature, as a share of the maximum, below which the tolerance no longer shrinks with the value: the profile is so
+slightly hollow or convex there that it does not matter."""
 
 GAINED = 0.2
-"""Share of that difference by which the first may be off: its error is of the fourth order, so that a fifteenth is
-usual, and more at the ends of stretches."""
+"""Share of that difference taken as the error of the finer curve: with an error of fourth order a fifteenth is usual,
+more at the ends of stretches."""
 
 STEADY = SETTLED / GAINED
-"""Relative difference of a pressure angle, or of a face's width, at which what is added to it is as little."""
+"""Relative difference of a pressure angle, or of a face's width, at which the amount added equals SETTLED."""
 
 SHARES = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
-"""Of a chord, where the two curves are compared."""
+"""Shares of a chord at which the two curves are compared."""
 
 REACH = 2
-"""Chords on each side that are divided with an unsettled one."""
+"""Neighbouring chords on each side that are divided together with an unsettled one."""
 
 NEARLY = 5e-3
-"""Share of the greatest curvature by which a place may be less and lie beside it all the same."""
+"""Share of the maximum curvature within which a place still counts as near the maximum."""
 
 HIDDEN = 1e-4
-"""Share of the greatest curvature by which a small break of the motion may change it, where curves run over it."""
+"""Share of the maximum curvature by which a small break of the motion may change it, if curves cross the break."""
 
 FEW = 7.0
-"""What an unsettledness counts as at most: chords are divided in two at once, and again in the next round."""
+"""Maximum unsettledness: chords are divided in two at once, and again in the next round."""
 
 ROUGH = 0.25
-"""Share of the difference of two curvatures that are not close yet, by which the one through all points may be off."""
+"""Share of the difference taken as the error of the finer curve while the two curvatures are not close yet."""
 
 WIDELY = 1e4
-"""Stands for the unsettledness of a chord that has to be divided as finely as possible."""
+"""Unsettledness assigned to a chord that has to be divided as finely as possible."""
 
 SHORT = 1e-6
-"""Length of a chord, as a share of the distance from the centre, below which it is divided no further: its direction
+"""Length of a chord, as a share of the distance from the centre, below which it is not divided further: its direction
 then has no more than nine digits."""
 
 
 class Stretches(NamedTuple):
-    """How the breaks of a motion divide a profile.
+    """Division of a profile by the breaks of its motion.
 
     Attributes
     ----------
     breaks : int, shape (b,)
-        Points over which no curve is fitted: the breaks, but for those whose neighbours on both sides are too near for
-        curves of their own.
+        Points that no curve crosses: the breaks, except those whose neighbours on both sides are too near for curves
+        of their own.
     blurred : bool, shape (n,)
-        Chords whose curves run over breaks.
+        Chords whose curves cross breaks.
     narrow : bool, shape (n,)
-        Those of them between breaks so near to each other that no curvature can be measured there.
+        Those of them between breaks too close to measure a curvature there.
     single : bool, shape (n,)
         Chords between breaks with too few points for a second curve through every second one.
     """
@@ -80,26 +79,26 @@ class Stretches(NamedTuple):
 
 
 def doubt(near: Real, wide: Real, unexplained: Real, room: Real, stretches: Stretches) -> tuple[float, float, Real]:
-    """By how much the greatest and the least curvature may be greater and less than they are through all points.
+    """Estimate how far the true extremes of the curvature may exceed those of the finer curve.
 
     Parameters
     ----------
     near, wide : float, shape (n, m)
         Curvatures at m places of n chords, of the curve through all points and of that through every second one.
     unexplained : float, shape (n,)
-        What else the curvature of each chord may be off.
+        Further error of the curvature of each chord.
     room : float, shape (n,)
-        Length of each chord, of which 1 is the least that is divided.
+        Size of each chord; chords below 1 are not divided.
     stretches : Stretches
-        A curve that runs over breaks may hide them at both densities.
+        Breaks of the motion; a curve that crosses one may hide it at both densities.
 
     Returns
     -------
     above, below : float
-        What to add to the greatest, and to take from the least.
+        Amounts to add to the maximum and to subtract from the minimum.
     unsettled : float, shape (n,)
-        More than 1 at chords that have to be divided, as what is not known of their curvature may be worse than all
-        that is known: how many times more than allowed that is, and no more than there is room for. 0 elsewhere.
+        Above 1 at chords that have to be divided because their true curvature may exceed the known extremes: the error
+        as a multiple of the tolerance, limited by the size of the chord. 0 elsewhere.
     """
     measured = ~stretches.narrow
     unsettled = np.zeros(len(near))
@@ -107,6 +106,7 @@ def doubt(near: Real, wide: Real, unexplained: Real, room: Real, stretches: Stre
     apart = np.abs(near - wide)
     faint = FAINT * np.abs(near).max()
     error, factor = [], np.zeros(len(near))
+    # Maximum first, then the minimum as the maximum of the negated curvature.
     for toward in (near, -near):
         top = float(toward.max())
         allowed = SETTLED * max(abs(top), faint)
@@ -116,25 +116,26 @@ def doubt(near: Real, wide: Real, unexplained: Real, room: Real, stretches: Stre
         beside = toward + apart + more > top - NEARLY * abs(top)
         worse = rough & beside
         factor = np.maximum(factor, np.where(worse, apart + more / GAINED, 0.0).max(axis=1) / allowed)
+        # Without a second curve there is no error estimate: divide near the extreme in any case.
         factor[beside.any(axis=1) & stretches.single[measured]] = FEW
     above, below = error
     hidden = (near > near.max() - HIDDEN * np.abs(near.max())) | (near < near.min() + HIDDEN * np.abs(near.min()))
     unsettled[measured] = np.where(hidden.any(axis=1) & stretches.blurred[measured], WIDELY, np.minimum(factor, FEW))
-    # A chord is divided into as many parts as the fourth root says.
+    # The number of parts of a chord is the fourth root of its factor, hence the limit room⁴.
     return above, below, np.where(room >= 1.0, np.minimum(spread(unsettled, stretches), FEW * room**4), 0.0)
 
 
 def unsteadiness(near: Real, wide: Real, sign: Real, lengths: Real, stretches: Stretches) -> Real:
-    """By how many times what is allowed a value depends on how close points stand, where it may be the greatest.
+    """Return the discretization error of a value as a multiple of the tolerance, where it may be the maximum.
 
     Parameters
     ----------
     near, wide : float, shape (n, m)
         The value at m places of n chords, of the curve through all points and of that through every second one.
     sign : float, shape (n, m)
-        −1, 0 or 1: the values of either sign have their own greatest one, and belong to both where it is 0.
+        −1, 0 or 1: values of either sign have their own maximum; those with 0 belong to both.
     lengths : float, shape (n,)
-        Of the chords, as shares of the cam.
+        Lengths of the chords, as shares of the cam's size.
     stretches : Stretches
     """
     apart, factor = np.abs(near - wide), np.zeros(len(near))
@@ -147,7 +148,7 @@ def unsteadiness(near: Real, wide: Real, sign: Real, lengths: Real, stretches: S
 
 
 def spread(unsettled: Real, stretches: Stretches) -> Real:
-    """To the neighbours of each chord too, since its curve runs through their points, but over no break."""
+    """Spread unsettledness to neighbouring chords, whose points the curve uses too, but not across a break."""
     ends = np.zeros(len(unsettled), np.bool_)
     ends[stretches.breaks] = True
     ends &= ~(stretches.blurred | np.roll(stretches.blurred, 1))
@@ -159,7 +160,7 @@ def spread(unsettled: Real, stretches: Stretches) -> Real:
 
 
 def coarser_places(at: Real, coarser: Real, share: Real) -> tuple[NDArray[np.int64], Real]:
-    """Where shares of chords lie in a curve through fewer of the same points: its chords, and the shares of those.
+    """Locate shares of chords on a curve through fewer of the same points: its chords, and their shares.
 
     Parameters
     ----------
@@ -172,6 +173,7 @@ def coarser_places(at: Real, coarser: Real, share: Real) -> tuple[NDArray[np.int
     chord, share : int and float, shape (n, k)
     """
     chord = np.searchsorted(coarser, at, side="right") - 1
+    # Angles before the first coarse point lie on the last chord of the previous turn.
     start = np.where(chord < 0, coarser[-1] - TURN, coarser[chord])
     step = np.diff(np.append(coarser, coarser[0] + TURN))[chord]
     angle = at[:, None] + share * np.diff(np.append(at, at[0] + TURN))[:, None]

@@ -1,19 +1,20 @@
-"""The return spring with which a follower is pressed to its cam least, of all that keep it there at every speed.
+"""Return spring with the smallest maximum contact force among all that keep contact at every speed.
 
 With rate k = x², preload F0 and the damping c = 2 ζ √(k m) of a ratio ζ, the force at cam angle θ and speed w is
 
     F(θ, w) = m w² a + 2 ζ √m w v x + s x² + F0
 
-(Norton, *Design of Machinery*, §15.2). At the working speed ω its greatest value over θ is to be least; at every θ and
-every w from 0 to a top speed it must not fall below a floor. Every θ alone says
+(Norton, *Design of Machinery*, §15.2). Its maximum over θ at the working speed ω is minimized; at every θ and every w
+from 0 to a top speed it must not fall below a floor. Each θ gives
 
-    greatest force − F0 ≥ m ω² a + 2 ζ √m ω v x + s x²          (an *upper* cut)
+    maximum force − F0 ≥ m ω² a + 2 ζ √m ω v x + s x²          (an *upper* cut)
     F0 ≥ floor − m w² a − 2 ζ √m w v x − s x²                   (a *need*, with any one w)
 
-for every x: parabolas in x with known coefficients, straight lines in k without damping, where the problem is convex in
-k and F0. The greatest upper cut and the greatest need found so far make a model that lies nowhere above the truth. It
-is made least exactly, among ends, vertices and crossings of its parabolas; the truth at that x gives the next cuts
-(exchange; Kelley, *J. SIAM* 8, 1960). The least of the model bounds every spring there is, with damping or without.
+for every x: parabolas in x with known coefficients (straight lines in k without damping, where the problem is convex in
+k and F0). The maximum of the upper cuts plus the maximum of the needs in the list is a lower model of the objective.
+It is minimized exactly, among ends, vertices and crossings of its parabolas; the true values at that x give the next
+cuts (exchange; Kelley, *J. SIAM* 8, 1960). The model's minimum is a lower bound for every spring, with damping or
+without.
 """
 
 from __future__ import annotations
@@ -32,29 +33,30 @@ from kinematics.errors import DimensionError
 Real = NDArray[np.float64]
 
 ROUNDS = 80
-"""Springs that are tried at most; a dozen is usual."""
+"""Maximum number of springs tried; a dozen is usual."""
 
 CLOSE = 1e-10
-"""Share of the force by which the value may exceed its bound, and by which a stated preload may miss a need."""
+"""Share of the force by which the value may exceed its bound, and by which a given preload may miss a need."""
 
 STIFFEST = 1e4
-"""Spring force over the lift, in units of all other forces, up to which springs are looked for."""
+"""Maximum spring force over the lift, in units of all other forces: upper end of the search."""
 
 
 @dataclass(frozen=True)
 class SpringDemands:
-    """What a spring has to keep, and between which rates it may be.
+    """Constraints on a return spring.
 
     Parameters
     ----------
     floor : float
-        Least contact force.
+        Minimum contact force.
     speed, top_speed : float
-        Of the camshaft, radians per unit of time: at which the greatest force counts, and up to which contact is kept.
+        Speeds of the camshaft, radians per unit of time, at which the maximum force counts and up to which contact is
+        kept.
     least_rate, greatest_rate : float
-        Of the spring; the greatest may be infinite.
+        Range of the spring's rate; the maximum may be infinite.
     preload : float or None
-        None: free, at least 0.
+        Given preload; None if it is free (at least 0).
     """
 
     floor: float
@@ -79,10 +81,10 @@ class Spring:
     ----------
     rate, preload : float
     greatest_force : float
-        Of the contact at the speed.
+        Maximum contact force at the speed.
     bound : float or None
-        No spring within the demands has a smaller greatest force; None where none was found that holds contact, and
-        this is the one that comes nearest to it.
+        Lower bound of the maximum force over all feasible springs; None if no feasible spring was found and this is
+        the nearest miss.
     """
 
     rate: float
@@ -92,15 +94,15 @@ class Spring:
 
 
 def best_spring(program: Program, mass: float, damping_ratio: float, demands: SpringDemands) -> Spring:
-    """The spring of least greatest contact force that keeps the demands, or the one that fails them least.
+    """Find the feasible spring of smallest maximum contact force, or the one that violates the constraints least.
 
     Parameters
     ----------
     program : Program
     mass : float
-        Of the follower, or its moment of inertia.
+        Mass of the follower, or its moment of inertia.
     damping_ratio : float
-        ζ of mass and spring.
+        Damping ratio ζ of mass and spring.
     demands : SpringDemands
     """
     search = _Search(program, mass, damping_ratio, demands)
@@ -109,11 +111,12 @@ def best_spring(program: Program, mass: float, damping_ratio: float, demands: Sp
 
 
 class _Search:
-    """One exchange: the cuts found so far, and the springs tried."""
+    """State of the exchange: the current cuts."""
 
     def __init__(self, program: Program, mass: float, ratio: float, demands: SpringDemands) -> None:
         self.program, self.mass, self.ratio, self.demands = program, mass, ratio, demands
         lift = program.lift
+        # Scale of all forces without the spring, for the tolerances and the upper end of the search.
         others = mass * demands.top_speed**2 * program.peaks[2].largest + demands.floor + (demands.preload or 0.0)
         cap = STIFFEST * others / lift if lift > 0.0 else 0.0
         self.ends = (
@@ -122,12 +125,14 @@ class _Search:
         )
         self.scale = others
         self.upper = np.empty((0, 3))
+        # A free preload is at least 0: the zero parabola.
         self.needs = np.zeros((1, 3)) if demands.preload is None else np.empty((0, 3))
+        # Cuts at both ends bound the model from the start.
         for x in self.ends:
             self.tried(x)
 
     def tried(self, x: float) -> tuple[float, float]:
-        """Greatest force without preload and needed preload at a spring; its worst places become cuts."""
+        """Evaluate maximum force without preload and required preload of a spring; its worst angles become cuts."""
         demands, root = self.demands, 2.0 * self.ratio * math.sqrt(self.mass)
         load = FollowerLoad(self.mass, x * x).damped(self.ratio)
         running = RunningCam(self.program, load, demands.speed)
@@ -147,14 +152,15 @@ class _Search:
         return force.greatest, max(0.0, demands.floor - weakest.force)
 
     def _rate(self, x: float) -> float:
-        """k = x², within the demands to the last digit."""
+        """Return k = x², clipped to the given range to the last digit."""
+        # √ and square do not return the given limit exactly; restore it.
         if x <= self.ends[0]:
             return self.demands.least_rate
         rate = max(x * x, self.demands.least_rate)
         return self.demands.greatest_rate if rate >= self.demands.greatest_rate * (1.0 - CLOSE) else rate
 
     def least_force(self) -> Spring | None:
-        """Exchange until value and bound meet; None where no spring was found that keeps the demands."""
+        """Exchange until value and bound meet; None if no feasible spring was found."""
         best: Spring | None = None
         bound = -math.inf
         stated = self.demands.preload
@@ -167,14 +173,16 @@ class _Search:
             preload = needed if stated is None else stated
             if needed <= preload + CLOSE * self.scale and (best is None or greatest + preload < best.greatest_force):
                 best = Spring(self._rate(x), preload, greatest + preload, None)
+            # The bound is a proof of optimality to this tolerance.
             if best is not None and best.greatest_force - bound <= CLOSE * abs(best.greatest_force):
                 break
         if best is None:
             return None
+        # Rounding may put the bound slightly above the value.
         return Spring(best.rate, best.preload, best.greatest_force, min(bound, best.greatest_force))
 
     def nearest(self) -> Spring:
-        """The spring of a stated preload that needs least more of it."""
+        """Find the spring whose required preload exceeds the given one least."""
         stated = self.demands.preload
         assert stated is not None, "a free preload meets every need"
         best: tuple[float, float, float] | None = None
@@ -189,10 +197,11 @@ class _Search:
         return Spring(self._rate(best[1]), stated, best[2] + stated, None)
 
     def _least_of_model(self) -> tuple[float, float] | None:
-        """x at which the model is least, and its value; None where its needs exceed a stated preload everywhere."""
+        """Minimize the model: return x and value; None if its needs exceed a given preload everywhere."""
         stated = self.demands.preload
         candidates = [_turning(self.upper), _turning(self.needs)]
         if stated is None:
+            # The sum of the two maxima is the maximum of all pairwise sums, so its minimum is at one of their vertices.
             together = (self.upper[:, None] + self.needs[None]).reshape(-1, 3)
             candidates.append(_vertices(together))
 
@@ -200,6 +209,7 @@ class _Search:
                 return _greatest(self.upper, x) + _greatest(self.needs, x)
         else:
             candidates.append(_crossings(self.needs - np.array([stated, 0.0, 0.0])))
+            # Half the tolerance, so that a spring on the model's boundary passes the full one.
             allowed = stated + 0.5 * CLOSE * self.scale
 
             def model(x: Real) -> Real:
@@ -210,18 +220,19 @@ class _Search:
 
 
 def _both_sides(program: Program, angle: float) -> Real:
-    """s, v, a at an angle, on either side of it where the motion jumps there; shape (2, 3)."""
+    """Return s, v, a on both sides of an angle, where the motion may jump; shape (2, 3)."""
     return np.array([[float(x) for x in program.motion(angle, before=side)[:3]] for side in (False, True)])
 
 
 def _greatest(rows: Real, x: Real) -> Real:
-    """The greatest of parabolas at places."""
+    """Return the maximum of parabolas at places."""
     at = np.asarray(x)
     return np.asarray((rows[:, 0, None] + rows[:, 1, None] * at + rows[:, 2, None] * at**2).max(axis=0))
 
 
 def _turning(rows: Real) -> Real:
-    """Where the greatest of parabolas may change over or turn."""
+    """Return the places where the maximum of parabolas may switch or have a vertex."""
+    # Every pair of parabolas may cross; the list stays short, as each round adds two cuts.
     first, second = np.triu_indices(len(rows), 1)
     return np.concatenate([_vertices(rows), _crossings(rows[first] - rows[second])])
 
@@ -232,11 +243,12 @@ def _vertices(rows: Real) -> Real:
 
 
 def _crossings(rows: Real) -> Real:
-    """Real roots of c + b x + a x², without cancellation."""
+    """Return the real roots of c + b x + a x², without cancellation."""
     c, b, a = rows.T
     square = b * b - 4.0 * a * c
     some = square >= 0.0
     c, b, a = c[some], b[some], a[some]
+    # Adding terms of equal sign avoids cancellation; the second root is c/q.
     q = -0.5 * (b + np.copysign(np.sqrt(square[some]), b))
     with np.errstate(divide="ignore", invalid="ignore"):
         found = np.concatenate([q / a, c / q])
@@ -244,7 +256,7 @@ def _crossings(rows: Real) -> Real:
 
 
 def _least(model: Callable[[Real], Real], candidates: Real, ends: tuple[float, float]) -> tuple[float, float]:
-    """The best of candidates between two ends, the ends among them."""
+    """Select the best of the candidates between two ends, ends included."""
     inside = candidates[(candidates > ends[0]) & (candidates < ends[1])]
     x = np.unique(np.concatenate([inside, ends]))
     values = model(x)

@@ -1,12 +1,12 @@
-"""What the walls of a barrel cam's groove do: the roller is laid against each of them, from their points alone.
+"""Motion of a roller laid against the walls of a barrel cam's groove, from their points alone.
 
 The cylinder on which the roller's middle runs is unrolled, x along its circumference and y along its axis, so that a
-wall is a curve that comes back after a turn 2πR farther on. A curve of the fifth degree runs through each six
-neighbouring points. With the roller's centre at x, a point (P_x, P_y) of the lower wall asks for
+wall is a curve that repeats after 2πR. A quintic runs through each six neighbouring points. With the roller's centre at
+x, a point (P_x, P_y) of the lower wall requires
 
     y = P_y + √(r² − (P_x − x)²)
 
-at least, a point of the upper wall for P_y − √(…) at most; the roller stands at the greatest, or the least, of them.
+at least, a point of the upper wall P_y − √(…) at most; the roller stands at the maximum, or the minimum, of these.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class UnrolledWall:
     Raises
     ------
     ShapeError, DimensionError
-        Fewer than 16 points; a period that is not positive, points that are not finite or equal to their neighbours.
+        For fewer than 16 points, a period that is not positive, or points that are not finite or equal to neighbours.
     """
 
     points: Complex
@@ -86,7 +86,7 @@ class UnrolledWall:
 
     @cached_property
     def chords(self) -> Complex:
-        """From each point to the next, shape (n,)."""
+        """Vectors from each point to the next, shape (n,)."""
         return np.asarray(np.diff(np.append(self.points, self.points[0] + self.period)))
 
     @property
@@ -96,7 +96,7 @@ class UnrolledWall:
         Raises
         ------
         DimensionError
-            Where the wall has none.
+            If the wall has none.
         """
         if self.at is None:
             raise DimensionError("angles of the points", "given with them", None)
@@ -107,11 +107,12 @@ class UnrolledWall:
         """Coefficients of each local curve in the share τ of its own chord, constant first; shape (n, 6)."""
         first, index, turn = self._stencils
         points = self.points[index % len(self.points)] + self.period * turn
+        # Points of the next turn lie one period and one turn of the cam further on.
         at = chord_lengths(points) if self.at is None else self.at[index % len(self.points)] + TURN * turn
         return local_curves(points, at, np.arange(len(points)) - first)
 
     def fitted(self, values: Real) -> Real:
-        """Curves of values at the points over the cam angle, like those through the points themselves; shape (n, 6)."""
+        """Fit quintics to values at the points over the cam angle, as through the points themselves; (n, 6)."""
         (first, index, turn), n = self._stencils, len(self.points)
         curves = local_curves(
             values[index % n].astype(np.complex128), self.given_at[index % n] + TURN * turn, np.arange(n) - first
@@ -120,7 +121,7 @@ class UnrolledWall:
 
     @cached_property
     def _stencils(self) -> tuple[Indices, Indices, Indices]:
-        """The first point of each chord's curve, all six, and in which turn they are."""
+        """First point of each chord's curve, all six, and the turn that each belongs to."""
         first = stencils(len(self.points), self.breaks)
         index = first[:, None] + np.arange(STENCIL)
         return first, index, index // len(self.points)
@@ -143,7 +144,7 @@ class UnrolledWall:
         return bool(np.abs(turn).max() > CUSP)
 
     def along(self, chord: ArrayLike, share: ArrayLike) -> tuple[Complex, Real]:
-        """Unit tangents, and curvatures positive where the wall bends toward +y, at shares of its chords."""
+        """Return unit tangents, and curvatures positive where the wall bends toward +y, at shares of its chords."""
         first, second = curve_derivatives(
             self.curves[np.asarray(chord, dtype=np.int64)], np.asarray(share, dtype=np.float64)
         )
@@ -151,7 +152,7 @@ class UnrolledWall:
         return np.asarray(first / length), np.asarray((np.conj(first) * second).imag / length**3)
 
     def heights(self, chord: ArrayLike, share: ArrayLike) -> Real:
-        """Places on the axis, at shares of its chords."""
+        """Return the positions along the axis at shares of its chords."""
         curves = self.curves[np.asarray(chord, dtype=np.int64)]
         return np.asarray(curve_value(curves, np.asarray(share, dtype=np.float64)).imag)
 
@@ -161,7 +162,7 @@ class UnrolledWall:
         Parameters
         ----------
         x : array_like
-            Where the roller's centre is along the circumference.
+            Positions of the roller's centre along the circumference.
         roller_radius : float
             Large enough that points of the wall lie on both sides of its contact.
         """
@@ -171,25 +172,28 @@ class UnrolledWall:
         flat = np.ascontiguousarray(at.reshape(-1))
         values, shares = np.empty(flat.size), np.empty(flat.size)
         pieces = np.empty(flat.size, dtype=np.int64)
+        # An upper wall is a lower wall mirrored in the x axis.
         curves = np.ascontiguousarray(self.curves if side == 1 else np.conj(self.curves))
         _lay(curves, self.period, flat, roller_radius, values, pieces, shares)
         first, second = curve_derivatives(self.curves[pieces], shares)
         touches = np.isfinite(values)
         tangent = np.where(touches, first / np.abs(first), np.nan)
         curvature = np.where(touches, (np.conj(first) * second).imag / np.abs(first) ** 3, np.nan)
+        # Mirror the height of an upper wall back.
         values = np.where(touches, side * values, np.nan)
         return Touch(values.reshape(at.shape), tangent.reshape(at.shape), curvature.reshape(at.shape))
 
 
 @njit(cache=True, nogil=True)
 def _asked(curves: Complex, base: int, t: float, period: float, x: float, radius: float) -> float:
-    """The height asked for at t chords from the point ``base``, −1 ≤ t ≤ 1; −∞ beyond the roller."""
+    """Return the height required at t chords from the point ``base``, −1 ≤ t ≤ 1; −∞ beyond the roller."""
     n = curves.shape[0]
     piece, share = (base, t) if t >= 0.0 else ((base - 1) % n, t + 1.0)
     z = curves[piece, STENCIL - 1]
     for k in range(STENCIL - 2, -1, -1):
         z = z * share + curves[piece, k]
     across = z.real - x
+    # Distance to the nearest image of the point: the wall repeats every period.
     across -= period * round(across / period)
     square = radius * radius - across * across
     return z.imag + math.sqrt(square) if square >= 0.0 else -math.inf
@@ -205,7 +209,7 @@ def _lay(
     pieces: NDArray[np.int64],
     shares: Real,
 ) -> None:
-    """Greatest height over the wall: every local maximum over the points is closed in by golden section."""
+    """Find the maximum height over the wall: refine every local maximum over the points by golden section."""
     n = curves.shape[0]
     asked = np.empty(n)
     for i in range(at.size):
@@ -214,6 +218,7 @@ def _lay(
         best, where, share = -math.inf, 0, 0.0
         for k in range(n):
             here = asked[k]
+            # Only local maxima over the points are refined; index −1 wraps around the closed wall.
             if here == -math.inf or here < asked[k - 1] or here < asked[(k + 1) % n]:
                 continue
             low, high = -1.0, 1.0
@@ -230,6 +235,7 @@ def _lay(
                     left = high - GOLDEN * (high - low)
                     at_left = _asked(curves, k, left, period, at[i], radius)
             found, t = (at_left, left) if at_left > at_right else (at_right, right)
+            # The two neighbouring curves meet at the point, where their maximum may be a corner.
             if here > found:
                 found, t = here, 0.0
             if found > best:

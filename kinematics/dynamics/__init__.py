@@ -1,8 +1,9 @@
-"""Forces in planar linkages that move as given: reactions at every joint, the drive, and what shakes the frame.
+"""Inverse dynamics of planar linkages: reactions at every joint, the drive, and the shaking force on the frame.
 
-A :class:`Machine` is a mechanism with its masses and loads. Driven, its :class:`Places` are those of all points of its
-links with two derivatives. From them :func:`reactions` solves Newton's and Euler's equations of all links, and
-:func:`balance` finds the drive and the shaking force from energy and momentum, without a reaction: a check on these.
+A :class:`Machine` is a mechanism with its masses and loads. Its :class:`Places` are the positions, velocities and
+accelerations of its links in a given motion. From them :func:`reactions` solves the Newton-Euler equations of all
+links, and :func:`balance` computes the drive and the shaking force from energy and momentum, independently of the
+reactions.
 """
 
 from kinematics.dynamics.balance import Balance, balance

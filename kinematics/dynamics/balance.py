@@ -1,8 +1,8 @@
-"""The drive and the shaking force by balances that know no reaction: of energy, and of momentum.
+"""Drive and shaking force from the balances of energy and momentum, without reactions.
 
-With the positions' derivatives by the input, ' , an input q and kinetic energy ½ J q̇²,
+With ' the derivative by the input q, and kinetic energy ½ J q̇²,
 
-    J = Σ m |r'|² + Σ I φ'²,    drive = J q̈ + ½ J' q̇² − (work of weight, loads and springs for a unit of q),
+    J = Σ m |r'|² + Σ I φ'²,    drive = J q̈ + ½ J' q̇² − (work of weight, loads and springs per unit of q),
 
 which is virtual work (Norton 10.26, 11.16) with d'Alembert's forces taken from the kinetic energy. Momentum P q̇ and
 angular momentum H q̇ about a fixed point give what acts on the frame:
@@ -25,7 +25,7 @@ from kinematics.linkage.planar.mechanism import Complex, Real
 
 
 class Balance(NamedTuple):
-    """Over designs × positions, shape S + (N,); ``scale`` is the sum of the magnitudes of all parts of the drive."""
+    """Results over designs × positions, shape S + (N,); ``scale`` sums the magnitudes of all parts of the drive."""
 
     drive: Real
     shaking_force: Complex
@@ -34,21 +34,24 @@ class Balance(NamedTuple):
 
 
 def balance(machine: Machine, now: Places, paced: Places, rubbing: Rubbing = NO_RUBBING) -> Balance:
-    """The balances of a machine at positions ``now``, with ``paced`` the same at an input speed of 1.
+    """Compute the balances of a machine at positions ``now``; ``paced`` is the same motion at an input speed of 1.
 
-    What friction takes is the reactions' own (``rubbing``): no balance of energy knows it. Inside the mechanism it
-    leaves momentum as it is.
+    Friction losses come from the reactions (``rubbing``), since a balance of energy cannot determine them. Friction is
+    internal to the mechanism and does not change momentum.
     """
+    # Speed and acceleration of the input; all other derivatives are by the input itself.
     q1, q2 = now.input[1], now.input[2]
     masses: list[tuple[Real, Jet]] = [
         (np.asarray(part.mass)[..., None], paced.point(link, part.cg)) for link, part in machine.bodies.items()
     ]
+    # Point masses at pins contribute like bodies without inertia.
     masses += [(np.asarray(mass)[..., None], paced.joints[joint]) for joint, mass in machine.pin_masses.items()]
     shape = now.smooth.shape
     inertia, inertia_rate, weight, angular, angular_rate, moment = (np.zeros(shape) for _ in range(6))
     momentum, momentum_rate, force = (np.zeros(shape, np.complex128) for _ in range(3))
     for mass, (r, r1, r2) in masses:
         inertia += mass * dot(r1, r1)
+        # dJ/dq for the term ½ J' q̇² of the drive.
         inertia_rate += 2.0 * mass * dot(r1, r2)
         weight += mass * dot(np.asarray(machine.gravity), r1)
         momentum += mass * r1
@@ -68,6 +71,7 @@ def balance(machine: Machine, now: Places, paced: Places, rubbing: Rubbing = NO_
         for effort in load.efforts(now):
             force = force + effort.force
             moment = moment + cross(effort.at - machine.about, effort.force) + effort.couple
+    # Kept separate, because the scale for tolerances is the sum of their magnitudes.
     parts = [inertia * q2, 0.5 * inertia_rate * q1**2, -weight, *(-work for work in works), -rubbing.work(paced)]
     return Balance(
         np.asarray(sum(parts)),

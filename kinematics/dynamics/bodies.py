@@ -23,12 +23,12 @@ class Body(NamedTuple):
 
 
 def body(mass: float, cg: complex = 0j, inertia: float = 0.0) -> Body:
-    """A body of plain numbers."""
+    """Make a body from plain numbers."""
     return Body(np.asarray(mass, np.float64), np.asarray(cg, np.complex128), np.asarray(inertia, np.float64))
 
 
 def joined(bodies: Iterable[Body]) -> Body:
-    """Bodies that are fixed to one another, as one.
+    """Join bodies that are fixed to one another into one.
 
     Examples
     --------
@@ -40,6 +40,7 @@ def joined(bodies: Iterable[Body]) -> Body:
     parts = list(bodies)
     mass = np.asarray(sum(part.mass for part in parts))
     first = sum(part.mass * part.cg for part in parts)
+    # A body without mass keeps an arbitrary but finite centre.
     weightless = mass == 0.0
     anywhere = parts[0].cg if parts else np.complex128(0.0)
     cg = np.where(weightless, anywhere, first / np.where(weightless, 1.0, mass))
@@ -48,8 +49,8 @@ def joined(bodies: Iterable[Body]) -> Body:
 
 
 def slenderness_faults(part: Body, reach: float) -> bool:
-    """Whether no three masses on the body within a reach of its centre have so small a moment of inertia.
+    """Return whether the moment of inertia is too small for a body of this extent.
 
-    A plane body of positive density has I > 0; below a millionth of m·reach² it is a point mass in all but name.
+    A plane body of positive density has I > 0; below 1e-6 m·reach² it is practically a point mass.
     """
     return bool(np.any((part.mass > 0.0) & (part.inertia < 1e-6 * part.mass * reach * reach)))

@@ -8,17 +8,18 @@ links meet, velocities and accelerations v, a of the pins, and X = p × q,
 
 where a joint slides on a line with the normal n, in another link (RRP) or in its own (RPR), p × n takes the part of X.
 
-Backwards, the last closure first, each link needs the resultant N of its pins' forces and their moment K about its pin
-(Norton, *Design of Machinery*, eq. 11.1). What later links, masses and loads leave on a pin, f, is known by then:
+Backwards, the last closure first, each link requires the resultant N of its pins' forces and their moment K about its
+pin (Norton, *Design of Machinery*, eq. 11.1). The force f that later links, masses and loads exert on a pin is known
+then:
 
     RRR   force of the joint on the second link  (K₂ p + (K₁ − p × f) q) / (q × p),
     RRP   normal force  λ = (K − p × f) / (p × n),
     RPR   λ = −K / (p × n),
     gear  the torque K on the link, −ratio K on the other.
 
-The pins get what is left; the driving link, or the driving slide, comes last. Every step is done for many inputs at
-once, in loops without branches on separate rows, of which the compiler makes vector instructions; what is not a number
-stays where it is, and is told at the end.
+The remainder acts on the pins; the driving link or slide comes last. Every step is done for many inputs at once, in
+loops without branches over separate rows, which the compiler vectorizes. NaN stays in its own lane and is reported at
+the end.
 """
 
 from __future__ import annotations
@@ -37,23 +38,23 @@ Complex = NDArray[np.complex128]
 Rows = NDArray[np.int64]
 
 LEAST_SINE = 1e-7
-"""Sine at a closure below which a position has no forces."""
+"""Sine of the angle at a closure below which a position counts as a toggle, without finite forces."""
 
 ON_LINK, ON_JOINT = range(2)
-"""What a load acts on."""
+"""Codes for the target of a load."""
 
 DRIVE, PIN_FORCE, SHAKING_X, SHAKING_Y, MOMENT = range(5)
 """Rows of the results."""
 
 LANES = 64
-"""Inputs at most that are worked on side by side, by vector instructions; all that is known of them stays in the
-first-level cache."""
+"""Maximum number of inputs processed side by side by vector instructions; their data must fit into the first-level
+cache."""
 
 OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
-"""How the kernels are compiled: division by zero as in NumPy."""
+"""Options of the kernels: division by zero gives inf or NaN as in NumPy."""
 
 STEP: dict[str, Any] = OPTIONS | {"forceinline": True}
-"""A step that is called in one place."""
+"""Options of a kernel that is called in one place and inlined there."""
 
 
 @njit(**OPTIONS)
@@ -86,17 +87,17 @@ def eliminate(
     Parameters
     ----------
     rows, ratios, driver
-        Of :class:`~kinematics.linkage.planar.drive_kernels.Code`; links by number, 0 is the ground.
+        See :class:`~kinematics.linkage.planar.drive_kernels.Code`; links by number, 0 is the ground.
     bases : int, shape (links,)
         The pin of each link, about which its moments are taken.
     exact : bool, shape (links,)
         Links whose rotation is known beyond a full turn: the input, and what gears tie to it.
     carried : int, shape (links, 1 + joints)
-        How many joints a link makes known, and which.
+        Number of joints that a link determines, and their indices.
     joints : complex, shape (D, joints)
         In the reference.
     lines, normals : complex, shape (D, slides)
-        A point of each slide's line, from the pin of the link that it is fixed in, and its normal; in the reference.
+        A point of each slide's line, relative to the pin of its link, and its normal; in the reference.
     signs : int, shape (steps, D)
         Assemblies.
     mass, cg, inertia : shape (D, links)
@@ -104,9 +105,9 @@ def eliminate(
     pin_mass : float, shape (D, joints)
     gravity : complex
     on : int, shape (loads, 3)
-        A load acts on a link or a joint, which, and whether its components turn with the link.
+        Target of each load (link or joint), its index, and whether the components turn with the link.
     arms : complex, shape (D, loads)
-        Where it acts on the link, from the link's pin, in the reference.
+        Point of action relative to the link's pin, in the reference.
     strengths : complex, shape (loads, D, N)
     couples : float, shape (links, D, N), or (0, 0, 0)
         Torques on the links.
@@ -121,19 +122,24 @@ def eliminate(
     x, turn, angle = np.zeros((count, 6, LANES)), np.zeros((links, 4, LANES)), np.zeros((links, LANES))
     need, pins, whole = np.zeros((links, 3, LANES)), np.zeros((count, 2, LANES)), np.ones(LANES, np.bool_)
     fixed, results = np.zeros((len(rows), 8)), np.zeros((5, LANES))
+    # The ground has rotation factor 1 and no rates.
     turn[0, 0] = 1.0
     gx, gy = gravity.real, gravity.imag
+    # Blocks of equal size, at most LANES: two ceiling divisions.
     block = -(-inputs // -(-inputs // LANES)) if inputs else 1
     for d in range(joints.shape[0]):
         place = joints[d]
         for joint in range(count):
             x[joint] = 0.0
             x[joint, 0], x[joint, 1] = place[joint].real, place[joint].imag
+        # Constants of the design, computed once for all inputs.
         _reference(rows, place, lines[d], normals[d], bases, fixed)
         for start in range(0, inputs, block):
             lanes = min(block, inputs - start)
+            # Lanes whose closures exist; the others are masked at the end.
             whole[:] = True
             first = driver[0]
+            # A slide drives: its joint moves along the line, which is the normal turned back by 90°.
             if first < 0:
                 joint, normal = driver[1], normals[d, driver[2]]
                 for k in range(lanes):
@@ -171,12 +177,14 @@ def eliminate(
             for joint in range(count):
                 m = pin_mass[d, joint]
                 for k in range(lanes):
+                    # Weight and inertia of point masses act on the pins (d'Alembert).
                     pins[joint, 0, k], pins[joint, 1, k] = m * (gx - x[joint, 4, k]), m * (gy - x[joint, 5, k])
             for link in range(1, links):
                 base, g, m = bases[link], cg[d, link], mass[d, link]
                 for k in range(lanes):
                     c, s, w, alpha = turn[link, 0, k], turn[link, 1, k], turn[link, 2, k], turn[link, 3, k]
                     rx, ry = c * g.real - s * g.imag, s * g.real + c * g.imag
+                    # m (a_G − g), with the acceleration of the centre from that of the pin.
                     fx = m * (x[base, 4, k] - w * w * rx - alpha * ry - gx)
                     fy = m * (x[base, 5, k] - w * w * ry + alpha * rx - gy)
                     need[link, 0, k], need[link, 1, k] = fx, fy
@@ -195,6 +203,7 @@ def eliminate(
                         continue
                     c, s = turn[which, 0, k], turn[which, 1, k]
                     rx, ry = c * arm.real - s * arm.imag, s * arm.real + c * arm.imag
+                    # Components given in the link's frame turn with it.
                     if on[n, 2]:
                         fx, fy = c * force.real - s * force.imag, s * force.real + c * force.imag
                     need[which, 0, k] -= fx
@@ -203,12 +212,13 @@ def eliminate(
             _give_back(rows, ratios, bases, carried, driver, normals[d], about[d], x, turn, need, pins, results, lanes)
             for k in range(lanes):
                 for n in range(5):
+                    # NaN only here, so that the loops above need no branches.
                     out[n, d, start + k] = results[n, k] if whole[k] else np.nan
 
 
 @njit(**STEP)
 def _reference(rows: Rows, place: Complex, line: Complex, normal: Complex, bases: Rows, fixed: Real) -> None:
-    """What stays the same of a closure: the arms and the squares of their lengths; the line's distance of RPR."""
+    """Compute the constants of each closure: arms and squares of their lengths; for RPR the distance of the line."""
     for row in range(len(rows)):
         kind, pin, joint = rows[row, KIND], rows[row, PIN], rows[row, JOINT]
         if kind == GEAR:
@@ -231,7 +241,7 @@ def _reference(rows: Rows, place: Complex, line: Complex, normal: Complex, bases
 
 @njit(**OPTIONS)
 def _carry(link: int, pin: int, place: Complex, carried: Rows, turn: Real, x: Real, lanes: int) -> None:
-    """Places, velocities and accelerations of the joints that a link makes known."""
+    """Compute positions, velocities and accelerations of the joints that a link determines."""
     for n in range(1, carried[link, 0] + 1):
         joint = carried[link, n]
         arm = place[joint] - place[pin]
@@ -263,7 +273,7 @@ def _assemble(
     whole: NDArray[np.bool_],
     lanes: int,
 ) -> None:
-    """Rotations and rates of all links, and the joints that they carry; not ``whole`` where a closure has none."""
+    """Compute rotations and rates of all links, and their joints; clear ``whole`` where a closure has no solution."""
     for row in range(len(rows)):
         kind, link, pin, joint = rows[row, KIND], rows[row, LINK], rows[row, PIN], rows[row, JOINT]
         other, slide, sign = rows[row, OTHER], rows[row, SLIDE], float(signs[row, d])
@@ -274,11 +284,14 @@ def _assemble(
                 square = bx * bx + by * by
                 along = 0.5 * (square + b2 - c2)
                 height = b2 * square - along * along
+                # height is the square of b c times the sine of the angle between both links.
                 whole[k] &= height > LEAST_SINE * LEAST_SINE * b2 * c2
                 height = -sign * math.sqrt(height)
                 inverse = 1.0 / square
+                # Position of the joint from the base, by the two circles.
                 px, py = (bx * along - by * height) * inverse, (by * along + bx * height) * inverse
                 qx, qy = px - bx, py - by
+                # X = p × q: it vanishes at the toggle excluded above.
                 inverse = 1.0 / (px * qy - py * qx)
                 ex, ey = x[far, 2, k] - x[pin, 2, k], x[far, 3, k] - x[pin, 3, k]
                 w, v = (ex * qx + ey * qy) * inverse, (ex * px + ey * py) * inverse
@@ -293,6 +306,7 @@ def _assemble(
             _carry(other, far, place, carried, turn, x, lanes)
         elif kind == GEAR:
             for k in range(lanes):
+                # Only the principal value is known of a link that a closure places; gears on it must not exceed ±π.
                 if not exact[other]:
                     angle[other, k] = math.atan2(turn[other, 1, k], turn[other, 0, k])
                 angle[link, k] = ratios[row] * angle[other, k]
@@ -310,7 +324,7 @@ def _assemble(
                 whole[k] &= root > LEAST_SINE * LEAST_SINE * fixed[row, 2]
                 root = sign * math.sqrt(root)
                 px, py = nx * h + ny * root, ny * h - nx * root
-                # The line's own motion at the joint, and the joint's along it.
+                # The line's own motion at the joint, and the joint's motion along it (Coriolis term below).
                 rx, ry = x[pin, 0, k] + px - x[base, 0, k], x[pin, 1, k] + py - x[base, 1, k]
                 vx, vy = x[base, 2, k] - w * ry - x[pin, 2, k], x[base, 3, k] + w * rx - x[pin, 3, k]
                 inverse = 1.0 / root
@@ -345,7 +359,7 @@ def _assemble(
 def _gather(
     link: int, base: int, but: int, carried: Rows, x: Real, need: Real, pins: Real, largest: Real, lanes: int
 ) -> None:
-    """Take what stands on a link's joints, but for one, from what it needs."""
+    """Subtract the forces on a link's joints, except one, from its required resultant and moment."""
     for n in range(1, carried[link, 0] + 1):
         joint = carried[link, n]
         if joint == but:
@@ -374,13 +388,14 @@ def _give_back(
     results: Real,
     lanes: int,
 ) -> None:
-    """Reactions, the last closure first; what is left is the drive, and what stands on the ground."""
+    """Compute reactions, the last closure first; the remainder is the drive and the force on the ground."""
     results[:] = 0.0
     drive, largest, moment = results[DRIVE], results[PIN_FORCE], results[MOMENT]
     shake_x, shake_y = results[SHAKING_X], results[SHAKING_Y]
     for row in range(len(rows) - 1, -1, -1):
         kind, link, pin, joint = rows[row, KIND], rows[row, LINK], rows[row, PIN], rows[row, JOINT]
         other, slide = rows[row, OTHER], rows[row, SLIDE]
+        # The force at the joint where two links meet is the unknown of the closure.
         own = joint if kind in (RRR, RRP) else -1
         _gather(link, pin, own, carried, x, need, pins, largest, lanes)
         if kind == RRR:
@@ -391,6 +406,7 @@ def _give_back(
                 qx, qy = x[joint, 0, k] - x[far, 0, k], x[joint, 1, k] - x[far, 1, k]
                 hx, hy = pins[joint, 0, k], pins[joint, 1, k]
                 inverse = 1.0 / (qx * py - qy * px)
+                # The joint's force resolved along both arms: each moment determines one component.
                 one = need[other, 2, k] * inverse
                 two = (need[link, 2, k] - px * hy + py * hx) * inverse
                 fx, fy = one * px + two * qx, one * py + two * qy
@@ -406,6 +422,7 @@ def _give_back(
                 largest[k] = max(largest[k], greatest)
             continue
         if kind == GEAR:
+            # A gear takes its torque from the other link and the remainder from the ground's bearings.
             for k in range(lanes):
                 torque = need[link, 2, k]
                 if other > 0:
@@ -425,6 +442,7 @@ def _give_back(
                 need[link, 0, k] -= fx
                 need[link, 1, k] -= fy
                 largest[k] = max(largest[k], fx * fx + fy * fy)
+                # A line fixed in the ground pushes on the frame, not on a link.
                 if other > 0:
                     need[other, 0, k] += nx
                     need[other, 1, k] += ny
@@ -452,11 +470,13 @@ def _give_back(
         _stand(first, bases[first], need, pins, largest, lanes)
         for k in range(lanes):
             drive[k] = need[first, 2, k]
+            # The drive is a couple between ground and input link.
             moment[k] -= drive[k]
     else:
         joint, n = driver[1], normal[driver[2]]
         for k in range(lanes):
             fx, fy = pins[joint, 0, k], pins[joint, 1, k]
+            # Component along the slide; the normal component acts on the frame.
             drive[k] = n.real * fy - n.imag * fx
             shake_x[k] += fx
             shake_y[k] += fy
@@ -475,7 +495,7 @@ def _give_back(
 
 @njit(**OPTIONS)
 def _stand(link: int, pin: int, need: Real, pins: Real, largest: Real, lanes: int) -> None:
-    """Let a link stand on its pin with all that it needs still."""
+    """Transfer the remaining required force of a link to its pin."""
     for k in range(lanes):
         fx, fy = need[link, 0, k], need[link, 1, k]
         pins[pin, 0, k] -= fx

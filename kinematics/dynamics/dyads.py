@@ -1,8 +1,8 @@
 """Drive, largest pin force and shaking of linkages built of dyads, kinematics included, in one compiled sweep.
 
-For many positions of many designs of one make; what is answered is measured by :mod:`reactions`, which knows every
-skeleton, springs and friction. The program is that of the sweep of positions: driving link, dyad after dyad, and for
-the forces the last dyad first.
+Used as a fast filter over many positions of many designs of one topology. Reported values come from :mod:`reactions`,
+which handles every topology, springs and friction. Positions are computed dyad by dyad from the driving link, forces in
+the opposite order.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ Rows = NDArray[np.int64]
 
 
 class NoDyadsError(MechanismError, ValueError):
-    """A machine that this elimination does not know."""
+    """A machine that elimination by dyads cannot handle."""
 
 
 class DyadForces(NamedTuple):
-    """Over designs × inputs, shape S + (N,); NaN where a closure is open or at a toggle.
+    """Forces over designs × inputs, shape S + (N,); NaN where a closure is open or at a toggle.
 
     ``pin`` is the largest force of any pin on any of its links; ``drive`` is a force where a slide drives.
     """
@@ -43,7 +43,7 @@ class DyadForces(NamedTuple):
 
 
 class _Make(NamedTuple):
-    """What all designs of one make share, by number: links with the ground first, and after the joints the origin."""
+    """Numbering shared by all designs of one topology: links with the ground first, joints followed by the origin."""
 
     links: tuple[str, ...]
     joints: tuple[str, ...]
@@ -53,13 +53,15 @@ class _Make(NamedTuple):
 
 
 def closes_by_dyads(machine: Machine) -> bool:
-    """Whether :func:`dyad_forces` knows a machine: dyads, no link on two known pins, no springs, no friction."""
+    """Return whether :func:`dyad_forces` handles a machine: dyads only, no link on two known pins, springs or
+    friction."""
     mechanism = machine.mechanism
     if mechanism.redundant or machine.friction.pins or machine.friction.slides:
         return False
     if not all(isinstance(load, PointForce | JointForce | Torque) for load in machine.loads):
         return False
     program = program_of(mechanism)
+    # A link on two known pins has no dyad equation for its forces.
     return not program.class_iii and all(step.kind != "carried" for step in program.steps)
 
 
@@ -68,6 +70,7 @@ def _make_of(mechanism: Mechanism) -> _Make:
     program = program_of(mechanism)
     rows, driver = program.code.rows, program.code.driver
     joints = tuple(mechanism.joints)
+    # Moments of the ground are taken about the origin, a fictitious joint after the real ones.
     bases = np.full(len(program.links), len(joints))
     exact = np.zeros(len(program.links), np.bool_)
     if driver[0] > 0:
@@ -83,23 +86,23 @@ def _make_of(mechanism: Mechanism) -> _Make:
 def dyad_forces(
     machine: Machine, input: ArrayLike, speed: ArrayLike = 1.0, acceleration: ArrayLike = 0.0
 ) -> DyadForces:
-    """Forces at absolute inputs on the reference's assemblies.
+    """Compute forces at absolute inputs, in the assemblies of the reference.
 
     Parameters
     ----------
     machine : Machine
-        Designs of shape S, of the sort that :func:`closes_by_dyads` says.
+        Designs of shape S for which :func:`closes_by_dyads` is true.
     input, speed, acceleration : float
         Radians (or positions along the input slide) and their rates, broadcasting with S + (1,).
 
     Raises
     ------
     NoDyadsError
-        For a machine of another sort.
+        For any other machine.
     """
     if not closes_by_dyads(machine):
         raise NoDyadsError(
-            "expected a linkage of dyads without springs and friction; the general equations know others"
+            "expected a linkage of dyads without springs and friction; use the general equations for others"
         )
     mechanism, make = machine.mechanism, _make_of(machine.mechanism)
     program = program_of(mechanism)
@@ -107,8 +110,10 @@ def dyad_forces(
     shape = np.broadcast_shapes((*mechanism.shape, 1), given[0].shape)
     input_jet = np.stack([np.broadcast_to(rate, shape) for rate in given])
     moved = input_jet.reshape(3, -1, shape[-1]).copy()
+    # The kernel expects rotations from the reference configuration.
     moved[0] -= program.reference_input[:, None]
     if mechanism.driven_by_slide:
+        # A slide's input is a length, so it scales like all lengths.
         moved *= machine.scale
         input_jet *= machine.scale
     put = _Put(machine, make)
@@ -145,7 +150,7 @@ def dyad_forces(
 
 
 class _Loads(NamedTuple):
-    """Loads as the kernel takes them."""
+    """Loads in the form that the kernel expects."""
 
     on: Rows
     arms: Complex
@@ -154,8 +159,8 @@ class _Loads(NamedTuple):
 
 
 class _Put:
-    """A machine's designs in rows, in the unit of the forces' lengths, told from the first joint: a far origin costs
-    digits."""
+    """A machine's designs in rows, in the unit of the forces' lengths, relative to the first joint: a far origin would
+    cost digits."""
 
     def __init__(self, machine: Machine, make: _Make) -> None:
         self.machine, self.make = machine, make
@@ -166,18 +171,18 @@ class _Put:
         self.joints = np.stack([*placed, np.zeros(self.designs, np.complex128)], axis=1)
 
     def each(self, value: ArrayLike) -> NDArray[Any]:
-        """A value of every design, shape (D,)."""
+        """Broadcast a value to every design, shape (D,)."""
         return np.broadcast_to(np.asarray(value), self.machine.mechanism.shape).ravel()
 
     def from_origin(self, place: ArrayLike) -> Complex:
-        """A place of every design."""
+        """Return a point of every design relative to the first joint."""
         return np.asarray(self.each(place) - self.zero, np.complex128)
 
     def _from_pin(self, link: str, place: ArrayLike) -> Complex:
         return np.asarray(self.from_origin(place) - self.joints[:, self.make.bases[self.make.links.index(link)]])
 
     def lines(self) -> tuple[Complex, Complex]:
-        """Points of the slides' lines from the pins of their links, and normals; shape (D, slides)."""
+        """Return points of the slides' lines relative to the pins of their links, and normals; shape (D, slides)."""
         slides = self.machine.mechanism.slides
         points, normals = np.empty((2, self.designs, len(slides)), np.complex128)
         for n, slide in enumerate(slides):
@@ -186,7 +191,7 @@ class _Put:
         return points, normals
 
     def bodies(self) -> tuple[Real, Complex, Real]:
-        """Masses, centres of gravity and moments of inertia, shape (D, links)."""
+        """Return masses, centres of gravity and moments of inertia, shape (D, links)."""
         mass, inertia = np.zeros((2, self.designs, len(self.make.links)))
         cg = np.zeros(mass.shape, np.complex128)
         for link, part in self.machine.bodies.items():
@@ -199,14 +204,14 @@ class _Put:
         return mass, cg, inertia
 
     def pin_masses(self) -> Real:
-        """Point masses, shape (D, joints)."""
+        """Return point masses, shape (D, joints)."""
         masses = np.zeros(self.joints.shape)
         for joint, mass in self.machine.pin_masses.items():
             masses[:, self.make.joints.index(joint)] = self.each(mass)
         return masses
 
     def loads(self, input_jet: RealJet) -> _Loads:
-        """Loads at an input of shape (3,) + S + (N,)."""
+        """Return the loads at an input of shape (3,) + S + (N,)."""
         shape, links = input_jet.shape[1:], self.make.links
         flat = self.designs, shape[-1]
         turning = any(isinstance(load, Torque) for load in self.machine.loads)
@@ -217,6 +222,7 @@ class _Put:
         for load in self.machine.loads:
             if not isinstance(load, PointForce | JointForce | Torque):
                 continue
+            # Loads are functions of the input: evaluate them once for all positions.
             course = np.broadcast_to(load.course(input_jet), shape).reshape(flat)
             if isinstance(load, Torque):
                 couples[links.index(load.link)] += course.real
@@ -237,8 +243,9 @@ class _Put:
 
 
 def _carried(machine: Machine, make: _Make, on: Rows) -> Rows:
-    """The joints that each link makes known, of those that something hangs on."""
+    """List the joints that each link determines, limited to those that a closure, mass or load uses."""
     code = program_of(machine.mechanism).code
+    # Skipping joints without any role saves their motion in every lane.
     used = {int(code.driver[1])} | {int(joint) for row in code.rows for joint in row[[PIN, JOINT, OTHER_PIN]]}
     used |= {make.joints.index(joint) for joint in machine.pin_masses}
     used |= {int(which) for kind, which, _ in on if kind == kernels.ON_JOINT}

@@ -1,4 +1,4 @@
-"""Joint force index: how many times a load the joints carry, by the geometry alone (Norton, eq. 11.23)."""
+"""Joint force index: largest joint force per unit of load, from the geometry alone (Norton, eq. 11.23)."""
 
 from __future__ import annotations
 
@@ -15,11 +15,12 @@ from kinematics.linkage.planar.mechanism import Real
 
 
 def joint_force_index(machine: Machine, now: Places, load: Load) -> Real:
-    """Largest force of a pin or slide over the load, without masses, springs and friction; shape S + (N,).
+    """Compute the largest force of a pin or slide over the load, without masses, springs and friction; shape S + (N,).
 
-    A torque gives forces per length. NaN where the load vanishes or the reactions are not determined: at a dead centre
-    the index is infinite.
+    For a torque the index has the unit 1/length. It is NaN where the load vanishes or the reactions are not
+    determined: at a dead centre the index is infinite.
     """
+    # Only the load acts, so that the index depends on the geometry alone.
     alone = replace(machine, bodies={}, pin_masses={}, gravity=0j, loads=(load,), friction=Friction())
     found = reactions(alone, now)
     shape = now.smooth.shape

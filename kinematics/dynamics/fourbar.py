@@ -1,18 +1,18 @@
 """Peaks of the forces in many fourbars at constant speed: kinematics and reactions in closed form, compiled.
 
-For choosing among candidates; what is answered is measured by :mod:`reactions`. With the unit vectors u₃ along A → B
+Used to select candidates; reported values come from :mod:`reactions`. With the unit vectors u₃ along A → B
 and u₄ along O4 → B, and s = u₄ × u₃, the sine of the transmission angle, the rates are
 
     ω₄ = ω₂ (a × u₃)/(c s),                         ω₃ = ω₂ (a × u₄)/(b s),
     α₄ = (A″·u₃ − ω₃² b + ω₄² c (u₄·u₃))/(c s),     α₃ = (A″·u₄ + ω₄² c − ω₃² b (u₃·u₄))/(b s).
 
-Each link needs the resultant R = m (a_G − g) − Σ F of its pins' forces, and the moment M of those about its first
-joint (Norton, *Design of Machinery*, eq. 11.1). Moments of the output about O4 and of the coupler about A have the
+Each link requires the resultant R = m (a_G − g) − Σ F of its pins' forces, and their moment M about its first joint
+(Norton, *Design of Machinery*, eq. 11.1). Moments of the output about O4 and of the coupler about A have the
 force of pin B on the output, x u₃ + y u₄, as the only unknown:
 
     x = M₄/(c s),        y = (M₃ − b u₃ × f)/(b s),
 
-where f is what acts on the pin itself. The other pins follow from the sums of forces, and the drive last.
+where f is the force on the pin itself. The other pins follow from the sums of forces, and the drive last.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ DRIVE, JOINT, SHAKING_FORCE, SHAKING_MOMENT, POWER = range(5)
 """Columns of the peaks."""
 
 INPUT, COUPLER, OUTPUT, PIN_A, PIN_B, PIN_P = range(6)
-"""What a load acts on. One at a pin of the ground acts on nothing that moves."""
+"""Codes for the target of a load. Loads at ground pins are omitted, since they act on no moving link."""
 
 LEAST_SINE = 1e-6
 """Sine of the transmission angle below which the forces of a position count as infinite."""
@@ -56,12 +56,12 @@ class Fourbars(NamedTuple):
 
 
 class Weights(NamedTuple):
-    """What they weigh and carry.
+    """Masses and loads of the fourbars.
 
-    ``mass``, ``cg``, ``inertia`` have shape (n, 3), for input, coupler and output; a centre of gravity is told from the
-    link's first joint (O2, A, O4), over the link's direction (O2 → A, A → B, O4 → B). ``pins`` has the masses at A, B
-    and P, shape (n, 3). A load k acts on ``on[k]`` with ``force[:, k]`` (over the link's direction where
-    ``turning[k]``) at ``arm[:, k]``, told like a centre of gravity. ``couples`` act on the three links.
+    ``mass``, ``cg``, ``inertia`` have shape (n, 3), for input, coupler and output; a centre of gravity is relative to
+    the link's first joint (O2, A, O4), divided by the link's direction (O2 → A, A → B, O4 → B). ``pins`` has the masses
+    at A, B and P, shape (n, 3). Load k acts on ``on[k]`` with ``force[:, k]`` (divided by the link's direction if
+    ``turning[k]``) at ``arm[:, k]``, given like a centre of gravity. ``couples`` act on the three links.
     """
 
     mass: Real
@@ -78,21 +78,21 @@ class Weights(NamedTuple):
 
 
 def peaks(linkages: Fourbars, weights: Weights, speed: float, positions: int) -> Real:
-    """The greatest magnitudes of drive, pin force, shaking force, shaking moment and power at the positions.
+    """Compute the maximum magnitudes of drive, pin force, shaking force, shaking moment and power over the positions.
 
     Parameters
     ----------
     linkages, weights
-        n of them.
+        Data of n linkages.
     speed : float
-        Of the input, rad/s.
+        Input speed, rad/s.
     positions : int
-        Equal steps of each range, both ends included; peaks are those of the positions.
+        Number of equally spaced positions of each range, both ends included; peaks are taken over these.
 
     Returns
     -------
     float, shape (n, 5)
-        In the order of :data:`DRIVE` and the following; infinite where a position cannot be assembled, or is a toggle.
+        Columns in the order of :data:`DRIVE` and following; infinite if a position cannot be assembled or is a toggle.
     """
     out = np.empty((len(linkages.a), 1, 5))
     fill_peaks(*linkages, *weights, speed, positions, out)
@@ -140,9 +140,9 @@ def fill_peaks(
     positions: int,
     out: Real,
 ) -> None:
-    """As :func:`peaks`, by windows of as many positions each: ``out`` has the shape (n, windows, 5).
+    """Fill the peaks of :func:`peaks` by windows of equal numbers of positions: ``out`` has shape (n, windows, 5).
 
-    One long loop: what passes through a function's boundary costs as much as what is done there.
+    One long loop, since function calls here would cost as much as the work inside them.
     """
     windows = out.shape[1]
     for n in range(len(o2s)):
@@ -159,6 +159,7 @@ def fill_peaks(
         whole = True
         window, last = 0, positions // windows
         for k in range(positions):
+            # The window is complete: store its peaks and start the next one.
             if k == last and window + 1 < windows:
                 _note(out[n, window], drive, pin, shaking, moment, speed)
                 drive = pin = shaking = moment = 0.0
@@ -168,8 +169,10 @@ def fill_peaks(
             joint_a = o2 + crank
             diagonal = o4 - joint_a
             squared = _square(diagonal)
+            # Projection of the coupler on the diagonal A → O4, times the diagonal's length.
             along = 0.5 * (squared + b * b - c * c)
             height = b * b * squared - along * along
+            # "not >" also rejects NaN.
             if not height > 0.0:
                 whole = False
                 break
@@ -177,6 +180,7 @@ def fill_peaks(
             joint_b = joint_a + b * u3
             u4 = (joint_b - o4) / c
             s = _cross(u4, u3)
+            # At a toggle the forces are unbounded: the whole design is rejected.
             if not abs(s) > LEAST_SINE:
                 whole = False
                 break
@@ -192,6 +196,7 @@ def fill_peaks(
             need2 = m2 * (-speed * speed * arm2 - gravity)
             need3 = m3 * (pull + rate3 * arm3 - gravity)
             need4 = m4 * (rate4 * arm4 - gravity)
+            # A mass at P is hung on the coupler there, with its own inertia.
             payload = mass_p * (gravity - pull - rate3 * arm_p)
             turned2 = _cross(arm2, need2) - couples[0]
             turned3 = i3 * alpha3 + _cross(arm3, need3) - _cross(arm_p, payload) - couples[1]
@@ -233,8 +238,10 @@ def fill_peaks(
             about_point = -_cross(o2 - about, o2_on_input) - _cross(o4 - about, o4_on_output) - torque
             drive, moment = max(drive, abs(torque)), max(moment, abs(about_point))
             shaking = max(shaking, _square(at_ground))
+            # Squares avoid a root per force and position.
             pin = max(pin, _square(o2_on_input), _square(o4_on_output), _square(a_on_input), _square(a_on_coupler))
             pin = max(pin, _square(b_on_output), _square(b_on_coupler), _square(payload))
+            # A complex product instead of sine and cosine per position; the error grows by 1e-16 per step.
             u2 *= turn
         if whole:
             _note(out[n, window], drive, pin, shaking, moment, speed)
@@ -244,6 +251,6 @@ def fill_peaks(
 
 @njit(**OPTIONS)
 def _note(out: Real, drive: float, pin: float, shaking: float, moment: float, speed: float) -> None:
-    """Write the peaks; those of pins and frame come as squares."""
+    """Write the peaks; those of pins and frame are passed as squares."""
     out[DRIVE], out[JOINT], out[SHAKING_FORCE] = drive, math.sqrt(pin), math.sqrt(shaking)
     out[SHAKING_MOMENT], out[POWER] = moment, drive * abs(speed)

@@ -1,10 +1,9 @@
-"""Coulomb friction at pins and slides: what rubs on what, and what it takes from the motion.
+"""Coulomb friction at pins and slides: the contacts, and their work on the motion.
 
 A pin's moment on a link is −sign(ω) μ r |F|, ω the link's speed against the hub (the first link that the mechanism
 names there; of a pin on a slide the block, which turns with the line), F the pin's force on it. A slide's force on its
-pin is −sign(v) μ |N| along the line (Norton, *Design of Machinery*, eq. 11.6c, 11.10e; a coefficient whose sign is set
-against the velocity alone would push along the motion where N < 0). At rest friction is not determined and counts as
-nothing.
+pin is −sign(v) μ |N| along the line (Norton, *Design of Machinery*, eq. 11.6c, 11.10e; with N instead of |N| friction
+would push along the motion where N < 0). At rest friction is not determined and is set to zero.
 """
 
 from __future__ import annotations
@@ -23,18 +22,19 @@ from kinematics.linkage.planar.mechanism import GROUND, Mechanism, Real
 
 @dataclass(frozen=True)
 class Friction:
-    """Coefficient and radius by joint, and the coefficient by the number of a slide."""
+    """Coefficient and radius by joint, and coefficient by the number of a slide."""
 
     pins: dict[str, tuple[float, float]] = field(default_factory=dict)
     slides: dict[int, float] = field(default_factory=dict)
 
     def __bool__(self) -> bool:
-        """Whether there is any."""
+        """Return whether there is any friction."""
         return bool(self.pins or self.slides)
 
 
 class Contact(NamedTuple):
-    """What rubs: a link on ``against`` at a joint, by a moment; or, with ``slide``, the pin along a slide's line.
+    """A contact with friction: a link on ``against`` at a joint (a moment), or with ``slide`` ≥ 0 the pin along its
+    line.
 
     Friction is ``lever`` times the norm of the unknowns in ``columns`` (−1: none).
     """
@@ -48,14 +48,14 @@ class Contact(NamedTuple):
 
 
 class Rubbing(NamedTuple):
-    """Friction of each contact at all positions, shape S + (N,), and where one stands still."""
+    """Friction of each contact at all positions, shape S + (N,), and a mask where any contact is at rest."""
 
     contacts: tuple[Contact, ...]
     frictions: tuple[Real, ...]
     stick: NDArray[np.bool_]
 
     def work(self, places: Places) -> Real:
-        """Work for a unit of time, or of the input where ``places`` are paced by it."""
+        """Return the work of friction per unit of time, or of the input if ``places`` move at an input speed of 1."""
         total = np.zeros(places.smooth.shape)
         for contact, friction in zip(self.contacts, self.frictions, strict=True):
             total = total + friction * speed_of(contact, places)
@@ -66,7 +66,7 @@ NO_RUBBING = Rubbing((), (), np.zeros((), np.bool_))
 
 
 def rubbing_joints(mechanism: Mechanism) -> list[str]:
-    """Joints at which something turns on a pin."""
+    """Find the joints at which a link or block turns on a pin."""
     return [
         joint
         for joint in mechanism.joints
@@ -76,16 +76,17 @@ def rubbing_joints(mechanism: Mechanism) -> list[str]:
 
 
 def contacts_of(mechanism: Mechanism, system: System, friction: Friction) -> tuple[Contact, ...]:
-    """All contacts of a mechanism."""
+    """List all contacts of a mechanism."""
     found = []
     for joint, (coefficient, radius) in friction.pins.items():
+        # The moment of friction is the coefficient times the pin's radius times the force.
         hub, lever = system.hubs[joint], coefficient * radius
         for n, (at, link) in enumerate(system.pins):
             if at == joint:
                 found.append(Contact(joint, link, hub, -1, (2 * n, 2 * n + 1), lever))
         for n, slide in enumerate(mechanism.slides):
             if slide.joint == joint:
-                # The block carries what the line does to it, its friction too.
+                # The block transmits normal force and friction of the line: √(1 + μ²) times the normal force.
                 whole = lever * float(np.hypot(1.0, friction.slides.get(n, 0.0)))
                 found.append(Contact(joint, hub, slide.link, -1, (system.slides_at + n, -1), whole))
     for n, coefficient in friction.slides.items():
@@ -97,21 +98,23 @@ def contacts_of(mechanism: Mechanism, system: System, friction: Friction) -> tup
 
 
 def speed_of(contact: Contact, places: Places) -> Real:
-    """Speed of a contact: of the link against the other one, or along the slide."""
+    """Compute the speed of a contact: of one link relative to the other, or along the slide."""
     if contact.slide >= 0:
         return np.asarray(places.slides[contact.slide][1])
     return np.asarray(places.spins[contact.link][1] - places.spins[contact.against][1])
 
 
 def still(contact: Contact, places: Places) -> NDArray[np.bool_]:
-    """Where a contact stands still."""
+    """Return where a contact is at rest."""
+    # Linear and angular speeds have different thresholds.
     rest = places.rest if contact.slide >= 0 else places.turning_rest
     return np.asarray(np.abs(speed_of(contact, places)) <= rest)
 
 
 def factors_of(contact: Contact, places: Places, size: Real) -> Real:
-    """Friction for a unit of the norm, against the motion; moments over the mechanism's size."""
+    """Compute friction per unit of the norm, against the motion; moments are divided by the mechanism's size."""
     lever = contact.lever / (1.0 if contact.slide >= 0 else size)
+    # At rest friction is undetermined; 0 keeps the equations solvable.
     sense = np.where(still(contact, places), 0.0, -np.sign(speed_of(contact, places)))
     return np.asarray(lever * sense)
 
@@ -119,12 +122,13 @@ def factors_of(contact: Contact, places: Places, size: Real) -> Real:
 def wrenches(
     contacts: tuple[Contact, ...], mechanism: Mechanism, system: System, tangent: int
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """The contacts' terms, a column each, as :mod:`system` has them; ``tangent``: direction of the first slide."""
+    """Build the contacts' terms, one column each, in the form of :mod:`system`; ``tangent``: direction of slide 0."""
     numbers = {link: n for n, link in enumerate(system.moving)}
     joints = {joint: n for n, joint in enumerate(mechanism.joints)}
     terms, coefficients = [], []
     for column, contact in enumerate(contacts):
         kind, direction = (ALONG, tangent + contact.slide) if contact.slide >= 0 else (TORQUE, -1)
+        # Action and reaction; the ground has no equations.
         for link, sense in ((contact.link, 1.0), (contact.against, -1.0)):
             if link != GROUND:
                 terms.append((kind, column, numbers[link], joints[contact.joint], direction))

@@ -6,8 +6,8 @@ the coefficient and the sign against the motion: a fixed point of as many unknow
 iteration from the frictionless answer, and where that does not converge by Newton's method with halved steps.
 
 Where K_ef = |c_e| ‖V_f on the columns of e‖ has a spectral radius below 1 the iteration is a contraction and the
-solution is the only one. Elsewhere Newton's method starts from far out in all directions too. No solution, or a second
-one, is a jam: the parts wedge, and what moves them is not determined by the motion.
+solution is unique. Elsewhere Newton's method is also started far out in all directions. No solution, or a second one,
+is a jam: the parts wedge, and the motion does not determine the forces.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from kinematics.compiling import njit
 from kinematics.dynamics.kernels import OPTIONS, Complex, Real, Rows, factor, fill, forward, inverse_norm, norm_of
 
 PASSES = 200
-"""Steps of the iteration, and of Newton's method, at most."""
+"""Maximum number of steps of the fixed-point iteration, and of Newton's method."""
 
 CONVERGED = 1e-12
-"""Change of friction, as a share of it, at which it has converged."""
+"""Relative change of friction at which it has converged."""
 
 HALVED = 30
-"""Halvings of a step of Newton's method at most."""
+"""Maximum number of halvings of a Newton step."""
 
 FAR = 1e3
-"""How far out Newton's method starts, as a multiple of the friction of the frictionless forces."""
+"""Distance of the far starts of Newton's method, in units of the friction caused by the frictionless forces."""
 
 APART = 1e-6
-"""Share by which two solutions differ if they are two."""
+"""Relative difference above which two solutions are distinct."""
 
 POWERS = 30
 """Steps of the power iteration that bounds the spectral radius."""
@@ -57,16 +57,16 @@ def solve_rubbing(
     frictions: Real,
     jammed: NDArray[np.bool_],
 ) -> None:
-    """Solve at all positions; beside :func:`kinematics.dynamics.kernels.solve`'s
+    """Solve at all positions. Parameters in addition to :func:`kinematics.dynamics.kernels.solve`:
 
     contact_terms, contact_coefficients
         Wrenches of the contacts, as terms of E columns.
     columns : int, shape (E, 2)
-        Columns whose norm the friction of a contact goes with; −1: none.
+        Columns whose norm is proportional to the friction of a contact; −1: none.
     factors : float, shape (E, M)
-        Friction for a unit of that norm, with its sign.
+        Friction per unit of that norm, with its sign.
     frictions : float, shape (E, M)
-        Filled: friction of each contact; NaN where there is no solution.
+        Filled: friction of each contact; NaN without a solution.
     jammed : bool, shape (M,)
         Filled: no solution, or more than one.
     """
@@ -80,6 +80,7 @@ def solve_rubbing(
         frictions[:, at] = np.nan
         conditions[at] = np.inf
         jammed[at] = False
+        # No derivatives at a toggle, hence no inertia forces.
         if not smooth[at]:
             continue
         matrix[:] = 0.0
@@ -96,10 +97,12 @@ def solve_rubbing(
             answers[e] = wrenches[:, e]
             forward(matrix, order, answers[e])
         y[:] = 0.0
+        # The cheap iteration succeeds for usual coefficients; Newton's method is the fallback.
         found = iterate(free, answers, columns, factors[:, at], y)
         if not found:
             y[:] = 0.0
             found = newton(free, answers, columns, factors[:, at], y)
+        # Uniqueness is proved by contraction, else only tested by searching for a second solution.
         if found and not contracts(answers, columns, factors[:, at]):
             found = only(free, answers, columns, factors[:, at], y, other)
         jammed[at] = not found
@@ -115,7 +118,7 @@ def solve_rubbing(
 
 @njit(**OPTIONS)
 def norm_at(free: Real, answers: Real, pair: Rows, y: Real) -> tuple[float, float, float]:
-    """The norm on the columns of a contact, and its two components."""
+    """Compute the norm on the columns of a contact, and its two components."""
     one, two = free[pair[0]], 0.0
     for f in range(len(y)):
         one -= answers[f, pair[0]] * y[f]
@@ -128,7 +131,7 @@ def norm_at(free: Real, answers: Real, pair: Rows, y: Real) -> tuple[float, floa
 
 @njit(**OPTIONS)
 def iterate(free: Real, answers: Real, columns: Rows, factors: Real, y: Real) -> bool:
-    """The fixed point from y on, in place; whether it has converged."""
+    """Iterate to the fixed point from y, in place; return whether it converged."""
     fresh = np.empty_like(y)
     for _ in range(PASSES):
         change, size = 0.0, 0.0
@@ -138,6 +141,7 @@ def iterate(free: Real, answers: Real, columns: Rows, factors: Real, y: Real) ->
             change = max(change, abs(fresh[e] - y[e]))
             size = max(size, abs(fresh[e]))
             y[e] = fresh[e]
+        # Diverged: the iteration is no contraction here.
         if not math.isfinite(size):
             return False
         if change <= CONVERGED * size:
@@ -147,7 +151,7 @@ def iterate(free: Real, answers: Real, columns: Rows, factors: Real, y: Real) ->
 
 @njit(**OPTIONS)
 def missing(free: Real, answers: Real, columns: Rows, factors: Real, y: Real, out: Real) -> float:
-    """y less the friction of the forces that y gives, and its largest magnitude."""
+    """Fill the residual, y minus the friction of the forces that y causes, and return its largest magnitude."""
     largest = 0.0
     for e in range(len(y)):
         out[e] = y[e] - factors[e] * norm_at(free, answers, columns[e], y)[0]
@@ -157,7 +161,7 @@ def missing(free: Real, answers: Real, columns: Rows, factors: Real, y: Real, ou
 
 @njit(**OPTIONS)
 def newton(free: Real, answers: Real, columns: Rows, factors: Real, y: Real) -> bool:
-    """A solution by Newton's method with halved steps, from y on in place; whether it has converged."""
+    """Solve by Newton's method with halved steps from y, in place; return whether it converged."""
     contacts = len(y)
     jacobian, order = np.empty((contacts, contacts)), np.empty(contacts, np.int64)
     step, trial, rest = np.empty(contacts), np.empty(contacts), np.empty(contacts)
@@ -172,12 +176,14 @@ def newton(free: Real, answers: Real, columns: Rows, factors: Real, y: Real) -> 
             norm, one, two = norm_at(free, answers, columns[e], y)
             for f in range(contacts):
                 slope = 0.0
+                # At zero norm the derivative does not exist; 0 is a subgradient.
                 if norm > 0.0:
                     slope = one * answers[f, columns[e, 0]]
                     if columns[e, 1] >= 0:
                         slope += two * answers[f, columns[e, 1]]
                     slope *= -factors[e] / norm
                 jacobian[e, f] = (1.0 if e == f else 0.0) - slope
+        # A singular Jacobian gives no direction.
         if not factor(jacobian, order):
             return False
         forward(jacobian, order, step)
@@ -189,6 +195,7 @@ def newton(free: Real, answers: Real, columns: Rows, factors: Real, y: Real) -> 
             if fresh < error:
                 break
             share *= 0.5
+        # No descent along the Newton direction: a local minimum of the residual, not a solution.
         if not fresh < error:
             return False
         y[:] = trial
@@ -199,13 +206,13 @@ def newton(free: Real, answers: Real, columns: Rows, factors: Real, y: Real) -> 
 
 @njit(**OPTIONS)
 def contracts(answers: Real, columns: Rows, factors: Real) -> bool:
-    """Whether the iteration is a contraction: the spectral radius of K is below 1 (Collatz and Wielandt's bound)."""
+    """Return whether the iteration contracts: the spectral radius of K is below 1 (Collatz-Wielandt bound)."""
     contacts = len(columns)
     z, image = np.ones(contacts), np.empty(contacts)
     for _ in range(POWERS):
         bound = 0.0
         for e in range(contacts):
-            # A trace of z keeps the bound a bound where K has rows of zeros.
+            # A small multiple of z keeps z positive, so that the bound also holds for a K with zero rows.
             total = 1e-3 * z[e]
             for f in range(contacts):
                 two = answers[f, columns[e, 1]] if columns[e, 1] >= 0 else 0.0
@@ -220,8 +227,9 @@ def contracts(answers: Real, columns: Rows, factors: Real) -> bool:
 
 @njit(**OPTIONS)
 def only(free: Real, answers: Real, columns: Rows, factors: Real, y: Real, other: Real) -> bool:
-    """Whether Newton's method from far out, along each axis and its opposite, finds no other solution than y."""
+    """Return whether Newton's method, started far out along ± each axis, finds no other solution than y."""
     contacts = len(y)
+    # Scale of friction from the frictionless forces, to choose starts far outside the solution.
     reach = 0.0
     for e in range(contacts):
         reach = max(reach, abs(factors[e]) * norm_at(free, answers, columns[e], 0.0 * y)[0], abs(y[e]))

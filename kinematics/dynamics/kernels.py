@@ -1,4 +1,4 @@
-"""The equations of the reactions at each position, put together and solved: compiled, position by position.
+"""Assembly and solution of the equations of the reactions, position by position: compiled.
 
 Elimination with partial pivoting, and the condition number in the 1-norm by Hager's estimate of the norm of the inverse
 (N. J. Higham, *Accuracy and Stability of Numerical Algorithms*, Sec. 15.2): a handful of further solutions instead of
@@ -19,13 +19,13 @@ Complex = NDArray[np.complex128]
 Rows = NDArray[np.int64]
 
 FORCE, ALONG, TORQUE = range(3)
-"""Terms: two columns, the components of a force at a joint; a force along a direction at a joint; a couple."""
+"""Kinds of terms: a force at a joint (two columns, its components); a force along a given direction; a couple."""
 
 ESTIMATES = 5
-"""Steps of Hager's estimate at most; it ends after two or three."""
+"""Maximum number of steps of Hager's estimate; it usually ends after two or three."""
 
 OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
-"""How the kernels are compiled."""
+"""Options of the kernels."""
 
 
 @njit(**OPTIONS)
@@ -45,15 +45,15 @@ def solve(
     Parameters
     ----------
     terms, coefficients, bases
-        Of the system (:mod:`system`).
+        The system of equations (:mod:`system`).
     joints : complex, shape (joints, M)
         Joints over the mechanism's size.
     directions : complex, shape (directions, M)
-        What terms act along.
+        Unit vectors along which terms act.
     known : float, shape (M, n)
         Right-hand sides.
     smooth : bool, shape (M,)
-        Where there is anything to solve.
+        Positions to solve.
     solutions : float, shape (M, n)
         Filled; NaN elsewhere, and where the equations are singular.
     conditions : float, shape (M,)
@@ -70,6 +70,7 @@ def solve(
             continue
         matrix[:] = 0.0
         fill(terms, coefficients, bases, joints, directions, at, matrix)
+        # Before the elimination overwrites the matrix.
         norm = norm_of(matrix)
         if not factor(matrix, order):
             continue
@@ -81,7 +82,7 @@ def solve(
 
 @njit(**OPTIONS)
 def matrices(terms: Rows, coefficients: Real, bases: Rows, joints: Complex, directions: Complex, filled: Real) -> None:
-    """The equations of all positions themselves, added to an array of shape (M, rows, columns)."""
+    """Add the equations of all positions to an array of shape (M, rows, columns)."""
     for at in range(len(filled)):
         fill(terms, coefficients, bases, joints, directions, at, filled[at])
 
@@ -113,7 +114,7 @@ def fill(
 
 @njit(**OPTIONS)
 def norm_of(matrix: Real) -> float:
-    """The 1-norm: the greatest sum of a column's magnitudes."""
+    """Compute the 1-norm: the maximum column sum of magnitudes."""
     largest = 0.0
     n = len(matrix)
     for column in range(n):
@@ -134,14 +135,17 @@ def factor(matrix: Real, order: Rows) -> bool:
             if abs(matrix[row, k]) > abs(matrix[pivot, k]):
                 pivot = row
         order[k] = pivot
+        # "not >" also catches NaN.
         if not abs(matrix[pivot, k]) > 0.0:
             return False
+        # Swap whole rows, multipliers included (LAPACK's convention).
         if pivot != k:
             for column in range(n):
                 matrix[k, column], matrix[pivot, column] = matrix[pivot, column], matrix[k, column]
         inverse = 1.0 / matrix[k, k]
         for row in range(k + 1, n):
             share = matrix[row, k]
+            # The matrices are sparse: most multipliers are zero.
             if share != 0.0:
                 share *= inverse
                 matrix[row, k] = share
@@ -152,13 +156,14 @@ def factor(matrix: Real, order: Rows) -> bool:
 
 @njit(**OPTIONS)
 def forward(matrix: Real, order: Rows, x: Real) -> None:
-    """Solve with the factors, in place."""
+    """Solve A x = b with the factors, in place."""
     n = len(matrix)
     for k in range(n):
         pivot = order[k]
         x[k], x[pivot] = x[pivot], x[k]
     for k in range(n):
         value = x[k]
+        # Right-hand sides are sparse too.
         if value != 0.0:
             for row in range(k + 1, n):
                 x[row] -= matrix[row, k] * value
@@ -172,7 +177,7 @@ def forward(matrix: Real, order: Rows, x: Real) -> None:
 
 @njit(**OPTIONS)
 def transposed(matrix: Real, order: Rows, x: Real) -> None:
-    """Solve with the transposed factors, in place."""
+    """Solve Aᵀ x = b with the factors, in place."""
     n = len(matrix)
     for k in range(n):
         value = x[k]
@@ -191,9 +196,10 @@ def transposed(matrix: Real, order: Rows, x: Real) -> None:
 
 @njit(**OPTIONS)
 def inverse_norm(matrix: Real, order: Rows, work: Real) -> float:
-    """The 1-norm of the inverse from the factors: Hager's estimate, a lower bound that is rarely less than a third."""
+    """Estimate the 1-norm of the inverse from the factors (Hager): a lower bound, rarely less than a third of it."""
     n = len(matrix)
     x, z, signs = work[0], work[1], work[2]
+    # Hager starts from the uniform vector, then moves to unit vectors that increase the norm.
     x[:] = 1.0 / n
     estimate = 0.0
     for step in range(ESTIMATES):
@@ -202,6 +208,7 @@ def inverse_norm(matrix: Real, order: Rows, work: Real) -> float:
         for k in range(n):
             total += abs(x[k])
             signs[k] = 1.0 if x[k] >= 0.0 else -1.0
+        # The estimate only grows; a step without progress is a local maximum.
         if step > 0 and total <= estimate:
             break
         estimate = total

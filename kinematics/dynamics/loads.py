@@ -1,7 +1,7 @@
 """Loads: forces at points of links and at joints, and torques on links, constant or over the input.
 
-A load says twice what it does: as the efforts that act on links and joints, for the reactions, and as the work that it
-does for a unit of the input's motion, for the balance of power.
+A load is described twice, so that both methods stay independent: by the efforts on links and joints, for the reactions,
+and by its work per unit of the input's motion, for the balance of power.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from kinematics.linkage.planar.drive import RealJet
 from kinematics.linkage.planar.mechanism import Complex, Real
 
 Course = Callable[[RealJet], NDArray[np.complex128] | NDArray[np.float64]]
-"""The strength of a load over the input: its absolute value (radians, or a length along the input slide), speed and
-acceleration, of shape (3,) + S + (N,); the strengths are of shape S + (N,)."""
+"""Strength of a load as a function of the input jet (absolute value in radians or a length along the input slide,
+speed, acceleration), shape (3,) + S + (N,); the strengths have shape S + (N,)."""
 
 
 class Effort(NamedTuple):
-    """A force on a link (or, where ``joint`` names one, on the pin of a joint) at a place, and a couple on the link."""
+    """A force on a link (or, if ``joint`` is set, on the pin of that joint) at a point, and a couple on the link."""
 
     link: str
     joint: str
@@ -33,18 +33,18 @@ class Effort(NamedTuple):
 
 
 class Load(Protocol):
-    """What acts on the mechanism beside its own weight and inertia."""
+    """A load on the mechanism in addition to its weight and inertia."""
 
     def efforts(self, now: Places) -> list[Effort]:
-        """The forces and couples at all positions, arrays of shape S + (N,)."""
+        """Return the forces and couples at all positions, arrays of shape S + (N,)."""
 
     def work(self, now: Places, paced: Places) -> Real:
-        """Work for a unit of the input's motion, shape S + (N,); ``paced`` moves at an input speed of 1."""
+        """Return the work per unit of the input's motion, shape S + (N,); ``paced`` moves at an input speed of 1."""
 
 
 @dataclass(frozen=True)
 class PointForce:
-    """A force at a place (reference) of a link; ``turning``: its components turn with the link."""
+    """A force at a point of a link (given in the reference); if ``turning``, its components turn with the link."""
 
     link: str
     place: Complex
@@ -53,6 +53,7 @@ class PointForce:
 
     def _force(self, now: Places) -> Complex:
         force = np.asarray(self.course(now.input), np.complex128)
+        # Rotate components given in the link's frame into the ground's.
         return force * now.turns[self.link][0] if self.turning else force
 
     def efforts(self, now: Places) -> list[Effort]:
@@ -99,7 +100,7 @@ class Torque:
 
 
 def constant(strength: complex) -> Course:
-    """The course of a load that does not change."""
+    """Make the course of a constant load."""
     return lambda input: np.full(input.shape[1:], strength)
 
 
@@ -107,8 +108,8 @@ def constant(strength: complex) -> Course:
 class Resistance:
     """A force on the pin of a joint against its motion: along its path, or along a slide of the ground.
 
-    It is ``forward`` where the joint moves along the slide's direction, or, without a slide, where the input moves
-    positively; ``backward`` otherwise, and nothing at rest.
+    Its size is ``forward`` where the joint moves along the slide's direction or, without a slide, where the input moves
+    in its positive sense; ``backward`` otherwise, and zero at rest.
     """
 
     joint: str
@@ -118,9 +119,11 @@ class Resistance:
 
     def _force(self, now: Places) -> Complex:
         velocity = now.joints[self.joint][1]
+        # At a dead centre the direction of motion would be decided by rounding.
         moves = np.abs(velocity) > now.rest
         velocity = np.where(moves, velocity, 0.0)
         if self.slide is None:
+            # Without a slide the input's sense distinguishes forward from backward.
             ahead = now.input[1] > 0.0
             along = velocity / np.where(moves, np.abs(velocity), 1.0)
         else:
@@ -140,7 +143,7 @@ class Resistance:
 
 @dataclass(frozen=True)
 class TurningResistance:
-    """A torque on a link against its rotation: ``forward`` where it turns counter-clockwise; nothing at rest."""
+    """A torque on a link against its rotation: ``forward`` where it turns counter-clockwise; zero at rest."""
 
     link: str
     forward: float
@@ -148,6 +151,7 @@ class TurningResistance:
 
     def _torque(self, now: Places) -> Real:
         spin = now.spins[self.link][1]
+        # Rounding must not decide the sign of a resistance at rest.
         still = np.abs(spin) <= now.turning_rest
         return np.where(still, 0.0, np.where(spin > 0.0, -self.forward, self.backward))
 

@@ -1,4 +1,4 @@
-"""A machine: a mechanism with its masses, and all that acts on it."""
+"""A machine: a mechanism with its masses and loads."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from kinematics.linkage.planar.mechanism import Complex, Mechanism, Real
 
 @dataclass(frozen=True)
 class Machine:
-    """What the forces follow from, in units that agree with one another (SI, or any consistent set).
+    """A mechanism with masses and loads, in consistent units (SI or any other set).
 
     Attributes
     ----------
     mechanism : Mechanism
-        Designs of shape S, in a length unit of their own: ``scale`` of it is the unit of everything else.
+        Designs of shape S, in their own length unit, which is ``scale`` units of everything else.
     bodies : dict of str to Body
-        By moving link, places in the reference configuration; a link that is left out has no mass.
+        Bodies by moving link, points in the reference configuration; a link without an entry has no mass.
     pin_masses : dict of str to float, shape S
         Point masses by joint.
     gravity : complex
@@ -27,7 +27,7 @@ class Machine:
     loads : tuple of Load
         Forces, torques, springs.
     friction : Friction
-        Of pins and slides.
+        Friction of pins and slides.
     about : complex, or of shape S
         Point about which the shaking moment is taken.
     """

@@ -1,7 +1,7 @@
-"""Points of links in motion, by their places in the reference configuration.
+"""Motion of points of links, given by their position in the reference configuration.
 
-A link that has turned by φ carries the point p of the reference to q = z + (p − z₀) e^{iφ}, z one of its joints and z₀
-that joint's place in the reference. Derivatives follow from those of z and φ (Norton, Sec. 6.7, 7.3).
+A link that has turned by φ moves the point p of the reference to q = z + (p − z₀) e^{iφ}, with z one of its joints and
+z₀ that joint's position in the reference. Derivatives follow from those of z and φ (Norton, Sec. 6.7, 7.3).
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from kinematics.linkage.planar.drive import Jet, MechanismMotion, RealJet
 from kinematics.linkage.planar.mechanism import GROUND, Complex, Mechanism, Real
 
 REST = 1e-12
-"""Speed, as a share of the mechanism's size times the input's speed, up to which a point is at rest: rounding."""
+"""Speed, as a share of the mechanism's size times the input's speed, up to which a point counts as at rest."""
 
 
 class Places:
-    """A mechanism in motion, in lengths of a unit of one's choice.
+    """A mechanism in motion, in any unit of length.
 
     Parameters
     ----------
@@ -34,6 +34,7 @@ class Places:
         self.mechanism = mechanism
         self.scale = scale
         self.smooth = motion.smooth
+        # A slide's input is a length and scales like one; an angle does not.
         travelled = scale if mechanism.driven_by_slide else 1.0
         self.input: RealJet = motion.input if travelled == 1.0 else travelled * motion.input
         self.joints: dict[str, Jet] = {name: scale * jet[:3] for name, jet in motion.joints.items()}
@@ -42,33 +43,35 @@ class Places:
         self.spins: dict[str, RealJet] = {GROUND: self._still}
         for link, jet in motion.angles.items():
             spin = jet[:3].copy()
+            # Rotation relative to the reference, not the absolute angle.
             spin[0] -= mechanism.link_angle(link)[..., None]
             self.spins[link] = spin
 
     @cached_property
     def size(self) -> Real:
-        """The size of the mechanism, shape S + (1,)."""
+        """Size of the mechanism (largest distance from its first joint), shape S + (1,)."""
         places = np.stack([self.reference(joint) for joint in self.mechanism.joints])
         size = np.abs(places - places[:1]).max(axis=0)
+        # A degenerate mechanism must not divide by zero.
         return np.asarray(np.where(size > 0.0, size, 1.0))[..., None]
 
     @property
     def rest(self) -> Real:
-        """Speed up to which a point is at rest."""
+        """Speed up to which a point counts as at rest."""
         speed = np.abs(self.input[1])
         return np.asarray(REST * (speed if self.mechanism.driven_by_slide else speed * self.size))
 
     @property
     def turning_rest(self) -> Real:
-        """Rotational speed up to which a link is at rest."""
+        """Angular speed up to which a link counts as at rest."""
         return np.asarray(self.rest / self.size)
 
     def reference(self, joint: str) -> Complex:
-        """The place of a joint in the reference, shape S."""
+        """Return the position of a joint in the reference, shape S."""
         return np.asarray(self.scale * self.mechanism.joints[joint])
 
     def base(self, link: str) -> str:
-        """The joint of a moving link by which its points are told."""
+        """Return the base joint of a moving link, to which its points are relative."""
         return self.mechanism.link_line(link)[0]
 
     @cached_property
@@ -81,7 +84,8 @@ class Places:
         return turns
 
     def point(self, link: str, place: Complex) -> Jet:
-        """A point of a link by its place (shape S) in the reference: place, velocity and acceleration."""
+        """Return position, velocity and acceleration of a point of a link, given by its position in the reference."""
+        # The ground has no motion; its points keep their reference position.
         if link == GROUND:
             resting = self._still.astype(np.complex128)
             resting[0] = np.asarray(place)[..., None]
@@ -90,16 +94,16 @@ class Places:
         return np.asarray(self.joints[base] + (place - self.reference(base))[..., None] * self.turns[link])
 
     def direction(self, slide: int) -> Jet:
-        """The direction of a slide's line, and two derivatives."""
+        """Return the direction of a slide's line, and two derivatives."""
         line = self.mechanism.slides[slide]
         return np.asarray(np.exp(1j * line.angle)[..., None] * self.turns[line.link])
 
 
 def cross(arm: Complex, force: Complex) -> Real:
-    """Moment of a force on an arm."""
+    """Return the moment of a force on an arm."""
     return np.asarray(arm.real * force.imag - arm.imag * force.real)
 
 
 def dot(one: Complex, two: Complex) -> Real:
-    """Scalar product of two vectors."""
+    """Return the scalar product of two vectors."""
     return np.asarray(one.real * two.real + one.imag * two.imag)

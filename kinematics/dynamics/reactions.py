@@ -1,4 +1,4 @@
-"""Inverse dynamics: the reactions at every pin, slide and gear, the drive, and what shakes the frame.
+"""Inverse dynamics: the reactions at every pin, slide and gear, the drive, and the shaking force.
 
 Newton's and Euler's equations of every moving link, Σ F = m a_G and Σ M = I α with moments about a joint of the link
 (Norton, *Design of Machinery*, eq. 11.1), solved together at each position. Nothing here is used by :mod:`balance`,
@@ -25,22 +25,22 @@ from kinematics.linkage.planar.mechanism import GROUND, Complex, Real, TopologyE
 Mask = NDArray[np.bool_]
 
 NOTHING = complex(np.nan, np.nan)
-"""A force that is not known, in either component."""
+"""An unknown force: NaN in both components."""
 
 SINGULAR = 1e12
-"""Condition number beyond which a position is a dead centre: four digits of the reactions are left at most."""
+"""Condition number above which a position is a dead centre: at most four digits of the reactions remain."""
 
 
 @dataclass(frozen=True)
 class Reactions:
-    """Forces over designs × positions, shape S + (N,) each; NaN where ``solved`` is False.
+    """Forces over designs × positions, each of shape S + (N,); NaN where ``solved`` is False.
 
     Attributes
     ----------
     solved : bool
         Where the equations determine all reactions.
     determined : bool
-        Where the loads are numbers: a spring whose ends meet has no direction. Elsewhere nothing is solved.
+        Where the loads are finite: a spring whose ends meet has no direction. Elsewhere nothing is solved.
     condition : float
         Condition number of the equations.
     drive : float
@@ -56,9 +56,9 @@ class Reactions:
     jammed : bool
         Where friction leaves no solution, or several.
     indeterminate : bool
-        Where some forces in the joints are not unique, since constraints are redundant: drive and shaking are.
+        Where some joint forces are not unique because constraints are redundant; drive and shaking force still are.
     shaking_force, shaking_moment
-        Sum of all forces of the mechanism on the ground, and their moment about the machine's point, less the drive.
+        Sum of all forces of the mechanism on the ground, and their moment about the machine's point minus the drive.
     """
 
     solved: Mask
@@ -76,7 +76,7 @@ class Reactions:
 
 
 def efforts_of(machine: Machine, now: Places) -> list[Effort]:
-    """Loads, weight and the inertia of point masses (d'Alembert's force on the pin)."""
+    """Collect loads, weight and inertia of point masses (d'Alembert's force on the pin)."""
     efforts = [effort for load in machine.loads for effort in load.efforts(now)]
     none = np.zeros(())
     for joint, mass in machine.pin_masses.items():
@@ -87,19 +87,20 @@ def efforts_of(machine: Machine, now: Places) -> list[Effort]:
 
 
 def reactions(machine: Machine, now: Places, *, minimum_norm: bool = False) -> Reactions:
-    """All reactions of a machine at the positions of a motion.
+    """Compute all reactions of a machine at the positions of a motion.
 
-    Where constraints are redundant the forces in the joints that these leave open are NaN, or, with ``minimum_norm``,
-    those of the least sum of squares (:mod:`redundancy`).
+    With redundant constraints the joint forces that are not determined are NaN or, with ``minimum_norm``, those of the
+    smallest sum of squares (:mod:`redundancy`).
 
     Raises
     ------
     TopologyError
-        For friction where constraints are redundant: it depends on forces that are not unique.
+        For friction with redundant constraints: it would depend on forces that are not unique.
     """
     mechanism, system = machine.mechanism, system_of(machine.mechanism)
     shape = now.smooth.shape
     size = now.size
+    # Loads on pins are collected per joint, since the hub carries them.
     efforts = efforts_of(machine, now)
     on_pins: dict[str, Complex] = {joint: np.zeros(shape, np.complex128) for joint in mechanism.joints}
     for effort in efforts:
@@ -109,9 +110,11 @@ def reactions(machine: Machine, now: Places, *, minimum_norm: bool = False) -> R
     slides = len(mechanism.slides)
     along = [now.direction(n)[0] for n in range(slides)]
     directions = np.stack([*(1j * line for line in along), _input_direction(now), *along]).reshape(2 * slides + 1, -1)
+    # Lengths as shares of the size make forces and torques comparable, so that the condition number means something.
     joints = np.stack([jet[0] / size for jet in now.joints.values()]).reshape(len(mechanism.joints), -1)
     solutions, conditions = np.empty((known.shape[0], system.columns)), np.empty(len(known))
     determined: Mask = np.asarray(np.isfinite(known).all(axis=1))
+    # Solve only where derivatives exist and all loads are finite.
     posed = now.smooth.ravel() & determined
     jammed, stick = np.zeros(len(known), np.bool_), np.zeros(shape, np.bool_)
     frictions = np.empty((0, len(known)))
@@ -120,7 +123,7 @@ def reactions(machine: Machine, now: Places, *, minimum_norm: bool = False) -> R
     open_forces: list[Real] = []
     if machine.mechanism.redundant:
         if contacts:
-            raise TopologyError("friction is not determined where constraints are redundant")
+            raise TopologyError("friction is not determined with redundant constraints")
         open_forces = redundancy.solve(*equations, joints, directions, known, posed, solutions, conditions)
     elif contacts:
         columns = np.array([contact.columns for contact in contacts], np.int64)
@@ -146,6 +149,7 @@ def reactions(machine: Machine, now: Places, *, minimum_norm: bool = False) -> R
         )
     else:
         kernels.solve(*equations, joints, directions, known, posed, solutions, conditions)
+    # "not <" also marks NaN and infinite condition numbers.
     singular = ~(conditions < SINGULAR)
     solutions[singular], frictions[:, singular], jammed[singular] = np.nan, np.nan, False
     values = [
@@ -163,6 +167,7 @@ def reactions(machine: Machine, now: Places, *, minimum_norm: bool = False) -> R
     found = _named(machine, now, system, efforts, on_pins, outcome, size)
     if not machine.mechanism.redundant:
         return found
+    # A self-stress is a solution without loads: evaluate it like the forces, to compare component by component.
     nothing = {joint: np.zeros(shape, np.complex128) for joint in mechanism.joints}
     stresses = [
         _named(machine, now, system, [], nothing, outcome._replace(unknowns=[c.reshape(shape) for c in forces.T]), size)
@@ -172,7 +177,7 @@ def reactions(machine: Machine, now: Places, *, minimum_norm: bool = False) -> R
 
 
 def _opened(found: Reactions, stresses: list[Reactions], size: Real, *, keep: bool) -> Reactions:
-    """Tell which forces are not unique, and, unless they are to be kept, take them out."""
+    """Mark the forces that are not unique and, unless ``keep``, replace them by NaN."""
     indeterminate = np.zeros(found.solved.shape, np.bool_)
 
     def told(force: Any, parts: list[Any]) -> Any:
@@ -190,7 +195,7 @@ def _opened(found: Reactions, stresses: list[Reactions], size: Real, *, keep: bo
 
 
 class _Outcome(NamedTuple):
-    """What the kernels have found, over positions of shape S + (N,)."""
+    """Solution of the kernels, over positions of shape S + (N,)."""
 
     unknowns: list[Real]
     condition: Real
@@ -219,7 +224,7 @@ def _known(
     on_pins: dict[str, Complex],
     size: Real,
 ) -> Real:
-    """Inertia less all that acts on each moving link: right-hand sides, shape (M, 3 × links)."""
+    """Build the right-hand sides, inertia minus all loads on each moving link; shape (M, 3 × links)."""
     shape = now.smooth.shape
     rows = np.zeros((3 * len(system.moving), *shape))
     number = {link: n for n, link in enumerate(system.moving)}
@@ -241,6 +246,7 @@ def _known(
         if not effort.joint:
             add(effort.link, effort.at, effort.force, effort.couple, -1.0)
     for joint, force in on_pins.items():
+        # The hub takes all loads on its pin, by the convention of the system of equations.
         add(system.hubs[joint], now.joints[joint][0], force, none, -1.0)
     return np.ascontiguousarray(rows.reshape(len(rows), -1).T)
 
@@ -272,6 +278,7 @@ def _named(
         on_hub[joint] = on_hub[joint] - force
     for joint, hub in system.hubs.items():
         joints[joint][hub] = on_hub[joint]
+    # The shaking force is the sum of everything that acts on the frame.
     force, moment = _on_ground(machine, now, efforts, joints, lines, gears, drive, outcome.rubbing)
     return Reactions(
         solved,
@@ -290,7 +297,7 @@ def _named(
 
 
 def _lines(now: Places, slides: tuple[Real, ...], rubbing: Rubbing) -> list[Complex]:
-    """Force of each slide's line on its pin: normal force and friction."""
+    """Compute the force of each slide's line on its pin: normal force and friction."""
     forces = [normal * 1j * now.direction(n)[0] for n, normal in enumerate(slides)]
     for contact, friction in zip(rubbing.contacts, rubbing.frictions, strict=True):
         if contact.slide >= 0:
@@ -308,7 +315,7 @@ def _on_ground(
     drive: Real,
     rubbing: Rubbing,
 ) -> tuple[Complex, Real]:
-    """All that the mechanism does to the ground: force, and moment about the machine's point."""
+    """Sum the force of the mechanism on the ground, and its moment about the machine's point."""
     mechanism = machine.mechanism
     total = np.zeros(now.smooth.shape, np.complex128)
     moment = np.zeros(now.smooth.shape)
@@ -319,6 +326,7 @@ def _on_ground(
     for contact, friction in zip(rubbing.contacts, rubbing.frictions, strict=True):
         if contact.slide < 0 and GROUND in (contact.link, contact.against):
             moment = moment + (friction if contact.link == GROUND else -friction)
+    # The drive reacts on the ground, as a force along the slide or as a couple.
     if mechanism.driven_by_slide:
         pushes.append((now.joints[mechanism.input][0], -drive * _input_direction(now)))
     else:
@@ -326,7 +334,7 @@ def _on_ground(
     for gear, torque in zip(mechanism.gears, gears, strict=True):
         share = {gear.second: 1.0}
         share[gear.first] = share.get(gear.first, 0.0) - gear.ratio
-        # What acts on the two links comes from the ground's bearings; a gear that is the ground is no moving link.
+        # Both gear torques are supported by the ground's bearings; a gear fixed to the ground is no moving link.
         moment = moment - torque * sum(factor for link, factor in share.items() if link != GROUND)
     for effort in efforts:
         if effort.link == GROUND and not effort.joint:

@@ -1,9 +1,9 @@
-"""Reactions where constraints are redundant: which forces the equations determine, and the least that meet them.
+"""Reactions with redundant constraints: the forces that the equations determine, and the smallest that satisfy them.
 
 The matrix of the equations, links × unknowns, is the transpose of the constraints' Jacobian. With more constraints than
-needed it has more columns than rows: any *self-stress*, a vector that it maps to zero, may be added to a solution.
-No self-stress has a part in the drive, since the input alone moves the links, nor does it act on the frame as a whole.
-A force that no self-stress has a part in is unique.
+necessary it has more columns than rows: any *self-stress*, a vector that it maps to zero, may be added to a solution.
+No self-stress contributes to the drive, since the input alone moves the links, nor does it act on the frame as a whole.
+A force to which no self-stress contributes is unique.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 OPEN = 1e-9
-"""Part in a self-stress of unit length from which on a force is not unique; below it is rounding."""
+"""Component in a self-stress of unit length above which a force is not unique; smaller ones are rounding."""
 
 FEWEST = 1e-14
-"""Singular value, as a share of the largest, from which on it is not rounding alone."""
+"""Singular value, as a share of the largest, above which it is not rounding alone."""
 
 
 def solve(
@@ -34,17 +34,18 @@ def solve(
     solutions: Real,
     conditions: Real,
 ) -> list[Real]:
-    """Fill in the solutions of the least sum of squares, as :func:`kernels.solve` does its own.
+    """Fill in the solutions of minimum sum of squares; parameters as for :func:`kernels.solve`.
 
     Returns
     -------
     list of float arrays, shape (M, columns)
-        Self-stresses of unit length, square to one another; NaN where nothing is solved.
+        Orthonormal self-stresses; NaN at positions without a solution.
     """
     count, rows = known.shape
     columns = solutions.shape[1]
     solutions[:], conditions[:] = np.nan, np.inf
     stresses = [np.full((count, columns), np.nan) for _ in range(columns - rows)]
+    # The SVD is done only at positions that can be solved.
     at = np.flatnonzero(posed)
     matrices = np.zeros((len(at), rows, columns))
     kernels.matrices(
@@ -56,9 +57,11 @@ def solve(
         matrices,
     )
     left, values, right = np.linalg.svd(matrices, full_matrices=True)
+    # A vanishing singular value is a dead centre: nothing is determined.
     sound = values[:, -1] > FEWEST * values[:, 0]
     at, left, values, right = at[sound], left[sound], values[sound], right[sound]
     conditions[at] = values[:, 0] / values[:, -1]
+    # The pseudoinverse by the SVD gives the solution without self-stress, hence of minimum norm.
     parts = np.einsum("mji,mj->mi", left, known[at]) / values
     solutions[at] = np.einsum("mij,mi->mj", right[:, :rows], parts)
     for n, stress in enumerate(stresses):
@@ -67,6 +70,6 @@ def solve(
 
 
 def unique(force: NDArray[np.inexact], stresses: list[NDArray[np.inexact]]) -> NDArray[np.bool_]:
-    """Where no self-stress has a part in a force."""
+    """Return where no self-stress contributes to a force."""
     parts = np.array([np.abs(stress) for stress in stresses])
     return np.asarray(np.isnan(np.abs(force)) | (parts < OPEN).all(axis=0))

@@ -1,11 +1,11 @@
-"""Rigid rotors: the corrections that balance them in one plane or in two, and what their bearings bear.
+"""Rigid rotors: corrections that balance them in one or two planes, and the loads on their bearings.
 
-An unbalance is a moment U = m R e^{jθ} at a place z along the axis, in the frame of the rotor. Balanced are
+An unbalance is a moment U = m R e^{jθ} at a position z along the axis, in the frame of the rotor. Balance requires
 
     in one plane    Σ U = 0,                                                  (Norton, *Design of Machinery*, 12.2)
     in two planes   Σ U = 0 and Σ U z = 0,                                    (12.4)
 
-so that a force ω² Σ U, and a couple ω² Σ U z, stay in the rotor and do not turn with it on the bearings.
+so that neither a force ω² Σ U nor a couple ω² Σ U z rotates on the bearings.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from kinematics.linkage.planar.mechanism import Complex, Real
 
 
 def plane_corrections(moments: Complex, z: Real, planes: Real) -> Complex:
-    """The moments that have to be added in one plane or in two.
+    """Compute the moments that have to be added in one or two planes.
 
     Parameters
     ----------
     moments : complex, shape (n,)
         The rotor's unbalances.
     z : float, shape (n,)
-        Their places along the axis.
+        Their positions along the axis.
     planes : float, shape (1,) or (2,)
-        Those of the planes; two are apart.
+        Positions of the planes; two must differ.
 
     Returns
     -------
     complex, shape (1,) or (2,)
-        In one plane the force alone is balanced.
+        Moments by plane. A single plane balances the force only.
 
     Examples
     --------
@@ -43,31 +43,33 @@ def plane_corrections(moments: Complex, z: Real, planes: Real) -> Complex:
     """
     if len(planes) == 1:
         return np.asarray([-moments.sum()])
+    # Lever rule: each moment is split between the planes by its position.
     near, far = planes
     shares = (z - near) / (far - near)
     return np.asarray([-(moments * (1.0 - shares)).sum(), -(moments * shares).sum()])
 
 
 def bearing_moments(moments: Complex, z: Real, bearings: Real) -> Complex:
-    """What the rotor exerts on its two bearings, over ω², shape (2,): each moment is shared by the lever."""
+    """Compute the load on the two bearings, divided by ω², shape (2,): each moment is shared by the lever rule."""
     return -plane_corrections(moments, z, bearings)
 
 
 def influence_coefficients(initial: Complex, runs: Complex, trials: Complex) -> Complex:
-    """Change of each reading by a unit of unbalance in each plane, shape (sensors, planes).
+    """Compute the change of each reading per unit of unbalance in each plane, shape (sensors, planes).
 
     Parameters
     ----------
     initial : complex, shape (sensors,)
         Readings of the rotor as it is: amplitude and phase.
     runs : complex, shape (planes, sensors)
-        Those with a trial weight in one plane after the other.
+        Readings with a trial weight in each plane in turn.
     trials : complex, shape (planes,)
         Moments of the trial weights.
     """
+    # Linear model: readings change in proportion to the trial moment.
     return np.asarray(((runs - initial) / trials[:, None]).T)
 
 
 def unbalances_by_influence(initial: Complex, coefficients: Complex) -> Complex:
-    """The moments in the planes that make the initial readings, shape (planes,); least squares with more sensors."""
+    """Solve for the moments in the planes that cause the initial readings, shape (planes,); least squares."""
     return np.asarray(np.linalg.lstsq(coefficients, initial, rcond=None)[0])

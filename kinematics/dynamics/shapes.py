@@ -2,7 +2,7 @@
 
 A :class:`Section` is an area with its first moment and its polar second moment about the origin. These add and
 subtract, so that holes are sections too. A link is the convex hull of its joints widened by half its width: the hull's
-polygon, a strip along each edge, and at each corner a sector of the corner's exterior angle. Of two joints that is a
+polygon, a strip along each edge, and at each corner a sector of the corner's exterior angle. For two joints that is a
 bar with semicircular ends (Norton, *Design of Machinery*, Sec. 10.3-10.6).
 """
 
@@ -23,18 +23,19 @@ class Section(NamedTuple):
     polar: float
 
     def plus(self, added: Section, sign: float = 1.0) -> Self:
-        """The sum with another section, or the difference."""
+        """Return the sum with another section (sign 1) or the difference (sign −1)."""
         return type(self)(
             self.area + sign * added.area, self.first + sign * added.first, self.polar + sign * added.polar
         )
 
     @property
     def centroid(self) -> complex:
-        """Its centre."""
+        """Centroid of the section."""
         return self.first / self.area
 
     def body(self, density: float, thickness: float) -> Body:
-        """The plate of this section."""
+        """Return the plate of this section, with its mass properties about its centroid."""
+        # Parallel axis theorem, from the origin to the centroid.
         own = self.polar - abs(self.first) ** 2 / self.area
         return body(density * thickness * self.area, self.centroid, density * thickness * own)
 
@@ -43,44 +44,47 @@ NOTHING = Section(0.0, 0j, 0.0)
 
 
 def _placed(area: float, centre: complex, own: float) -> Section:
-    """A section by its centre and its polar moment about that."""
+    """Build a section from its centre and its polar moment about that centre."""
     return Section(area, area * centre, own + area * abs(centre) ** 2)
 
 
 def disc(centre: complex, radius: float) -> Section:
-    """A circle's area."""
+    """Return the section of a disc."""
     return _placed(math.pi * radius**2, centre, 0.5 * math.pi * radius**4)
 
 
 def rectangle(centre: complex, length: float, width: float) -> Section:
-    """A rectangle's area, at any angle."""
+    """Return the section of a rectangle; its angle does not matter."""
     area = length * width
     return _placed(area, centre, area * (length**2 + width**2) / 12.0)
 
 
 def polygon(corners: Sequence[complex]) -> Section:
-    """The area within a closed polygon that does not cross itself, in either sense; by triangles from the origin."""
+    """Return the section of a simple polygon of either orientation, by triangles from the origin."""
     area, first, polar = 0.0, 0j, 0.0
     for z, w in zip(corners, [*corners[1:], corners[0]], strict=True):
         doubled = (z.conjugate() * w).imag
         area += doubled / 2.0
         first += doubled * (z + w) / 6.0
         polar += doubled * (abs(z) ** 2 + (z.conjugate() * w).real + abs(w) ** 2) / 12.0
+    # A clockwise polygon gives negative values; make the result independent of the orientation.
     sense = -1.0 if area < 0.0 else 1.0
     return Section(sense * area, sense * first, sense * polar)
 
 
 def _sector(centre: complex, radius: float, towards: complex, angle: float) -> Section:
-    """A sector of a circle about ``centre``, symmetric to a direction."""
+    """Return a sector of a circle about ``centre``, symmetric about a direction."""
     area = 0.5 * radius**2 * angle
     arm = (2.0 * radius / 3.0) * (math.sin(angle / 2.0) / (angle / 2.0)) * towards
     about_centre = radius**4 * angle / 4.0
+    # From the circle's centre to the sector's centroid.
     own = about_centre - area * abs(arm) ** 2
     return _placed(area, centre + arm, own)
 
 
 def hull(points: Sequence[complex]) -> list[complex]:
-    """Corners of the convex hull, counter-clockwise; two points where all lie on a line (Andrew's monotone chain)."""
+    """Return the corners of the convex hull, counter-clockwise; two if all are collinear (Andrew's monotone chain)."""
+    # Duplicates would break the chain's orientation test.
     listed = sorted(set(points), key=lambda z: (z.real, z.imag))
     if len(listed) < 3:
         return listed
@@ -97,7 +101,7 @@ def hull(points: Sequence[complex]) -> list[complex]:
 
 
 def widened_hull(points: Sequence[complex], width: float) -> Section:
-    """The convex hull of points, widened by half a width all round."""
+    """Return the convex hull of points, widened by half a width all round."""
     corners = hull(points)
     radius = 0.5 * width
     if len(corners) == 1:
@@ -112,20 +116,21 @@ def widened_hull(points: Sequence[complex], width: float) -> Section:
             math.atan2((outward_before.conjugate() * outward).imag, (outward_before.conjugate() * outward).real)
         )
         middle = outward_before * complex(math.cos(turned / 2.0), math.sin(turned / 2.0))
+        # Collinear edges leave no sector.
         if turned > 0.0:
             total = total.plus(_sector(z, radius, middle, turned))
     return total
 
 
 def square_bar(start: complex, end: complex, width: float, overhang: float) -> Section:
-    """A bar with square ends that stand over its two joints."""
+    """Return a bar with square ends that project beyond its two joints."""
     return rectangle((start + end) / 2.0, abs(end - start) + 2.0 * overhang, width)
 
 
 def cylinder(
     centre: complex, diameter: float, length: float, density: float, *, bore: float = 0.0, in_plane: bool = False
 ) -> Body:
-    """A (hollow) cylinder, its axis square to the plane, or in it."""
+    """Return a (hollow) cylinder, its axis normal to the plane, or in it."""
     mass = density * math.pi / 4.0 * (diameter**2 - bore**2) * length
     squares = (diameter**2 + bore**2) / 4.0
     inertia = mass * (squares / 4.0 + length**2 / 12.0) if in_plane else mass * squares / 2.0

@@ -1,7 +1,7 @@
 """Springs and dampers between two links: along the line between two points, or against the links' relative rotation.
 
 For the reactions a spring is a pair of forces (or couples) that follow from its length and its rate of lengthening;
-for the balance of energy it takes its tension times the lengthening for a unit of the input, which needs no direction.
+for the balance of energy its tension is multiplied by the lengthening per unit of the input, which needs no direction.
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import GROUND, Complex, Mechanism, Real
 
 NO_LENGTH = 1e-12
-"""Length of a spring, as a share of the mechanism's size, below which it has no direction: rounding."""
+"""Length of a spring, as a share of the mechanism's size, below which rounding determines its direction."""
 
 FINE = 720
-"""Positions a turn at which a rotation is followed: between two of them no link turns half round, but at a toggle."""
+"""Positions per turn at which a rotation is followed: between two of them no link turns by π, except at a toggle."""
 
 TURN = 2.0 * np.pi
 
 
 @dataclass(frozen=True)
 class Spring:
-    """A spring with a damper beside it, between a place (reference) of one link and one of another.
+    """A spring with a parallel damper between two points (in the reference) of two links.
 
-    Its tension is ``rate`` (L − ``free_length``) + ``preload`` + ``damping`` dL/dt. One that only pulls (or pushes)
-    bears nothing where the spring alone would push (pull), and its damper never turns the force round.
+    Its tension is ``rate`` (L − ``free_length``) + ``preload`` + ``damping`` dL/dt. A one-sided spring that pulls (or
+    pushes) has no force where the spring alone would push (pull), and its damper never reverses the force.
     """
 
     links: tuple[str, str]
@@ -43,7 +43,7 @@ class Spring:
     one_sided: Literal["pull", "push"] | None = None
 
     def _span(self, places: Places) -> tuple[Complex, Complex]:
-        """From the first end to the second one, and its rate."""
+        """Return the vector from the first end to the second, and its rate."""
         first, second = (places.point(link, place) for link, place in zip(self.links, self.places, strict=True))
         return np.asarray(second[0] - first[0]), np.asarray(second[1] - first[1])
 
@@ -58,13 +58,14 @@ class Spring:
 
     @property
     def _through_zero(self) -> bool:
-        """Whether the force has a limit where both ends meet: it is the rate times the span, whatever its direction."""
+        """Whether the force has a limit where both ends meet: rate × span, from every direction."""
         return self.free_length == 0.0 and self.preload == 0.0 and self.damping == 0.0
 
     def efforts(self, now: Places) -> list[Effort]:
         """See :class:`kinematics.dynamics.loads.Load`; NaN where both ends meet and the force has no direction."""
         span, rate = self._span(now)
         length = np.abs(span)
+        # Where the ends meet the direction is undefined, except for a spring whose force vanishes there.
         met = length <= NO_LENGTH * now.size
         with np.errstate(invalid="ignore"):  # complex NaN, where the mechanism cannot be assembled
             unit = np.where(met, 0.0 if self._through_zero else np.nan, span / np.where(met, 1.0, length))
@@ -79,6 +80,7 @@ class Spring:
         """See :class:`kinematics.dynamics.loads.Load`: −tension × the lengthening, L' = (L²)' / 2 L."""
         length = np.abs(self._span(now)[0])
         span, by_input = self._span(paced)
+        # At zero length the numerator vanishes as well.
         safe = np.where(length > 0.0, length, 1.0)
         lengthening = (span.real * by_input.real + span.imag * by_input.imag) / safe
         return np.asarray(-self._tension(length, lengthening * now.input[1]) * lengthening)
@@ -86,12 +88,11 @@ class Spring:
 
 @dataclass(frozen=True)
 class TorsionSpring:
-    """A spring and a damper between two links that turn: −``rate`` (rotation − ``free``) − ``damping`` × its rate.
+    """A torsion spring and damper between two links: −``rate`` (rotation − ``free``) − ``damping`` × its rate.
 
-    The rotation is that of the second link against the first one, from the reference, radians; the torque acts on the
-    second link, its opposite on the first. ``near`` gives the rotation at an input to within half a turn, where it may
-    be more than that; without it a rotation is taken between −π and π where a link's angle is known by its sine and
-    cosine only.
+    The rotation is that of the second link relative to the first, from the reference, radians; the torque acts on the
+    second link, its opposite on the first. ``near`` returns the rotation at an input to within half a turn, for
+    rotations that may exceed that; without it the rotation of links known only by sine and cosine lies in −π to π.
     """
 
     links: tuple[str, str]
@@ -101,10 +102,11 @@ class TorsionSpring:
     near: Callable[[Real], Real] | None = None
 
     def rotation(self, now: Places) -> Real:
-        """The rotation over positions, of shape S + (N,)."""
+        """Return the rotation over positions, shape S + (N,)."""
         first, second = (now.spins[link] for link in self.links)
         rotation = second[0] - first[0]
         if self.near is not None:
+            # Select the turn closest to the followed rotation.
             rotation = rotation + TURN * np.round((self.near(now.input[0]) - rotation) / TURN)
         return np.asarray(rotation)
 
@@ -127,7 +129,7 @@ class TorsionSpring:
 
 
 def rotation_near(mechanism: Mechanism, links: tuple[str, str], period: float) -> Callable[[Real], Real]:
-    """The rotation of one link against another of one design, followed from the reference over the input.
+    """Follow the rotation of one link relative to another, from the reference over the input, for one design.
 
     Parameters
     ----------
@@ -141,12 +143,12 @@ def rotation_near(mechanism: Mechanism, links: tuple[str, str], period: float) -
     Returns
     -------
     callable
-        Rotation by input, to within half a turn. Where the mechanism cannot be assembled it is that of the nearest
-        input towards the reference.
+        Rotation by input, to within half a turn. Where the mechanism cannot be assembled, the value of the nearest
+        input towards the reference is used.
     """
     start = float(mechanism.reference_input)
     if not np.isfinite(period):
-        # A link between toggles of a slide swings; that it would turn more than half round is told by no position.
+        # A link driven by a slide between toggles only swings; a rotation beyond ±π could not be detected anyway.
         return lambda input: np.zeros(input.shape)
     count = round(FINE * period / TURN)
     at = start + np.linspace(-period, period, 2 * count + 1)
@@ -156,10 +158,12 @@ def rotation_near(mechanism: Mechanism, links: tuple[str, str], period: float) -
         for link in links
     }
     rotation = turned[links[1]] - turned[links[0]]
+    # Unwrap from the reference outwards on both sides; open positions (NaN) keep the last value.
     for side in (rotation[count:], rotation[count::-1]):
         step = np.diff(side, prepend=0.0)
         step -= TURN * np.round(step / TURN)
         side[:] = np.cumsum(np.where(np.isnan(step), 0.0, step))
+    # Net rotation after one period forward and backward; it need not be zero.
     wound = rotation[-1], rotation[0]
 
     def near(input: Real) -> Real:

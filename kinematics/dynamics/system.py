@@ -1,10 +1,10 @@
-"""The equations of all reactions of a mechanism: which unknown acts on which link, and with what arm.
+"""System of equations for all reactions of a mechanism: which unknown acts on which link, and with which arm.
 
-Unknowns are, at each joint, the force of its pin on every link but the first that the mechanism names there, the hub;
-for each slide the force of its line on the pin, square to the line; for each gear pair the torque that couples it; last
-the drive. Equations are, for each moving link, the sums of forces and of moments (Norton 11.1). What a hub gets from
-its pin follows from the pin's own balance: it is whatever acts on the pin less its own m·a and the forces on the other
-links. Pins of three links and more need no convention so, and a mobility of 1 makes the equations square.
+The unknowns are, at each joint, the force of its pin on every link except the first one named there, the hub; for each
+slide the force of its line on the pin, normal to the line; for each gear pair the torque that couples it; last the
+drive. The equations are the sums of forces and of moments of each moving link (Norton 11.1). The force of a pin on its
+hub follows from the pin's own balance: the loads on the pin minus its m·a and minus the forces on the other links. So
+pins of three or more links need no special convention, and a mobility of 1 makes the equations square.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ class System:
     terms : int, shape (T, 5)
         Kind, column, link (by number in ``moving``), joint, direction. See :mod:`kernels`.
     coefficients : float, shape (T,)
-        What the term is multiplied by.
+        Factor of each term.
     bases : int, shape (links,)
         The joint about which a link's moments are taken.
     columns : int
-        How many unknowns there are.
+        Number of unknowns.
     """
 
     moving: tuple[str, ...]
@@ -52,17 +52,18 @@ class System:
 
     @property
     def slides_at(self) -> int:
-        """The first column of the slides."""
+        """First column of the slides."""
         return 2 * len(self.pins)
 
 
 @lru_cache(maxsize=RECENT)
 def system_of(mechanism: Mechanism) -> System:
-    """The equations of a mechanism."""
+    """Build the equations of a mechanism."""
     links = mechanism.links
     moving = tuple(link for link in links if link != GROUND)
     number = {link: n for n, link in enumerate(moving)}
     joint_number = {joint: n for n, joint in enumerate(mechanism.joints)}
+    # Any link of a joint could be the hub; the first one makes the choice reproducible.
     hubs = {joint: next(link for link, listed in links.items() if joint in listed) for joint in mechanism.joints}
     pins = tuple(
         (joint, link)
@@ -74,12 +75,14 @@ def system_of(mechanism: Mechanism) -> System:
     coefficients: list[float] = []
 
     def add(kind: int, column: int, link: str, joint: int, direction: int, coefficient: float) -> None:
+        # The ground has no equations; its forces follow from the others.
         if link != GROUND and coefficient != 0.0:
             terms.append((kind, column, number[link], joint, direction))
             coefficients.append(coefficient)
 
     for n, (joint, link) in enumerate(pins):
         add(FORCE, 2 * n, link, joint_number[joint], -1, 1.0)
+        # Reaction on the hub.
         add(FORCE, 2 * n, hubs[joint], joint_number[joint], -1, -1.0)
     column = 2 * len(pins)
     for n, slide in enumerate(mechanism.slides):
@@ -88,6 +91,7 @@ def system_of(mechanism: Mechanism) -> System:
         column += 1
     for gear in mechanism.gears:
         add(TORQUE, column, gear.second, -1, -1, 1.0)
+        # The couple does no work: T ω₂ − ratio T ω₁ = 0.
         add(TORQUE, column, gear.first, -1, -1, -gear.ratio)
         column += 1
     if mechanism.driven_by_slide:

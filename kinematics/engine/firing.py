@@ -10,23 +10,23 @@ from numpy.typing import NDArray
 Real = NDArray[np.float64]
 
 SAME = 1e-9
-"""Degrees within which angles, and unevennesses, are one."""
+"""Degrees within which two angles, or two unevennesses, are equal."""
 
 MOST_CYLINDERS = 20
-"""Beyond this the 2^(n−1) choices of a four-stroke engine are too many to be gone through."""
+"""Maximum number of cylinders: the 2^(n−1) choices of a four-stroke engine are all enumerated."""
 
 
 class Firing(NamedTuple):
-    """Choices of where each cylinder fires.
+    """Choices of the firing angle of each cylinder.
 
     Attributes
     ----------
     angles : float, shape (C, n)
         Firing angles after that of the first cylinder, degrees, by cylinder: the choices that are as even as possible.
     unevenness : float
-        Largest less smallest gap between firings, degrees.
+        Largest minus smallest gap between firings, degrees.
     choices : int
-        All choices that there are.
+        Total number of choices.
     """
 
     angles: Real
@@ -35,25 +35,28 @@ class Firing(NamedTuple):
 
 
 def unevenness(angles: Real, cycle: float) -> Real:
-    """Largest less smallest gap between firings, shape S of angles (S + (n,)) in degrees of a cycle."""
+    """Compute the largest minus the smallest gap between firings, shape S, from angles S + (n,) in degrees of a
+    cycle."""
     ordered = np.sort(np.mod(angles, cycle), axis=-1)
     gaps = np.diff(np.concatenate([ordered, ordered[..., :1] + cycle], axis=-1), axis=-1)
     return np.asarray(gaps.max(axis=-1) - gaps.min(axis=-1))
 
 
 def firing_choices(top: Real, strokes: int) -> Firing:
-    """The most even choices for top dead centres τ (degrees, by cylinder) of an engine of 2 or 4 strokes."""
+    """List the most even choices for top dead centres τ (degrees, by cylinder) of an engine of 2 or 4 strokes."""
     count = len(top)
     own = np.mod(top - top[0], 360.0)
-    # What rounding has left below a full turn is a full turn.
+    # An angle that rounding left just below a full turn is a full turn.
     own = np.where(own > 360.0 - SAME, 0.0, own)
     if strokes == 2:
         return Firing(own[None], float(unevenness(own, 360.0)), 1)
     if count > MOST_CYLINDERS:
         raise ValueError(f"expected at most {MOST_CYLINDERS} cylinders, got {count}")
+    # Each bit decides whether a cylinder fires in the first or the second turn; the first cylinder is the origin.
     number = np.arange(1 << (count - 1))[:, None]
     late = np.concatenate([np.zeros((len(number), 1), np.int64), (number >> np.arange(count - 1)) & 1], axis=1)
     angles = own + 360.0 * late
     uneven = unevenness(angles, 720.0)
     least = float(uneven.min())
+    # Keep all ties, which differ only by rounding.
     return Firing(angles[uneven <= least + SAME], least, len(number))

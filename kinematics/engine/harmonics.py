@@ -21,31 +21,31 @@ Complex = NDArray[np.complex128]
 
 
 class Turning(NamedTuple):
-    """The parts of a harmonic that turn with the crank and against it; complex, arrays over arrangements."""
+    """Forward and backward part of a harmonic: it turns with the crank, and against it. Complex, over arrangements."""
 
     forward: Complex
     backward: Complex
 
     @property
     def major(self) -> Real:
-        """The greatest size over a turn."""
+        """Maximum magnitude over a turn."""
         return np.asarray(np.abs(self.forward) + np.abs(self.backward))
 
     @property
     def minor(self) -> Real:
-        """The least size over a turn."""
+        """Minimum magnitude over a turn."""
         return np.asarray(np.abs(np.abs(self.forward) - np.abs(self.backward)))
 
 
 def turning_parts(order: int, axis: Real, top: Real, weight: Real | float = 1.0) -> Turning:
-    """Both parts of a harmonic, in units of m_B r ω² A_k.
+    """Compute both parts of a harmonic, in units of m_B r ω² A_k.
 
     Parameters
     ----------
     axis, top : float, shape S + (n,)
         β and τ of the cylinders, radians.
     weight : float, shape S + (n,)
-        1 for forces, the places along the shaft for moments.
+        1 for forces, the positions along the shaft for moments.
     """
     return Turning(
         0.5 * (weight * np.exp(1j * (axis - order * top))).sum(axis=-1),
@@ -54,5 +54,5 @@ def turning_parts(order: int, axis: Real, top: Real, weight: Real | float = 1.0)
 
 
 def torque_sum(order: int, top: Real, weight: Real | float = 1.0) -> Complex:
-    """Σ e^(−jkτ): what the k-th harmonic of the torque is, in units of one cylinder's."""
+    """Sum e^(−jkτ): the k-th harmonic of the torque, in units of one cylinder's."""
     return np.asarray((weight * np.exp(-1j * order * top)).sum(axis=-1))

@@ -1,4 +1,4 @@
-"""One cylinder: the piston's motion, exact and by two terms, its harmonics, and the masses that stand for its rod.
+"""One cylinder: the piston's motion, exact and by two terms, its harmonics, and the two-mass model of its rod.
 
 With the crank r at θ from top dead centre and the rod l, λ = r/l, the piston stands at x = r cos θ + √(l² − r² sin² θ)
 (Norton, *Design of Machinery*, eq. 13.1d). Two terms keep a = −r ω² (cos θ + λ cos 2θ) (13.3). Exactly,
@@ -18,14 +18,14 @@ from numpy.typing import NDArray
 Real = NDArray[np.float64]
 
 SMALL = 1e-18
-"""Terms of the series below this share of the first are left out."""
+"""Terms of the series below this share of the first are neglected."""
 
 MOST_TERMS = 20_000
-"""Terms of the series at most: enough for rods a thousandth longer than the crank."""
+"""Maximum number of terms of the series: enough for a rod 0.1 % longer than the crank."""
 
 
 def binomial_terms(ratio: float, count: int) -> list[float]:
-    """Sizes of the terms of √(1 − λ² sin² θ) in (sin θ)^2, ^4, ...: |b_j| λ^(2j) (Norton, eq. 13.2f)."""
+    """Compute the sizes of the terms of √(1 − λ² sin² θ) in (sin θ)^2, ^4, ...: |b_j| λ^(2j) (Norton, eq. 13.2f)."""
     terms, b = [], 1.0
     for j in range(1, count + 1):
         b *= (j - 1.5) / j
@@ -34,14 +34,14 @@ def binomial_terms(ratio: float, count: int) -> list[float]:
 
 
 def acceleration_harmonics(ratio: float, order: int, *, two_term: bool = False) -> dict[int, float]:
-    """A_k of −a/(r ω²) = Σ A_k cos kθ for k = 1 and the even orders up to ``order``.
+    """Compute A_k of −a/(r ω²) = Σ A_k cos kθ for k = 1 and the even orders up to ``order``.
 
     Parameters
     ----------
     ratio : float
         r/l, below 1.
     two_term : bool
-        Only cos θ + λ cos 2θ, as the books have it.
+        Use only cos θ + λ cos 2θ, the usual approximation.
 
     Examples
     --------
@@ -72,7 +72,7 @@ def acceleration_harmonics(ratio: float, order: int, *, two_term: bool = False) 
 
 
 class Motion(NamedTuple):
-    """A piston: place from the crankshaft, and its first and second derivative by the angle; tan φ of the rod."""
+    """A piston: its distance from the crankshaft, first and second derivative by the crank angle; tan φ of the rod."""
 
     place: Real
     slope: Real
@@ -81,16 +81,18 @@ class Motion(NamedTuple):
 
 
 def piston(angle: Real, crank: float, rod: float, *, two_term: bool = False) -> Motion:
-    """The motion of a piston at angles of the crank after top dead centre, radians.
+    """Compute the motion of a piston at crank angles after top dead centre, radians.
 
     ``two_term`` gives Norton's eq. 13.3, and of tan φ eq. 13.7d.
     """
+    # λ = r/l governs how far the rod's obliquity matters.
     sine, cosine, ratio = np.sin(angle), np.cos(angle), crank / rod
     if two_term:
         place = rod - crank * ratio / 4.0 + crank * (cosine + ratio / 4.0 * np.cos(2.0 * angle))
         slope = -crank * (sine + ratio / 2.0 * np.sin(2.0 * angle))
         bend = -crank * (cosine + ratio * np.cos(2.0 * angle))
         return Motion(place, slope, bend, ratio * sine * (1.0 + 0.5 * ratio**2 * sine**2))
+    # Projection of the rod on the cylinder's axis.
     root = np.sqrt(rod**2 - (crank * sine) ** 2)
     lean = crank * sine / root
     slope = -crank * sine - lean * crank * cosine
@@ -100,7 +102,7 @@ def piston(angle: Real, crank: float, rod: float, *, two_term: bool = False) -> 
 
 
 class Rod(NamedTuple):
-    """A connecting rod as two masses at its pins, and the moment of inertia that these lack (Norton, eq. 13.10)."""
+    """A connecting rod as two masses at its pins, and the missing moment of inertia (Norton, eq. 13.10)."""
 
     crank_pin: float
     wrist_pin: float
@@ -108,9 +110,10 @@ class Rod(NamedTuple):
 
 
 def two_mass_rod(length: float, mass: float, cg: float, inertia: float | None) -> Rod:
-    """The two masses of a rod whose centre of gravity is ``cg`` from the crank pin.
+    """Build the two-mass model of a rod whose centre of gravity is ``cg`` from the crank pin.
 
-    ``excess`` is I − m l_a l_b, negative as a rule: what the exact rod has beyond its two masses; 0 where I is None.
+    ``excess`` is I − m l_a l_b, usually negative: the inertia of the exact rod beyond its two masses; 0 if I is None.
     """
+    # Two masses with the rod's mass and centre of gravity have this moment of inertia.
     own = mass * cg * (length - cg)
     return Rod(mass * (length - cg) / length, mass * cg / length, 0.0 if inertia is None else inertia - own)

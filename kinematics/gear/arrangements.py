@@ -1,14 +1,14 @@
-"""Planetary arrangements as descriptions: which gears there are, what they sit on, and which of them mesh.
+"""Planetary arrangements as data: the gears, the bodies they belong to, and the meshes between them.
 
-A new arrangement is one more row of :data:`ARRANGEMENTS`; its speeds, its coaxiality, its assembly, its synthesis and
-its drawing all follow from the row. Names of gears are the keys of ``teeth`` everywhere.
+A new arrangement is one more row of :data:`ARRANGEMENTS`; its speeds, coaxiality, assembly, synthesis and drawing all
+follow from that row. Names of gears are the keys of ``teeth`` everywhere.
 
 Glossary:
 
 sun, ring     gears about the train's own axis, with external or internal teeth;
 planet        a body on a pin of a carrier, with one gear (simple) or several (stepped);
-planet set    planets of one carrier that hang together; a train has ``planets`` copies of each set around its axis;
-plane         gears of one plane lie in front of each other and must not touch unless they mesh;
+planet set    planets of one carrier connected by meshes; a train has ``planets`` copies of each set around its axis;
+plane         gears of one plane must not touch unless they mesh;
 far side      in a bevel differential the side gear beyond the planets, which turns against the near one.
 """
 
@@ -24,7 +24,7 @@ from kinematics.gear.planetary import EXTERNAL, INTERNAL, Mesh, Train
 
 @dataclass(frozen=True)
 class GearPlace:
-    """A gear of an arrangement: its body, the planes that it spans, and what its teeth are."""
+    """A gear of an arrangement: its body, the planes that it spans, and the kind of its teeth."""
 
     name: str
     body: str
@@ -40,7 +40,7 @@ class Arrangement:
     Attributes
     ----------
     gears : tuple of GearPlace
-        In the order in which tooth numbers are listed.
+        The gears, in the order in which tooth numbers are listed.
     meshes : tuple of pairs of gear names
         Gears in mesh.
     carriers : mapping
@@ -67,62 +67,66 @@ class Arrangement:
 
     @cached_property
     def members(self) -> tuple[str, ...]:
-        """Bodies about the train's axis: what can be driven, held or taken off; carriers last."""
+        """Bodies about the train's axis, which can be input, output or fixed; carriers last."""
         central = [gear.body for gear in self.gears if gear.body not in self.carriers]
         return tuple(dict.fromkeys([*central, *self.carriers.values()]))
 
     @cached_property
     def planet_sets(self) -> tuple[tuple[str, ...], ...]:
-        """Planets that hang together by meshes between them, set by set."""
+        """Planets connected by meshes between them, set by set."""
         sets = [[planet] for planet in self.carriers]
         for one, other in self.meshes:
             bodies = {self.places[one].body, self.places[other].body}
             if bodies <= self.carriers.keys():
+                # Union of the sets that this mesh connects.
                 joined = [members for members in sets if bodies & set(members)]
                 sets = [members for members in sets if members not in joined]
                 sets.append([planet for members in joined for planet in members])
         return tuple(tuple(members) for members in sets)
 
     def is_planet(self, gear: str) -> bool:
-        """Whether a gear goes round on a pin."""
+        """Return whether a gear is a planet."""
         return self.places[gear].body in self.carriers
 
     def sense(self, one: str, other: str) -> int:
-        """Sense of a mesh: internal teeth, and the far side of a bevel differential, turn the same way."""
+        """Return the sense of a mesh: internal teeth, and the far side of a bevel differential, turn the same way."""
         gears = self.places[one], self.places[other]
         return INTERNAL if any(gear.internal or gear.far for gear in gears) else EXTERNAL
 
     def meshing(self, gear: str) -> tuple[str, ...]:
-        """The gears that a gear meshes with."""
+        """List the gears that mesh with a gear."""
         return tuple(two if gear == one else one for one, two in self.meshes if gear in (one, two))
 
     def central_meshes(self, planet: str) -> tuple[tuple[str, str], ...]:
-        """(gear of a planet, sun or ring that it meshes with), for every such mesh of one planet."""
+        """List (gear of a planet, sun or ring) for every such mesh of one planet."""
         pairs = [pair for one, other in self.meshes for pair in ((one, other), (other, one))]
         return tuple((own, mate) for own, mate in pairs if self.places[own].body == planet and not self.is_planet(mate))
 
     def independent_gears(self, planets: tuple[str, ...]) -> tuple[str, ...]:
-        """Gears of a planet set whose teeth can be chosen; coaxiality gives the others, a sun or ring a further mesh.
+        """List the gears of a planet set whose teeth can be chosen; coaxiality then determines the other suns and
+        rings.
 
-        Suns and rings come first, and the planets that have more of them: most conditions are on these.
+        Suns and rings come first, in the order of planets with the most of them: these have the most conditions.
         """
+        # The most constrained planets first, so that a search fails early.
         order = sorted(planets, key=lambda body: -len(self.central_meshes(body)))
         central = [self.central_meshes(planet)[0][1] for planet in order]
         return (*central, *(gear.name for planet in order for gear in self.gears if gear.body == planet))
 
     def train(self, teeth: Mapping[str, int]) -> Train:
-        """The speed equations for given tooth numbers.
+        """Build the speed equations for given tooth numbers.
 
         Raises
         ------
         DimensionError
-            Where ``teeth`` does not name exactly the gears of the arrangement.
+            If ``teeth`` does not name exactly the gears of the arrangement.
         """
         if set(teeth) != set(self.places):
             raise DimensionError("teeth", f"for {', '.join(self.places)}", sorted(teeth))
         meshes = []
         for one, other in self.meshes:
             bodies = self.places[one].body, self.places[other].body
+            # Every mesh of a planetary train contains at least one planet.
             carrier = next(self.carriers[body] for body in bodies if body in self.carriers)
             meshes.append(Mesh(*bodies, carrier, teeth[one], teeth[other], self.sense(one, other)))
         return Train(tuple(meshes), frozenset(self.carriers))
@@ -141,8 +145,9 @@ def _planet(name: str, *planes: int, body: str | None = None) -> GearPlace:
 
 
 def _stepped(name: str, description: str, first: GearPlace, second: GearPlace) -> Arrangement:
-    """Planets of two steps on one carrier, between a sun or ring in the first plane and another in the second."""
+    """Make stepped planets on one carrier, between a sun or ring in the first plane and another in the second."""
     planets = _planet("planet_1", 1, body="planet"), _planet("planet_2", 2, body="planet")
+    # The smaller gear of a mesh comes first, the ring second.
     near = ("planet_1", first.name) if first.internal else (first.name, "planet_1")
     return Arrangement(
         name, description, (first, *planets, second), (near, ("planet_2", second.name)), {"planet": "carrier"}

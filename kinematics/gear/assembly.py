@@ -1,9 +1,9 @@
-"""Whether the gears of a planetary arrangement fit together: coaxiality, phases of the teeth, room between gears.
+"""Assembly of planetary arrangements: coaxiality, phases of the teeth, clearance between gears.
 
-Lengths are in modules; places around the train are exact fractions of a turn.
+Lengths are in modules; positions around the train are exact fractions of a turn.
 
-Phases. A planet whose pin stands at θ turns, itself turned by α, meshes there only where a tooth meets a space. With
-β = θ − α and the first planet at θ = α = 0, a gear of z teeth on the planet demands (all modulo 1)::
+Phases. A planet whose pin is at θ turns, itself rotated by α, meshes there only if a tooth meets a space. With
+β = θ − α and the first planet at θ = α = 0, a gear of z teeth on the planet requires (all modulo 1)::
 
     z β ≡ −S θ    against a sun of S teeth (or the near side of a bevel differential)
     z β ≡ +R θ    against a ring of R teeth (or the far side)
@@ -27,7 +27,7 @@ from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM
 
 
 class Gap(NamedTuple):
-    """Room between two gears of one plane that do not mesh, in modules; negative where they overlap."""
+    """Clearance between two gears of one plane that do not mesh, in modules; negative if they overlap."""
 
     one: str
     other: str
@@ -35,15 +35,17 @@ class Gap(NamedTuple):
 
 
 def pin_distances(arrangement: Arrangement, teeth: Mapping[str, int]) -> dict[str, list[Fraction]]:
-    """For each planet the distances from the axis that its suns and rings ask of its pin, in modules.
+    """Compute for each planet the distances from the axis that its suns and rings require of its pin, in modules.
 
-    Coaxial: all of one planet are equal. For a bevel differential they are the pitch radii of the side gears.
+    The gears are coaxial if all distances of each planet agree. For a bevel differential they are the pitch radii of
+    the side gears.
     """
     distances: dict[str, list[Fraction]] = {planet: [] for planet in arrangement.carriers}
     for planet, own, central in _central_meshes(arrangement):
         if arrangement.bevel:
             twice = teeth[central]
         elif arrangement.places[central].internal:
+            # Twice the distance, to stay in integers: inside a ring the planet's radius is subtracted.
             twice = teeth[central] - teeth[own]
         else:
             twice = teeth[central] + teeth[own]
@@ -52,14 +54,14 @@ def pin_distances(arrangement: Arrangement, teeth: Mapping[str, int]) -> dict[st
 
 
 def is_coaxial(arrangement: Arrangement, teeth: Mapping[str, int]) -> bool:
-    """Whether every pin has one distance from the axis, a positive one, and meshing planets reach each other."""
+    """Return whether every pin has a single positive distance from the axis and meshing planets reach each other."""
     return pins(arrangement, teeth) is not None
 
 
 def pins(arrangement: Arrangement, teeth: Mapping[str, int]) -> dict[str, complex] | None:
-    """Pins of the first copy of every planet, in modules; the first of each set on the positive real axis.
+    """Place the pins of the first copy of every planet, in modules; the first of each set on the positive real axis.
 
-    None where the gears are not coaxial or two meshing planets cannot reach each other.
+    Return None if the gears are not coaxial or two meshing planets cannot reach each other.
     """
     distances = {planet: set(asked) for planet, asked in pin_distances(arrangement, teeth).items()}
     if any(len(asked) != 1 or min(asked) <= 0 for asked in distances.values()):
@@ -83,11 +85,12 @@ def _beside(
     placed: Mapping[str, complex],
     planet: str,
 ) -> complex | None:
-    """Pin of a planet that meshes with one already placed, ahead of it around the axis."""
+    """Place the pin of a planet that meshes with one already placed, ahead of it around the axis."""
     for first, second in arrangement.meshes:
         bodies = {arrangement.places[gear].body: gear for gear in (first, second)}
         neighbour = next((body for body in bodies if body in placed and planet in bodies), None)
         if neighbour is not None:
+            # Law of cosines in the triangle of the axis and both pins.
             apart = 0.5 * (teeth[first] + teeth[second])
             near, far = radius[neighbour], radius[planet]
             cosine = (near * near + far * far - apart * apart) / (2.0 * near * far)
@@ -98,14 +101,15 @@ def _beside(
 
 
 def fits_at(arrangement: Arrangement, teeth: Mapping[str, int], members: Sequence[str], turn: Fraction) -> bool:
-    """Whether a further copy of a planet set fits between the gears, ``turn`` of a full turn after the first.
+    """Return whether another copy of a planet set fits between the gears, ``turn`` of a full turn after the first.
 
-    Decided by trying every tooth of every planet, in exact arithmetic.
+    Every tooth of every planet is tried, in exact arithmetic.
     """
     demands: dict[str, list[tuple[int, Fraction]]] = {planet: [] for planet in members}
     for planet, own, central in _central_meshes(arrangement):
         if planet in demands:
             sense = arrangement.sense(own, central)
+            # External: −S θ, internal: +R θ; the sense carries the sign.
             demands[planet].append((teeth[own], sense * teeth[central] * turn))
     between = [
         (arrangement.places[one].body, teeth[one], arrangement.places[other].body, teeth[other])
@@ -116,10 +120,12 @@ def fits_at(arrangement: Arrangement, teeth: Mapping[str, int], members: Sequenc
     choices = []
     for planet in members:
         (count, phase), *others = demands[planet]
-        # Of a planet with one gear only z β counts, the same for every tooth.
+        # A planet with a single gear is the same after a turn by one tooth, so one tooth is enough.
         tried = count if carried.count(planet) > 1 else 1
+        # Each solution of z β ≡ phase, one per tooth.
         turned = [(phase + tooth) / count for tooth in range(tried)]
         choices.append([beta for beta in turned if all(_whole(z * beta - demand) for z, demand in others)])
+    # Without meshes between planets each planet is independent of the others.
     if not between:
         return all(choices)
     for combination in itertools.product(*choices):
@@ -139,21 +145,21 @@ def gaps(
     turns: Mapping[str, Sequence[Fraction]],
     addendum: float = FULL_DEPTH_ADDENDUM,
 ) -> list[Gap]:
-    """Room between all gears of a plane that do not mesh, copies of planets included, in modules.
+    """Measure the clearance between all gears of a plane that do not mesh, copies of planets included, in modules.
 
     Parameters
     ----------
     arrangement, teeth
         Coaxial gears.
     turns : mapping
-        Places of the copies of each planet's set, in turns from the first.
+        Positions of the copies of each planet's set, in turns from the first.
     addendum : float
         Tip circles lie this many modules beyond the pitch circles, also those of rings whose teeth are shorter.
 
     Returns
     -------
     list of Gap
-        The least for each pair of gear names; empty where nothing can touch.
+        The minimum for each pair of gear names; empty if no gears can touch.
     """
     placed = pins(arrangement, teeth)
     assert placed is not None
@@ -171,6 +177,7 @@ def gaps(
         for central in arrangement.gear_names:
             if central in moving or not _share_plane(arrangement, one, central) or one in arrangement.meshing(central):
                 continue
+            # The tips of a ring point inwards.
             ring_tip = 0.5 * teeth[central] - addendum
             reach = abs(placed[body]) + tip[one]
             internal = arrangement.places[central].internal
@@ -180,6 +187,7 @@ def gaps(
                 continue
             mate = arrangement.places[other].body
             for here, there in itertools.product(turns[body], turns[mate]):
+                # Planets of one copy that mesh do touch, by design.
                 same_copy = here == there
                 if same_copy and (body == mate or one in arrangement.meshing(other)):
                     continue
@@ -191,25 +199,29 @@ def gaps(
 def _bevel_gaps(
     arrangement: Arrangement, teeth: Mapping[str, int], turns: Mapping[str, Sequence[Fraction]], addendum: float
 ) -> list[Gap]:
-    """Room between bevel planets where their large ends come nearest: in the planes that halve the angles between pins.
+    """Measure the clearance between bevel planets at their large ends, in the planes that bisect the angles between
+    pins.
 
     The pitch circle of a planet's large end lies at the side gear's pitch radius from the axis.
     """
     gaps = []
     for planet, side, *_ in ((own, central) for _, own, central in _central_meshes(arrangement)):
+        # Pitch cone of the planet, for axes at a right angle.
         cone = math.atan2(teeth[planet], teeth[side])
         places = sorted(turns[arrangement.places[planet].body])
         between = [float(b - a) for a, b in zip(places, [*places[1:], places[0] + 1], strict=True) if len(places) > 1]
         for share in between:
+            # Pins half a turn or more apart have the axis between them: no bisecting plane to cross.
             if share < 0.5:
                 half = 0.5 * teeth[side] * math.tan(math.pi * share)
                 gaps.append(Gap(planet, planet, 2.0 * (half - 0.5 * teeth[planet] - addendum * math.cos(cone))))
+        # Both side gears give the same planets.
         break
     return gaps
 
 
 def _central_meshes(arrangement: Arrangement) -> list[tuple[str, str, str]]:
-    """(planet, its gear, the sun or ring) for every mesh between a planet and a gear about the axis."""
+    """List (planet, its gear, the sun or ring) for every mesh between a planet and a gear about the axis."""
     return [(planet, *pair) for planet in arrangement.carriers for pair in arrangement.central_meshes(planet)]
 
 

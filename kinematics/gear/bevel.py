@@ -15,7 +15,7 @@ from kinematics.gear.teeth import PRESSURE_ANGLE, Gear, Mesh
 
 
 def cone_angles(shaft_angle: float, ratio: float) -> tuple[float, float]:
-    """Pitch cone angles of pinion and gear for a ratio of at least 1.
+    """Compute the pitch cone angles of pinion and gear for a ratio of at least 1.
 
     Raises
     ------
@@ -26,12 +26,13 @@ def cone_angles(shaft_angle: float, ratio: float) -> tuple[float, float]:
         raise DimensionError("shaft_angle", "between 0 and π", shaft_angle)
     if not ratio >= 1.0:
         raise DimensionError("ratio", "at least 1", ratio)
+    # atan2 also covers obtuse shaft angles.
     pinion = math.atan2(math.sin(shaft_angle), ratio + math.cos(shaft_angle))
     return pinion, shaft_angle - pinion
 
 
 FLATTEST = 1e-6
-"""Cosine of the pitch cone angle at which a bevel gear counts as flat, times the ratio of the teeth or less."""
+"""Bound below which a bevel gear counts as flat (a crown gear): z₁/z₂ + cos Σ, which is positive and vanishes there."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ class BevelTeeth:
     least, lessening : float
         Coefficients of the gear's addendum.
     added_depth : float
-        Length that the whole depth has beyond its share of the pitch, millimetres.
+        Constant part of the whole depth, millimetres.
     """
 
     least: float
@@ -56,7 +57,7 @@ class BevelTeeth:
 
 RAO_TEETH = BevelTeeth(0.540, 0.400, 0.05)
 """Rao, Sec. 7.8: gear addendum (0.540 + 0.400/G²)/P, whole depth 2.188/P + 0.005 cm. Gears of equal teeth, G = 1, have
-unequal addenda 1.06/P and 0.94/P, so that which of them is called the pinion matters."""
+unequal addenda 1.06/P and 0.94/P, so it matters which of them is called the pinion."""
 
 GLEASON_TEETH = BevelTeeth(0.540, 0.460, 0.0508)
 """Gleason's 20° straight teeth (AGMA 208.03; Shigley & Mischke, Mechanical Engineering Design, Tab. 13-3): gear
@@ -78,7 +79,7 @@ class BevelPair:
     system : BevelTeeth
         Proportions of the teeth.
     millimetre : float
-        One millimetre in the unit of the distances, for the depth that the system adds as a length.
+        One millimetre in the unit of the distances, for the constant part of the depth.
     """
 
     pinion: int
@@ -90,7 +91,9 @@ class BevelPair:
 
     def __post_init__(self) -> None:
         if not (0 < self.pinion <= self.gear and self.diametral_pitch > 0.0):
-            raise DimensionError("teeth", "pinion teeth not above gear teeth, all positive", (self.pinion, self.gear))
+            raise DimensionError(
+                "teeth", "positive, with no more pinion teeth than gear teeth", (self.pinion, self.gear)
+            )
 
     @property
     def cones(self) -> tuple[float, float]:
@@ -99,7 +102,7 @@ class BevelPair:
 
     @property
     def pitch_radii(self) -> tuple[float, float]:
-        """At the large end."""
+        """Pitch radii of pinion and gear at the large end."""
         return 0.5 * self.pinion / self.diametral_pitch, 0.5 * self.gear / self.diametral_pitch
 
     @property
@@ -109,24 +112,24 @@ class BevelPair:
 
     @property
     def working_depth(self) -> float:
-        """2 / P."""
+        """Working depth, 2 / P."""
         return 2.0 / self.diametral_pitch
 
     @property
     def whole_depth(self) -> float:
-        """2.188 / P and the length that the system adds, for clearance."""
+        """Whole depth: 2.188 / P plus the constant length of the system, for clearance."""
         return 2.188 / self.diametral_pitch + self.system.added_depth * self.millimetre
 
     @property
     def addenda(self) -> tuple[float, float]:
-        """Of pinion and gear."""
+        """Addenda of pinion and gear."""
         share = self.system.least + self.system.lessening * (self.pinion / self.gear) ** 2
         gear = share / self.diametral_pitch
         return self.working_depth - gear, gear
 
     @property
     def dedenda(self) -> tuple[float, float]:
-        """2.188/P less the addendum."""
+        """Dedenda of pinion and gear: 2.188/P minus the addendum."""
         first, second = self.addenda
         return 2.188 / self.diametral_pitch - first, 2.188 / self.diametral_pitch - second
 
@@ -139,6 +142,7 @@ class BevelPair:
     def thicknesses(self) -> tuple[float, float]:
         """Circular tooth thicknesses: the longer addendum has the thicker tooth, t₂ = p/2 − (a₁ − a₂) tan φ."""
         first, second = self.addenda
+        # Both thicknesses together fill the circular pitch.
         gear = 0.5 * self.circular_pitch - (first - second) * math.tan(self.pressure_angle)
         return self.circular_pitch - gear, gear
 
@@ -147,15 +151,15 @@ class BevelPair:
 class BevelCones:
     """The pitch cones of two external bevel gears whose shafts meet at any angle.
 
-    Teeth are compared with those of the spur gears that the developed back cones show, of z / cos γ virtual teeth and
-    full depth (Tredgold's approximation; Norton, Sec. 9.5).
+    The teeth are those of the spur gears on the developed back cones, with z / cos γ virtual teeth and full depth
+    (Tredgold's approximation; Norton, Sec. 9.5).
 
     Attributes
     ----------
     driver, driven : int
         Tooth numbers.
     module : float
-        At the large end.
+        Module at the large end.
     shaft_angle, pressure_angle : float
         Radians.
 
@@ -173,8 +177,10 @@ class BevelCones:
 
     def __post_init__(self) -> None:
         small, large = sorted((self.driver, self.driven))
+        # At equality the larger pitch cone opens to 90°: a crown gear.
         if not small + large * math.cos(self.shaft_angle) > FLATTEST * large:
             raise DimensionError("shaft_angle", "such that both pitch cones are less than flat", self.shaft_angle)
+        # Raises for teeth that cannot mesh.
         _ = self.back_mesh
 
     @property
@@ -182,11 +188,12 @@ class BevelCones:
         """Pitch cone angles of driver and driven gear."""
         large, small = max(self.driver, self.driven), min(self.driver, self.driven)
         pinion, gear = cone_angles(self.shaft_angle, large / small)
+        # The cone angles are computed for the smaller gear first.
         return (pinion, gear) if self.driver <= self.driven else (gear, pinion)
 
     @property
     def pitch_radii(self) -> tuple[float, float]:
-        """Of driver and driven gear at the large end."""
+        """Pitch radii of driver and driven gear at the large end."""
         return 0.5 * self.module * self.driver, 0.5 * self.module * self.driven
 
     @property
@@ -196,7 +203,7 @@ class BevelCones:
 
     @property
     def virtual_teeth(self) -> tuple[float, float]:
-        """z / cos γ of driver and driven gear."""
+        """Virtual teeth z / cos γ of driver and driven gear."""
         one, two = self.cones
         return self.driver / math.cos(one), self.driven / math.cos(two)
 

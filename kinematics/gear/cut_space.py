@@ -1,10 +1,10 @@
-"""How deep the tips of a mesh dig into its teeth as their tools leave them, found by trying all positions of the tools.
+"""Interference depth of tips in the teeth cut by given tools, by simulation of the cutting.
 
-A tool takes away what it passes over while blank and tool roll on one another. A corner of a tip is put where it stands
-at every position of the mesh; it is free where some position of the tool has been there before, and otherwise it digs
-into the tooth by the least distance to what any position of the tool took away. Neither where an involute begins nor
-the shape of a fillet is asked for: the rack is a trapezium with rounded corners that moves along a line, the cutter of
-a ring a gear with sharp corners that turns.
+A tool removes the material that it passes over while blank and tool roll on each other. A corner of a tip is placed at
+every position of the mesh; it is free if some position of the tool has removed that point, and otherwise its depth is
+the smallest distance to the removed region. The method needs neither the start of an involute nor the shape of a
+fillet: the rack is a trapezium with rounded corners that moves along a line, the cutter of a ring is a gear with sharp
+corners that turns.
 
 Lengths are in the unit of the module, angles radians. Gears stand at 0 with the middle of a tooth space on the positive
 real axis, their mates and tools in it.
@@ -24,29 +24,29 @@ from kinematics.gear.teeth import Gear, Mesh
 Points = NDArray[np.complex128]
 Reals = NDArray[np.float64]
 Freedom = Callable[[Points, Reals], Reals]
-"""How deep points of a blank are inside a tool when the blank has turned by an angle; negative outside."""
+"""Depth of points of a blank inside a tool when the blank has turned by an angle; negative outside."""
 
 CORNER_PLACES = 121
-"""Places of a corner on its way through the mate."""
+"""Number of positions of a corner on its path through the mate."""
 
 TOOL_PLACES, CLOSER_PLACES, CLOSER = 61, 13, 3
-"""Places of a tool that are tried for every point; and how many between the neighbours of the best, how many times."""
+"""Tool positions tried for every point, positions between the neighbours of the best one, and number of refinements."""
 
 
 def tip_depth(mesh: Mesh, cutter_teeth: int) -> float:
-    """How deep the deeper of the two tips digs into its mate; not positive where both run free.
+    """Measure how deep the deeper of the two tips digs into its mate; at most zero if both run free.
 
     Parameters
     ----------
     mesh : Mesh
         External gears, each cut by its rack with the rounded corners of ISO 53; or a pinion in a ring.
     cutter_teeth : int
-        Of the cutter, without shift, that shapes a ring down to its dedendum.
+        Teeth of the cutter, without shift, that shapes a ring down to its dedendum.
 
     Returns
     -------
     float
-        In the unit of the module. Flanks that meet as they should touch: zero but for 1e-8 of the module.
+        Depth in the unit of the module. Flanks in proper contact touch: zero to within 1e-8 of the module.
     """
     one, two, apart = mesh.pinion, mesh.gear, mesh.centre_distance
     if two.internal:
@@ -61,29 +61,33 @@ def tip_depth(mesh: Mesh, cutter_teeth: int) -> float:
 
 
 def _dug(gear: Gear, corner: Points, freedom: Freedom) -> float:
-    """The greatest depth of points in the material of a gear."""
-    # The tool has been farther round than any contact: its straight flank meets the tip this far from the middle.
+    """Measure the maximum depth of points in the material of a gear."""
+    # Range of tool positions: its straight flank meets the tip this far from the middle, beyond any contact.
     most = 1.5 * (gear.addendum + gear.dedendum) * gear.module / math.sin(gear.pressure_angle) / gear.pitch_radius
     turns = np.broadcast_to(np.linspace(-most, most, TOOL_PLACES), (len(corner), TOOL_PLACES))
     step = turns[0, 1] - turns[0, 0]
     for _ in range(CLOSER + 1):
         free = freedom(corner[:, None], turns)
+        # Each point has its own best tool position; refine around it.
         best = np.take_along_axis(turns, np.argmax(free, axis=1)[:, None], axis=1)
         turns = best + np.linspace(-step, step, CLOSER_PLACES)
         step *= 2.0 / (CLOSER_PLACES - 1)
     beyond = np.abs(corner) - gear.tip_radius
+    # A point beyond the tip circle lies outside the blank and is free as well.
     outside = -beyond if gear.internal else beyond
     return float(-np.maximum(free.max(axis=1), outside).min())
 
 
 def _by_rack(gear: Gear) -> Freedom:
-    """Of an external gear: points inside the rack's tooth, whose reference line is ``shift`` outside the pitch circle.
+    """Build the freedom of points in an external gear's rack, whose reference line is ``shift`` outside the pitch
+    circle.
 
-    The tooth is a trapezium within the flanks and the tip of the rack, widened by the rounding of its corners.
+    The tooth is a trapezium, inset from flanks and tip of the rack by the radius of its corners and then widened by it.
     """
     m, phi = gear.module, gear.pressure_angle
     rounding = m * corner_rounding(phi, gear.dedendum)
     sine, cosine = math.sin(phi), math.cos(phi)
+    # Inset by the corner radius, which is added back at the end.
     deepest = m * gear.dedendum - rounding
     across = 0.25 * math.pi * m * cosine - rounding
     corner = (across - deepest * sine) / cosine
@@ -93,6 +97,7 @@ def _by_rack(gear: Gear) -> Freedom:
         beside = np.abs(at.imag - gear.pitch_radius * turns)
         depth = gear.pitch_radius + gear.shift * m - at.real
         below, off_flank = depth - deepest, beside * cosine + depth * sine - across
+        # Outside the inset trapezium: beyond its flank, its tip, or its corner.
         over_flank = (beside - corner) * sine - below * cosine >= 0.0
         beyond = np.where(over_flank, off_flank, np.where(beside <= corner, below, np.hypot(beside - corner, below)))
         inside = np.maximum(below, off_flank)
@@ -102,39 +107,41 @@ def _by_rack(gear: Gear) -> Freedom:
 
 
 def _by_cutter(ring: Gear, teeth: int) -> Freedom:
-    """Of a ring: points inside a tooth of its cutter, a gear whose addendum is the ring's dedendum."""
+    """Build the freedom of points in a tooth of a ring's cutter, a gear whose addendum is the ring's dedendum."""
     cutter = Gear(teeth, ring.module, ring.pressure_angle, ring.dedendum, ring.dedendum)
     apart = Mesh(cutter, ring).centre_distance
     base = cutter.base_radius
 
     def freedom(points: Points, turns: Reals) -> Reals:
+        # Rolling: the cutter turns by the ratio of the teeth.
         at = (points * np.exp(1j * turns) - apart) * np.exp(-1j * turns * ring.teeth / teeth)
         radius = np.abs(at)
+        # Below the base circle the flank is taken as radial.
         flank = np.maximum(radius / base, 1.0)
         rolled = np.sqrt(flank**2 - 1.0)
         half = 0.5 * math.pi / teeth + math.tan(ring.pressure_angle) - ring.pressure_angle - rolled + np.arctan(rolled)
-        # Involutes of one circle are as far from one another as their beginnings are along it.
+        # Parallel involutes of one base circle keep the distance of their starting points along it.
         return np.asarray(np.minimum(base * (half - np.abs(np.angle(at))), cutter.tip_radius - radius))
 
     return freedom
 
 
 def _corner_outside(gear: Gear, mate: Gear, apart: float) -> Points:
-    """A corner of an external mate's tip on its way through an external gear, in that gear's frame."""
+    """Trace a corner of an external mate's tip through an external gear, in that gear's frame."""
     turns = _way(mate.tip_radius, apart, gear.tip_radius)
     at = apart - mate.tip_radius * np.exp(1j * turns)
     return np.asarray(at * np.exp(1j * (turns - _half_tip(mate)) * (mate.teeth / gear.teeth)))
 
 
 def _corner_in_pinion(pinion: Gear, ring: Gear, apart: float) -> Points:
-    """A corner of a ring's tip on its way through the pinion, in the pinion's frame."""
+    """Trace a corner of a ring's tip through the pinion, in the pinion's frame."""
     turns = _way(ring.tip_radius, apart, pinion.tip_radius)
     at = ring.tip_radius * np.exp(1j * turns) - apart
     return np.asarray(at * np.exp(-1j * (turns - _half_tip(ring)) * (ring.teeth / pinion.teeth)))
 
 
 def _corner_in_ring(pinion: Gear, ring: Gear, apart: float) -> Points:
-    """A corner of the pinion's tip on its way through the ring, in the ring's frame."""
+    """Trace a corner of the pinion's tip through the ring, in the ring's frame."""
     cosine = (ring.tip_radius**2 - apart**2 - pinion.tip_radius**2) / (2.0 * apart * pinion.tip_radius)
     most = math.acos(min(1.0, max(-1.0, cosine)))
     turns = np.linspace(-most, most, CORNER_PLACES)
@@ -143,9 +150,9 @@ def _corner_in_ring(pinion: Gear, ring: Gear, apart: float) -> Points:
 
 
 def _way(radius: float, apart: float, reach: float) -> Reals:
-    """Angles of a point on a circle, from the line of centres, at which it is within reach of another circle's centre.
+    """List the angles of a point on a circle, from the line of centres, at which it is within reach of another centre.
 
-    Points that are never are at the nearest place.
+    If it never is, all angles are zero, the nearest position.
     """
     cosine = (apart**2 + radius**2 - reach**2) / (2.0 * apart * radius)
     most = math.acos(min(1.0, max(-1.0, cosine)))
@@ -153,6 +160,7 @@ def _way(radius: float, apart: float, reach: float) -> Reals:
 
 
 def _half_tip(gear: Gear) -> float:
-    """Half the angle of a tooth on its tip circle; nought where the flanks have met before, or begin inside of it."""
+    """Compute half the angle of a tooth on its tip circle; zero if the flanks meet below it."""
+    # There is no involute below the base circle.
     radius = max(gear.tip_radius, gear.base_radius)
     return max(0.0, gear.thickness_at(radius) / (2.0 * radius))

@@ -14,29 +14,31 @@ class Elimination:
 
     @property
     def rank(self) -> int:
-        """How many independent equations there are."""
+        """Number of independent equations."""
         return len(self._rows)
 
     def add(self, row: dict[str, Fraction], right: Fraction) -> bool:
-        """Take an equation in; False where it contradicts the ones before, which are then kept as they are."""
+        """Add an equation; return False if it contradicts the earlier ones, which then stay unchanged."""
         for pivot, (known, value) in self._rows.items():
             share = row.get(pivot)
             if share:
                 row, right = _less(row, known, share), right - share * value
         row = {name: c for name, c in row.items() if c}
+        # A dependent equation: consistent only if its right side vanishes too.
         if not row:
             return right == 0
         pivot, lead = next(iter(row.items()))
         row, right = {name: c / lead for name, c in row.items()}, right / lead
         for other, (known, value) in self._rows.items():
             share = known.get(pivot)
+            # Keep the rows fully reduced, so that values can be read off at any time.
             if share:
                 self._rows[other] = (_less(known, row, share), value - share * right)
         self._rows[pivot] = (row, right)
         return True
 
     def values(self) -> dict[str, Fraction | None]:
-        """The unknowns that the equations determine; None for the others."""
+        """Return the unknowns that the equations determine, None for the others."""
         solution: dict[str, Fraction | None] = dict.fromkeys(self._unknowns)
         for pivot, (row, right) in self._rows.items():
             if all(name == pivot or not c for name, c in row.items()):

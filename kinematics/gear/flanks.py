@@ -1,13 +1,13 @@
-"""Where the involute of a tooth begins, and whether a mate's tip reaches beyond it: fillet interference.
+"""Start of the involute of a tooth, and contact beyond it: fillet interference.
 
 A rack cuts an external gear. Its straight flank ends a depth k below its reference line, where the rounded corner
-begins: k = h_f − ρ (1 − sin φ), all in modules. On the line of action of cutting, measured from where it touches the
-base circle, the involute begins at
+begins: k = h_f − ρ (1 − sin φ), all in modules. On the line of action of cutting, measured from its tangent point on
+the base circle, the involute begins at
 
     f = r sin φ − m (k − x) / sin φ,
 
-negative where the rack undercuts the gear; its involute then begins where the fillet crosses it, which
-:func:`kinematics.gear.profile.involute_start` tells. A ring is shaped by a cutter with the teeth of a gear, whose tip
+negative where the rack undercuts the gear; its involute then begins where the fillet crosses it, see
+:func:`kinematics.gear.profile.involute_start`. A ring is shaped by a cutter with the teeth of a gear, whose tip
 corner is sharp: with the distance a_c and the pressure angle φ_c of cutting the involute of the ring ends at
 
     f = a_c sin φ_c + √(r_ac² − r_bc²).
@@ -27,28 +27,30 @@ from kinematics.errors import DimensionError
 from kinematics.gear.teeth import Gear, Mesh
 
 TIP_ROUNDING = 0.38
-"""Radius of the rack's rounded tip in modules (ISO 53, profile A); less where the tip is not wide enough for it."""
+"""Radius of the rack's rounded tip in modules (ISO 53, profile A); smaller if the tip is too narrow for it."""
 
 CUTTER_ADDENDUM = 1.25
 """Addendum of a cutter for rings, in modules: the dedendum that it leaves at no shift."""
 
 
 def corner_rounding(pressure_angle: float, dedendum: float) -> float:
-    """Radius of the rack's rounded tip, modules.
+    """Compute the radius of the rack's rounded tip, modules.
 
     Raises
     ------
     DimensionError
-        Where the rack's tooth comes to a point before it has cut to the root circle.
+        If the rack's tooth comes to a point before it has cut to the root circle.
     """
+    # Half the width of the rack's tooth at its tip.
     wide = 0.25 * math.pi - dedendum * math.tan(pressure_angle)
     if wide < 0.0:
         raise DimensionError("dedendum", "no deeper than the point of the rack's tooth", dedendum)
+    # At most the circle that touches both flanks at the tip.
     return min(TIP_ROUNDING, wide * math.cos(pressure_angle) / (1.0 - math.sin(pressure_angle)))
 
 
 def straight_depth(pressure_angle: float, dedendum: float) -> float:
-    """How far below its reference line the straight flank of the rack reaches, modules.
+    """Compute the depth below its reference line that the rack's straight flank reaches, modules.
 
     >>> round(straight_depth(math.radians(20.0), 1.25), 4)
     1.0
@@ -57,24 +59,24 @@ def straight_depth(pressure_angle: float, dedendum: float) -> float:
 
 
 def rack_cut_form(gear: Gear, depth: float) -> float:
-    """Where the rack's straight flank ends on an external gear, from the base circle's tangent point on.
+    """Compute where the involute of a rack-cut external gear begins, from the base circle's tangent point.
 
-    There the involute begins; negative: undercut.
+    That is where the rack's straight flank ends; a negative value means undercut.
 
-    ``depth``: how far below its reference line the straight flank of the rack reaches, modules.
+    ``depth``: depth of the rack's straight flank below its reference line, modules.
     """
     sine = math.sin(gear.pressure_angle)
     return gear.pitch_radius * sine - gear.module * (depth - gear.shift) / sine
 
 
 def least_shift_of_rack(teeth: float, pressure_angle: float, depth: float) -> float:
-    """Shift below which a rack whose straight flank reaches this deep undercuts a gear: x = k − z sin² φ / 2."""
+    """Compute the shift below which a rack with this depth of straight flank undercuts a gear: x = k − z sin² φ / 2."""
     return depth - 0.5 * teeth * math.sin(pressure_angle) ** 2
 
 
 @dataclass(frozen=True)
 class ShapedRing:
-    """A ring and the cutter, without shift and with sharp corners, that shapes it; the cutter's depth makes its root.
+    """A ring and the cutter that shapes it, without shift and with sharp corners; the cutter's depth makes the root.
 
     Raises
     ------
@@ -86,18 +88,19 @@ class ShapedRing:
     cutter_teeth: int
 
     def __post_init__(self) -> None:
+        # Raises if cutter and ring cannot mesh.
         _ = self.cutting
 
     @cached_property
     def cutting(self) -> Mesh:
-        """Cutter and ring as they mesh at the end of cutting, without play."""
+        """Mesh of cutter and ring at the end of cutting, without play."""
         ring = self.ring
         cutter = Gear(self.cutter_teeth, ring.module, ring.pressure_angle, ring.dedendum, ring.dedendum)
         return Mesh(cutter, ring)
 
     @property
     def form(self) -> float:
-        """Where the involute of the ring ends, from the base circle's tangent point on."""
+        """End of the ring's involute, measured from the base circle's tangent point."""
         cutter = self.cutting.pinion
         reached = math.sqrt(cutter.tip_radius**2 - cutter.base_radius**2)
         return self.cutting.centre_distance * math.sin(self.cutting.pressure_angle) + reached
@@ -109,19 +112,20 @@ class ShapedRing:
 
     @property
     def is_trimmed(self) -> bool:
-        """Whether the cutter takes off tips of the ring: outside the line of action, or where it has no involute."""
+        """Whether the cutter trims tips of the ring: outside the line of action, or where it has no involute."""
         mesh = self.cutting
         tip = math.sqrt(max(self.ring.tip_radius**2 - self.ring.base_radius**2, 0.0))
+        # The cutter's tangent point bounds the involute that it can generate.
         return mesh.tips_foul or tip < mesh.centre_distance * math.sin(mesh.pressure_angle)
 
 
 @dataclass(frozen=True)
 class Contact:
-    """A mesh whose involutes begin at ``forms``, from the tangent points of the base circles on.
+    """A mesh whose involutes begin at ``forms``, measured from the tangent points of the base circles.
 
-    ``reaches`` are how deep the mate's tip reaches on pinion and gear, measured alike. Specific sliding at a point of
-    contact is the sliding velocity over the velocity with which the point runs along the flank; it is given where it is
-    greatest on each flank, at the deepest point reached: −∞ where that is on the base circle.
+    ``reaches`` are the deepest points reached by the mate's tip on pinion and gear, measured likewise. Specific sliding
+    at a point of contact is the sliding velocity over the velocity of the contact along the flank; it is evaluated
+    where it is largest on each flank, at the deepest point reached: −∞ if that lies on the base circle.
     """
 
     mesh: Mesh
@@ -129,14 +133,15 @@ class Contact:
 
     @property
     def reaches(self) -> tuple[float, float]:
-        """The deepest points of contact on pinion and gear; a ring is reached outwards."""
+        """Deepest points of contact on pinion and gear; outermost points on a ring."""
         mesh, (one, two) = self.mesh, self._tips
         between = mesh.centre_distance * math.sin(mesh.pressure_angle)
+        # Distances of both tips from the other gear's tangent point along the line of action.
         return (two - between, between + one) if mesh.gear.internal else (between - two, between - one)
 
     @property
     def _tips(self) -> tuple[float, float]:
-        """Where the tip circles of both gears cut the line of action, each from its own tangent point."""
+        """Intersections of both tip circles with the line of action, each from its own tangent point."""
         one, two = (
             math.sqrt(max(gear.tip_radius**2 - gear.base_radius**2, 0.0)) for gear in (self.mesh.pinion, self.mesh.gear)
         )
@@ -150,15 +155,16 @@ class Contact:
 
     @property
     def specific_sliding(self) -> tuple[float, float]:
-        """The greatest specific sliding of each flank, below its pitch circle: 1 − (u₂ z₁) / (u₁ z₂) on the pinion."""
+        """Maximum specific sliding of each flank, below its pitch circle: 1 − (u₂ z₁) / (u₁ z₂) on the pinion."""
         mesh, tips, deepest = self.mesh, self._tips, self.reaches
         teeth = mesh.pinion.teeth / mesh.gear.teeth
         return _slid(tips[1] * teeth, deepest[0]), _slid(tips[0] / teeth, deepest[1])
 
     @property
     def backlash(self) -> float:
-        """Play on the working pitch circles, exactly: the pitch there less the thickness of both teeth."""
+        """Exact backlash on the working pitch circles: the pitch there minus the thickness of both teeth."""
         mesh = self.mesh
+        # Ratio of working to standard pitch radii.
         wide = math.cos(mesh.pinion.pressure_angle) / math.cos(mesh.pressure_angle)
         radii = mesh.pinion.pitch_radius * wide, mesh.gear.pitch_radius * wide
         pitch = 2.0 * math.pi * radii[0] / mesh.pinion.teeth
@@ -166,15 +172,17 @@ class Contact:
 
 
 def _slid(mate: float, own: float) -> float:
+    # On the base circle the flank's own rolling velocity vanishes.
     return 1.0 - mate / own if own > 0.0 else -math.inf
 
 
 def shortened_tips(mesh: Mesh) -> float:
-    """By how much, in modules, the tips of an external pair are shortened to leave the clearance of unshifted gears.
+    """Compute by how many modules the tips of an external pair are shortened to keep the clearance of unshifted gears.
 
-    Shifted gears move apart by less than their shifts, x₁ + x₂ − (C − C₀) / m, and that is what their tips lose.
+    The centre distance grows by less than the sum of the shifts; the tips lose the difference x₁ + x₂ − (C − C₀) / m.
     """
     if mesh.gear.internal:
         return 0.0
     apart = (mesh.centre_distance - mesh.standard_distance) / mesh.pinion.module
+    # Tips are never lengthened.
     return max(0.0, mesh.pinion.shift + mesh.gear.shift - apart)

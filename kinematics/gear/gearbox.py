@@ -1,4 +1,4 @@
-"""Gearboxes of several speeds on fixed shafts: what given tooth numbers do.
+"""Gearboxes of several speeds on fixed shafts: analysis of given tooth numbers.
 
 A machine-tool gearbox is a row of shafts; between each two neighbours one of several gear pairs is engaged, so that the
 spindle has as many speeds as there are ways to choose one pair from every stage (Rao, Sec. 8.5). A layshaft gearbox of
@@ -22,7 +22,7 @@ R40 = (
 """Preferred numbers of the series R40 from 100 to 950 (ISO 3); R20, R10 and R5 are every 2nd, 4th and 8th of them."""
 
 STRIDES = {"R40": 1, "R20": 2, "R10": 4, "R5": 8}
-"""Places of R40 from one number of a series to the next."""
+"""Steps in R40 from one number of a series to the next."""
 
 
 class SpindleSpeed(NamedTuple):
@@ -33,12 +33,12 @@ class SpindleSpeed(NamedTuple):
 
 
 def spindle_speeds(input_speed: Fraction | int, stages: Sequence[Sequence[tuple[int, int]]]) -> list[SpindleSpeed]:
-    """Every speed of the spindle, slowest first: input × Π driver/driven over the engaged pairs.
+    """List every speed of the spindle, slowest first: input × Π driver/driven over the engaged pairs.
 
     Parameters
     ----------
     input_speed : Fraction
-        Of the first shaft.
+        Speed of the first shaft.
     stages : sequence of sequences of (driver, driven)
         Tooth numbers of the pairs between each two shafts.
 
@@ -57,12 +57,13 @@ def spindle_speeds(input_speed: Fraction | int, stages: Sequence[Sequence[tuple[
     """
     for pairs in stages:
         if not pairs:
-            raise DimensionError("stages", "of one gear pair at least", pairs)
+            raise DimensionError("stages", "sequences of at least one gear pair", pairs)
         for driver, driven in pairs:
             if min(driver, driven) < 1:
                 raise DimensionError("teeth", "a count of at least 1", (driver, driven))
     speeds = []
     for engaged in itertools.product(*(range(len(pairs)) for pairs in stages)):
+        # Exact fractions, so that equal speeds compare equal.
         speed = Fraction(input_speed)
         for pairs, choice in zip(stages, engaged, strict=True):
             speed *= Fraction(*pairs[choice])
@@ -71,7 +72,7 @@ def spindle_speeds(input_speed: Fraction | int, stages: Sequence[Sequence[tuple[
 
 
 def progression(lowest: float, highest: float, count: int) -> tuple[float, list[float]]:
-    """Progression ratio φ = (n_max/n_min)^(1/(z − 1)) and the z speeds in geometric progression (Rao, eq. 8.5).
+    """Compute the ratio φ = (n_max/n_min)^(1/(z − 1)) and the z speeds of a geometric progression (Rao, eq. 8.5).
 
     Raises
     ------
@@ -87,12 +88,13 @@ def progression(lowest: float, highest: float, count: int) -> tuple[float, list[
 
 
 def preferred_ratio(series: str, step: int = 1) -> float:
-    """Progression ratio of every ``step``-th number of a series: 10^(step/r), r numbers in a decade."""
+    """Return the progression ratio of every ``step``-th number of a series: 10^(step/r), r numbers in a decade."""
     return float(10.0 ** (step * STRIDES[series] / len(R40)))
 
 
 def preferred_numbers(series: str, start: float, count: int, step: int = 1) -> list[float] | None:
-    """Preferred numbers (rounded as ISO 3 has them) from ``start`` on, every ``step``-th; None where it is none."""
+    """List every ``step``-th preferred number (rounded by ISO 3) from ``start`` on; None if ``start`` is none."""
+    # Bring the start into the tabulated decade; the tolerance absorbs binary rounding of decimal input.
     decade = 0
     value = start
     while value >= 1000.0 * (1.0 - 1e-9):
@@ -101,6 +103,7 @@ def preferred_numbers(series: str, start: float, count: int, step: int = 1) -> l
         value, decade = value * 10.0, decade - 1
     stride = STRIDES[series]
     place = next((k for k, number in enumerate(R40) if abs(value - number) <= 1e-6 * number), None)
+    # Not in this series, though perhaps in a finer one.
     if place is None or place % stride:
         return None
     places = (place + k * step * stride for k in range(count))
@@ -109,7 +112,7 @@ def preferred_numbers(series: str, start: float, count: int, step: int = 1) -> l
 
 
 class LayshaftRatios(NamedTuple):
-    """Ratios input over output of a layshaft gearbox: the forward gears, and reverse (negative) where there is one."""
+    """Ratios input over output of a layshaft gearbox: the forward gears, and reverse (negative) if it exists."""
 
     forward: list[Fraction]
     reverse: Fraction | None
@@ -120,7 +123,7 @@ def layshaft_ratios(
     gears: Sequence[tuple[int, int] | None],
     reverse: tuple[int, int, int] | None = None,
 ) -> LayshaftRatios:
-    """Ratios of a layshaft gearbox: (b/a)(d/c) for the head pair a, b and the pair c, d of a gear.
+    """Compute the ratios of a layshaft gearbox: (b/a)(d/c) for the head pair a, b and the pair c, d of a gear.
 
     Parameters
     ----------
@@ -131,6 +134,7 @@ def layshaft_ratios(
     reverse : (int, int, int), optional
         Teeth on layshaft, idler and main shaft; the idler turns the direction round and cancels out.
     """
+    # Every gear but direct drive passes through the head pair.
     turned = Fraction(head[1], head[0])
     forward = [Fraction(1) if pair is None else turned * Fraction(pair[1], pair[0]) for pair in gears]
     back = None if reverse is None else -turned * Fraction(reverse[2], reverse[0])

@@ -15,7 +15,7 @@ from kinematics.errors import DimensionError
 from kinematics.gear.teeth import PRESSURE_ANGLE, Gear
 
 OVERLAP = 1.15
-"""Usual least advance of the tooth over the face, in transverse pitches (Rao, Sec. 7.4)."""
+"""Usual minimum advance of a tooth over the face, in transverse pitches (Rao, Sec. 7.4)."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class HelicalGear:
     Raises
     ------
     DimensionError
-        For a helix angle of a right angle or more, or teeth and modules that no gear has.
+        For a helix angle of 90° or more, or teeth or a module that are not positive.
     """
 
     teeth: int
@@ -46,7 +46,7 @@ class HelicalGear:
 
     @property
     def pitch_radius(self) -> float:
-        """z m_t / 2."""
+        """Pitch radius z m_t / 2."""
         return 0.5 * self.teeth * self.transverse_module
 
     @property
@@ -58,24 +58,26 @@ class HelicalGear:
     def axial_pitch(self) -> float:
         """Distance of neighbouring teeth along the shaft, π m_n / sin ψ; infinite for spur teeth."""
         slope = math.sin(abs(self.helix_angle))
+        # Spur teeth never advance along the shaft.
         return math.pi * self.normal_module / slope if slope else math.inf
 
     @property
     def transverse_pressure_angle(self) -> float:
-        """tan φ_t = tan φ_n / cos ψ (Norton, eq. 9.10)."""
+        """Pressure angle in the plane of rotation, tan φ_t = tan φ_n / cos ψ (Norton, eq. 9.10)."""
         return math.atan(math.tan(self.normal_pressure_angle) / math.cos(self.helix_angle))
 
     @property
     def virtual_teeth(self) -> float:
-        """Teeth of the spur gear that the normal plane shows, z / cos³ ψ (Norton, eq. 9.11)."""
+        """Teeth of the equivalent spur gear in the normal plane, z / cos³ ψ (Norton, eq. 9.11)."""
         return self.teeth / math.cos(self.helix_angle) ** 3
 
     @property
     def transverse_gear(self) -> Gear:
-        """The spur gear of the transverse plane: its meshes have the transverse contact ratio."""
+        """Spur gear of the transverse plane: its meshes have the transverse contact ratio."""
+        # Depths are given in normal modules, the spur gear's in transverse modules.
         shrunk = math.cos(self.helix_angle)
         return Gear(self.teeth, self.transverse_module, self.transverse_pressure_angle, shrunk, 1.25 * shrunk)
 
     def least_face_width(self, overlap: float = OVERLAP) -> float:
-        """Face over which a tooth advances by ``overlap`` transverse pitches: overlap × axial pitch."""
+        """Return the face over which a tooth advances by ``overlap`` transverse pitches: overlap × axial pitch."""
         return overlap * self.axial_pitch

@@ -1,4 +1,4 @@
-"""Speeds of any gear train whose axes may go round: one linear equation a mesh, solved exactly.
+"""Speeds of any gear train, with fixed or revolving axes: one linear equation per mesh, solved exactly.
 
 Relative to the body that holds both axes, the carrier c, two meshing gears roll on each other (Willis 1841; Norton,
 Sec. 9.8)::
@@ -7,11 +7,11 @@ Sec. 9.8)::
 
 Glossary:
 
-body      what turns as one piece: a shaft with all the gears on it, a carrier, a ring;
-carrier   the body that holds the axes of a mesh; :data:`GROUND` for axes that stand still;
-planet    a body whose axis goes round with its carrier; nothing outside the train can hold or drive it;
-member    a body about the train's own axis: what can be driven, held or taken off;
-freedom   how many speeds can be chosen before all the others follow.
+body      parts that turn as one piece: a shaft with all its gears, a carrier, a ring;
+carrier   the body that holds the axes of a mesh; :data:`GROUND` for fixed axes;
+planet    a body whose axis revolves with its carrier; it cannot be fixed or driven from outside;
+member    a body about the train's own axis, which can be input, output or fixed;
+freedom   number of speeds that can be chosen before all others follow.
 
 Suns, rings, simple and stepped planets, several rows that share members, ordinary gears and differentials are rows of
 the same list; no arrangement has formulas of its own. Bevel gears fit in: a planet's speed is then about its own axis,
@@ -31,15 +31,15 @@ GROUND = "ground"
 """The body that never turns."""
 
 EXTERNAL, INTERNAL = -1, 1
-"""Sense of a mesh σ: gears that turn against each other, or together, seen from their carrier."""
+"""Sense σ of a mesh: seen from their carrier the gears turn in opposite (−1) or equal (+1) directions."""
 
 
 @dataclass(frozen=True)
 class Mesh:
     """Two gears in mesh: the bodies that they sit on, the carrier of their axes, their teeth and the sense σ.
 
-    Only the quotient of the tooth numbers matters to the speeds, so that a row known by its train value alone is a mesh
-    of two numbers with that quotient.
+    Only the quotient of the tooth numbers matters for speeds, so a row known only by its train value is a mesh of two
+    numbers with that quotient.
 
     Raises
     ------
@@ -61,25 +61,27 @@ class Mesh:
         if self.sense not in (EXTERNAL, INTERNAL):
             raise DimensionError("sense", "+1 or −1", self.sense)
         bodies = (self.first, self.second, self.carrier)
+        # With two equal bodies the equation would degenerate to a lock.
         if len(set(bodies)) != 3:
             raise DimensionError("bodies of a mesh", "three different ones", bodies)
 
     def equation(self) -> dict[str, int]:
-        """Coefficients by body of the speed equation; its right side is 0."""
+        """Build the coefficients, by body, of the speed equation; its right side is 0."""
+        # N1 ω1 − σ N2 ω2 − (N1 − σ N2) ωc = 0.
         first, second = self.first_teeth, -self.sense * self.second_teeth
         return {self.first: first, self.second: second, self.carrier: -first - second}
 
 
 @dataclass(frozen=True)
 class Train:
-    """The meshes of a train, and which of its bodies are planets."""
+    """A train: its meshes, and those of its bodies that are planets."""
 
     meshes: tuple[Mesh, ...]
     planets: frozenset[str] = frozenset()
 
     @property
     def bodies(self) -> tuple[str, ...]:
-        """All bodies but the ground, in the order in which the meshes name them."""
+        """All bodies except the ground, in the order in which the meshes name them."""
         named = dict.fromkeys(body for mesh in self.meshes for body in (mesh.first, mesh.second, mesh.carrier))
         return tuple(body for body in named if body != GROUND)
 
@@ -91,19 +93,19 @@ class Train:
 
 @dataclass(frozen=True)
 class Speeds:
-    """What the known speeds say of the others.
+    """Solution of the speed equations.
 
     Attributes
     ----------
     values : dict
-        Speed of every body in the unit of the known ones; None where it does not follow from them.
+        Speed of every body in the unit of the known ones; None if it does not follow from them.
     freedom : int
-        Freedoms of the train itself, its locks included: 0 for one that cannot turn at all.
+        Degrees of freedom of the train, locks included; 0 if it cannot turn at all.
     open : int
-        Speeds that could still be chosen.
+        Number of speeds that can still be chosen.
     contradiction : str or None
-        The first known speed, in the order given, that the train and those before it do not allow. It was left out of
-        ``values``.
+        The first known speed, in the order given, that contradicts the train and the earlier ones. ``values`` ignores
+        it.
     """
 
     values: dict[str, Fraction | None]
@@ -113,21 +115,21 @@ class Speeds:
 
 
 def speeds(train: Train, known: Mapping[str, Fraction | int], locked: Iterable[tuple[str, str]] = ()) -> Speeds:
-    """Speeds of all bodies from some of them, as exact fractions.
+    """Solve for the speeds of all bodies from some of them, as exact fractions.
 
     Parameters
     ----------
     train : Train
         The meshes.
     known : mapping
-        Speeds by body, 0 for a body that is held; any number of them.
+        Speeds by body, 0 for a fixed body; any number of them.
     locked : iterable of pairs
         Bodies that a clutch joins: they turn together.
 
     Returns
     -------
     Speeds
-        With ``open > 0`` where too few speeds were known and ``contradiction`` where they disagree.
+        With ``open > 0`` if too few speeds are known, and ``contradiction`` set if they disagree.
 
     Raises
     ------
@@ -153,20 +155,23 @@ def speeds(train: Train, known: Mapping[str, Fraction | int], locked: Iterable[t
     for first, second in pairs:
         locking = {first: Fraction(1), second: Fraction(-1)}
         system.add({body: c for body, c in locking.items() if body != GROUND}, Fraction(0))
+    # Before the known speeds are added: the rank counts meshes and locks only.
     freedom = len(bodies) - system.rank
     contradiction = None
     for body, speed in known.items():
         own = {body: Fraction(1)} if body != GROUND else {}
+        # Later speeds are still used, so that as much as possible is determined.
         if not system.add(own, Fraction(speed)) and contradiction is None:
             contradiction = body
     return Speeds(system.values(), freedom, len(bodies) - system.rank, contradiction)
 
 
 def speed_ratio(train: Train, driver: str, driven: str, held: Iterable[str] = ()) -> Fraction | None:
-    """Speed of the driver over that of the driven body, with other bodies held.
+    """Compute the speed of the driver over that of the driven body, with other bodies fixed.
 
-    None where the driven body stands still, is free, or the train is locked.
+    Return None if the driven body stands still or is free, or the train is locked.
     """
+    # The equations are linear: unit speed of the driver gives the ratio.
     solution = speeds(train, {**dict.fromkeys(held, 0), driver: 1})
     driven_speed = solution.values[driven]
     if solution.contradiction is not None or not driven_speed:

@@ -1,8 +1,8 @@
 """Torque and power in any gear train with losses at its meshes; self-locking and circulating power.
 
-Each mesh presses its two gears apart with one unknown force. Every body is in equilibrium, planets without help from
-outside, and a mesh loses a share of the power that it transmits *relative to its carrier*: seen from there its axes
-stand still, and it is an ordinary pair with the efficiency η of one (Radzimovsky 1956, doi:10.1115/1.4014457; Norton,
+Each mesh has one unknown tooth force. Every body is in equilibrium, planets without external torque, and a mesh loses a
+share of the power that it transmits *relative to its carrier*: seen from there its axes are fixed, and it is an
+ordinary pair with the efficiency η of one (Radzimovsky 1956, doi:10.1115/1.4014457; Norton,
 Sec. 9.11). With the speed equation N1 (ω1 − ωc) = σ N2 (ω2 − ωc) of a mesh and its force λ, the torques of the mesh on
 its bodies are::
 
@@ -10,12 +10,12 @@ its bodies are::
     on the second       −λ σ N2 e       e = η where the first gear drives the second, 1/η where it is driven
     on the carrier      −λ (N1 − σ N2 e)
 
-Which gear drives depends on the sign of λ, so that the directions are tried until they agree with the forces that they
-give. A train for which the wanted direction of power needs power from the other side too is self-locking.
+Which gear drives depends on the sign of λ, so directions are tried until they agree with the resulting forces. A train
+is self-locking if the desired direction of power requires power from the other side as well.
 
-Power circulates where a member between two rows carries more than what is put in, or a mesh transmits more, relative to
-its carrier, than what is put in (rolling power): both are paid for with losses, and the second is why trains near a
-train value of 1 have huge ratios and hopeless efficiencies.
+Power circulates if a member between two rows carries more than the input power. Likewise a mesh may transmit more than
+the input power relative to its carrier (rolling power). Both cause losses; the second explains why trains with a train
+value near 1 have huge ratios and very low efficiencies.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ Exact = Fraction | int
 
 @dataclass(frozen=True)
 class MeshLoad:
-    """What one mesh carries: torque on its first gear, power relative to the carrier, and the power lost.
+    """Load of one mesh: torques on its gears and carrier, power relative to the carrier, and power lost.
 
     ``rolling_power`` is positive where the first gear drives the second.
     """
@@ -55,20 +55,20 @@ class PowerFlow:
     torques : dict
         Torque from outside on every member; planets have none.
     powers : dict
-        Torque × speed: positive where power enters. With the losses they add up to 0.
+        Torque × speed, positive where power enters. Together with the losses they sum to 0.
     meshes : tuple of MeshLoad
-        In the order of the train's meshes.
+        Loads in the order of the train's meshes.
     input_power, output_power : Fraction
-        Sums of what enters and of what leaves.
+        Sums of the entering and the leaving powers.
     efficiency : Fraction or None
-        output over input; None where no power flows.
+        Output over input power; None if no power flows.
     self_locking : bool
-        No power leaves although some is put in: the train does not move in this direction. The torques are then those
+        No power leaves although some enters: the train does not move in this direction. The torques are then those
         that would keep it moving.
     largest_rolling_power : Fraction
-        Greatest power that a mesh transmits relative to its carrier, as a share of the input.
+        Maximum power that a mesh transmits relative to its carrier, as a share of the input.
     largest_branch_power : Fraction
-        Greatest power that a row of meshes exchanges with one member, as a share of the input.
+        Maximum power that a row of meshes exchanges with one member, as a share of the input.
     """
 
     torques: dict[str, Fraction]
@@ -83,7 +83,7 @@ class PowerFlow:
 
     @property
     def circulates(self) -> bool:
-        """Whether a member between rows carries more power than is put in."""
+        """Whether a member between rows carries more than the input power."""
         return self.largest_branch_power > 1
 
 
@@ -94,25 +94,25 @@ def power_flow(
     known: Mapping[str, Exact],
     efficiency: Exact | Sequence[Exact] = 1,
 ) -> PowerFlow | None:
-    """Torques of a train in equilibrium at given speeds.
+    """Solve for the torques of a train in equilibrium at given speeds.
 
     Parameters
     ----------
     train : Train
         The meshes.
     speeds : mapping
-        Speed of every body, as :func:`kinematics.gear.planetary.speeds` gives them.
+        Speed of every body, see :func:`kinematics.gear.planetary.speeds`.
     loads : collection of str
-        Members that something outside holds, drives or brakes; all other bodies turn free.
+        Members with external torque (fixed, driven or braked); all other bodies turn freely.
     known : mapping
-        Torques from outside that are known, by member; they are among ``loads``.
+        Known external torques by member; all members are among ``loads``.
     efficiency : Fraction or sequence of Fraction
-        Of each mesh as an ordinary pair, in (0, 1]; one for all or one a mesh.
+        Efficiency of each mesh as an ordinary pair, in (0, 1]: one for all, or one per mesh.
 
     Returns
     -------
     PowerFlow or None
-        None where the known torques do not determine the others, or contradict each other.
+        None if the known torques do not determine the others, or contradict each other.
 
     Raises
     ------
@@ -135,13 +135,16 @@ def power_flow(
         if body not in train.bodies or body in train.planets:
             raise DimensionError("load", f"on one of the members {', '.join(train.members)}", body)
     relative = [turning[mesh.first] - turning[mesh.carrier] for mesh in train.meshes]
+    # Without losses first: it defines the input power and the likely directions.
     ideal = _balance(train, loads, known, [Fraction(1)] * len(shares))
     if ideal is None:
         return None
     settled = _settled(train, loads, known, shares, relative, ideal[0])
     without_loss = _flow(train, turning, relative, *ideal, [Fraction(1)] * len(shares))
     flow = _flow(train, turning, relative, *(settled[0] or ideal), settled[1])
+    # Reference of the shares, since losses would blur a circulating power.
     put_in = without_loss.input_power
+    # Power enters without losses, but none leaves with them.
     locked = put_in > 0 and (settled[0] is None or flow.output_power <= 0)
     return PowerFlow(
         flow.torques,
@@ -173,7 +176,7 @@ def _known_speed(body: str, speeds: Mapping[str, Exact]) -> Fraction:
 
 
 def _torques(mesh: Mesh, share: Fraction) -> tuple[Fraction, Fraction, Fraction]:
-    """Torques of a mesh on first gear, second gear and carrier for a unit force."""
+    """Compute the torques of a mesh on first gear, second gear and carrier per unit force."""
     first, second = Fraction(mesh.first_teeth), share * -mesh.sense * mesh.second_teeth
     return first, second, -first - second
 
@@ -181,7 +184,7 @@ def _torques(mesh: Mesh, share: Fraction) -> tuple[Fraction, Fraction, Fraction]
 def _balance(
     train: Train, loads: Collection[str], known: Mapping[str, Exact], shares: list[Fraction]
 ) -> tuple[list[Fraction], dict[str, Fraction]] | None:
-    """Forces of the meshes and torques on the loads, from the equilibrium of every body."""
+    """Solve for mesh forces and load torques from the equilibrium of every body."""
     meshes = [f"force {k}" for k in range(len(train.meshes))]
     system = Elimination((*meshes, *(f"torque {body}" for body in loads)))
     rows: dict[str, dict[str, Fraction]] = {body: {} for body in train.bodies}
@@ -192,6 +195,7 @@ def _balance(
     for body, row in rows.items():
         if body in loads:
             row[f"torque {body}"] = Fraction(1)
+        # A contradiction: the known torques are incompatible.
         if not system.add(row, Fraction(0)):
             return None
     for body, stated in known.items():
@@ -213,18 +217,20 @@ def _settled(
     relative: list[Fraction],
     forces: list[Fraction],
 ) -> tuple[tuple[list[Fraction], dict[str, Fraction]] | None, list[Fraction]]:
-    """Balance whose directions of power agree with its forces; None where there is none.
+    """Find the balance whose directions of power agree with its forces; None if there is none.
 
-    Directions without loss come first: with small losses they are the right ones.
+    The directions without loss are tried first: with small losses they are correct.
     """
 
     def lost(driving: Sequence[bool]) -> list[Fraction]:
         return [share if first else 1 / share for share, first in zip(shares, driving, strict=True)]
 
     def directions(forces: list[Fraction]) -> tuple[bool, ...]:
+        # Power into a gear, relative to the carrier, is minus the mesh's power on it.
         return tuple(-force * rate > 0 for force, rate in zip(forces, relative, strict=True))
 
     first = directions(forces)
+    # Meshes without relative motion or without loss have no direction to decide.
     idle = [not rate or share == 1 for rate, share in zip(relative, shares, strict=True)]
     shares = [Fraction(1) if still else share for still, share in zip(idle, shares, strict=True)]
     others = itertools.product(*([a] if still else [a, not a] for a, still in zip(first, idle, strict=True)))
@@ -249,7 +255,7 @@ def _flow(
     loads = []
     for mesh, force, rate, share in zip(train.meshes, forces, relative, shares, strict=True):
         first, second, carrier = (force * torque for torque in _torques(mesh, share))
-        # Relative to the carrier the second gear turns σ N1/N2 times as fast as the first.
+        # Relative to the carrier the second gear turns σ N1/N2 times as fast as the first one.
         loss = -first * rate - second * rate * Fraction(mesh.sense * mesh.first_teeth, mesh.second_teeth)
         loads.append(MeshLoad(first, second, carrier, -first * rate, loss))
     every = {body: torques.get(body, Fraction(0)) for body in train.members}
@@ -260,11 +266,12 @@ def _flow(
 
 
 def _branch_power(train: Train, turning: Mapping[str, Fraction], loads: Sequence[MeshLoad]) -> Fraction:
-    """Greatest power between a row and a member; a row is what hangs together by its planets."""
+    """Find the maximum power between a row and a member; a row consists of meshes connected by planets."""
     row_of: dict[str, int] = {}
     rows: list[dict[str, Fraction]] = []
     for mesh, load in zip(train.meshes, loads, strict=True):
         planets = [body for body in (mesh.first, mesh.second) if body in train.planets]
+        # Meshes that share a planet form one row; merge rows that this mesh connects.
         joined = sorted({row_of[body] for body in planets if body in row_of})
         target = joined[0] if joined else len(rows)
         if not joined:

@@ -1,8 +1,8 @@
-"""Which sums of profile shifts a pair of external gears can have, compiled; all lengths in modules.
+"""Feasible sums of profile shifts of a pair of external gears, compiled; all lengths in modules.
 
-Whether a sum suits is decided by its best split (:mod:`kinematics.gear.splits`). Over a range of sums the margin of the
-best split may rise and fall more than once: the sums that suit are a list of intervals. They are found on a grid, about
-every local maximum and minimum of it, and by bisection of every change.
+A sum is feasible if its best split is (:mod:`kinematics.gear.splits`). Over a range of sums the margin of the best
+split may rise and fall more than once, so the feasible sums are a list of intervals. They are found on a grid, near
+every local maximum and minimum on it, and by bisection of every change of feasibility.
 """
 
 from __future__ import annotations
@@ -30,22 +30,24 @@ from kinematics.gear.shifting import (
 from kinematics.gear.splits import greatest_margin, sound_split
 
 NARROW = 1e-6
-"""Sums of shifts nearer to one another than this are not told apart in search of a greatest or least margin."""
+"""Distance of two sums of shifts below which the search for an extreme margin stops."""
 
 SUMS = 32
-"""Parts into which a range of sums is divided in search of those that suit."""
+"""Number of parts into which a range of sums is divided in the search for feasible ones."""
 
 NEWTON = 1e-8
-"""Share to which tan φ_w is told where margins beyond some 1e-12 modules decide: its error is about the square."""
+"""Relative last step of Newton's method for tan φ_w: its error is about the square, enough for margins of 1e-12
+modules."""
 
 HALVINGS = 28
-"""Halvings of an interval of sums at whose one end no split suits: 1e-9 modules of it remain."""
+"""Halvings of an interval of sums with one infeasible end: 1e-9 modules of it remain."""
 
 
 @njit(cache=True, nogil=True)
 def suits(teeth: int, mate: int, working: Working, demands: Demands) -> bool:
-    """Whether a split of the sum keeps all demands."""
+    """Return whether some split of the sum satisfies all constraints."""
     split = sound_split(teeth, mate, working, demands, rack_of(demands), math.nan)
+    # Infinite: too close to a limit for the fast test by slopes, so golden sections decide.
     if math.isinf(split):
         return best_split(teeth, mate, working, demands, -KEPT)[1] >= -KEPT
     return not math.isnan(split)
@@ -55,8 +57,9 @@ def suits(teeth: int, mate: int, working: Working, demands: Demands) -> bool:
 def _split_of_sum(
     teeth: int, mate: int, total: float, demands: Demands, rack: Rack, start: float, guess: float
 ) -> tuple[float, float]:
-    """A split of a sum that keeps all demands, nan where there is none, and tan φ_w; both have a first value."""
+    """Find a feasible split of a sum, nan if there is none, and tan φ_w, both from first guesses."""
     working, tangent = nearby(teeth, mate, total, rack, start, NEWTON)
+    # "not >" also rejects the nan of a sum that no distance takes up.
     if not working.distance > 0.0:
         return math.nan, tangent
     split = sound_split(teeth, mate, working, demands, rack, guess)
@@ -74,7 +77,7 @@ def _sum_suits(teeth: int, mate: int, total: float, demands: Demands) -> bool:
 
 @njit(cache=True, nogil=True)
 def _of_sum(teeth: int, mate: int, total: float, demands: Demands, enough: float) -> float:
-    """The greatest margin of a sum, as golden sections tell it."""
+    """Evaluate the maximum margin of a sum by golden sections."""
     working = with_sum(teeth, mate, total, demands)
     if not working.distance > 0.0:
         return -math.inf
@@ -83,8 +86,8 @@ def _of_sum(teeth: int, mate: int, total: float, demands: Demands, enough: float
 
 @njit(cache=True, nogil=True)
 def _peak(teeth: int, mate: int, left: float, right: float, sign: float, demands: Demands) -> float:
-    """The sum between two with the greatest ``sign`` × margin, as soon as that tells it from its neighbours."""
-    # A maximum is looked for among sums that do not suit, until one does; a minimum until one does not.
+    """Find the sum with the maximum ``sign`` × margin between two; stop as soon as its sign decides."""
+    # A maximum is sought among infeasible sums until one is feasible; a minimum until one is infeasible.
     one, other = right - GOLDEN * (right - left), left + GOLDEN * (right - left)
     first = sign * _of_sum(teeth, mate, one, demands, math.inf)
     second = sign * _of_sum(teeth, mate, other, demands, math.inf)
@@ -105,10 +108,11 @@ def _peak(teeth: int, mate: int, left: float, right: float, sign: float, demands
 
 @njit(cache=True, nogil=True)
 def _grid(low: float, high: float) -> NDArray[np.float64]:
-    """Sums from ``low`` to ``high`` in rising order, that nearest to no shift among them."""
+    """Build a grid of sums from ``low`` to ``high``, ascending, including the one nearest to zero."""
     sums = np.empty(SUMS + 2)
     for i in range(SUMS + 1):
         sums[i] = low + (high - low) * i / SUMS
+    # Exact end, free of rounding.
     sums[SUMS] = high
     sums[SUMS + 1] = min(max(0.0, low), high)
     return np.sort(sums)
@@ -116,13 +120,14 @@ def _grid(low: float, high: float) -> NDArray[np.float64]:
 
 @njit(cache=True, nogil=True)
 def _margins(teeth: int, mate: int, sums: NDArray[np.float64], demands: Demands) -> NDArray[np.float64]:
-    """Between what limits the greatest margin of every sum lies, its sign as golden sections tell it."""
+    """Bound the maximum margin of every sum from both sides; the sign agrees with golden sections."""
     margins = np.full((len(sums), 2), -math.inf)
     rack, guess, tangent = rack_of(demands), math.nan, 0.0
     for i, total in enumerate(sums):
         working, tangent = nearby(teeth, mate, total, rack, tangent, NEWTON)
         if not working.distance > 0.0:
             continue
+        # Start from the neighbour's split with half the change of the sum.
         found = greatest_margin(teeth, mate, working, demands, rack, guess + 0.5 * (total - sums[max(0, i - 1)]))
         guess = found.split
         margins[i, 0], margins[i, 1] = found.least, found.most
@@ -136,10 +141,10 @@ def _margins(teeth: int, mate: int, sums: NDArray[np.float64], demands: Demands)
 def _is_extreme(
     teeth: int, mate: int, i: int, sums: NDArray[np.float64], margins: NDArray[np.float64], demands: Demands
 ) -> bool:
-    """Whether a sum that does not suit has no less margin than its neighbours, or one that suits no more."""
+    """Return whether an infeasible sum is a local maximum of the margin, or a feasible one a local minimum."""
     before, after = max(0, i - 1), min(len(sums) - 1, i + 1)
     sign = -1.0 if margins[i, 0] >= -KEPT else 1.0
-    # Golden sections miss the greatest margin by less than they have to tell: where that could decide, they do.
+    # The bounds have a tolerance of TOLD; where it could change the decision, golden sections decide.
     own = (
         min(sign * (margins[i, 0] - TOLD), sign * margins[i, 1]),
         max(sign * (margins[i, 0] - TOLD), sign * margins[i, 1]),
@@ -158,7 +163,7 @@ def _is_extreme(
 
 @njit(cache=True, nogil=True)
 def _looked_at(teeth: int, mate: int, low: float, high: float, demands: Demands) -> NDArray[np.float64]:
-    """Sums in rising order, between which the margin passes its limit once at most; rows of a sum and its margin."""
+    """List sums, ascending, between which the margin crosses its limit at most once; rows of sum and margin."""
     sums = _grid(low, high)
     n = len(sums)
     margins = _margins(teeth, mate, sums, demands)
@@ -167,7 +172,7 @@ def _looked_at(teeth: int, mate: int, low: float, high: float, demands: Demands)
     count = n
     for i in range(n):
         sound = margins[i, 0] >= -KEPT
-        # A margin that is least at an end of the range hides nothing beyond it.
+        # A minimum at an end of the range cannot hide an infeasible stretch.
         if margins[i, 1] == -math.inf or (sound and (i == 0 or i == n - 1)):
             continue
         if not _is_extreme(teeth, mate, i, sums, margins, demands):
@@ -181,9 +186,9 @@ def _looked_at(teeth: int, mate: int, low: float, high: float, demands: Demands)
 
 @njit(cache=True, nogil=True)
 def sums_that_suit(teeth: int, mate: int, low: float, high: float, demands: Demands) -> NDArray[np.float64]:
-    """All sums of shifts between ``low`` and ``high`` that suit a pair.
+    """Find all feasible sums of shifts of a pair between ``low`` and ``high``.
 
-    Two maxima of the margin that are nearer to one another than two parts of the range may be taken for one.
+    Two maxima of the margin closer than two parts of the range may be merged into one.
 
     Returns
     -------
@@ -197,6 +202,7 @@ def sums_that_suit(teeth: int, mate: int, low: float, high: float, demands: Dema
         if not seen[i, 1] >= -KEPT:
             continue
         if i == 0 or not seen[i - 1, 1] >= -KEPT:
+            # An interval starts here: bisect towards the infeasible neighbour.
             found[count, 0] = seen[i, 0] if i == 0 else _last_sum(teeth, mate, seen[i, 0], seen[i - 1, 0], demands)
         if i == len(seen) - 1 or not seen[i + 1, 1] >= -KEPT:
             last = i == len(seen) - 1
@@ -207,7 +213,7 @@ def sums_that_suit(teeth: int, mate: int, low: float, high: float, demands: Dema
 
 @njit(cache=True, nogil=True)
 def _last_sum(teeth: int, mate: int, sound: float, end: float, demands: Demands) -> float:
-    """The last sum from one that suits towards one that does not."""
+    """Bisect for the last feasible sum between a feasible and an infeasible one."""
     rack, split, tangent = rack_of(demands), math.nan, 0.0
     for _ in range(HALVINGS):
         middle = 0.5 * (sound + end)
@@ -221,8 +227,8 @@ def _last_sum(teeth: int, mate: int, sound: float, end: float, demands: Demands)
 
 @njit(cache=True, nogil=True)
 def sum_that_suits(teeth: int, mate: int, low: float, high: float, demands: Demands) -> float:
-    """A sum of shifts between ``low`` and ``high`` that suits a pair; nan: none does."""
-    # From no shift on, where most pairs are sound, then all over the range.
+    """Find a feasible sum of shifts of a pair between ``low`` and ``high``; nan if there is none."""
+    # Zero shift first, which is feasible for most pairs, then the whole range.
     at = min(max(0.0, low), high)
     if _sum_suits(teeth, mate, at, demands):
         return at
@@ -237,9 +243,11 @@ def sum_that_suits(teeth: int, mate: int, low: float, high: float, demands: Dema
 
 @njit(cache=True, nogil=True)
 def _sums_between(teeth: int, mate: int, near: float, far: float, ends: bool, demands: Demands) -> NDArray[np.float64]:
-    """Intervals of sums that suit at distances from ``near`` to ``far``; without ``ends`` one sum, twice."""
+    """Find the intervals of feasible sums at distances from ``near`` to ``far``; without ``ends`` one sum, twice."""
+    # The sum of two shifts within their limits.
     low, high = 2.0 * demands.least_shift, 2.0 * demands.most_shift
     first = at_distance(teeth, mate, near, demands)
+    # nan where the base circles overlap at this distance.
     if first.shortening >= 0.0:
         low = max(low, first.total)
     if far < math.inf:
@@ -259,14 +267,14 @@ def _sums_between(teeth: int, mate: int, near: float, far: float, ends: bool, de
 def sound_between(
     least: NDArray[np.float64], most: NDArray[np.float64], ends: bool, demands: Demands
 ) -> NDArray[np.float64]:
-    """Between which distances every pair suits, of those from ``least[a, b]`` to ``most[a, b]``.
+    """Find the feasible distances of every pair between ``least[a, b]`` and ``most[a, b]``.
 
     Parameters
     ----------
     least, most : array of shape (n, n)
-        Symmetric, in modules; equal for one distance, 0 and infinity for any; nan where a pair is not asked for.
+        Symmetric, in modules; equal for one distance, 0 and infinity for any; nan for pairs to skip.
     ends : bool
-        Whether all distances that suit are wanted; otherwise it is one that suits, twice.
+        Find all feasible distances; otherwise a single one, given twice.
 
     Returns
     -------

@@ -1,15 +1,15 @@
-"""Profile shifts of external pairs, compiled: which sums of shifts a pair can have, and how a sum is best split.
+"""Profile shifts of external pairs, compiled: the mesh of a sum of shifts, and the best split of a sum.
 
 All lengths are in modules. At the working pressure angle φ_w a pair of z₁, z₂ teeth without play has the shifts
 
     Σ = (z₁ + z₂) (inv φ_w − inv φ) / (2 tan φ),        C = (z₁ + z₂) cos φ / (2 cos φ_w),
 
-and its tips are shortened by Σ − (C − C₀), so that the clearance stays. Of a split x₁ + x₂ = Σ the *margin* is the
-least of what is left of its demands: flank above the base circle (undercut) and below the mate's tip (fillet
+and its tips are shortened by Σ − (C − C₀), so that the clearance stays. The *margin* of a split x₁ + x₂ = Σ is the
+minimum over the margins of its constraints: flank above the base circle (undercut) and below the mate's tip (fillet
 interference) of both gears, path of contact, tip thickness, addendum. For a given sum each of them is a concave or a
-monotonic function of x₁ as long as both gears keep an addendum: so the splits that keep all demands are an interval,
-and their margin has one maximum, which golden sections find. The balanced split has the same greatest specific sliding
-on both flanks, a difference that falls with x₁: the split nearest to it is that split or an end of the interval.
+monotonic function of x₁ as long as both gears keep an addendum. So the feasible splits form an interval, and their
+margin has a single maximum, which golden sections find. The balanced split has equal maximum specific sliding on both
+flanks; the difference falls with x₁, so the nearest feasible split is that split or an end of the interval.
 """
 
 from __future__ import annotations
@@ -21,28 +21,29 @@ from kinematics.compiling import njit
 from kinematics.gear.teeth import involute, tangent_of_involute
 
 KEPT = 1e-10
-"""Margin by which a demand may be missed, in modules: rounding must not condemn pairs that are on a limit."""
+"""Violation of a constraint, in modules, that is tolerated: rounding must not reject pairs that lie on a limit."""
 
 TO_THE_LAST = 4e-16
-"""Share to which tan φ_w is told where every digit counts."""
+"""Relative tolerance of tan φ_w if every digit counts."""
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 SECTIONS = 52
-"""Golden sections of an interval: 1e-11 of it remains."""
+"""Number of golden sections of an interval: 1e-11 of it remains."""
 
 STEEP = 6.0
-"""A bound of how fast a margin changes with a shift is 2 / sin φ of the ends of involutes, and this of thick tips."""
+"""Slope of the tip thickness over the shift at most; with 2 / sin φ for the ends of involutes it bounds all
+margins'."""
 
 TOLD = 1e-5
-"""To how many modules a margin is known that is compared with others'."""
+"""Accuracy, modules, of a margin that is compared with other margins."""
 
 
 class Demands(NamedTuple):
-    """What a pair has to keep; shifts, depth and thickness in modules, the angle in radians.
+    """Constraints on a pair; shifts, depth and thickness in modules, the angle in radians.
 
-    ``depth``: how far below its reference line the straight flank of the cutting rack reaches. Of helical teeth all are
-    those of the plane of rotation, where the ``addendum`` is less than a module.
+    ``depth`` is the depth of the cutting rack's straight flank below its reference line. For helical teeth all values
+    refer to the plane of rotation, where the ``addendum`` is less than a module.
     """
 
     pressure_angle: float
@@ -55,7 +56,7 @@ class Demands(NamedTuple):
 
 
 class Working(NamedTuple):
-    """A pair at its distance: the sum of shifts, distance, shortening of the tips, and the line of action C sin φ_w."""
+    """A pair at its distance: sum of shifts, distance, shortening of the tips, and length of action C sin φ_w."""
 
     total: float
     distance: float
@@ -64,7 +65,7 @@ class Working(NamedTuple):
 
 
 class Rack(NamedTuple):
-    """Of the pressure angle φ: sine and cosine, 4 tan φ by which a shift thickens a tooth, and inv φ."""
+    """Functions of the pressure angle φ: sine, cosine, 4 tan φ (by which shift thickens a tooth), and inv φ."""
 
     sine: float
     cosine: float
@@ -73,7 +74,7 @@ class Rack(NamedTuple):
 
 
 class Left(NamedTuple):
-    """What a split leaves of each demand, modules: negative where it is missed.
+    """Margin of each constraint for a split, modules; negative if violated.
 
     Addendum of both gears, flank above the base circles and below the mate's tip, path of contact, thickness of tips.
     """
@@ -90,7 +91,7 @@ class Left(NamedTuple):
 
 
 class Tips(NamedTuple):
-    """Radii of both tips, and how far out they are from the tangent points on the line of action."""
+    """Radii of both tips, and their distances from the tangent points along the line of action."""
 
     radius: float
     mate_radius: float
@@ -103,16 +104,17 @@ inv, _tangent = njit(cache=True, nogil=True)(involute), njit(cache=True, nogil=T
 
 @njit(cache=True, nogil=True)
 def rack_of(demands: Demands) -> Rack:
-    """What the demands' pressure angle gives."""
+    """Build the functions of the constraints' pressure angle."""
     phi = demands.pressure_angle
     return Rack(math.sin(phi), math.cos(phi), 4.0 * math.tan(phi), inv(phi))
 
 
 @njit(cache=True, nogil=True)
 def at_distance(teeth: int, mate: int, distance: float, demands: Demands) -> Working:
-    """The pair at a centre distance; a sum of nan where the base circles do not part."""
+    """Return the pair at a centre distance; its sum is nan if the base circles overlap."""
     phi = demands.pressure_angle
     standard = 0.5 * (teeth + mate)
+    # The line of action needs a gap between the base circles.
     if not standard * math.cos(phi) < distance:
         return Working(math.nan, distance, math.nan, math.nan)
     cosine = standard * math.cos(phi) / distance
@@ -123,13 +125,14 @@ def at_distance(teeth: int, mate: int, distance: float, demands: Demands) -> Wor
 
 @njit(cache=True, nogil=True)
 def with_sum(teeth: int, mate: int, total: float, demands: Demands) -> Working:
-    """The pair of a sum of shifts; a distance of nan where no distance takes it up."""
+    """Return the pair with a sum of shifts; its distance is nan if no distance takes up the sum."""
     return nearby(teeth, mate, total, rack_of(demands), 0.0, TO_THE_LAST)[0]
 
 
 @njit(cache=True, nogil=True)
 def nearby(teeth: int, mate: int, total: float, rack: Rack, near: float, told: float) -> tuple[Working, float]:
-    """The pair of a sum of shifts, and its tan φ_w, which is told to a share, from a first value on if one is known."""
+    """Return the pair with a sum of shifts, and its tan φ_w to a relative tolerance, from a guess if positive."""
+    # inv φ_w of the mesh without play.
     value = rack.involute + 0.5 * rack.slope * total / (teeth + mate)
     if not value > 0.0:
         return Working(total, math.nan, math.nan, math.nan), near
@@ -141,15 +144,16 @@ def nearby(teeth: int, mate: int, total: float, rack: Rack, near: float, told: f
 
 @njit(cache=True, nogil=True)
 def margin(teeth: int, mate: int, working: Working, shift: float, demands: Demands) -> float:
-    """The margin of a split; ``shift`` is that of the first gear."""
+    """Compute the margin of a split; ``shift`` is that of the first gear."""
     return margin_of(teeth, mate, working, shift, demands, rack_of(demands))
 
 
 @njit(cache=True, nogil=True)
 def margin_of(teeth: int, mate: int, working: Working, shift: float, demands: Demands, rack: Rack) -> float:
-    """The margin of a split with the rack of the demands at hand."""
+    """Compute the margin of a split, given the rack of the constraints."""
     other = working.total - shift
     least = min(demands.addendum + shift - working.shortening, demands.addendum + other - working.shortening)
+    # Without an addendum the other margins are neither concave nor monotonic, hence meaningless.
     if not least >= -KEPT:
         return least
     left = what_is_left(teeth, mate, working, shift, demands, rack)[0]
@@ -162,13 +166,13 @@ def margin_of(teeth: int, mate: int, working: Working, shift: float, demands: De
 def what_is_left(
     teeth: int, mate: int, working: Working, shift: float, demands: Demands, rack: Rack
 ) -> tuple[Left, Tips]:
-    """What a split leaves of every demand, and where the tips are."""
+    """Compute the margins of all constraints for a split, and the tips."""
     other = working.total - shift
     sine, cosine = rack.sine, rack.cosine
     base, mate_base = 0.5 * teeth * cosine, 0.5 * mate * cosine
     heads = demands.addendum + shift - working.shortening, demands.addendum + other - working.shortening
     tip, mate_tip = 0.5 * teeth + heads[0], 0.5 * mate + heads[1]
-    # From the tangent points on: where the involutes begin, and how far out the tips are.
+    # Measured from the tangent points: the starts of the involutes, and the tips.
     form = 0.5 * teeth * sine - (demands.depth - shift) / sine
     mate_form = 0.5 * mate * sine - (demands.depth - other) / sine
     reach = math.sqrt(max(tip * tip - base * base, 0.0))
@@ -194,10 +198,12 @@ def what_is_left(
 
 @njit(cache=True, nogil=True)
 def splits_within(working: Working, demands: Demands) -> tuple[float, float]:
-    """The shifts of the first gear at which both are within the limits and keep an addendum; nan: none are."""
+    """Return the range of shifts of the first gear in which both are within limits and keep an addendum; or nan."""
     total, head = working.total, working.shortening - demands.addendum
+    # Limits of the second shift, expressed by the first.
     low = max(demands.least_shift, total - demands.most_shift, head)
     high = min(demands.most_shift, total - demands.least_shift, total - head)
+    # An interval empty only by rounding still contains its single point.
     if not low <= high + 2.0 * KEPT:
         return math.nan, math.nan
     return min(low, high), max(low, high)
@@ -205,10 +211,10 @@ def splits_within(working: Working, demands: Demands) -> tuple[float, float]:
 
 @njit(cache=True, nogil=True)
 def best_split(teeth: int, mate: int, working: Working, demands: Demands, enough: float) -> tuple[float, float]:
-    """The shift of the first gear with the greatest margin, and that margin.
+    """Find the shift of the first gear with the maximum margin, and that margin.
 
-    It is looked for until a margin is ``enough``, or no split can be sound: then the margin tells no more than its
-    sign. With an infinite ``enough`` it is looked for until it is known to :data:`TOLD`, and its sign surely.
+    The search stops when a margin reaches ``enough`` or no split can be feasible; then only the sign of the margin is
+    meaningful. With an infinite ``enough`` it runs until the margin is known to :data:`TOLD` and its sign is certain.
     """
     low, high = splits_within(working, demands)
     if not low <= high:
@@ -219,6 +225,7 @@ def best_split(teeth: int, mate: int, working: Working, demands: Demands, enough
     left = margin_of(teeth, mate, working, one, demands, rack)
     right = margin_of(teeth, mate, working, other, demands, rack)
     for _ in range(SECTIONS):
+        # The maximum cannot exceed the best value by more than the steepest slope times the remaining interval.
         most, rest = max(left, right), steepest * (high - low)
         if most >= enough or (most + rest < -KEPT and (enough < math.inf or rest < TOLD)):
             break
@@ -237,27 +244,28 @@ def best_split(teeth: int, mate: int, working: Working, demands: Demands, enough
 
 @njit(cache=True, nogil=True)
 def _excess(teeth: int, mate: int, working: Working, shift: float, demands: Demands) -> float:
-    """By how much the first flank's greatest specific sliding is larger; it falls with the shift of the first gear."""
+    """Compare maximum specific sliding: positive if the first flank's is larger; falls with the first gear's shift."""
     cosine = math.cos(demands.pressure_angle)
     base, mate_base = 0.5 * teeth * cosine, 0.5 * mate * cosine
     tip = 0.5 * teeth + demands.addendum + shift - working.shortening
     mate_tip = 0.5 * mate + demands.addendum + working.total - shift - working.shortening
     reach = math.sqrt(max(tip * tip - base * base, 0.0))
     mate_reach = math.sqrt(max(mate_tip * mate_tip - mate_base * mate_base, 0.0))
-    # u₂ z₁ / (u₁ z₂) against u₁ z₂ / (u₂ z₁), multiplied out: beyond the tangent points it goes on in the same sense.
+    # u₂ z₁ / (u₁ z₂) against u₁ z₂ / (u₂ z₁), multiplied out so that it stays monotonic beyond the tangent points.
     own, other = working.line - mate_reach, working.line - reach
     return mate_reach * other * teeth * teeth - reach * own * mate * mate
 
 
 @njit(cache=True, nogil=True)
 def balanced_split(teeth: int, mate: int, working: Working, demands: Demands) -> float:
-    """Of the splits that keep all demands the one nearest to balanced specific sliding; nan: none keeps them.
+    """Find the feasible split nearest to balanced specific sliding; nan if none is feasible.
 
     Returns
     -------
     float
-        The shift of the first gear; the second has the rest of the sum.
+        The shift of the first gear; the second gear has the rest of the sum.
     """
+    # Any clearly feasible split serves as the inner end of the bisection.
     sound, most = best_split(teeth, mate, working, demands, 1e-6)
     if not most >= -KEPT:
         return math.nan
@@ -276,6 +284,7 @@ def balanced_split(teeth: int, mate: int, working: Working, demands: Demands) ->
         wanted = 0.5 * (low + high)
     if margin(teeth, mate, working, wanted, demands) >= -KEPT:
         return wanted
+    # The balanced split is infeasible: bisect for the end of the feasible interval on its side.
     for _ in range(60):
         middle = 0.5 * (sound + wanted)
         if margin(teeth, mate, working, middle, demands) >= -KEPT:

@@ -1,13 +1,13 @@
-"""Whether a sum of profile shifts can be split soundly, and with what margin, by slopes, compiled; lengths in modules.
+"""Feasibility and margin of the splits of a sum of profile shifts, by slopes, compiled; lengths in modules.
 
-Golden sections (:func:`~kinematics.gear.shifting.best_split`) need some thirty margins for a sum, and a search over
-sums asks for hundreds of sums. What a split x leaves of each demand is concave in x, but for the two distances from a
-fillet, which are convex and fall, or rise, all over the interval of splits. So a split that misses a demand which rises
-with x condemns all splits before it, and those behind it as far as the tangent goes (of a convex demand as far as its
-steepest slope does): a few splits decide whether there is a sound one. In the same way the lines that bound all demands
-bound the greatest margin from above, which the splits where they meet bound from below.
+Golden sections (:func:`~kinematics.gear.shifting.best_split`) need some thirty margins per sum, and a search over sums
+examines hundreds. The margin of each constraint is concave in the split x, except the two distances from a fillet,
+which are convex and monotonic over the interval of splits. If a split x violates a constraint whose margin rises with
+x, all smaller splits violate it too, and so do larger ones as far as the tangent (for a convex margin, the steepest
+slope) reaches: a few splits decide feasibility. In the same way the tangents bound the maximum margin from above, and
+the splits where they meet bound it from below.
 
-Both decide as golden sections do: nearer to a limit than :data:`CLEAR` they leave it to those.
+Both agree with golden sections: closer to a limit than :data:`CLEAR` they leave the decision to those.
 """
 
 from __future__ import annotations
@@ -29,21 +29,21 @@ from kinematics.gear.shifting import (
 )
 
 CLEAR = 1e-9
-"""Margin beyond its limit from which on golden sections find a sound split too: they come within 1e-10 of the best."""
+"""Margin above which golden sections find a feasible split too: they come within 1e-10 of the maximum."""
 
 ROUNDED = 1e-12
-"""Modules by which rounding may move a margin, or an end of an interval of splits; it is some 1e-14."""
+"""Bound, modules, for the effect of rounding on a margin or an end of an interval; the actual effect is about 1e-14."""
 
 STEPS = 40
-"""Splits that are tried before golden sections are asked."""
+"""Number of splits tried before the decision is left to golden sections."""
 
 
 FILLETS = (4, 5)
-"""Places of the convex demands."""
+"""Indices of the convex margins."""
 
 
 class Slopes(NamedTuple):
-    """How fast what is left of each demand grows with the split; of fillets the steepest within the interval."""
+    """Slope of each margin over the split; for fillets the steepest slope within the interval."""
 
     head: float
     mate_head: float
@@ -57,9 +57,9 @@ class Slopes(NamedTuple):
 
 
 class Margin(NamedTuple):
-    """The greatest margin of all splits of a sum lies between ``least`` and ``most``; ``split`` has the former.
+    """Bounds ``least`` and ``most`` of the maximum margin over all splits of a sum; ``split`` attains the lower one.
 
-    An infinite ``split`` says that the margin is too near to a limit to tell its sign.
+    An infinite ``split`` means that the margin is too close to a limit to decide its sign.
     """
 
     least: float
@@ -72,7 +72,7 @@ def _slopes(
     teeth: int, mate: int, left: Left, tips: Tips, low: float, high: float, split: float, demands: Demands, rack: Rack
 ) -> Slopes:
     base, mate_base = 0.5 * teeth * rack.cosine, 0.5 * mate * rack.cosine
-    # The line to the mate's fillet is steepest where the tip is farthest in: 1 / sin φ less tip / reach of that tip.
+    # The distance from the mate's fillet is steepest where the tip reaches deepest: 1 / sin φ − tip / reach.
     far, mate_far = tips.radius + (high - split), tips.mate_radius + (split - low)
     steep = 1.0 / rack.sine - mate_far / math.sqrt(mate_far * mate_far - mate_base * mate_base)
     mate_steep = 1.0 / rack.sine - far / math.sqrt(far * far - base * base)
@@ -93,7 +93,7 @@ def _slopes(
 
 @njit(cache=True, nogil=True)
 def sound_split(teeth: int, mate: int, working: Working, demands: Demands, rack: Rack, guess: float) -> float:
-    """A split of the sum that keeps all demands; nan: there is none; infinite: too near to a limit to tell.
+    """Find a feasible split of the sum; nan: there is none; infinite: too close to a limit to decide.
 
     Parameters
     ----------
@@ -104,6 +104,7 @@ def sound_split(teeth: int, mate: int, working: Working, demands: Demands, rack:
     if not low <= high:
         return math.nan
     split = guess if low <= guess <= high else 0.5 * (low + high)
+    # Only violations beyond rounding may exclude splits.
     missed = -KEPT - ROUNDED
     for _ in range(STEPS):
         left, tips = what_is_left(teeth, mate, working, split, demands, rack)
@@ -112,11 +113,13 @@ def sound_split(teeth: int, mate: int, working: Working, demands: Demands, rack:
             least = min(least, value)
         if least >= CLEAR - KEPT:
             return split
+        # Between the tolerance and CLEAR the decision is left to golden sections.
         if least >= missed:
             break
         slopes = _slopes(teeth, mate, left, tips, low, high, split, demands, rack)
         first, last = low, high
         for number in range(len(left)):
+            # Each violated margin excludes splits up to where its tangent reaches the limit.
             value, slope = left[number], slopes[number]
             if value >= missed:
                 continue
@@ -126,6 +129,7 @@ def sound_split(teeth: int, mate: int, working: Working, demands: Demands, rack:
                 last = min(last, split - (value - missed) / slope)
             else:
                 return math.nan
+        # The excluded ranges overlap: no split is left.
         if first > last + ROUNDED:
             return math.nan
         if first > last:
@@ -137,7 +141,7 @@ def sound_split(teeth: int, mate: int, working: Working, demands: Demands, rack:
 
 @njit(cache=True, nogil=True)
 def greatest_margin(teeth: int, mate: int, working: Working, demands: Demands, rack: Rack, guess: float) -> Margin:
-    """The greatest margin of all splits of a sum, told to :data:`TOLD`, and its sign.
+    """Bound the maximum margin over all splits of a sum to within :data:`TOLD`, and decide its sign.
 
     Parameters
     ----------
@@ -149,7 +153,7 @@ def greatest_margin(teeth: int, mate: int, working: Working, demands: Demands, r
         return Margin(-math.inf, -math.inf, math.nan)
     split = guess if low <= guess <= high else 0.5 * (low + high)
     best, most, at = -math.inf, math.inf, split
-    # The lines that bound the margin from both ends of what is left of the interval: it is no greater than either.
+    # Tangents at both ends of the remaining interval bound the margin from above.
     rise, fall = math.inf, -math.inf
     rising, falling = math.inf, math.inf
     for _ in range(STEPS):
@@ -161,6 +165,7 @@ def greatest_margin(teeth: int, mate: int, working: Working, demands: Demands, r
                 least, slope = left[number], slopes[number]
         if least > best:
             best, at = least, split
+        # A horizontal tangent of a concave margin is its maximum.
         if slope == 0.0:
             most = min(most, least)
         elif slope > 0.0:
@@ -171,10 +176,10 @@ def greatest_margin(teeth: int, mate: int, working: Working, demands: Demands, r
             most = min(most, least + slope * (low - split))
         following = 0.5 * (low + high)
         if rising < math.inf and falling < math.inf:
-            # Where both lines meet.
+            # Next try the intersection of both tangents, where the upper bound is attained.
             following = low + (falling - rising - fall * (high - low)) / (rise - fall)
             most = min(most, rising + rise * (following - low))
-        # Demands that go the other way from this split on bound the margin too, those of fillets by their value.
+        # Margins with the opposite slope bound the maximum too; those of fillets, being convex, by their value.
         for number in range(len(left)):
             if slope != 0.0 and slopes[number] * slope <= 0.0:
                 own = 0.0 if number in FILLETS else slopes[number]
@@ -187,6 +192,7 @@ def greatest_margin(teeth: int, mate: int, working: Working, demands: Demands, r
         if not low < high:
             break
         split = min(max(following, low), high)
+        # A repeated split would not shrink the interval.
         if split in (low, high):
             split = 0.5 * (low + high)
     return Margin(best, most, math.inf)

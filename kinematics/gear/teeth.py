@@ -5,12 +5,12 @@ of m); z teeth give the pitch radius r = m z / 2 and the base radius r_b = r cos
 teeth outward on external *and* internal gears.
 
 A :class:`Mesh` of a pinion with an external or internal gear or a rack: on the common tangent of the base circles
-(the line of action) contact runs from where the gear's tip circle crosses it to where the pinion's does. With the
+(the line of action) contact runs from its intersection with the gear's tip circle to that with the pinion's. With the
 pinion driving, the part cut by the gear's tip is the *approach* and the part cut by the pinion's tip the *recess*
 (Norton, Design of Machinery, Sec. 9.2–9.5; Rao, Sec. 6.9–6.12). Beyond the points where the line touches the base
 circles there is no involute: a tip that reaches further digs into the mate's flank, which is *interference*.
 
-Angles are radians, lengths are in any one unit.
+Angles are radians; lengths are in any consistent unit.
 """
 
 from __future__ import annotations
@@ -28,25 +28,25 @@ FULL_DEPTH_DEDENDUM = 1.25
 PRESSURE_ANGLE = math.radians(20.0)
 
 ON_LIMIT = 1e-12
-"""A tip this share of the limiting radius beyond it counts as on it: teeth on the limit are sound, and rounding must
-not condemn them."""
+"""Share of the limiting radius by which a tip may exceed it: teeth on the limit are sound, and rounding must not reject
+them."""
 
 
 def involute(angle: float) -> float:
-    """The involute function inv φ = tan φ − φ."""
+    """Return the involute function inv φ = tan φ − φ."""
     return math.tan(angle) - angle
 
 
 def tangent_of_involute(value: float, near: float = 0.0, told: float = 4e-16) -> float:
-    """tan φ of the angle φ in (0, π/2) with tan φ − φ = ``value`` > 0, by Newton's method; kernels compile it.
+    """Solve tan φ − φ = ``value`` > 0 for tan φ, φ in (0, π/2), by Newton's method; kernels compile it too.
 
     Parameters
     ----------
     value : float
     near : float
-        A first value; one is estimated where it is not positive.
-    told : float
-        The last step is less than this share; the error, as those of Newton are, less than about its square.
+        First guess; estimated if not positive.
+    tolerance : float
+        Relative size of the last step; the error is about its square, by quadratic convergence.
     """
     # In t = tan φ the function t − atan t is convex and increasing: from a start above the root Newton falls onto it.
     # t − atan t ≥ t³/3/(1 + t²) gives the start for small values, t ≤ value + π/2 the one for large.
@@ -58,19 +58,19 @@ def tangent_of_involute(value: float, near: float = 0.0, told: float = 4e-16) ->
         if abs(step) <= told * t:
             break
         if t == before:
-            # Rounding goes to and fro between two neighbours; the last of all steps decides.
+            # Rounding alternates between two neighbours: return the one that the full number of steps would end on.
             return t if left % 2 == 0 else last
         before = last
     return t
 
 
 def inverse_involute(value: float) -> float:
-    """The angle φ in [0, π/2) with tan φ − φ = ``value`` ≥ 0, by Newton's method from above.
+    """Solve tan φ − φ = ``value`` ≥ 0 for φ in [0, π/2), by Newton's method from above.
 
     Raises
     ------
     DimensionError
-        For a negative value, which no angle has.
+        For a negative value.
     """
     if not value >= 0.0:
         raise DimensionError("value", "zero or positive", value)
@@ -117,12 +117,12 @@ class Gear:
 
     @property
     def pitch_radius(self) -> float:
-        """R = m z / 2."""
+        """Pitch radius r = m z / 2."""
         return 0.5 * self.module * self.teeth
 
     @property
     def base_radius(self) -> float:
-        """r_b = r cos φ."""
+        """Base radius r_b = r cos φ."""
         return self.pitch_radius * math.cos(self.pressure_angle)
 
     @property
@@ -137,17 +137,17 @@ class Gear:
 
     @property
     def circular_pitch(self) -> float:
-        """P_c = π m, measured on the pitch circle."""
+        """Circular pitch P_c = π m, measured on the pitch circle."""
         return math.pi * self.module
 
     @property
     def base_pitch(self) -> float:
-        """P_b = π m cos φ, the distance of neighbouring teeth along the line of action."""
+        """Base pitch P_b = π m cos φ, the distance of neighbouring teeth along the line of action."""
         return self.circular_pitch * math.cos(self.pressure_angle)
 
     @property
     def whole_depth(self) -> float:
-        """Addendum + dedendum."""
+        """Whole depth: addendum + dedendum, times the module."""
         return self.module * (self.addendum + self.dedendum)
 
     @property
@@ -156,12 +156,14 @@ class Gear:
         return self.module * (0.5 * math.pi + self._outward * 2.0 * self.shift * math.tan(self.pressure_angle))
 
     def thickness_at(self, radius: float) -> float:
-        """Arc thickness of a tooth on the circle of this radius: 2 ρ (t / 2r ± (inv φ − inv φ_ρ)), cos φ_ρ = r_b/ρ.
+        """Return the arc thickness of a tooth at a radius: 2 ρ (t / 2r ± (inv φ − inv φ_ρ)), cos φ_ρ = r_b/ρ.
 
-        Negative where the flanks have crossed (a pointed tooth). Below the base circle there is no involute: nan.
+        Negative beyond the intersection of the flanks (a pointed tooth); nan below the base circle, without involute.
         """
+        # Undefined below the base circle, not zero.
         if radius < self.base_radius:
             return math.nan
+        # Rounding may put the quotient above 1 on the base circle itself.
         there = math.acos(min(1.0, self.base_radius / radius))
         half = self.tooth_thickness / (2.0 * self.pitch_radius)
         return 2.0 * radius * (half + self._outward * (involute(self.pressure_angle) - involute(there)))
@@ -184,16 +186,16 @@ class Gear:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A pinion with a gear, external or internal, at the distance without backlash or at a given one.
+    """A pinion with an external or internal gear, at the distance without backlash or at a given distance.
 
-    Lengths along the line of action are measured from the pitch point. With the pinion driving ``approach`` is the
-    part before it; ``recess`` the part after it.
+    Lengths along the line of action are measured from the pitch point. With the pinion driving, ``approach`` is the
+    part before it, ``recess`` the part after it.
 
     Raises
     ------
     DimensionError
         For an internal pinion, unequal modules or pressure angles, an internal gear without more teeth than the
-        pinion, shifts that no distance takes up, or a centre distance at which the base circles do not part.
+        pinion, shifts that no distance takes up, or a centre distance at which the base circles overlap.
     """
 
     pinion: Gear
@@ -202,7 +204,7 @@ class Mesh:
 
     @classmethod
     def standard(cls, pair: tuple[int, int], module: float, pressure_angle: float) -> Mesh:
-        """Two external full-depth gears by their teeth, the pinion first, at the distance of their pitch circles."""
+        """Make two external full-depth gears by their teeth, pinion first, at the distance of their pitch circles."""
         pinion, gear = (Gear(teeth, module, pressure_angle) for teeth in pair)
         return cls(pinion, gear)
 
@@ -215,7 +217,7 @@ class Mesh:
         if two.internal and two.teeth <= one.teeth:
             raise DimensionError("internal gear", "of more teeth than its pinion", (one.teeth, two.teeth))
         if not 0.0 <= self.pressure_angle < 0.5 * math.pi:
-            raise DimensionError("centre distance", "such that the base circles part", self.given_distance)
+            raise DimensionError("centre distance", "such that the base circles do not overlap", self.given_distance)
 
     @property
     def _side(self) -> float:
@@ -236,34 +238,36 @@ class Mesh:
         phi = self.pinion.pressure_angle
         if self.given_distance is not None:
             cosine = self.standard_distance * math.cos(phi) / self.given_distance
+            # nan fails every comparison, so the constructor rejects it.
             return math.acos(cosine) if 0.0 < cosine <= 1.0 else math.nan
         taken_up = self.gear.shift + self._side * self.pinion.shift
         teeth = self.gear.teeth + self._side * self.pinion.teeth
         value = involute(phi) + 2.0 * math.tan(phi) * taken_up / teeth
+        # Unshifted pairs keep φ exactly, without a round trip through the involute.
         return phi if taken_up == 0.0 else inverse_involute(value) if value >= 0.0 else math.nan
 
     @property
     def centre_distance(self) -> float:
-        """Distance of the shafts: as given, or C₀ cos φ / cos φ_w."""
+        """Centre distance: as given, or C₀ cos φ / cos φ_w."""
         if self.given_distance is not None:
             return self.given_distance
         return self.standard_distance * math.cos(self.pinion.pressure_angle) / math.cos(self.pressure_angle)
 
     @property
     def _tangents(self) -> tuple[float, float]:
-        """From the pitch point to where the line of action touches the base circles of pinion and gear."""
+        """Distances from the pitch point to the tangent points on the base circles of pinion and gear."""
         slope = math.tan(self.pressure_angle)
         return self.pinion.base_radius * slope, self.gear.base_radius * slope
 
     @property
     def approach(self) -> float:
-        """Part of the path of contact that the gear's tip circle cuts off."""
+        """Part of the path of contact bounded by the gear's tip circle."""
         tip, base = self.gear.tip_radius, self.gear.base_radius
         return self._side * (math.sqrt(max(tip * tip - base * base, 0.0)) - self._tangents[1])
 
     @property
     def recess(self) -> float:
-        """Part of the path of contact that the pinion's tip circle cuts off."""
+        """Part of the path of contact bounded by the pinion's tip circle."""
         tip, base = self.pinion.tip_radius, self.pinion.base_radius
         return math.sqrt(max(tip * tip - base * base, 0.0)) - self._tangents[0]
 
@@ -291,12 +295,13 @@ class Mesh:
 
     @property
     def interferes(self) -> bool:
-        """Whether a tip of one gear digs into the flank of this very mate.
+        """Whether a tip of one gear digs into the flank of this particular mate.
 
-        A rack would be the worst mate; with a finite gear fewer teeth are sound (Norton, Tables 9-4, 9-5). Of the
-        flanks only the involute is looked at, not the fillet below: the tip of a full-depth ring may reach some 0.01
-        module into the fillet that a rack leaves on its pinion (ring of 60, pinion of 30 at 20°).
+        A rack would be the worst mate; with a finite gear fewer teeth are sound (Norton, Tables 9-4, 9-5). Only the
+        involute is considered, not the fillet below it: the tip of a full-depth ring may reach about 0.01 module into
+        the fillet that a rack leaves on its pinion (ring of 60, pinion of 30 at 20°).
         """
+        # Teeth exactly on the limit must not be rejected by rounding.
         slack = 1.0 + ON_LIMIT
         if self.pinion.tip_radius > self.pinion_tip_limit * slack:
             return True
@@ -311,13 +316,15 @@ class Mesh:
         The pinion's tip corner passes the gear's tip circle at the angles δ₁, δ₂ from the line of centres; it is clear
         of the gear's tip corner where z₁ (inv φ_a₁ + δ₁) − z₂ (inv φ_a₂ + δ₂) + (z₂ − z₁) inv φ_w ≥ 0 (Colbourne, The
         Geometry of Involute Gears, 1987, ch. 8; trochoid interference in SDP/SI, Elements of Metric Gear Technology,
-        eq. 5-6). With few teeth of difference it is the limit of planetary rings.
+        eq. 5-6). With a small difference of teeth this limits planetary rings.
         """
         if not self.gear.internal:
             return False
         tip, gear_tip, distance = self.pinion.tip_radius, self.gear.tip_radius, self.centre_distance
+        # The tip circles do not intersect.
         if gear_tip >= distance + tip:
             return False
+        # The pinion's tips lie outside the ring's tip circle all around, or the ring has no involute there.
         if gear_tip <= abs(distance - tip) or gear_tip < self.gear.base_radius:
             return True
         at_pinion = math.acos((gear_tip**2 - tip**2 - distance**2) / (2.0 * tip * distance))
@@ -329,7 +336,7 @@ class Mesh:
 
     @property
     def clearance(self) -> float:
-        """The smaller room between a tip and the mate's root on the line of centres."""
+        """Smaller clearance between a tip and the mate's root on the line of centres."""
         one, two, distance = self.pinion, self.gear, self.centre_distance
         if two.internal:
             return min(two.root_radius - distance - one.tip_radius, two.tip_radius - distance - one.root_radius)
@@ -348,7 +355,7 @@ class Mesh:
 
 
 def least_teeth_with_rack(pressure_angle: float = PRESSURE_ANGLE, addendum: float = FULL_DEPTH_ADDENDUM) -> int:
-    """Fewest teeth that mesh with a rack, and with every gear: z ≥ 2 k / sin² φ (Norton, eq. 9.8, Table 9-4).
+    """Compute the minimum teeth that mesh with a rack, and so with every gear: z ≥ 2 k / sin² φ (Norton, eq. 9.8).
 
     >>> [least_teeth_with_rack(math.radians(angle)) for angle in (14.5, 20.0, 25.0)]
     [32, 18, 12]
@@ -359,33 +366,34 @@ def least_teeth_with_rack(pressure_angle: float = PRESSURE_ANGLE, addendum: floa
 def largest_gear(
     pinion: int, pressure_angle: float = PRESSURE_ANGLE, addendum: float = FULL_DEPTH_ADDENDUM
 ) -> int | None:
-    """Most teeth of an external gear that meshes with a pinion without interference (Norton, Table 9-5).
+    """Find the maximum teeth of an external gear that meshes with a pinion without interference (Norton, Table 9-5).
 
     From r_a₂² ≤ r_b₂² + C² sin² φ: z₂ ≤ (z₁² sin² φ − 4 k²) / (4 k − 2 z₁ sin² φ). None: every gear and the rack mesh.
-    Where the number is below ``pinion`` the pair would have to be turned round: no gear of at least as many teeth.
+    A result below ``pinion`` means that no gear with at least as many teeth as the pinion meshes.
     """
     squared = math.sin(pressure_angle) ** 2
     room = 4.0 * addendum - 2.0 * pinion * squared
+    # A pinion sound with a rack is sound with every gear.
     if pinion >= least_teeth_with_rack(pressure_angle, addendum):
         return None
     return max(0, math.floor((pinion * pinion * squared - 4.0 * addendum**2) / room * (1.0 + ON_LIMIT)))
 
 
 def saving_shift(mesh: Mesh, least_contact_ratio: float = 1.2) -> Mesh | None:
-    """A profile shift that makes an undercut or interfering external pair sound, if there is one.
+    """Find a profile shift that makes an undercut or interfering external pair sound, if one exists.
 
-    The pinion is moved out to where the rack no longer undercuts it. If the gear can take the opposite shift the centre
-    distance stays (long and short addendum, Norton, Sec. 9.3); otherwise the gear stays and the shafts move apart.
+    The pinion is shifted until the rack no longer undercuts it. If the gear can take the opposite shift the centre
+    distance stays (long and short addendum, Norton, Sec. 9.3); otherwise the centre distance increases.
 
     Parameters
     ----------
     least_contact_ratio : float
-        A shifted pair with less is no help; Norton, Sec. 9.5, asks for 1.2 at least.
+        Minimum contact ratio of the shifted pair; Norton, Sec. 9.5, recommends at least 1.2.
 
     Returns
     -------
     Mesh or None
-        The same teeth, shifted; None where the pair needs no shift, is internal, or no such shift saves it.
+        The same teeth, shifted; None if the pair needs no shift, is internal, or no such shift helps.
     """
     pinion, gear = mesh.pinion, mesh.gear
     if gear.internal or not (mesh.interferes or pinion.is_undercut or gear.is_undercut):
@@ -405,4 +413,5 @@ def saving_shift(mesh: Mesh, least_contact_ratio: float = 1.2) -> Mesh | None:
 
 
 def _ceil(value: float) -> int:
+    # A value that exceeds an integer only by rounding must not be rounded up.
     return math.ceil(value * (1.0 - ON_LIMIT))

@@ -1,15 +1,15 @@
 """Ordinary gear trains: gears on fixed shafts, in stages, with idlers.
 
 Each mesh divides the speed by the ratio of the teeth (Norton, Design of Machinery, Sec. 9.6–9.8), and an external one
-turns the direction round; speeds are followed mesh by mesh as exact fractions of the input's. With the power P on the
-input shaft and a share η of it passed on by every mesh, the torque on a shaft is P/ω times the product of the shares so
+reverses the direction; speeds are computed mesh by mesh as exact fractions of the input's. With the power P on the
+input shaft and the efficiency η of every mesh, the torque on a shaft is P/ω times the product of the efficiencies so
 far.
 
-The shafts of a bevel stage meet, those of a worm and its gear cross: there is no common sense of rotation. The
-speed of a shaft is counted about an axis of its own, the input's from its own end on in the direction of the power:
+The shafts of a bevel stage intersect, those of a worm and its gear cross: there is no common sense of rotation. The
+speed of a shaft counts about its own axis, for the input from its outer end in the direction of the power:
 parallel shafts share it; the driven shaft of a bevel stage has its axis from the apex on outwards; that of a
 worm gear is d × w, d the direction from the worm to its gear and w the axis of the worm. So a bevel stage keeps the
-sign, and so does a right-handed worm; a left-handed one turns it.
+sign, and so does a right-handed worm; a left-handed one reverses it.
 """
 
 from __future__ import annotations
@@ -32,16 +32,16 @@ from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, PRESSURE_ANGLE, Gear, Mes
 from kinematics.gear.worm import WormDrive
 
 StageKind = Literal["external", "internal", "helical", "bevel", "worm"]
-"""Two spur gears; a pinion in a ring; two helical gears; two bevel gears; a worm and its gear."""
+"""Kinds of stages: two spur gears; a pinion in a ring; two helical gears; two bevel gears; a worm and its gear."""
 
 CROSSING: tuple[StageKind, ...] = ("bevel", "worm")
-"""Stages whose shafts are not parallel."""
+"""Kinds of stages whose shafts are not parallel."""
 
 USUAL_QUOTIENT = 10.0
-"""Pitch diameter of a worm in axial modules, where none is stated."""
+"""Default pitch diameter of a worm in axial modules."""
 
 USUAL_FRICTION = 0.05
-"""Friction coefficient of lubricated teeth, where none is stated."""
+"""Default friction coefficient of lubricated teeth."""
 
 Axis = NDArray[np.float64]
 
@@ -56,7 +56,7 @@ class TrainStage:
     The module of helical teeth is that of the normal plane, of bevel teeth that of the large end, of a worm the axial
     one; ``helix_angle`` is the driver's, the driven gear has the other hand. In an internal stage the larger gear is
     the ring; ``addenda`` are those of driver and driven gear there, modules. A worm drives, and ``driver`` are its
-    threads. Angles are radians. ``face_width`` and ``friction`` decide over nothing that a train does as a motion.
+    threads. Angles are radians. ``face_width`` and ``friction`` do not affect the motion of a train.
     """
 
     driver: int
@@ -80,7 +80,7 @@ class TrainStage:
 
     @property
     def sense(self) -> int:
-        """Sign that a mesh gives the speed, about the axes of its shafts."""
+        """Sign by which a mesh multiplies the speed, about the axes of its shafts."""
         if self.kind == "worm":
             return -1 if self.left_handed else 1
         return 1 if self.kind in ("internal", "bevel") else -1
@@ -91,23 +91,23 @@ class TrainStage:
         return self.kind not in CROSSING
 
     def worm(self, pressure_angle: float) -> WormDrive:
-        """The worm and its gear."""
+        """Return the worm and its gear."""
         return WormDrive(self.driver, self.driven, self.module, self.quotient, pressure_angle)
 
     def cones(self, pressure_angle: float) -> BevelCones:
-        """The pitch cones of a bevel stage, the driver's first."""
+        """Return the pitch cones of a bevel stage, the driver's first."""
         return BevelCones(self.driver, self.driven, self.module, self.shaft_angle, pressure_angle)
 
     def meshes(self, pressure_angle: float) -> tuple[Mesh, ...]:
-        """The meshes without play, the smaller gear as the pinion, of equal ones the first.
+        """Return the meshes without play, the smaller gear as the pinion, of equal ones the first.
 
-        Helical teeth are those of the plane of rotation, bevel teeth those of the back cones; of a worm and its gear
-        there are none.
+        Helical teeth are those of the plane of rotation, bevel teeth those of the back cones; a worm and its gear have
+        none.
 
         Raises
         ------
         DimensionError
-            For gears that do not exist, shifts of a stage with idlers, or either in a stage that has none.
+            For impossible gears, shifts in a stage with idlers, or either in a kind of stage that allows neither.
         """
         if self.kind != "external":
             return self._other_meshes(pressure_angle)
@@ -115,19 +115,21 @@ class TrainStage:
         if self.shifts == (0.0, 0.0):
             return tuple(Mesh.standard((min(pair), max(pair)), self.module, pressure_angle) for pair in pairs)
         if self.idlers:
-            raise DimensionError("shifts", "none in a stage with idlers", self.shifts)
+            raise DimensionError("shifts", "absent in a stage with idlers", self.shifts)
+        # Keep each shift with its gear while the smaller one becomes the pinion.
         ends = sorted(zip((self.driver, self.driven), self.shifts, strict=True), key=lambda end: end[0])
         pinion, gear = (Gear(teeth, self.module, pressure_angle, shift=shift) for teeth, shift in ends)
         addendum = FULL_DEPTH_ADDENDUM - shortened_tips(Mesh(pinion, gear))
         return (Mesh(replace(pinion, addendum=addendum), replace(gear, addendum=addendum)),)
 
     def _other_meshes(self, pressure_angle: float) -> tuple[Mesh, ...]:
-        """The mesh of a stage that is not external."""
+        """Return the mesh of a stage that is not external."""
         if self.idlers:
-            raise DimensionError("idlers", f"none in a stage that is {self.kind}", self.idlers)
+            raise DimensionError("idlers", f"absent in a stage of kind {self.kind}", self.idlers)
         if self.kind != "helical" and self.shifts != (0.0, 0.0):
-            raise DimensionError("shifts", f"none in a stage that is {self.kind}", self.shifts)
+            raise DimensionError("shifts", f"absent in a stage of kind {self.kind}", self.shifts)
         if self.kind == "worm":
+            # Raises for impossible dimensions.
             _ = self.worm(pressure_angle)
             return ()
         if self.kind == "bevel":
@@ -136,7 +138,7 @@ class TrainStage:
         return (Mesh(one, two) if self.driver <= self.driven else Mesh(two, one),)
 
     def _in_rotation(self, pressure_angle: float) -> tuple[Gear, Gear]:
-        """Driver and driven gear of a helical stage in the plane of rotation, their tips shortened where shifted."""
+        """Return driver and driven gear of a helical stage in the plane of rotation, shifted tips shortened."""
         shrunk = math.cos(self.helix_angle)
         one, two = (
             replace(HelicalGear(teeth, self.module, angle, pressure_angle).transverse_gear, shift=shrunk * shift)
@@ -150,10 +152,10 @@ class TrainStage:
         return replace(one, addendum=addendum), replace(two, addendum=addendum)
 
     def cut_gears(self, pressure_angle: float) -> tuple[Gear, ...]:
-        """All gears in the order in which they mesh, with their shifts and tips.
+        """Return all gears in the order in which they mesh, with their shifts and tips.
 
-        In the plane of rotation: of bevel gears those of the large ends, as if they were spur gears; of a worm stage
-        the gear alone, in its middle plane.
+        They are given in the plane of rotation: bevel gears at their large ends, like spur gears; a worm stage has only
+        the gear, in its middle plane.
         """
         if self.kind == "helical":
             return self._in_rotation(pressure_angle)
@@ -175,12 +177,12 @@ class TrainStage:
 
 @dataclass(frozen=True)
 class OrdinaryTrain:
-    """Stages in the order of the power; the driven gear of one sits on the shaft of the next one's driver.
+    """Stages in the order of the power flow; the driven gear of each sits on the shaft of the next driver.
 
     Raises
     ------
     DimensionError
-        For a train without stages, or gears that do not exist.
+        For a train without stages, or impossible gears.
     """
 
     stages: tuple[TrainStage, ...]
@@ -189,19 +191,19 @@ class OrdinaryTrain:
     def __post_init__(self) -> None:
         if not self.stages:
             raise DimensionError("stages", "at least one", self.stages)
-        # Gears that do not exist are refused when they are made.
+        # Building the meshes raises for impossible gears.
         _ = self.meshes
 
     @cached_property
     def meshes(self) -> tuple[tuple[Mesh, ...], ...]:
-        """The meshes of each stage without play, the smaller gear as the pinion."""
+        """Meshes of each stage without play, the smaller gear as the pinion."""
         return tuple(stage.meshes(self.pressure_angle) for stage in self.stages)
 
     @cached_property
     def speeds(self) -> tuple[tuple[Fraction, ...], ...]:
-        """Speeds of the gears of each stage, as fractions of the input's; a negative one turns the other way.
+        """Speeds of the gears of each stage, as fractions of the input's; negative for the opposite sense.
 
-        Each is counted about the axis of its shaft (:attr:`axes`)."""
+        Each counts about the axis of its shaft (:attr:`axes`)."""
         speed, stages = Fraction(1), []
         for stage in self.stages:
             at = [speed]
@@ -223,10 +225,10 @@ class OrdinaryTrain:
 
     @cached_property
     def axes(self) -> tuple[Axis, ...]:
-        """Axes of the shafts from the input's on, unit vectors of shape (3,), the input's along z.
+        """Axes of the shafts from the input on, unit vectors of shape (3,), the input along z.
 
-        A bevel stage turns the axis about y, its driven shaft towards x where the shafts before it are along z; a worm
-        has its gear beside it in the direction in which a bevel gear would lead its shaft away.
+        A bevel stage rotates the axis about y, its driven shaft towards x if the shafts before it are along z; a worm
+        has its gear on the side towards which a bevel gear's shaft would point.
         """
         along, aside = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
         axes = [along]
@@ -235,13 +237,14 @@ class OrdinaryTrain:
                 cosine, sine = math.cos(stage.shaft_angle), math.sin(stage.shaft_angle)
                 along, aside = sine * aside - cosine * along, -cosine * aside - sine * along
             elif stage.kind == "worm":
+                # The gear's axis is d × w, with d from the worm to the gear and w the worm's axis.
                 along = np.cross(aside, along)
             axes.append(along)
         return tuple(axes)
 
     @property
     def centre_distances(self) -> tuple[float, ...]:
-        """Distance of the shafts of each stage, with the idlers in line; 0 where they meet."""
+        """Distance of the shafts of each stage, with the idlers in line; 0 if they intersect."""
         return tuple(
             0.0
             if stage.kind == "bevel"
@@ -252,18 +255,19 @@ class OrdinaryTrain:
         )
 
     def torques(self, input_torque: float, mesh_efficiency: tuple[tuple[float, ...], ...]) -> tuple[float, ...]:
-        """Torque that each shaft passes on, from the input shaft to the output shaft; idlers pass on none.
+        """Return the torque of each shaft from input to output; idlers have none.
 
         Parameters
         ----------
         input_torque : float
         mesh_efficiency : tuple
-            Share of the power that each mesh passes on, in the shape of :attr:`meshes`.
+            Efficiency of each mesh, in the shape of :attr:`meshes`.
         """
         shafts = [input_torque]
         for speeds, shares in zip(self.speeds, mesh_efficiency, strict=True):
             passed = 1.0
             for share in shares:
                 passed *= share
+            # Torque rises by the speed ratio and falls by the efficiency.
             shafts.append(shafts[-1] * float(speeds[0] / speeds[-1]) * passed)
         return tuple(shafts)

@@ -1,15 +1,15 @@
 """Worms and their gears on shafts at a right angle.
 
-A worm of n threads advances its gear by the lead L = n p_x a turn, p_x the axial pitch, which is the circular pitch of
-the gear: D_g = z p_x / π. The lead angle is tan λ = L / (π D_w) and equals the gear's helix angle (Norton, Design of
+A worm of n threads advances its gear by the lead L = n p_x per turn, p_x the axial pitch, which is the circular pitch
+of the gear: D_g = z p_x / π. The lead angle is tan λ = L / (π D_w) and equals the gear's helix angle (Norton, Design of
 Machinery, Sec. 9.4, worms; Rao, Sec. 7.6). Angles are radians.
 
-With the friction coefficient μ and the pressure angle φ_n of the normal plane the worm passes on the share
+With the friction coefficient μ and the pressure angle φ_n of the normal plane the efficiency of a driving worm is
 
     η = (cos φ_n − μ tan λ) / (cos φ_n + μ cot λ)
 
-of its power, and its gear, driving, η' = (cos φ_n − μ cot λ) / (cos φ_n + μ tan λ): it drives nothing where that is not
-positive, tan λ ≤ μ / cos φ_n (Shigley's Mechanical Engineering Design, Sec. 13-17, eq. 13-46).
+and that of a driving gear η' = (cos φ_n − μ cot λ) / (cos φ_n + μ tan λ): the gear cannot drive if η' ≤ 0, that is
+tan λ ≤ μ / cos φ_n (Shigley's Mechanical Engineering Design, Sec. 13-17, eq. 13-46).
 """
 
 from __future__ import annotations
@@ -50,36 +50,36 @@ class WormSet:
 
     @property
     def lead(self) -> float:
-        """Advance a turn, n p_x."""
+        """Advance per turn, n p_x."""
         return self.threads * self.axial_pitch
 
     @property
     def lead_angle(self) -> float:
-        """tan λ = L / π D_w; also the helix angle of the gear."""
+        """Lead angle, tan λ = L / π D_w; also the helix angle of the gear."""
         return math.atan(self.lead / (math.pi * self.worm_diameter))
 
     @property
     def worm_helix_angle(self) -> float:
-        """90° − λ."""
+        """Helix angle of the worm, 90° − λ."""
         return 0.5 * math.pi - self.lead_angle
 
     @property
     def gear_diameter(self) -> float:
-        """z p_x / π."""
+        """Pitch diameter of the gear, z p_x / π."""
         return self.gear_teeth * self.axial_pitch / math.pi
 
     @property
     def centre_distance(self) -> float:
-        """(D_w + D_g) / 2."""
+        """Centre distance (D_w + D_g) / 2."""
         return 0.5 * (self.worm_diameter + self.gear_diameter)
 
     def is_locking(self, friction: float) -> bool:
-        """Whether the gear cannot drive the worm: tan λ ≤ μ, for square threads."""
+        """Return whether the gear cannot drive the worm: tan λ ≤ μ, for square threads."""
         return math.tan(self.lead_angle) <= friction
 
 
 class WormForces(NamedTuple):
-    """Forces on the teeth at a torque of the worm, unit of torque over unit of length.
+    """Forces on the teeth at a torque of the worm, in units of torque over length.
 
     ``worm`` is tangential to the worm and axial on the gear, ``gear`` tangential to the gear and axial on the worm.
     """
@@ -113,12 +113,12 @@ class WormDrive:
 
     @cached_property
     def dimensions(self) -> WormSet:
-        """The dimensions of worm and gear."""
+        """Dimensions of worm and gear; raises for impossible ones."""
         return WormSet(self.threads, self.gear_teeth, math.pi * self.module, self.quotient * self.module)
 
     @property
     def lead_angle(self) -> float:
-        """tan λ = threads / quotient."""
+        """Lead angle, tan λ = threads / quotient."""
         return self.dimensions.lead_angle
 
     @property
@@ -128,59 +128,63 @@ class WormDrive:
 
     @property
     def axial_pressure_angle(self) -> float:
-        """tan φ_x = tan φ_n / cos λ: of the rack that the middle plane shows of the worm."""
+        """Pressure angle of the worm's rack profile in the middle plane, tan φ_x = tan φ_n / cos λ."""
         return math.atan(math.tan(self.normal_pressure_angle) / math.cos(self.lead_angle))
 
     @property
     def gear(self) -> Gear:
-        """The gear in the middle plane, where the worm is a rack of full depth."""
+        """Gear in the middle plane, where the worm is a full-depth rack."""
         return Gear(self.gear_teeth, self.module, self.axial_pressure_angle)
 
     @property
     def approach(self) -> float:
-        """Part of the path of contact that the tip circle of the gear cuts off, in the middle plane."""
+        """Part of the path of contact bounded by the tip circle of the gear, in the middle plane."""
         gear = self.gear
         return math.sqrt(gear.tip_radius**2 - gear.base_radius**2) - gear.pitch_radius * math.sin(gear.pressure_angle)
 
     @property
     def recess(self) -> float:
-        """Part of the path of contact that the tips of the worm, there a rack, cut off."""
+        """Part of the path of contact bounded by the tips of the worm, in the middle plane."""
         return FULL_DEPTH_ADDENDUM * self.module / math.sin(self.axial_pressure_angle)
 
     @property
     def contact_ratio(self) -> float:
-        """In the middle plane, of the gear with a rack."""
+        """Contact ratio in the middle plane, gear with rack."""
         return (self.approach + self.recess) / self.gear.base_pitch
 
     def efficiency(self, friction: float) -> float:
-        """Share of the worm's power that the gear passes on; 0 where friction holds the worm."""
+        """Return the efficiency of a driving worm; 0 if friction holds it."""
         cosine, slope = math.cos(self.normal_pressure_angle), math.tan(self.lead_angle)
+        # A negative value would mean that the worm has to be helped by its gear.
         return max(0.0, (cosine - friction * slope) / (cosine + friction / slope))
 
     def driven_back(self, friction: float) -> float:
-        """Share of the gear's power that the worm takes up where the gear drives; 0 where it cannot."""
+        """Return the efficiency of a driving gear; 0 if it cannot drive."""
         cosine, slope = math.cos(self.normal_pressure_angle), math.tan(self.lead_angle)
         return max(0.0, (cosine - friction / slope) / (cosine + friction * slope))
 
     def is_locking(self, friction: float) -> bool:
-        """Whether the gear cannot drive the worm: tan λ ≤ μ / cos φ_n."""
+        """Return whether the gear cannot drive the worm: tan λ ≤ μ / cos φ_n."""
         return math.tan(self.lead_angle) * math.cos(self.normal_pressure_angle) <= friction
 
     def forces(self, torque: float, friction: float) -> WormForces:
-        """Forces of sliding teeth at a torque of the worm (Shigley, eq. 13-43); where the gear drives, at −friction.
+        """Return the forces of sliding teeth at a torque of the worm (Shigley, eq. 13-43); −friction if the gear
+        drives.
 
         Raises
         ------
         DimensionError
-            Where friction holds the worm or its gear under that torque: the forces of teeth that rest are not known.
+            If friction holds the worm or its gear under that torque: forces of teeth at rest are not determined.
         """
         phi, lead = self.normal_pressure_angle, self.lead_angle
+        # Without load the direction of friction does not matter.
         if torque == 0.0:
             return WormForces(0.0, 0.0, 0.0)
         around = math.cos(phi) * math.sin(lead) + friction * math.cos(lead)
         along = math.cos(phi) * math.cos(lead) - friction * math.sin(lead)
+        # A nonpositive component means that friction holds the teeth.
         if not min(around, along) > 0.0:
-            raise DimensionError("friction", "less than what holds the worm", abs(friction))
+            raise DimensionError("friction", "less than the value at which friction locks the worm", abs(friction))
         worm = 2.0 * torque / self.dimensions.worm_diameter
         normal = worm / around
         gear = normal * along

@@ -1,4 +1,4 @@
-"""Drives that turn a wheel by steps: closed forms of Geneva drives, the outlines of their wheels and locking discs."""
+"""Indexing drives: closed forms of Geneva drives, outlines of their wheels and locking discs, ratchets."""
 
 from __future__ import annotations
 

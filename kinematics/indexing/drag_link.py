@@ -1,4 +1,4 @@
-"""A drag link before a Geneva drive: its output is the crank, which then turns slowly where the wheel is fast.
+"""A drag link ahead of a Geneva drive: its output is the crank, which then turns slowly where the wheel is fast.
 
 The loop a e^{iθ} + b e^{iχ} = 1 + c e^{iψ}, the ground being 1 and the shortest link, is differentiated three times:
 each order gives a linear equation i (b X e^{iχ} − c Y e^{iψ}) = R for the highest derivatives X of χ and Y of ψ.
@@ -17,7 +17,7 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 NEWTON = 30
-"""Steps at most to the input angle of an output angle; from an end of an interval it takes five."""
+"""Maximum number of Newton steps to the input angle of an output angle; about five are usual."""
 
 
 @dataclass(frozen=True)
@@ -34,16 +34,17 @@ class DragLink:
     output: float | Real
 
     def turned(self, angle: Real) -> Motion:
-        """The output's angle ψ from the ground line and its derivatives by the input's angle; NaN where it cannot be.
+        """Return the output's angle ψ from the ground line and its derivatives by the input angle; NaN if impossible.
 
-        ψ is that of the coupler on the left of the line from the input's pin to the output's pivot, and grows by a turn
-        with each turn of the input.
+        The joint lies on the left of the line from the input's pin to the output's pivot, and ψ grows by a turn with
+        each turn of the input.
         """
         a, b, c = self.input, self.coupler, self.output
         pin = a * np.exp(1j * angle)
         diagonal = 1.0 - pin
         square = np.abs(diagonal) ** 2
         along = 0.5 * (square + b * b - c * c) / square
+        # NaN where the drag link cannot be assembled.
         with np.errstate(invalid="ignore"):
             aside = np.sqrt(b * b / square - along * along)
         joint = pin + (along + 1j * aside) * diagonal
@@ -57,25 +58,26 @@ class DragLink:
         x1, y1 = highest(-1j * pin)
         x2, y2 = highest(pin + b * x1**2 * u - c * y1**2 * v)
         _, y3 = highest(1j * pin + b * u * (3.0 * x1 * x2 + 1j * x1**3) - c * v * (3.0 * y1 * y2 + 1j * y1**3))
-        # The output is never half a turn off the input's own angle by more than the linkage allows: unwrapped by it.
+        # Output and input never differ by half a turn, so the input's angle selects the turn of ψ.
         psi = angle + np.angle(v * np.exp(-1j * angle))
         return Motion(psi, y1, y2, y3)
 
     @property
     def transmission_angle(self) -> Real:
-        """The least angle between coupler and output, or its supplement, radians: with pin and ground in line."""
+        """Minimum transmission angle, radians: it occurs with the input's pin on the ground line."""
         a, b, c = self.input, self.coupler, self.output
         cosines = [(b * b + c * c - (1.0 + side * a) ** 2) / (2.0 * b * c) for side in (-1.0, 1.0)]
         worst = np.maximum(np.abs(cosines[0]), np.abs(cosines[1]))
         return np.asarray(np.arccos(np.minimum(worst, 1.0)))
 
     def reached(self, output: float) -> float:
-        """The input angle at which the output stands at an angle ψ, radians."""
+        """Find the input angle at which the output is at an angle ψ, radians."""
         angle = output
         for _ in range(NEWTON):
             motion = self.turned(np.array(angle))
             step = float((motion.s - output) / motion.v)
             angle -= step
+            # At rounding level; further steps would only alternate.
             if abs(step) < 1e-15 * max(1.0, abs(angle)):
                 break
         return angle
@@ -99,24 +101,24 @@ class Course:
 
     @property
     def start(self) -> float:
-        """The input's angle as the roller enters."""
+        """Input angle at which the roller enters."""
         half = self.geneva.half
         return -half if self.link is None else self.link.reached(self.phase - half)
 
     @property
     def end(self) -> float:
-        """The input's angle as it leaves."""
+        """Input angle at which the roller leaves."""
         half = self.geneva.half
         return half if self.link is None else self.link.reached(self.phase + half)
 
     def engaged(self, angle: Real, rollers: int = 1) -> NDArray[np.bool_]:
-        """Whether a roller is in a slot at angles of the input, counted from where one enters."""
+        """Return whether a roller is in a slot at input angles counted from an entry."""
         if self.link is None:
             return self.geneva.engaged(angle, rollers)
         return self.geneva.engaged(self.from_entry(angle).s, rollers)
 
     def from_entry(self, angle: Real) -> Motion:
-        """The crank's angle since a roller entered, and its derivatives, at angles of the input since then."""
+        """Return the crank's angle since an entry, and its derivatives, at input angles since that entry."""
         if self.link is None:
             one = np.ones_like(angle)
             return Motion(angle, one, 0.0 * one, 0.0 * one)
@@ -124,14 +126,14 @@ class Course:
         return Motion(turned.s + self.geneva.half, *turned[1:])
 
     def turned(self, angle: Real, rollers: int = 1) -> Motion:
-        """As :meth:`Geneva.turned`, over any angle of the input since a roller entered."""
+        """Return the motion of the wheel over any input angle since an entry; see :meth:`Geneva.turned`."""
         if self.link is None:
             return self.geneva.turned(angle, rollers)
         crank = self.from_entry(angle)
         return _through(self.geneva.turned(crank.s, rollers), crank)
 
     def crank(self, angle: Real) -> Motion:
-        """The crank's angle from the middle of the index, and its derivatives by the input's angle."""
+        """Return the crank's angle from the middle of the index, and its derivatives by the input angle."""
         if self.link is None:
             one = np.ones_like(angle)
             return Motion(angle, one, 0.0 * one, 0.0 * one)
@@ -139,17 +141,18 @@ class Course:
         return Motion(turned.s - self.phase, *turned[1:])
 
     def motion(self, angle: Real) -> Motion:
-        """The wheel's angle from the middle of the index, and its derivatives by the input's angle."""
+        """Return the wheel's angle from the middle of the index, and its derivatives by the input angle."""
         if self.link is None:
             return self.geneva.motion(angle)
         crank = self.crank(angle)
         half = self.geneva.half
+        # Rounding at entry and exit must not leave the index.
         wheel = self.geneva.motion(np.clip(crank.s, -half, half))
         return _through(wheel, crank)
 
 
 def _through(wheel: Motion, crank: Motion) -> Motion:
-    """Derivatives by the input from those by the crank."""
+    """Convert derivatives by the crank into derivatives by the input (chain rule)."""
     return Motion(
         wheel.s,
         wheel.v * crank.v,
@@ -159,9 +162,9 @@ def _through(wheel: Motion, crank: Motion) -> Motion:
 
 
 STEADY = 0.9
-"""Of the greatest speed: above it the wheel is said to be steady."""
+"""Share of the maximum speed above which the wheel counts as steady."""
 
 
 def steady_share(speed: Real) -> float:
-    """Share of equal steps in which a speed is above nine tenths of its greatest."""
+    """Compute the share of equal steps in which the speed exceeds nine tenths of its maximum."""
     return float(np.mean(speed >= STEADY * speed.max()))

@@ -1,8 +1,8 @@
-"""Geneva drives in closed form: how the wheel turns while a roller of the crank is in one of its slots.
+"""Geneva drives in closed form: motion of the wheel while a roller of the crank is in one of its slots.
 
 Glossary:
 
-station         where the wheel rests; n of them, 2π/n apart, and as many slots;
+station         a rest position of the wheel; n of them, spaced by 2π/n, with n slots;
 index           the turn of the wheel from one station to the next, and the crank's turn meanwhile;
 shock-free      the roller enters along the slot, so that the wheel begins at rest.
 
@@ -35,7 +35,7 @@ Real = NDArray[np.float64]
 Drive = Literal["geneva_external", "geneva_internal", "geneva_spherical"]
 
 ENTRY = 1e-12
-"""Angle before the end of an index within which the roller is still in the slot: rounding."""
+"""Angle past the end of an index at which the roller still counts as in the slot: rounding."""
 
 
 class Motion(NamedTuple):
@@ -55,10 +55,10 @@ class Geneva:
     ----------
     drive : {"geneva_external", "geneva_internal", "geneva_spherical"}
     stations : int
-        From 3 on.
+        Number of stations, at least 3.
     ratio : float
-        Crank radius over center distance; of a spherical drive the tangent of the roller's cone about the crank's axis.
-        From sin(π/n) on, below 1 (spherical: tan(π/n), any): a smaller crank does not reach the slots.
+        Crank radius over center distance, from sin(π/n) to below 1; for a spherical drive the tangent of the roller's
+        cone about the crank's axis, at least tan(π/n). A smaller crank does not reach the slots.
     """
 
     drive: Drive
@@ -67,26 +67,27 @@ class Geneva:
 
     @classmethod
     def shock_free(cls, drive: Drive, stations: int) -> Geneva:
-        """The drive whose roller enters along the slot."""
+        """Make the drive whose roller enters along the slot."""
         step = math.pi / stations
         return cls(drive, stations, math.tan(step) if drive == "geneva_spherical" else math.sin(step))
 
     @property
     def signed(self) -> float:
-        """The ratio, negative of an internal drive: in the plane φ = ± arg(1 − λ e^{iα}) with it."""
+        """The ratio, negative for an internal drive, so that φ = ± arg(1 − λ e^{iα}) holds for both plane drives."""
         return -self.ratio if self.drive == "geneva_internal" else self.ratio
 
     @property
     def half(self) -> float:
-        """Half of the crank's angle of an index, radians: where the roller crosses the slot of a resting wheel."""
+        """Half the crank angle of an index, radians: there the roller enters the slot of the resting wheel."""
         step = math.pi / self.stations
         if self.drive == "geneva_spherical":
             return math.asin(min(1.0, math.tan(step) / self.ratio))
+        # Law of sines; rounding may exceed 1 for a shock-free ratio.
         crossing = math.asin(min(1.0, math.sin(step) / self.ratio))
         return crossing - step if self.drive == "geneva_external" else crossing + step
 
     def motion(self, angle: Real) -> Motion:
-        """The wheel during an index.
+        """Return the motion of the wheel during an index.
 
         Parameters
         ----------
@@ -96,7 +97,7 @@ class Geneva:
         Returns
         -------
         Motion
-            φ and its derivatives, each positive the way the wheel turns.
+            φ and its derivatives, positive in the sense in which the wheel turns.
         """
         sine, cosine = np.sin(angle), np.cos(angle)
         if self.drive == "geneva_spherical":
@@ -114,7 +115,7 @@ class Geneva:
 
     @property
     def peak_angle(self) -> float:
-        """The crank's angle α ≥ 0 at which the wheel's acceleration is greatest in magnitude: at ± this angle.
+        """Crank angle α ≥ 0 of the maximum magnitude of the wheel's acceleration, which occurs at ± this angle.
 
         External: cos α = √(k² + 2) − k with k = (1 + λ²)/4λ (Norton, §3.10); spherical: the root of a quadratic in
         sin² α; where the stationary point lies outside the index, as in every internal drive, the index's end.
@@ -126,46 +127,49 @@ class Geneva:
             square = ratio * ratio
             lead = 1.0 + 2.0 * square
             root = 3.0 * (lead + 1.0)
+            # The smaller root of the quadratic, in the form without cancellation.
             sine_squared = 2.0 * lead / (root + math.sqrt(root * root - 4.0 * lead)) / square
             return half if sine_squared >= math.sin(half) ** 2 else math.asin(math.sqrt(sine_squared))
         k = (1.0 + ratio * ratio) / (4.0 * ratio)
         return min(half, math.acos(math.sqrt(k * k + 2.0) - k))
 
     def engaged(self, angle: Real, rollers: int = 1) -> NDArray[np.bool_]:
-        """Whether a roller is in a slot at angles of the crank, counted from where one enters."""
+        """Return whether a roller is in a slot at crank angles counted from an entry."""
         return np.asarray(self._counted(angle, rollers)[1] <= 2.0 * self.half + ENTRY)
 
     def _counted(self, angle: Real, rollers: int) -> tuple[Real, Real]:
-        """How many rollers have entered since, and the angle since the last one did."""
+        """Count the rollers that have entered since, and return the angle since the last entry."""
         pitch = 2.0 * math.pi / rollers
+        # The tolerance assigns an angle at an entry to the new roller.
         count = np.floor(angle / pitch + ENTRY)
         return count, angle - count * pitch
 
     def turned(self, angle: Real, rollers: int = 1) -> Motion:
-        """The wheel over any angle of the crank, dwells included, counted from where a roller enters.
+        """Return the motion of the wheel over any crank angle, dwells included, counted from an entry.
 
         Parameters
         ----------
         angle : float, any shape
             Radians.
         rollers : int
-            On the crank, in equal steps.
+            Number of rollers on the crank, equally spaced.
 
         Returns
         -------
         Motion
-            The angle turned since the entry; at rest all derivatives are 0.
+            Angle since the entry; at rest all derivatives are 0.
         """
         step = 2.0 * math.pi / self.stations
         count, within = self._counted(angle, rollers)
         moves = self.engaged(angle, rollers)
         motion = self.motion(np.clip(within, 0.0, 2.0 * self.half) - self.half)
         rates = (np.where(moves, rate, 0.0) for rate in motion[1:])
+        # The index is measured from its middle; shift it to start at the entry.
         return Motion(np.where(moves, motion.s + 0.5 * step, step) + count * step, *rates)
 
 
 def _spherical(sine: Real, cosine: Real, tangent: float) -> Motion:
-    """tan φ = t sin α, differentiated."""
+    """Differentiate tan φ = t sin α."""
     square = tangent * tangent
     denominator = 1.0 + square * sine * sine
     lead = 1.0 + 2.0 * square

@@ -1,8 +1,8 @@
-"""The locking disc of a plane Geneva drive: an arc that fills the wheel's locking arcs, and the relief beside it.
+"""Locking disc of a plane Geneva drive: an arc that fills the wheel's locking arcs, and the relief next to it.
 
-While the wheel turns its horns sweep over the disc. In the crank's frame the disc may fill, in each direction from the
-crank's axis, what no position of the wheel comes to during the index. Rays are cut with the circles and lines that the
-wheel is made of, so that its material is that of :mod:`kinematics.indexing.wheel` without any polygon between.
+While the wheel turns, its horns sweep over the disc. In the crank's frame the disc may fill, in each direction from the
+crank's axis, the region that no position of the wheel reaches during the index. Rays are intersected with the exact
+circles and lines of the wheel (:mod:`kinematics.indexing.wheel`), not with a polygon.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from kinematics.indexing.geneva import Geneva
 from kinematics.indexing.wheel import Complex, Real, Wheel
 
 POSITIONS, RAYS = 121, 181
-"""Positions of the index, and directions over half a turn, for which distances are taken."""
+"""Number of positions of the index, and of directions over half a turn, at which distances are computed."""
 
 CORNER_POSITIONS = 4001
-"""Positions of the corners of slots and arcs, which may pass between two rays."""
+"""Number of positions for the corners of slots and arcs, which may pass between two rays."""
 
 INWARD = 1e-9
-"""Share of the center distance behind a cut at which is asked whether the ray has come into material."""
+"""Offset from an intersection, as a share of the center distance, at which a ray is tested for material."""
 
 SAME = 1e-9
-"""Radians between two rays that are one."""
+"""Radians below which two rays coincide."""
 
 EDGE = 1e-6
 """Radians between the end of the locking arc and the beginning of its relief."""
@@ -35,9 +35,10 @@ Mask = NDArray[np.bool_]
 
 
 def material(wheel: Wheel, points: Complex) -> Mask:
-    """Whether points of the wheel's frame lie in it; the outside of a ring has no end here."""
+    """Return whether points in the wheel's frame lie in its material; a ring is taken as unbounded outside."""
     far = np.abs(points)
     body = far > wheel.reach if wheel.internal else far < wheel.reach
+    # One slot and one locking arc represent all, by symmetry.
     slot = _folded(points, wheel.step, 0.0)
     beyond = slot.real < wheel.slot_end if wheel.internal else slot.real > wheel.slot_end
     in_slot = (np.abs(slot.imag) < wheel.half_slot) & beyond | (np.abs(slot - wheel.slot_end) < wheel.half_slot)
@@ -46,13 +47,14 @@ def material(wheel: Wheel, points: Complex) -> Mask:
 
 
 def _folded(points: Complex, step: float, axis: float) -> Complex:
-    """Points turned about the wheel's axis into the sector about the x axis, from those about an axis and its like."""
+    """Fold points about the wheel's axis into the sector around ``axis``, by its rotational symmetry, and rotate it to
+    x."""
     turned = np.round((np.angle(points) - axis) / (2.0 * step)) * 2.0 * step + axis
     return np.asarray(points * np.exp(-1j * turned))
 
 
 def swept(wheel: Wheel, drive: Geneva, directions: Real) -> tuple[Real, Real]:
-    """Where along rays from the crank's axis the wheel passes during an index, within the circle of its locking arcs.
+    """Sweep the wheel over an index along rays from the crank's axis, within the circle of its locking arcs.
 
     Parameters
     ----------
@@ -65,8 +67,8 @@ def swept(wheel: Wheel, drive: Geneva, directions: Real) -> tuple[Real, Real]:
     Returns
     -------
     nearest, farthest : float, shape (k,)
-        The least and the greatest distance of the wheel's material; the radius of the locking arcs and 0 where none of
-        it comes within that.
+        Minimum and maximum distance of the wheel's material; the radius of the locking arcs and 0 if none of it comes
+        closer than that.
     """
     c = wheel.center_distance
     alpha = np.linspace(-drive.half, drive.half, POSITIONS)
@@ -78,18 +80,20 @@ def swept(wheel: Wheel, drive: Geneva, directions: Real) -> tuple[Real, Real]:
     nearest, farthest = np.full(ray.shape, wheel.lock), np.zeros(ray.shape)
     within, behind = wheel.lock * (1.0 - INWARD), INWARD * c
     for found in _cuts(wheel, start, ray):
+        # An intersection starts material if there is some just behind it, and ends it if there is some before it.
         which = np.nonzero((found > 0.0) & (found < within))
         cut, at, along = found[which], start[which[0], 0], ray[which]
         first, last = nearest[which], farthest[which]
         nearest[which] = np.where(material(wheel, at + (cut + behind) * along), np.minimum(first, cut), first)
         farthest[which] = np.where(material(wheel, at + (cut - behind) * along), np.maximum(last, cut), last)
+    # A ray that starts inside the material has distance zero.
     nearest = np.where(material(wheel, start + 0.0 * ray), 0.0, nearest)
     farthest = np.where(material(wheel, start + within * (1.0 - INWARD) * ray), wheel.lock, farthest)
     return np.asarray(nearest.min(axis=0)), np.asarray(farthest.max(axis=0))
 
 
 def corners_swept(wheel: Wheel, drive: Geneva) -> tuple[Real, Real]:
-    """Directions and distances, in the crank's frame, of corners near the crank during an index, (m,) each."""
+    """Sweep the wheel's corners over an index: directions and distances in the crank's frame near it, (m,) each."""
     land = (wheel.mouth, wheel.step - wheel.lock_half)
     beside = np.array([side * angle + 2.0 * k * wheel.step for k in (-1, 0, 1) for side in (-1, 1) for angle in land])
     alpha = np.linspace(-drive.half, drive.half, CORNER_POSITIONS)[:, None]
@@ -97,19 +101,21 @@ def corners_swept(wheel: Wheel, drive: Geneva) -> tuple[Real, Real]:
     turned = sense * -drive.motion(alpha).s
     corners = wheel.reach * np.exp(1j * (beside + turned))
     seen = ((corners - wheel.center_distance) * -sense * np.exp(-1j * alpha)).ravel()
+    # Corners outside the circle of the locking arcs cannot touch the disc.
     near = np.abs(seen) < wheel.lock * (1.0 - INWARD)
     return np.asarray(np.angle(seen[near])), np.asarray(np.abs(seen[near]))
 
 
 def _both_sides(angle: Real, at: Real) -> list[NDArray[np.intp]]:
-    """For directions the rays before and after them, of rays in ascending order round a turn."""
+    """Find the rays before and after given directions; rays ascend around a turn."""
     after = np.searchsorted(angle, np.mod(at, 2.0 * math.pi))
     return [(after - 1) % len(angle), after % len(angle)]
 
 
 def _cuts(wheel: Wheel, start: Complex, ray: Complex) -> list[Real]:
-    """Distances along rays at which they cut the circles and lines of the wheel; NaN where they do not."""
+    """Cut rays with the circles and lines of the wheel: distances along the rays, NaN without intersection."""
     found = _circle(start, ray, 0j, wheel.reach)
+    # Only the nearest locking arcs and slots can come within the crank's circle.
     for k in (-3, -1, 1, 3):
         found += _circle(start, ray, wheel.center_distance * np.exp(1j * k * wheel.step), wheel.lock)
     for k in (-2, 0, 2):
@@ -138,8 +144,8 @@ class Disc:
     angle : float, shape (k,)
         Ascending, radians from the first roller; over a whole turn of a disc, over its arc where it is a crescent.
     outer, inner : float, shape (k,)
-        Of a disc about the crank's axis the inner radius is 0; an internal drive's horns pass that axis, and leave a
-        crescent, which is fastened to the arm beside the wheel's plane.
+        The inner radius is 0 for a disc about the crank's axis; the horns of an internal drive pass that axis and leave
+        a crescent, which is fastened to the arm next to the wheel's plane.
     """
 
     angle: Real
@@ -148,7 +154,7 @@ class Disc:
 
 
 def crescent(wheel: Wheel, drive: Geneva, gap: float, relief: float, rays: int = RAYS) -> Disc:
-    """The locking disc of an internal drive, which the wheel's horns leave of it."""
+    """Build the locking disc of an internal drive: the crescent that the wheel's horns leave."""
     angle = np.linspace(drive.half, 2.0 * math.pi - drive.half, rays)
     farthest = swept(wheel, drive, angle)[1]
     at, distance = corners_swept(wheel, drive)
@@ -161,18 +167,18 @@ def crescent(wheel: Wheel, drive: Geneva, gap: float, relief: float, rays: int =
 
 
 def disc(wheel: Wheel, drive: Geneva, rollers: int, gap: float, relief: float) -> Disc:
-    """The locking disc of a drive.
+    """Build the locking disc of a drive.
 
     Parameters
     ----------
     wheel : Wheel
     drive : Geneva
     rollers : int
-        1 of an internal drive.
+        Number of rollers; 1 for an internal drive.
     gap : float
-        By how much the disc's radius is below that of the wheel's locking arcs.
+        Radial clearance between the disc and the wheel's locking arcs.
     relief : float
-        Least distance to the wheel beside the locking arc.
+        Minimum distance to the wheel outside the locking arc.
     """
     arc = wheel.lock - gap
     if wheel.internal:

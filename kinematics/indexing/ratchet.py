@@ -1,13 +1,13 @@
-"""Ratchets: the outline of a wheel with undercut teeth, and the pawl that holds them.
+"""Ratchets: the outline of a wheel with undercut teeth, and its pawl.
 
-The wheel's axis is the origin; it is free to turn counter-clockwise and held against turning back. A tooth has a face,
-which leans over by an angle ξ so that it draws the pawl in, and a straight back from the foot of its face's space to
-the next tip. The middle M of the held face lies on x, at the distance ρ from the axis, and the pawl's pivot at
-M − i l: on the tangent, so that the force at M passes the pivot at ξ.
+The wheel's axis is the origin; it turns counter-clockwise freely and is locked against turning back. A tooth has a
+face, which leans over by an angle ξ so that it draws the pawl in, and a straight back from the foot of its face's space
+to the next tip. The middle M of the held face lies on x, at the distance ρ from the axis, and the pawl's pivot at M − i
+l: on the tangent, so that the force at M passes the pivot at ξ.
 
 A point of the face at s outward from M pushes the pawl along −i e^{−iξ}; towards the pivot that would be
-−i l − s e^{−iξ}. The pawl is drawn in, whatever the friction, where the angle between the two is above the angle of
-friction; it is least at the tip: ξ − tan⁻¹(s cos ξ/(l − s sin ξ)).
+−i l − s e^{−iξ}. The pawl is drawn in if the angle between the two exceeds the friction angle; its minimum is at the
+tip: ξ − tan⁻¹(s cos ξ/(l − s sin ξ)).
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
 
 STEEPEST = 60
-"""Greatest face angle that is looked at, degrees."""
+"""Maximum face angle of the search, degrees."""
 
 HALVINGS = 60
-"""Of an interval of angles below a right angle: to rounding."""
+"""Halvings of an interval of angles below 90°, down to rounding."""
 
 
 @dataclass(frozen=True)
@@ -37,11 +37,11 @@ class Ratchet:
     ----------
     teeth : int
     radius, height : float
-        To the tips, and of a tooth.
+        Radius to the tips, and height of a tooth.
     face : float
-        ξ, radians.
+        Face angle ξ, radians.
     pawl : float
-        l, from the middle of the face to the pawl's pivot.
+        Distance l from the middle of the face to the pawl's pivot.
     """
 
     teeth: int
@@ -57,42 +57,44 @@ class Ratchet:
 
     @property
     def middle(self) -> float:
-        """ρ: the middle of the face is as far along it from the tip as from the foot; NaN where it reaches none."""
+        """Distance ρ of the middle of the face from the axis; NaN if the face does not reach the foot circle."""
         outer, inner = self.radius**2, (self.radius - self.height) ** 2
         # ρ² + s² = (R² + (R − h)²)/2 and ρ s = (R² − (R − h)²)/(4 cos ξ).
         square = 0.5 * (outer + inner)
         gap = (0.25 * (outer - inner) / math.cos(self.face)) ** 2
         root = square * square - 4.0 * gap
+        # The larger root of the biquadratic is ρ², the smaller one s².
         return math.sqrt(0.5 * (square + math.sqrt(root))) if root >= 0.0 else math.nan
 
     @property
     def reach(self) -> float:
-        """s at the tip: half the length of the face."""
+        """Half the length of the face, s at the tip."""
         return 0.25 * (self.radius**2 - (self.radius - self.height) ** 2) / (self.middle * math.cos(self.face))
 
     @property
     def tip(self) -> complex:
-        """The tip of the held tooth."""
+        """Tip of the tooth in contact."""
         return self.middle + self.reach * cmath.exp(-1j * self.face)
 
     @property
     def foot(self) -> complex:
-        """The foot of its face, where the pawl's nose rests."""
+        """Foot of its face, where the pawl's nose rests."""
         return self.middle - self.reach * cmath.exp(-1j * self.face)
 
     @property
     def pivot(self) -> complex:
-        """Of the pawl."""
+        """Pivot of the pawl."""
         return complex(self.middle, -self.pawl)
 
     @property
     def locking_angle(self) -> float:
-        """Least angle over the face between its normal and the line to the pivot, towards drawing in, radians."""
+        """Minimum over the face of the angle between its normal and the line to the pivot, positive if drawn in,
+        radians."""
         return _least_angle(self.face, self.reach, self.pawl)
 
     @property
     def thickness(self) -> float:
-        """Of a tooth at its foot."""
+        """Thickness of a tooth at its foot."""
         return 2.0 * (self.radius - self.height) * math.sin(0.5 * self.pitch)
 
     @property
@@ -107,7 +109,7 @@ class Ratchet:
 
     @property
     def overtravel(self) -> float:
-        """Angle beyond the pitch, radians, at which the tip leaves the circle of the nose, and the pawl falls in."""
+        """Angle beyond the pitch, radians, at which the tip leaves the circle of the nose and the pawl drops in."""
         far, nose = abs(self.pivot), abs(self.foot - self.pivot)
         cosine = (far**2 + self.radius**2 - nose**2) / (2.0 * far * self.radius)
         return cmath.phase(self.pivot) + math.acos(max(-1.0, min(1.0, cosine))) - cmath.phase(self.tip)
@@ -121,10 +123,11 @@ class Ratchet:
         return np.asarray((turns[:, None] * tooth).ravel())
 
     def lifted(self, angle: Real) -> Real:
-        """How far the pawl is lifted, radians, while the wheel turns on by angles from where it is held.
+        """Return the lift of the pawl, radians, while the wheel turns by angles from its locked position.
 
-        The nose rides on the back of the tooth behind, a line from this foot to the tip a pitch before.
+        The nose rides on the back of the tooth behind, a line from this foot to the tip one pitch before.
         """
+        # The pawl drops in after the overtravel, so the cycle starts there.
         turned = np.mod(angle - self.overtravel, self.pitch) + self.overtravel
         nose = abs(self.foot - self.pivot)
         start = self.foot * np.exp(1j * turned)
@@ -132,6 +135,7 @@ class Ratchet:
         apart = start - self.pivot
         # |apart + u back| = nose: the point of the back that the nose is on, between foot and tip.
         a, b, c = np.abs(back) ** 2, (apart * back.conj()).real, np.abs(apart) ** 2 - nose * nose
+        # The smaller root of the quadratic, in the form without cancellation.
         share = c / (np.sqrt(np.maximum(b * b - a * c, 0.0)) - b)
         place = apart + np.clip(share, 0.0, 1.0) * back
         return np.asarray(np.angle((self.foot - self.pivot) / place))
@@ -142,15 +146,16 @@ def _least_angle(face: float, reach: float, pawl: float) -> float:
 
 
 def least_face(teeth: int, radius: float, height: float, pawl: float, wanted: float) -> float | None:
-    """The least face angle, radians, whose locking angle is as wanted; None where none below 60° is."""
+    """Find the minimum face angle, radians, with the required locking angle; None if it exceeds 60°."""
 
     def short(face: float) -> bool:
         return not Ratchet(teeth, radius, height, face, pawl).locking_angle >= wanted
 
-    # A face that leans over too far no longer reaches the foot, so that the first that will do is looked for.
+    # Feasibility is not monotonic, since a face that leans too far misses the foot: scan for the first success.
     degrees = next((degree for degree in range(1, STEEPEST + 1) if not short(math.radians(degree))), None)
     if degrees is None:
         return None
+    # The first success lies within the last degree; bisect there.
     low, high = math.radians(degrees - 1), math.radians(degrees)
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)

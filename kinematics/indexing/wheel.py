@@ -1,8 +1,8 @@
-"""The outline of a plane Geneva wheel: slots, locking arcs and the lands between them.
+"""Outline of a plane Geneva wheel: slots, locking arcs and the lands between them.
 
-The wheel's axis is the origin and slot 0 lies along x; the axes of the locking arcs stand half a step beside the slots,
-at the center distance c. All arcs about a slot's axis and about a locking arc's axis are symmetric, so that half of a
-sector, from the slot's axis to that of the locking arc, tells the whole wheel. The wheel of an internal drive is a
+The wheel's axis is the origin and slot 0 lies along x; the axes of the locking arcs are half a step from the slots, at
+the center distance c. The wheel is symmetric about the axes of slots and of locking arcs, so half a sector, from the
+slot's axis to that of the locking arc, describes it completely. The wheel of an internal drive is a
 ring with its slots and arcs inside; its outside is a circle of its own.
 
 The wheel reaches to ρ = √(R² + r_r²), where a roller of radius r_r touches the slot's side as it enters at R
@@ -36,11 +36,11 @@ class Wheel:
     stations : int
     center_distance : float
     reach : float
-        Radius to which it comes towards the crank: outside, or inside of a ring.
+        Radius of its boundary towards the crank: outer radius, or inner radius of a ring.
     half_slot : float
         Half the width of a slot.
     slot_end : float
-        From the axis to the center of a slot's rounded end.
+        Distance from the axis to the center of a slot's rounded end.
     lock : float
         Radius of the locking arcs.
     """
@@ -60,26 +60,26 @@ class Wheel:
 
     @property
     def lock_half(self) -> float:
-        """Half the angle, about the wheel's axis, over which a locking arc cuts its circle; NaN where it does not."""
+        """Half the angle, about the wheel's axis, that a locking arc cuts from its circle; NaN if it does not."""
         c, reach, lock = self.center_distance, self.reach, self.lock
         cosine = (reach * reach + c * c - lock * lock) / (2.0 * reach * c)
         return math.acos(cosine) if abs(cosine) <= 1.0 else math.nan
 
     @property
     def mouth(self) -> float:
-        """Angle of a slot's corner from the slot's axis; NaN where the slot is wider than the wheel."""
+        """Angle of a slot's corner from the slot's axis; NaN if the slot is wider than the wheel."""
         return math.asin(self.half_slot / self.reach) if self.half_slot < self.reach else math.nan
 
     @property
     def land(self) -> float:
-        """Angle of the wheel's circle that is left between a slot and a locking arc; negative or NaN where none is."""
+        """Angle of the wheel's circle between a slot and a locking arc; negative or NaN if nothing remains."""
         return self.step - self.mouth - self.lock_half
 
     @property
     def wall(self) -> float:
-        """Least thickness between a slot and a locking arc; NaN where the arc does not cut the wheel.
+        """Minimum thickness between a slot and a locking arc; NaN if the arc does not cut the wheel.
 
-        It is at the corner of the locking arc, or at the foot of the perpendicular from the crank's axis where that
+        It occurs at the corner of the locking arc, or at the foot of the perpendicular from the crank's axis if that
         lies in the wheel.
         """
         foot = self.center_distance * math.sin(self.step) - self.half_slot - self.lock
@@ -89,26 +89,26 @@ class Wheel:
 
     @property
     def web(self) -> float:
-        """Least distance between neighbouring slots; negative where they run into one another."""
+        """Minimum distance between neighbouring slots; negative if they overlap."""
         if self.internal:
             return 2.0 * self.reach * math.sin(self.step - self.mouth)
         return 2.0 * (self.slot_end * math.sin(self.step) - self.half_slot)
 
     @cached_property
     def half_sector(self) -> Complex:
-        """From the end of slot 0 to the middle of the locking arc after it, shape (m,)."""
+        """Outline from the end of slot 0 to the middle of the next locking arc, shape (m,)."""
         turn = np.linspace(0.0, 0.5 * math.pi, QUARTER + 1)
-        # Where the end comes nearest to the next slot's there is a point.
+        # Include the point nearest to the next slot, so that the polygon shows the exact web.
         turn = np.unique(np.append(turn, 0.5 * math.pi - self.step))
         outward = -1.0 if not self.internal else 1.0
         end = self.slot_end + self.half_slot * (outward * np.cos(turn) + 1j * np.sin(turn))
         first = self.mouth
         land = self.reach * np.exp(1j * np.linspace(first, self.step - self.lock_half, LAND + 1))
         center = self.center_distance * np.exp(1j * self.step)
-        # As seen from the crank's axis: from the land's corner to the farthest place along the arc's own axis.
+        # Angles about the crank's axis, from the land's corner to the arc's own axis.
         corner = np.angle((land[-1] - center) * np.exp(-1j * self.step))
         if self.internal:
-            # The foot of the perpendicular to the slot is one of the points: the wall is thinnest there.
+            # Include the foot of the perpendicular to the slot, where the wall is thinnest.
             foot = -(0.5 * math.pi + self.step)
             before = np.linspace(corner, foot, LOCK // 2 + 1)[:-1] if corner < foot else np.empty(0)
             turned = np.concatenate([before, np.linspace(max(corner, foot), 0.0, LOCK + 1)])
@@ -119,7 +119,8 @@ class Wheel:
 
     @cached_property
     def outline(self) -> Complex:
-        """All around, counter-clockwise from the middle of the locking arc before slot 0; closed by its first point."""
+        """Complete outline, counter-clockwise from the middle of the locking arc before slot 0; its first point closes
+        it."""
         half = self.half_sector
         sector = np.concatenate([half[::-1].conj(), half[1:-1]])
         turns = np.exp(2j * self.step * np.arange(self.stations))

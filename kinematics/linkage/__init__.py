@@ -1,8 +1,8 @@
-"""Planar linkages: what a given linkage does.
+"""Planar linkages: analysis of a given linkage.
 
-A linkage of the :mod:`catalogue <kinematics.linkage.planar.catalogue>`, or any other as a :class:`Mechanism`, is driven
-by :func:`drive`. The fourbar (:mod:`kinematics.linkage.fourbar`) and the slider-crank
-(:mod:`kinematics.linkage.slider_crank`) have closed forms besides, for many designs at once.
+A linkage of the :mod:`catalogue <kinematics.linkage.planar.catalogue>`, or any other :class:`Mechanism`, is driven by
+:func:`drive`. For many designs at once, the fourbar (:mod:`kinematics.linkage.fourbar`) and the slider-crank
+(:mod:`kinematics.linkage.slider_crank`) also have closed forms.
 """
 
 from kinematics.linkage import fourbar, slider_crank

@@ -1,7 +1,7 @@
-"""Batches: how designs, assemblies and input angles make one shape, and how they are handed to the kernels.
+"""Batches: broadcasting of designs, assemblies and input angles, and their layout for the kernels.
 
-The *designs* of a linkage have a shape S; input angles have a last axis of their own, so that results have the shape
-S + (N,). A kernel sees D designs in a row and N angles, and takes one design, or one row of angles, for all.
+The *designs* of a linkage have a shape S; input angles have their own last axis, so results have the shape S + (N,). A
+kernel sees D designs in a row and N angles; a single design, or a single row of angles, is used for all.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ Shape = tuple[int, ...]
 
 OPEN, CROSSED = 1, -1
 """Assembly signs. Fourbar: B to the left (open) or to the right (crossed) of the directed line from A to O4.
-Slider-crank: B as far along the slide as it can be (open), or as far back."""
+Slider-crank: B at the far end of the slide (open), or at the near end (crossed)."""
 
 
 def one_shape(**shapes: Shape) -> Shape:
-    """Shape that the named shapes broadcast to, or the error that names them."""
+    """Return the shape that the named shapes broadcast to, or raise an error that names them."""
     try:
         return np.broadcast_shapes(*shapes.values())
     except ValueError:
@@ -34,22 +34,23 @@ def one_shape(**shapes: Shape) -> Shape:
 
 
 def require(name: str, expected: str, value: NDArray[Any], good: Mask | np.bool_) -> None:
-    """Raise the error that names the field and its first bad value, unless all are good."""
+    """Raise an error that names the field and its first bad value, unless all values are good."""
     if not np.all(good):
         raise DimensionError(name, expected, np.asarray(value)[~np.asarray(good)].flat[0].item())
 
 
 def block(rows: tuple[NDArray[Any], ...], designs: Shape, dtype: Any) -> NDArray[Any]:
-    """A read-only copy of some fields of a linkage, each of one shape, as rows of one array."""
+    """Build a read-only copy of fields of a linkage, broadcast to one shape, as rows of one array."""
     whole = np.empty((len(rows), *designs), dtype)
     for row, field in enumerate(rows):
         whole[row] = field
+    # Views of the block are shared, and must not be modified.
     whole.flags.writeable = False
     return whole
 
 
 class DesignBatch:
-    """A batch of designs as a value: its fields are read-only views of the two blocks that the kernels take."""
+    """A batch of designs as a value: its fields are read-only views of the two blocks that kernels use."""
 
     _FIELDS: ClassVar[tuple[str, str, str, str, str, str]]
     """Names of the fields: three points and three lengths."""
@@ -64,13 +65,14 @@ class DesignBatch:
         """
         p, q, r = (np.asarray(value, np.complex128) for value in fields[:3])
         a, b, c = (np.asarray(value, np.float64) for value in fields[3:])
+        # Equal shapes are the common case and need no broadcasting.
         if p.shape == q.shape == r.shape == a.shape == b.shape == c.shape:
             designs = a.shape
         else:
             named = zip(self._FIELDS, (p, q, r, a, b, c), strict=True)
             designs = one_shape(**{name: field.shape for name, field in named})
         at, long = block((p, q, r), designs, np.complex128), block((a, b, c), designs, np.float64)
-        # Written out: as a loop over the six it costs a tenth of the constructor.
+        # Written out, because a loop over the six fields would take a tenth of the constructor's time.
         point_1, point_2, point_3, length_1, length_2, length_3 = self._FIELDS
         attributes = self.__dict__
         attributes[point_1], attributes[point_2], attributes[point_3] = at[0, ...], at[1, ...], at[2, ...]
@@ -80,7 +82,7 @@ class DesignBatch:
 
     @property
     def blocks(self) -> tuple[Complex, Real]:
-        """The three points and the three lengths as the kernels take them, shape (3,) + S each."""
+        """The three points and the three lengths in the kernels' layout, shape (3,) + S each."""
         blocks: tuple[Complex, Real] = self.__dict__["_blocks"]
         return blocks
 
@@ -96,7 +98,7 @@ class CouplerPoints(NamedTuple):
 
 
 class Sweep(NamedTuple):
-    """What a kernel takes in: designs and assemblies in a row, angles in rows; and the shape of the results."""
+    """Input of a kernel: designs and assemblies in a row, angles in rows; and the shape of the results."""
 
     pivots: Complex
     lengths: Real
@@ -111,7 +113,7 @@ class Sweep(NamedTuple):
 
 
 def sweep(blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayLike, shape: Shape = ()) -> Sweep:
-    """Designs, input angles and assemblies of one shape.
+    """Bring designs, input angles and assemblies to one shape.
 
     Parameters
     ----------
@@ -120,7 +122,7 @@ def sweep(blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayL
     input_angle, assembly
         As for :func:`kinematics.linkage.positions`.
     shape
-        What the results shall have at least.
+        Shape that the results must broadcast to, if given.
 
     Raises
     ------
@@ -134,6 +136,7 @@ def sweep(blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayL
         require("assembly", "+1 (open) or −1 (crossed)", sign, np.abs(sign) == 1)
     pivots, lengths = blocks
     designs = lengths.shape[1:]
+    # The common case, without the cost of broadcasting.
     if not shape and sign.ndim == 0 and (theta.ndim == 1 or not designs):
         shape = (*designs, *theta.shape)
     elif theta.ndim or designs or sign.ndim:
@@ -142,6 +145,7 @@ def sweep(blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayL
     batch = shape[:-1]
     if designs not in (batch, ()):
         pivots, lengths = (block(tuple(rows), batch, rows.dtype) for rows in (pivots, lengths))
+    # A single sign is not repeated; the kernels use it for every design.
     signs = np.empty(1 if sign.size == 1 else batch)
     signs[...] = sign.reshape(1) if sign.size == 1 else sign
     return Sweep(pivots.reshape(3, -1), lengths.reshape(3, -1), signs.reshape(-1), angle_rows(theta, shape), shape)
@@ -154,7 +158,7 @@ Fields = tuple[Mask, Complex, Complex, Complex, Real, Real]
 def swept_positions(
     kernels: ModuleType, blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayLike
 ) -> Fields:
-    """Configurations by a linkage's kernel ``whole_positions``; parameters and errors as for :func:`sweep`."""
+    """Compute configurations by a linkage's kernel ``whole_positions``; parameters and errors as for :func:`sweep`."""
     at = sweep(blocks, input_angle, assembly)
     points, angles, valid = np.empty((3, *at.flat), np.complex128), np.empty((2, *at.flat)), np.empty(at.flat, np.bool_)
     kernels.whole_positions(*at[:4], points, angles, valid)
@@ -164,7 +168,7 @@ def swept_positions(
 def swept_coupler_points(
     kernels: ModuleType, blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayLike
 ) -> CouplerPoints:
-    """Coupler points by a linkage's kernel ``coupler_points``; parameters and errors as for :func:`sweep`."""
+    """Compute coupler points by a linkage's kernel ``coupler_points``; parameters and errors as for :func:`sweep`."""
     at = sweep(blocks, input_angle, assembly)
     points, valid = np.empty(at.flat, np.complex128), np.empty(at.flat, np.bool_)
     kernels.coupler_points(*at[:4], points, valid)
@@ -178,14 +182,14 @@ def swept_motion(
     assembly: ArrayLike,
     *rates: ArrayLike,
 ) -> tuple[Fields, Fields, Fields, Fields]:
-    """Configurations and three time derivatives by ``whole_motion``; ``rates``: speed, acceleration and jerk."""
+    """Compute configurations and three time derivatives by ``whole_motion``; ``rates``: speed, acceleration, jerk."""
     positions_shape, at, rows = rated_sweep(blocks, input_angle, assembly, *rates)
     points, angles = np.empty((4, 3, *at.flat), np.complex128), np.empty((4, 2, *at.flat))
     valid = np.empty((2, *at.flat), np.bool_)
     kernels.whole_motion(*at[:4], rows, points, angles, valid)
     points, angles = points.reshape(4, 3, *at.shape), angles.reshape(4, 2, *at.shape)
     valid = valid.reshape(2, *at.shape)
-    # Rates of more axes than the positions have do not multiply the positions.
+    # Rates may have more axes than the positions; the positions keep their own shape.
     if at.shape == positions_shape:
         position = _fields(valid[0, ...], points[0], angles[0])
     else:
@@ -198,7 +202,7 @@ def swept_motion(
 def rated_sweep(
     blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayLike, *rates: ArrayLike
 ) -> tuple[Shape, Sweep, Real]:
-    """Shape of the positions, the sweep of the shape that they make with the rates, and the rates as rows."""
+    """Return the shape of the positions, the sweep broadcast with the rates, and the rates as rows."""
     narrow = sweep(blocks, input_angle, assembly)
     speed, acceleration, jerk = (np.asarray(rate, np.float64) for rate in rates)
     if speed.ndim == acceleration.ndim == jerk.ndim == 0:
@@ -215,7 +219,7 @@ def _fields(valid: Mask, points: Complex, angles: Real) -> Fields:
 def over_designs(
     blocks: tuple[Complex, Real], shape: Shape, *values: ArrayLike
 ) -> tuple[Complex, Real, *tuple[Real, ...]]:
-    """Designs in a row, and values with them or for all of them: blocks (3, D) or (3, 1), values (M,), M designs."""
+    """Put designs and values in rows: blocks of shape (3, D) or (3, 1), values of shape (M,) for M designs."""
     designs = blocks[1].shape[1:]
     pivots, lengths = blocks
     if designs not in (shape, ()):
@@ -227,13 +231,14 @@ def over_designs(
 
 
 def flat(shape: Shape) -> tuple[int, int]:
-    """A shape of results as designs × angles; a scalar is one design at one angle."""
+    """Return a shape of results as designs × angles; a scalar is one design at one angle."""
     return math.prod(shape[:-1]), shape[-1] if shape else 1
 
 
 def angle_rows(values: Real, shape: Shape) -> Real:
-    """Values over designs × angles as a row for each design, or one for all: shape (D, N) or (1, N), a copy."""
+    """Copy values over designs × angles into a row per design, or one row for all: shape (D, N) or (1, N)."""
     designs, n = flat(shape)
+    # One row of angles serves all designs.
     if values.ndim < 2:
         row = np.empty((1, n))
         row[0] = values
@@ -248,7 +253,7 @@ def angle_rows(values: Real, shape: Shape) -> Real:
 
 
 def rate_rows(speed: Real, acceleration: Real, jerk: Real, shape: Shape) -> Real:
-    """Input rates as rows for each design, or one for all: shape (3, D, N) or (3, 1, N)."""
+    """Copy input rates into rows per design, or one row for all: shape (3, D, N) or (3, 1, N)."""
     rates = speed, acceleration, jerk
     if speed.ndim == acceleration.ndim == jerk.ndim == 0:
         together = np.empty((3, 1, flat(shape)[1]))

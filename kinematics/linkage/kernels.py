@@ -1,9 +1,9 @@
-"""Compiled sweeps: what the kernels of all linkages share.
+"""Compiled sweeps: shared parts of the kernels of all linkages.
 
-A kernel works out once what belongs to a design, takes the cosines and sines of a row of input angles once, and leaves
-to the inner loop over angles only sums, products, one or two roots and one or two divisions on separate rows of real
-and imaginary parts. Such a loop has no branches and no calls, so that the compiler makes vector instructions of it,
-four angles at a time on AVX2. An invalid position is NaN.
+A kernel computes the constants of a design once and the cosines and sines of a row of input angles once. The inner loop
+over angles has only sums, products, one or two roots and one or two divisions on separate rows of real and imaginary
+parts, without branches and calls, so that the compiler vectorizes it (four angles at a time on AVX2). An invalid
+position is NaN.
 
 Arguments that kernels share, C-contiguous:
 
@@ -13,10 +13,10 @@ Arguments that kernels share, C-contiguous:
 ``theta``    float (D, N) or (1, N): input angles
 ``rates``    float (3, D, N) or (3, 1, N): speed, acceleration and jerk of the input
 
-One design may be given for D to repeat it. Results are written into the last arguments. Any point of the coupler is
-A + arm (B − A) with a complex ``arm`` of its own: 0 for A, 1 for B. In what follows k is the crank A − O2, u = B − A,
-and ω, α, φ are the first three derivatives of an angle: ``w``, ``a``, ``j`` in the code, with Norton's numbers of the
-links, 2 input, 3 coupler, 4 output.
+A single design may be given instead of D; it is then repeated. Results are written into the last arguments. Any point
+of the coupler is A + arm (B − A) with its own complex ``arm``: 0 for A, 1 for B. In what follows k is the crank A − O2,
+u = B − A, and ω, α, φ are the first three derivatives of an angle: ``w``, ``a``, ``j`` in the code, with Norton's
+numbers of the links, 2 input, 3 coupler, 4 output.
 """
 
 from __future__ import annotations
@@ -34,37 +34,38 @@ Complex = NDArray[np.complex128]
 Mask = NDArray[np.bool_]
 
 OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
-"""How every kernel is compiled: kept on disk, without the interpreter's lock, division by zero as in NumPy."""
+"""Options of every kernel: cached on disk, without the interpreter's lock, division by zero as in NumPy."""
 
 ON_TOGGLE = 16 * float(np.finfo(np.float64).eps)
-"""The square of the height over the ground of a triangle may be below zero by this share of the product of its sides,
-which lengthens no link by more than that share: a toggle or change point is a configuration, and rounding must not
-take it away."""
+"""Amount, as a share of the product of the sides, by which the squared height of a triangle may be negative. It changes
+no link by more than that share: a toggle or change point is a valid configuration, and rounding must not remove it."""
 
 TOGGLE_SINE = 1e-6
-"""Derivatives count as undefined where the sine of the transmission angle is below this: near a toggle it goes with
-the root of the input angle's distance from it, so that rounding of a toggle's own angle alone makes a sine of up to
-2e-7, and an acceleration of 1e20 of which no digit is known. Here a hundredth of it is rounding."""
+"""Sine of the transmission angle below which derivatives count as undefined. Near a toggle the sine goes with the root
+of the input angle's distance from it: rounding of the toggle angle alone gives a sine of up to 2e-7, and an
+acceleration of 1e20 without a single correct digit. At this limit the relative error is about 1 %."""
 
 TILE = 128
-"""Input angles that are worked on together: their intermediate rows stay in the first-level cache."""
+"""Number of input angles processed together: their intermediate rows stay in the first-level cache."""
 
 OCTANT = math.sqrt(2.0) - 1.0
-"""tan(π/8): up to this slope the arc tangent is taken directly, above it from the diagonal."""
+"""tan(π/8): up to this slope the arc tangent is evaluated directly, above it relative to the diagonal."""
 
 
 @njit(**OPTIONS)
 def direction(x: float, y: float) -> float:
-    """Angle of the vector (x, y) in (−π, π], without branches; NaN for the zero vector.
+    """Return the angle of the vector (x, y) in (−π, π], without branches; NaN for the zero vector.
 
-    The slope is brought into 0 … tan(π/8) by symmetry, where (arctan(t)/t − 1)/t² is a polynomial in t² (interpolated
-    in Chebyshev's points, 5e-18 off). The error is below two units of the last place.
+    The slope is reduced to 0 … tan(π/8) by symmetry, where (arctan(t)/t − 1)/t² is a polynomial in t² (interpolated
+    at Chebyshev points, error 5e-18). The total error is below two units in the last place.
     """
     across, up = math.fabs(x), math.fabs(y)
+    # Octant symmetry: arctan of the smaller over the larger component.
     steep = up > across
     large, small = (up if steep else across), (across if steep else up)
     diagonal = small > OCTANT * large
     t = (small - large if diagonal else small) / (large + small if diagonal else large)
+    # math.atan2 is a call with branches, which would prevent vectorization.
     z = t * t
     series = 0.03923165829558719 + z * -0.01917688711906226
     series = -0.0508544973794026 + z * series
@@ -85,7 +86,7 @@ def direction(x: float, y: float) -> float:
 
 @njit(**OPTIONS)
 def cosines(theta: Real, cosine: Real, sine: Real) -> None:
-    """Cosines and sines of a row of angles."""
+    """Fill the cosines and sines of a row of angles."""
     for k in range(len(theta)):
         cosine[k] = math.cos(theta[k])
         sine[k] = math.sin(theta[k])
@@ -93,15 +94,15 @@ def cosines(theta: Real, cosine: Real, sine: Real) -> None:
 
 @njit(**OPTIONS)
 def divided(z: complex, length: float) -> complex:
-    """z / length, for which the language's own division of complex numbers has more cases than there are."""
+    """Return z / length; the built-in complex division would handle cases that cannot occur."""
     return complex(z.real / length, z.imag / length)
 
 
 @njit(**OPTIONS)
 def carried(x: Real, y: Real, ux: Real, uy: Real, arm: complex, point: Complex) -> None:
-    """x + iy + arm (ux + i uy): a point of the coupler, or its derivative, from that of A and of u = B − A.
+    """Fill x + iy + arm (ux + i uy): a point of the coupler, or its derivative, from those of A and u = B − A.
 
-    One complex row is written in a loop: with several, the compiler cannot tell them apart and gives up its vectors.
+    Each loop writes a single complex row: with several the compiler must assume aliasing and does not vectorize.
     """
     for k in range(len(point)):
         point[k] = complex(x[k] + (arm.real * ux[k] - arm.imag * uy[k]), y[k] + (arm.real * uy[k] + arm.imag * ux[k]))
@@ -109,7 +110,7 @@ def carried(x: Real, y: Real, ux: Real, uy: Real, arm: complex, point: Complex) 
 
 @njit(**OPTIONS)
 def velocities(kx: Real, ky: Real, ux: Real, uy: Real, w2: Real, w3: Real, arm: complex, velocity: Complex) -> None:
-    """Velocity of a coupler point, i ω2 k + i ω3 arm u."""
+    """Fill the velocity of a coupler point, i ω2 k + i ω3 arm u."""
     for k in range(len(velocity)):
         x, y = arm.real * ux[k] - arm.imag * uy[k], arm.real * uy[k] + arm.imag * ux[k]
         velocity[k] = complex(-w2[k] * ky[k] - w3[k] * y, w2[k] * kx[k] + w3[k] * x)
@@ -128,7 +129,7 @@ def accelerations(
     arm: complex,
     acceleration: Complex,
 ) -> None:
-    """Acceleration of a coupler point, (i α2 − ω2²) k + (i α3 − ω3²) arm u."""
+    """Fill the acceleration of a coupler point, (i α2 − ω2²) k + (i α3 − ω3²) arm u."""
     for k in range(len(acceleration)):
         x, y = arm.real * ux[k] - arm.imag * uy[k], arm.real * uy[k] + arm.imag * ux[k]
         n2, n3 = w2[k] * w2[k], w3[k] * w3[k]
@@ -152,7 +153,7 @@ def jerks(
     arm: complex,
     jerk: Complex,
 ) -> None:
-    """Jerk of a coupler point; the third derivative of e^{iθ} has the factor i (φ − ω³) − 3 ω α."""
+    """Fill the jerk of a coupler point; the third derivative of e^{iθ} has the factor i (φ − ω³) − 3 ω α."""
     for k in range(len(jerk)):
         x, y = arm.real * ux[k] - arm.imag * uy[k], arm.real * uy[k] + arm.imag * ux[k]
         n2, t2 = 3.0 * w2[k] * a2[k], j2[k] - w2[k] * w2[k] * w2[k]

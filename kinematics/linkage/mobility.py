@@ -1,7 +1,7 @@
 """Degrees of freedom of planar linkages by counting (Norton, Sec. 2.5).
 
-Counting sees numbers of links and joints only. Special dimensions can give a linkage more freedom than its count
-(parallel cranks, the E-quintet); Norton calls them paradoxes.
+The count uses only the numbers of links and joints. Special dimensions can give a linkage more freedom than its count
+(parallel cranks, the E-quintet); Norton calls these paradoxes.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from kinematics.errors import DimensionError
 
 
 def mobility(links: int, full_joints: int, half_joints: int = 0, grounded: int = 1) -> int:
-    """Gruebler's equation in Kutzbach's form, M = 3 (L − G) − 2 J1 − J2 (Norton 2.1).
+    """Compute the mobility by Gruebler's equation in Kutzbach's form, M = 3 (L − G) − 2 J1 − J2 (Norton 2.1).
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """Correct steering: the angles at which all wheels of a vehicle roll about one centre on the line of its rear axle.
 
-With the wheelbase L and the kingpins w apart the inner wheel stands at θ and the outer one at φ where
+With the wheelbase L and the kingpin distance w the angles θ of the inner and φ of the outer wheel satisfy
 
     cot φ − cot θ = w/L
 
@@ -16,11 +16,12 @@ Real = NDArray[np.float64]
 
 
 def outer_angle(inner: ArrayLike, ratio: ArrayLike) -> Real:
-    """Angle of the outer wheel for that of the inner one, radians; ``ratio`` is w/L. 0 for 0, smooth there."""
+    """Compute the outer wheel's angle from the inner one's, radians; ``ratio`` is w/L. 0 for 0, smooth there."""
     theta = np.asarray(inner, np.float64)
+    # Multiplied by sin θ, the cotangent relation has no singularity at θ = 0.
     return np.asarray(np.arctan2(np.sin(theta), np.cos(theta) + np.asarray(ratio) * np.sin(theta)))
 
 
 def davis_arm_angle(ratio: ArrayLike) -> Real:
-    """Angle of the arms of Davis's gear from the vehicle's axis in the straight position; radians."""
+    """Compute the angle of the arms of Davis's gear from the vehicle's axis, wheels straight ahead; radians."""
     return np.asarray(np.arctan(0.5 * np.asarray(ratio, np.float64)))

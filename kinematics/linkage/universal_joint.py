@@ -1,6 +1,6 @@
 """Shafts joined by universal joints (Hooke's): rotation, speed ratio, acceleration, extremes and the double joint.
 
-A joint between shafts at an angle δ turns the driven shaft to γ while the driver turns to α, both from the position
+A joint between shafts at an angle δ rotates the driven shaft by γ while the driver rotates by α, both from the position
 in which the driver's fork lies in the plane of the shafts (Rao, Sec. 4.6; Norton, Sec. 10, writes β for δ):
 
     tan γ = tan α/cos δ,    ω_γ/ω_α = cos δ/(1 − cos² α sin² δ).
@@ -10,9 +10,9 @@ product M of such matrices with turns by the angles between their forks. For any
 
     dγ/dα = det M/|M u|²,    u = (cos α, sin α),
 
-lies between σ₂/σ₁ and σ₁/σ₂ of its singular values: a row of joints moves as one joint with cos δ = σ₂/σ₁. Two equal
-joints whose forks on the shaft between them lie in one plane, with all shafts in one plane, give σ₁ = σ₂: the speeds
-are equal at every instant.
+lies between σ₂/σ₁ and σ₁/σ₂ of its singular values: a row of joints moves like a single joint with cos δ = σ₂/σ₁. Two
+equal joints whose forks on the shaft between them lie in one plane, with all shafts in one plane, give σ₁ = σ₂: the
+speeds are equal at every instant.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ class Joint(NamedTuple):
     Attributes
     ----------
     angle : float
-        Between the two shafts, radians, 0 to below π/2.
+        Angle between the two shafts, radians, from 0 to below π/2.
     offset : float
-        For a joint that is not the first, radians: the angle between the forks at both ends of the shaft before it,
-        less the angle between the planes of the shafts at the two joints. 0: the arrangement that evens the speeds.
+        For every joint but the first, radians: the angle between the forks at both ends of the preceding shaft minus
+        the angle between the planes of the shafts at the two joints. 0 is the arrangement that equalizes the speeds.
     """
 
     angle: float
@@ -48,7 +48,7 @@ class Joint(NamedTuple):
 class ShaftMotion(NamedTuple):
     """Output over input angles: angle, and its first and second derivative by the input's.
 
-    ``angle`` is the rotation from where the output stands at input angle 0.
+    ``angle`` is the rotation from the output's position at input angle 0.
     """
 
     angle: Real
@@ -57,22 +57,22 @@ class ShaftMotion(NamedTuple):
 
 
 class ShaftExtremes(NamedTuple):
-    """Extremes of the output over a turn of an input that turns evenly.
+    """Extremes of the output over a turn of the input at constant speed.
 
     Attributes
     ----------
     greatest, least : float
         Ratios of output to input speed.
     fastest_at : float
-        Input angle of the greatest, radians in [0, π); the least stands π/2 from it, and both repeat every half turn.
+        Input angle of the maximum, radians in [0, π); the minimum is π/2 away, and both repeat every half turn.
     fluctuation : float
         (greatest − least) over the mean speed, which is the input's.
     acceleration : float
-        The greatest magnitude of the output's acceleration, over the square of the input's speed.
+        Maximum magnitude of the output's acceleration, over the square of the input speed.
     steepest_at : float
-        Input angle from ``fastest_at`` at which it stands, radians in [0, π/2]; mirrored about ``fastest_at`` too.
+        Its input angle measured from ``fastest_at``, radians in [0, π/2]; the mirror image occurs too.
     equivalent_angle : float
-        Angle of the one joint that moves likewise, radians.
+        Angle of the single joint with the same motion, radians.
     """
 
     greatest: float
@@ -85,12 +85,12 @@ class ShaftExtremes(NamedTuple):
 
 
 def joint_matrix(joints: Sequence[Joint]) -> Real:
-    """The matrix of a row of joints, shape (2, 2), with determinant 1.
+    """Build the matrix of a row of joints, shape (2, 2), with determinant 1.
 
     Raises
     ------
     DimensionError
-        For no joint, or an angle that is not from 0 to below π/2: at a right angle a joint does not turn.
+        For no joint, or an angle outside 0 to below π/2: a joint at a right angle cannot turn.
     """
     require("number of joints", "at least 1", np.asarray(len(joints)), np.bool_(len(joints) >= 1))
     matrix = np.eye(2)
@@ -98,7 +98,7 @@ def joint_matrix(joints: Sequence[Joint]) -> Real:
         angle = np.asarray(joint.angle)
         require("angle of a joint", "from 0 to below a right angle", angle, (angle >= 0.0) & (angle < 0.5 * np.pi))
         if n:
-            # The driven fork stands a quarter turn from the driver's; the next joint counts from its own driving fork.
+            # The driven fork is a quarter turn from the driver's; the next joint counts from its own driving fork.
             turn = joint.offset + 0.5 * math.pi
             matrix = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]]) @ matrix
         root = math.sqrt(math.cos(joint.angle))
@@ -107,12 +107,12 @@ def joint_matrix(joints: Sequence[Joint]) -> Real:
 
 
 def shaft_motion(joints: Sequence[Joint], input: ArrayLike) -> ShaftMotion:
-    """Angle and rates of the last shaft.
+    """Compute angle and rates of the last shaft.
 
     Parameters
     ----------
     joints : sequence of Joint
-        From the input on.
+        Joints in order from the input.
     input : float
         Input angles from the position with the driver's fork in the plane of the shafts, radians, any shape.
     """
@@ -123,8 +123,8 @@ def shaft_motion(joints: Sequence[Joint], input: ArrayLike) -> ShaftMotion:
     x, y = np.tensordot(matrix, u, 1), np.tensordot(matrix, v, 1)
     squared = np.sum(x * x, axis=0)
     ratio = 1.0 / squared
-    # M is a turn after a stretch, and a stretch leads or lags by less than a quarter turn; what is counted from the
-    # output's place at input angle 0 does not need the turn.
+    # M is a rotation after a stretch, and the stretch leads or lags by less than a quarter turn. Relative to the
+    # output's position at input angle 0 the rotation drops out.
     _, sigma, right = np.linalg.svd(matrix)
     stretch = right.T @ np.diag(sigma) @ right
 
@@ -137,13 +137,14 @@ def shaft_motion(joints: Sequence[Joint], input: ArrayLike) -> ShaftMotion:
 
 
 def shaft_extremes(joints: Sequence[Joint]) -> ShaftExtremes:
-    """Extremes over a turn, in closed form.
+    """Find the extremes over a turn, in closed form.
 
-    With s = sin² δ of the equivalent joint the acceleration is greatest where, from the fastest position on,
+    With s = sin² δ of the equivalent joint the acceleration is maximal where, measured from the fastest position,
     (s/2) cos² 2α + (1 − s/2) cos 2α = s; Rao's eq. 4.25 drops the first term.
     """
     _, sigma, right = np.linalg.svd(joint_matrix(joints))
     cosine = float(min(sigma[1] / sigma[0], 1.0))
+    # sin² δ without cancellation for small joint angles.
     s = (1.0 - cosine) * (1.0 + cosine)
     fastest = math.atan2(right[1, 1], right[1, 0]) % math.pi
     half = 1.0 - 0.5 * s
@@ -162,7 +163,7 @@ def shaft_extremes(joints: Sequence[Joint]) -> ShaftExtremes:
 
 
 def angle_of_fluctuation(fluctuation: float) -> float:
-    """The joint angle at which the speed fluctuates by (ω_max − ω_min)/ω_mean; radians (Rao, Solved Problem 4.10)."""
+    """Compute the joint angle with a fluctuation (ω_max − ω_min)/ω_mean; radians (Rao, Solved Problem 4.10)."""
     value = np.asarray(fluctuation)
     require("fluctuation", "positive or zero, and finite", value, np.isfinite(value) & (value >= 0.0))
     cosine = 0.5 * (math.hypot(fluctuation, 2.0) - fluctuation)
@@ -170,12 +171,12 @@ def angle_of_fluctuation(fluctuation: float) -> float:
 
 
 def angle_within(least: float, greatest: float) -> float:
-    """The largest joint angle at which the speed ratio stays between two limits; radians.
+    """Compute the largest joint angle at which the speed ratio stays between two limits; radians.
 
     Parameters
     ----------
     least, greatest : float
-        Limits of output over input speed, in (0, 1] and from 1 on; 0 and infinity where there is none.
+        Limits of output over input speed, in (0, 1] and at least 1; 0 and infinity for no limit.
     """
     low, high = np.asarray(least), np.asarray(greatest)
     require("least ratio", "from 0 to 1", low, (low >= 0.0) & (low <= 1.0))

@@ -1,4 +1,4 @@
-"""Compilation ahead of time: every kernel of the package is called once, so that no later call waits for a compiler."""
+"""Compilation ahead of time: call every kernel of the package once, so that no later call waits for the compiler."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How near the parts of a mechanism come to each other, and to what stands around it, over a whole motion.
+"""Clearance between the parts of a mechanism, and to its surroundings, over a whole motion.
 
 :func:`swept` decides whether pairs of parts keep a distance at *every* input of a range, not at samples of it: between
 two positions no point moves farther than :mod:`enclosures` allows, and :mod:`sweep` refines until that decides.

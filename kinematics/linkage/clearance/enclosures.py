@@ -1,23 +1,23 @@
-"""How far links can turn and joints can move while the input stays within a given distance of a known position.
+"""Bounds for rotations of links and displacements of joints while the input stays near a known position.
 
-The bounds are rigorous but for rounding, and shrink to nothing with the range of the input: with its root where a
-mechanism is at a toggle, in proportion to it elsewhere. They go through the closures of :mod:`planar.closures` in
-order. Let every known joint j lie within ε_j of its place in the known position, and every known link be turned from it
-by at most δ. A closure Re(e^{−iφ} k) = r has the solutions φ = arg k ∓ arccos(r/|k|), so that
+The bounds are rigorous except for rounding, and shrink to zero with the range of the input: with its root at a toggle,
+in proportion to it elsewhere. They follow the closures of :mod:`planar.closures` in order. Let every known joint j lie
+within ε_j of its place in the known position, and every known link be rotated from it by at most δ. A closure
+Re(e^{−iφ} k) = r has the solutions φ = arg k ∓ arccos(r/|k|), so that
 
-    δ ≤ (the most that arg k can change) + (the most that arccos(r/|k|) can change):
+    δ ≤ (maximum change of arg k) + (maximum change of arccos(r/|k|)):
 
     RRR   |k| = b d with d the distance of the pins, r/|k| = (b² + d² − c²)/(2 b d); d changes by e = ε_p + ε_q at most;
-          the ratio is least at d² = b² − c² where that is between the extremes of d, and monotone beside it;
+          the ratio is least at d² = b² − c² where that is between the extremes of d, and monotonic outside;
     RPR   |k| = d, r is constant;
     RRP   |k| = b, arg k changes as the line's link turns, r by as much as the pin and the line's link at the pin move.
 
 A change of a vector of length d by e turns it by arcsin(e/d) at most. A joint on a link lies within
 ε + 2 ρ sin(δ/2) of its place, ε that of another joint of the link and ρ their distance.
 
-The distance of two parts changes by no more than both of them move; by no more than they move beside a joint of both of
-their links, since moving them together does not change it; and of one link by nothing. A disc about a joint is a part
-of every link that has that joint.
+The distance of two parts changes by no more than the sum of their motions. If their links share a joint, only the
+motion relative to that joint counts, since moving both together does not change the distance; parts of one link keep
+their distance. A disc about a joint is a part of every link that has that joint.
 
 Links of a class III group follow by the theorem in :mod:`planar.triads`: with η ω ≤ 1/2 the only solution lies within
 2 η of the known one in a norm that weighs each link's rotation.
@@ -51,10 +51,11 @@ from kinematics.linkage.planar.triads import Loops, evaluate, invert
 Mask = NDArray[np.bool_]
 
 SHARES = 0.25 ** np.arange(0.0, 11.0)
-"""Weights of the slowest link beside the fastest in the norm of the theorem: near a toggle the fastest alone counts."""
+"""Weights of the slowest link relative to the fastest in the norm of the theorem: near a toggle only the fastest
+counts."""
 
 CONDITION = 1e12
-"""Of the loop equations, beyond which too few digits are left to invert them."""
+"""Condition number of the loop equations above which too few digits remain to invert them."""
 
 
 @njit(**OPTIONS)
@@ -78,15 +79,15 @@ def by_closures(
     Parameters
     ----------
     rows, ratios, gives, place, line, line_angles, driver
-        Of the :class:`Code` of a mechanism, those of its one design.
+        Arrays of the :class:`Code` of a mechanism with a single design.
     on : bool, shape (links, joints)
-        Which joints a link has.
+        Joints of each link.
     places : complex, shape (joints, n)
-        Where the joints are at n positions, in unit coordinates.
+        Joints at n positions, in unit coordinates.
     turn : complex, shape (links, n)
         e^{iφ} of the links there.
     half : float, shape (n,)
-        How far the input may be from its value there: radians, or unit lengths of an input slide.
+        Half the range of the input about its value there: radians, or unit lengths along an input slide.
     turned : float, shape (links, n)
         Rotations, at most π. Those of the links of a class III group are given, the others are filled.
     moved : float, shape (joints, n)
@@ -96,11 +97,13 @@ def by_closures(
         x = places[:, n]
         moved[:, n] = np.inf
         for j in range(1, gives[0, 0] + 1):
+            # Joints on the ground do not move.
             moved[gives[0, j], n] = 0.0
         turned[0, n] = 0.0
         if driver[0] < 0:
             moved[driver[1], n] = half[n]
         else:
+            # A rotation of π bounds every rotation, since chords are largest there.
             turned[driver[0], n] = min(half[n], math.pi)
             _carry(driver[0], driver[1], n, gives, place, turned, moved)
         for row in range(len(rows)):
@@ -118,7 +121,7 @@ def by_closures(
                 turned[link, n] = min(about + _opening(b, c, d, apart), math.pi)
                 turned[other, n] = min(about + _opening(c, b, d, apart), math.pi)
                 _carry(other, other_pin, n, gives, place, turned, moved)
-                # The joint that they share is known by both.
+                # The shared joint is bounded by both links; keep the smaller bound.
                 chord = 2.0 * c * math.sin(0.5 * turned[other, n])
                 moved[joint, n] = min(moved[joint, n], moved[other_pin, n] + chord)
             elif kind == RPR:
@@ -126,13 +129,16 @@ def by_closures(
                 angle = line_angles[step[SLIDE]]
                 normal = complex(-math.sin(angle), math.cos(angle))
                 r = (normal.conjugate() * (line[step[SLIDE]] - place[pin])).real
+                # The closure exists only for distances of at least |r|.
                 least = max(d - apart, abs(r))
                 spread = 0.0
+                # With r = 0 the angle does not depend on the distance.
                 if r != 0.0:
                     spread = _spread(r / max(d, abs(r)), r / (d + apart), r / least)
                 turned[link, n] = min(_swing(apart, d) + spread, math.pi)
             elif kind == RRP:
-                # The point of the line's link that lies at the pin moves no farther than a joint of it, and about it.
+                # The point of the line's link at the pin moves at most like a joint of that link plus the rotation
+                # about it.
                 carried = 0.0
                 if other != 0:
                     carried = np.inf
@@ -152,7 +158,7 @@ def by_closures(
 
 @njit(**OPTIONS)
 def _carry(link: int, pin: int, n: int, gives: Indices, place: Complex, turned: Real, moved: Real) -> None:
-    """Displacements of the joints that a link makes known."""
+    """Bound the displacements of the joints that a link determines."""
     for j in range(1, gives[link, 0] + 1):
         joint = gives[link, j]
         chord = 2.0 * abs(place[joint] - place[pin]) * math.sin(0.5 * turned[link, n])
@@ -161,18 +167,20 @@ def _carry(link: int, pin: int, n: int, gives: Indices, place: Complex, turned: 
 
 @njit(**OPTIONS)
 def _swing(change: float, length: float) -> float:
-    """What a vector of this length turns by at most when it changes by a vector of at most this length."""
+    """Return the maximum rotation of a vector of given length when it changes by a vector of size ``change``."""
+    # A change larger than the vector can turn it anywhere.
     return math.asin(change / length) if change < length else math.pi
 
 
 @njit(**OPTIONS)
 def _opening(b: float, c: float, d: float, apart: float) -> float:
-    """By how much the angle of a triangle between the sides b and d changes at most when d does by ``apart``.
+    """Bound the change of a triangle's angle between the sides b and d when d changes by at most ``apart``.
 
-    Only where the triangle exists.
+    Only values of d for which the triangle exists count.
     """
     low, high = max(d - apart, abs(b - c)), min(d + apart, b + c)
     spread = _spread(_cosine(b, c, d), _cosine(b, c, low), _cosine(b, c, high))
+    # For b > c the angle is not monotonic in d: it has a maximum where c is normal to d.
     if b > c:
         turning = math.sqrt((b - c) * (b + c))
         if low < turning < high:
@@ -182,13 +190,13 @@ def _opening(b: float, c: float, d: float, apart: float) -> float:
 
 @njit(**OPTIONS)
 def _cosine(b: float, c: float, d: float) -> float:
-    """Cosine of the angle of a triangle between its sides b and d; 0 in the limit of no d."""
+    """Return the cosine of a triangle's angle between its sides b and d; 0 in the limit d → 0."""
     return ((b - c) * (b + c) + d * d) / (2.0 * b * d) if d > 0.0 else 0.0
 
 
 @njit(**OPTIONS)
 def _spread(cosine: float, low: float, high: float) -> float:
-    """The most that the angle of a cosine differs from the angles of two others, those beyond ±1 being at ±1."""
+    """Return the maximum difference of the angle of a cosine from the angles of two others, clipped to ±1."""
     angle = math.acos(min(max(cosine, -1.0), 1.0))
     first = abs(math.acos(min(max(low, -1.0), 1.0)) - angle)
     return float(max(first, abs(math.acos(min(max(high, -1.0), 1.0)) - angle)))
@@ -196,27 +204,27 @@ def _spread(cosine: float, low: float, high: float) -> float:
 
 @njit(**OPTIONS)
 def approaches(on: Mask, carries: Mask, reach: Real, pairs: Indices, items: Indices, turned: Real, moved: Real) -> Real:
-    """By how much the distances of pairs may be less than they are in known positions.
+    """Bound the decrease of the distances of pairs around known positions.
 
     Parameters
     ----------
     on : bool, shape (links, joints)
-        Which joints a link has; link 0 is the ground.
+        Joints of each link; link 0 is the ground.
     carries : bool, shape (parts, links)
-        The links that a part is at rest on.
+        Links relative to which a part is at rest.
     reach : float, shape (parts, joints)
-        How far the points of a part are from a joint at most, in unit lengths.
+        Maximum distance of the points of a part from a joint, in unit lengths.
     pairs : int, shape (p, 2)
         Parts.
     items : int, shape (m, 2)
-        Which pair at which position.
+        Pair and position of each item.
     turned, moved : float, shapes (links, n) and (joints, n)
         Bounds of :func:`by_closures`.
 
     Returns
     -------
     float, shape (m,)
-        In unit lengths.
+        Bounds in unit lengths.
     """
     out = np.empty(len(items))
     for m in range(len(items)):
@@ -229,6 +237,7 @@ def approaches(on: Mask, carries: Mask, reach: Real, pairs: Indices, items: Indi
             for other in range(len(on)):
                 if not carries[q, other]:
                     continue
+                # Parts at rest on the same link keep their distance.
                 if other == link:
                     least = 0.0
                 chord, across = 2.0 * math.sin(0.5 * turned[link, n]), 2.0 * math.sin(0.5 * turned[other, n])
@@ -241,7 +250,7 @@ def approaches(on: Mask, carries: Mask, reach: Real, pairs: Indices, items: Indi
 
 @njit(**OPTIONS)
 def _alone(on: Mask, carries: Mask, reach: Real, part: int, n: int, turned: Real, moved: Real) -> float:
-    """How far the points of a part move at most."""
+    """Bound the motion of the points of a part."""
     least = np.inf
     for link in range(len(on)):
         if carries[part, link]:
@@ -255,16 +264,16 @@ def _alone(on: Mask, carries: Mask, reach: Real, part: int, n: int, turned: Real
 
 
 def by_theorem(loops: Loops, rotations: Real, half: Real) -> Real:
-    """Bounds of the rotations of a class III group; π where the theorem does not hold.
+    """Bound the rotations of a class III group; π where the theorem does not apply.
 
     Parameters
     ----------
     loops : Loops
-        Of one design.
+        Loops of one design.
     rotations : float, shape (links, n)
-        Of the unknown links, at n positions, radians.
+        Rotations of the unknown links at n positions, radians.
     half : float, shape (n,)
-        How far the input may be from its value there, radians.
+        Half the range of the input about its value there, radians.
 
     Returns
     -------
@@ -277,7 +286,7 @@ def by_theorem(loops: Loops, rotations: Real, half: Real) -> Real:
 
 @njit(**OPTIONS)
 def _within_balls(c: Complex, k: Complex, rotations: Real, half: Real, bounds: Real) -> None:
-    """Lower the bounds to the radii of the balls; c and k are those of the loops."""
+    """Reduce the bounds to the radii of the balls; c and k are those of the loops."""
     loops, links = c.shape
     value, inverse = np.empty(links), np.empty((links, links))
     rate, strength, weight = np.empty(links), np.empty((links, links)), np.empty(links)
@@ -290,6 +299,7 @@ def _within_balls(c: Complex, k: Complex, rotations: Real, half: Real, bounds: R
         largest = 0.0
         for row in range(links):
             largest = max(largest, np.abs(inverse[row]).sum())
+        # Ill-conditioned, hence near a toggle: keep the trivial bound π.
         if not invert(inverse) * largest < CONDITION:
             continue
         change = 2.0 * math.sin(0.5 * min(half[n], math.pi))
@@ -304,11 +314,13 @@ def _within_balls(c: Complex, k: Complex, rotations: Real, half: Real, bounds: R
                     by_link += complex(inverse[row, loop], -inverse[row, loop + loops]) * c[loop, col]
                 strength[row, col] = abs(by_link)
         fastest = rate.max()
+        # Any norm gives a valid bound, so try several and keep the smallest radius per link.
         for share in SHARES:
             eta = omega = 0.0
             for row in range(links):
                 weight[row] = rate[row] + share * fastest
                 if weight[row] == 0.0:
+                    # A link without rate may have any weight.
                     weight[row] = 1.0
             for row in range(links):
                 eta = max(eta, rate[row] / weight[row])

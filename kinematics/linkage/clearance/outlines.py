@@ -1,7 +1,7 @@
-"""Parts by their outlines, and the distance of two of them: segments and simple polygons, widened.
+"""Outlines of parts, and the distance of two of them: widened segments and simple polygons.
 
-Outlines of many edges are looked at through bars about stretches of them: two stretches whose bars are farther apart
-than edges that are known already are passed over, so that the distance is the same and takes but some dozens of bars.
+Outlines with many edges are covered by a tree of bars around stretches of edges. Two stretches whose bars are separated
+by more than the distance found so far are skipped: the result is exact and usually needs only some dozens of bars.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ class Part(NamedTuple):
     Attributes
     ----------
     link : str
-        The link that it moves with; ``ground`` for what stands still.
+        The link that it moves with; ``ground`` for fixed parts.
     points : complex, shape (k,)
         Vertices in the mechanism's reference configuration: one makes a disc, two a bar with round ends, three or more
         a simple polygon, which need not be convex, in either sense.
     radius : float
-        By which the vertices and what is between them is widened: half the width of a bar.
+        Amount by which the polygon is widened: half the width of a bar.
     """
 
     link: str
@@ -41,51 +41,52 @@ class Part(NamedTuple):
 
 
 MEETING = 1e-6
-"""Share of the size that cores which meet count as overlapping by, beside their radii: how deep is not measured."""
+"""Overlap, as a share of the size and in addition to the radii, assigned to intersecting cores: the true depth is not
+measured."""
 
 
 @njit(**OPTIONS)
 def distance(first: Complex, second: Complex) -> float:
-    """Distance of two cores, shapes (k,) and (m,): points, segments or polygons with what they enclose.
+    """Measure the distance of two cores, shapes (k,) and (m,): points, segments or polygons with their interior.
 
-    The least over all pairs of edges; 0 where they only touch, and −∞ where they meet in more than that: where edges
-    cross, or a corner or the middle of an edge lies inside the other.
+    The result is the minimum over all pairs of edges; 0 if they only touch, −∞ if they intersect: edges cross, or a
+    corner or the middle of an edge lies inside the other.
     """
     least = _of_edges(first, second, 0, _edges(len(first)), 0, _edges(len(second)))
+    # Without crossing edges the cores still intersect if one contains the other.
     if least < 0.0 or _reaches_into(first, second) or _reaches_into(second, first):
         return -math.inf
     return float(least)
 
 
 PLAIN = 64
-"""Pairs of edges that are all looked at: bars would take as long."""
+"""Number of pairs of edges up to which all are compared: bars would not be faster."""
 
 FEW = 4
-"""Edges of the shortest stretches, which have no parts."""
+"""Maximum number of edges of a stretch that is not divided."""
 
 CLOSE = 1e-9
-"""Share of the greatest coordinate: of outlines that are farther apart none crosses the other, whatever rounding does,
-and one point tells whether it lies inside."""
+"""Share of the largest coordinate: outlines separated by more than this do not cross, regardless of rounding, so a
+single point decides whether one lies inside the other."""
 
 FAINT = 1e-14
-"""Share of the greatest coordinate by which rounding may have bars farther apart than they are."""
+"""Share of the largest coordinate by which rounding may overestimate the distance of bars."""
 
 DEEPEST = 160
-"""Pairs of stretches that wait for their turn at most: one for each halving, of outlines of as many edges as there are
-numbers of 64 bits."""
+"""Maximum size of the stack of pairs of stretches: one per halving, enough for outlines of 2⁶⁴ edges."""
 
 
 class Stretches(NamedTuple):
-    """Bars about stretches of outlines, a tree for each part of which the root is its whole outline.
+    """Bars around stretches of outlines: one tree per part, whose root is the whole outline.
 
     Attributes
     ----------
     rows : int, shape (s, 4)
-        First edge, the one after the last, and the stretches of its two halves; these are −1 for the shortest.
+        First edge, one past the last edge, and the stretches of its two halves (−1 for undivided ones).
     ends : complex, shape (s, 2)
-        Of the axes of the bars, in the reference.
+        Ends of the axes of the bars, in the reference.
     radii : float, shape (s,)
-        Nothing of a stretch is farther from the axis.
+        Maximum distance of the stretch from the axis.
     roots : int, shape (parts,)
     """
 
@@ -97,7 +98,7 @@ class Stretches(NamedTuple):
 
 @njit(**OPTIONS)
 def stretches_of(vertices: Complex, starts: Indices) -> Stretches:
-    """The stretches of parts whose vertices stand one after the other, each part's from one start to the next."""
+    """Build the stretches of parts whose vertices are concatenated, each part from one start to the next."""
     rows = np.full((2 * len(vertices) + len(starts), 4), -1, np.int64)
     ends, radii = np.empty((len(rows), 2), np.complex128), np.empty(len(rows))
     roots = np.empty(len(starts) - 1, np.int64)
@@ -122,8 +123,9 @@ def stretches_of(vertices: Complex, starts: Indices) -> Stretches:
 
 @njit(**OPTIONS)
 def _barred(points: Complex, first: int, end: int, axis: Complex) -> float:
-    """The ends of the bar about the edges from ``first`` to ``end``, along the longest way across, and its radius."""
+    """Build the bar around the edges from ``first`` to ``end`` along their longest extent; return its radius."""
     far, other = points[first], points[first]
+    # Two sweeps find a nearly largest diameter; any axis gives a valid bar.
     for n in range(first, end + 1):
         far = points[n % len(points)] if abs(points[n % len(points)] - other) > abs(far - other) else far
     for n in range(first, end + 1):
@@ -135,6 +137,7 @@ def _barred(points: Complex, first: int, end: int, axis: Complex) -> float:
         z = (points[n % len(points)] - other) * along.conjugate()
         low = complex(min(low.real, z.real), min(low.imag, z.imag))
         high = complex(max(high.real, z.real), max(high.imag, z.imag))
+    # Center the bar across its axis.
     middle = 0.5 * (low.imag + high.imag)
     axis[0], axis[1] = other + complex(low.real, middle) * along, other + complex(high.real, middle) * along
     radius = 0.0
@@ -145,8 +148,9 @@ def _barred(points: Complex, first: int, end: int, axis: Complex) -> float:
 
 @njit(**OPTIONS)
 def _by_stretches(first: Complex, second: Complex, one: int, other: int, tree: Stretches, moved: Complex) -> float:
-    """:func:`distance` of two parts as they stand; ``moved`` has turn and shift of either, as rows."""
+    """Measure :func:`distance` of two placed parts; ``moved`` has rotation and shift of each, as rows."""
     rows, ends, radii, _ = tree
+    # An explicit stack, since compiled code should not recurse.
     waiting, apart = np.empty((DEEPEST, 2), np.int64), np.empty(DEEPEST)
     waiting[0, 0], waiting[0, 1], apart[0] = one, other, -math.inf
     count, least, far = 1, math.inf, 0.0
@@ -155,6 +159,7 @@ def _by_stretches(first: Complex, second: Complex, one: int, other: int, tree: S
     while count:
         count -= 1
         a, b = waiting[count, 0], waiting[count, 1]
+        # Skip pairs that cannot improve the minimum.
         if apart[count] > least + FAINT * far:
             continue
         halved_a, halved_b = rows[a, 2] >= 0, rows[b, 2] >= 0
@@ -163,13 +168,14 @@ def _by_stretches(first: Complex, second: Complex, one: int, other: int, tree: S
             if least < 0.0:
                 return float(least)
             continue
+        # Divide the thicker bar, whose bound is the looser one.
         of_a = halved_a and (not halved_b or radii[a] >= radii[b])
         for half in range(2):
             waiting[count + half, 0] = rows[a, 2 + half] if of_a else a
             waiting[count + half, 1] = b if of_a else rows[b, 2 + half]
             pair = waiting[count + half]
             apart[count + half] = _between(first, second, pair[0], pair[1], tree, moved)
-        # The nearer half is looked at first, for the other may then be passed over.
+        # Process the nearer half first (last in the stack), since the other may then be skipped.
         if apart[count + 1] > apart[count]:
             apart[count], apart[count + 1] = apart[count + 1], apart[count]
             side = 0 if of_a else 1
@@ -178,14 +184,14 @@ def _by_stretches(first: Complex, second: Complex, one: int, other: int, tree: S
     if least <= CLOSE * far:
         meet = _reaches_into(first, second) or _reaches_into(second, first)
     else:
-        # The outlines do not meet: one lies inside the other with all of its points or with none.
+        # The outlines do not cross: one lies inside the other with all of its points or with none.
         meet = _holds(second, first[0], other, tree, moved[1]) or _holds(first, second[0], one, tree, moved[0])
     return -math.inf if meet else least
 
 
 @njit(**OPTIONS)
 def _between(first: Complex, second: Complex, a: int, b: int, tree: Stretches, moved: Complex) -> float:
-    """What two stretches are apart at least: by their bars, or the bar of one and the edges of a short one."""
+    """Bound the distance of two stretches from below, by their bars, or one bar and the edges of a short one."""
     rows, ends, radii, _ = tree
     one = moved[0, 0] * ends[a, 0] + moved[0, 1], moved[0, 0] * ends[a, 1] + moved[0, 1]
     other = moved[1, 0] * ends[b, 0] + moved[1, 1], moved[1, 0] * ends[b, 1] + moved[1, 1]
@@ -199,7 +205,7 @@ def _between(first: Complex, second: Complex, a: int, b: int, tree: Stretches, m
 
 @njit(**OPTIONS)
 def _to_edges(a: complex, b: complex, points: Complex, begin: int, end: int) -> float:
-    """Distance of a segment from the nearest of some edges."""
+    """Measure the distance of a segment from the nearest of some edges."""
     least = math.inf
     for n in range(begin, end):
         least = min(least, _apart(a, b, points[n], points[(n + 1) % len(points)]))
@@ -208,20 +214,20 @@ def _to_edges(a: complex, b: complex, points: Complex, begin: int, end: int) -> 
 
 @njit(**OPTIONS)
 def _apart(a: complex, b: complex, c: complex, d: complex) -> float:
-    """Distance of two segments, 0 where they cross."""
+    """Measure the distance of two segments, 0 if they cross."""
     return 0.0 if _cross_over(a, b, c, d) else _of_segments(a, b, c, d)
 
 
 @njit(**OPTIONS)
 def _cross_over(a: complex, b: complex, c: complex, d: complex) -> bool:
-    """Whether two segments cross, not only touch."""
+    """Return whether two segments cross, not merely touch."""
     across = _cross(b - a, c - a) * _cross(b - a, d - a) < 0.0
     return bool(across and _cross(d - c, a - c) * _cross(d - c, b - c) < 0.0)
 
 
 @njit(**OPTIONS)
 def _of_edges(first: Complex, second: Complex, begin: int, end: int, start: int, stop: int) -> float:
-    """The least distance of a run of edges, from ``begin`` to ``end``, from one of another; −∞ where some cross."""
+    """Measure the minimum distance between two runs of edges; −∞ if any edges cross."""
     least = math.inf
     for n in range(begin, end):
         a, b = first[n], first[(n + 1) % len(first)]
@@ -235,15 +241,16 @@ def _of_edges(first: Complex, second: Complex, begin: int, end: int, start: int,
 
 @njit(**OPTIONS)
 def _holds(polygon: Complex, z: complex, root: int, tree: Stretches, moved: Complex) -> bool:
-    """Whether a point that is not on the outline lies inside of it."""
+    """Return whether a point that is not on the outline lies inside it."""
     a, b = moved[0] * tree.ends[root] + moved[1]
+    # A point outside the bar of the whole outline cannot lie inside it.
     near = _to_segment(z, a, b) <= tree.radii[root] * (1.0 + CLOSE)
     return near and len(polygon) > 2 and _inside(z, polygon)
 
 
 @njit(**OPTIONS)
 def _reaches_into(core: Complex, polygon: Complex) -> bool:
-    """Whether a corner or the middle of an edge of a core lies inside a polygon."""
+    """Return whether a corner or the middle of an edge of a core lies inside a polygon."""
     if len(polygon) < 3:
         return False
     inside = False
@@ -259,7 +266,7 @@ def _edges(points: int) -> int:
 
 @njit(**OPTIONS)
 def _of_segments(a: complex, b: complex, c: complex, d: complex) -> float:
-    """Distance of the segments from a to b and from c to d that do not cross; either may be a point."""
+    """Measure the distance of the segments a–b and c–d, which do not cross; either may be a point."""
     first, second = min(_to_segment(a, c, d), _to_segment(b, c, d)), min(_to_segment(c, a, b), _to_segment(d, a, b))
     return float(min(first, second))
 
@@ -270,6 +277,7 @@ def _to_segment(z: complex, a: complex, b: complex) -> float:
     square = along.real * along.real + along.imag * along.imag
     share = 0.0
     if square > 0.0:
+        # Foot of the perpendicular, clipped to the segment.
         share = min(max((along.real * offset.real + along.imag * offset.imag) / square, 0.0), 1.0)
     left = offset - share * along
     return math.sqrt(left.real * left.real + left.imag * left.imag)
@@ -282,13 +290,14 @@ def _cross(a: complex, b: complex) -> float:
 
 @njit(**OPTIONS)
 def _inside(z: complex, polygon: Complex) -> bool:
-    """Whether a ray from z crosses the polygon's edges an odd number of times; not where z lies on one of them."""
+    """Return whether a ray from z crosses the polygon's edges an odd number of times; False if z lies on an edge."""
     inside = False
     for n in range(len(polygon)):
         a, b = polygon[n] - z, polygon[n - 1] - z
         turn = _cross(a, b)
         if turn == 0.0 and a.real * b.real + a.imag * b.imag <= 0.0:
             return False
+        # The half-open test counts a vertex on the ray exactly once.
         if (a.imag > 0.0) != (b.imag > 0.0) and (turn > 0.0) == (b.imag > a.imag):
             inside = not inside
     return inside
@@ -305,28 +314,28 @@ def distances(
     shift: Complex,
     tree: Stretches,
 ) -> Real:
-    """Distances of cores as they stand.
+    """Measure the distances of placed cores.
 
     Parameters
     ----------
     vertices : complex, shape (v,)
-        Of all parts, one after the other, in the reference.
+        Vertices of all parts, concatenated, in the reference.
     starts : int, shape (parts + 1,)
-        Where the vertices of each part begin.
+        Start of the vertices of each part.
     links : int, shape (parts,)
     pairs : int, shape (p, 2)
         Parts.
     items : int, shape (m, 2)
-        Which pair at which position.
+        Pair and position of each item.
     turn, shift : complex, shape (links, n)
-        At each position z ↦ turn · z + shift moves what a link carries there from the reference.
+        Motion of the links from the reference, z ↦ turn · z + shift, at each position.
     tree : Stretches
-        Of the parts.
+        Stretches of the parts.
 
     Returns
     -------
     float, shape (m,)
-        −:data:`MEETING` where they meet; NaN where there is no position.
+        −:data:`MEETING` if they intersect; NaN without a position.
     """
     out = np.empty(len(items))
     most = 0
@@ -353,7 +362,8 @@ def distances(
 
 @njit(**OPTIONS)
 def _placed(points: Complex, moved: Complex, scratch: Complex) -> Complex:
-    """Points turned and shifted; those that stand still are given back as they are."""
+    """Rotate and shift points; fixed points are returned as they are."""
+    # Parts on the ground need no copy.
     if moved[0] == 1.0 and moved[1] == 0.0:
         return points
     for n in range(len(points)):

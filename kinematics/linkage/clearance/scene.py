@@ -1,4 +1,4 @@
-"""The parts of a mechanism in motion: their distances at inputs, and how far they move around them."""
+"""Parts of a mechanism in motion: their distances at given inputs, and bounds of their motion around these."""
 
 from __future__ import annotations
 
@@ -19,10 +19,11 @@ from kinematics.linkage.planar.triads import Loops, loop_equations
 Pairs = Sequence[tuple[int, int]]
 
 AT_JOINT = 1e-12
-"""Share of the size within which a single point lies at a joint: what rounding of its place leaves."""
+"""Share of the size within which a single point counts as lying at a joint: rounding."""
 
 FIRST = 0.05
-"""Half of a part of the range at first: radians, or a share of the mechanism's size along an input slide."""
+"""Maximum half-width of the initial parts of a range: radians, or a share of the mechanism's size along an input
+slide."""
 
 
 class _Pose(NamedTuple):
@@ -35,17 +36,17 @@ class _Pose(NamedTuple):
 
 
 class Scene:
-    """The parts of a mechanism as the kernels take them.
+    """Parts of a mechanism in the kernels' layout.
 
     Attributes
     ----------
     size : float
-        Of the mechanism, in length units.
+        Size of the mechanism, in length units.
     unit : float
-        Of the input: 1 radian, or the size along a slide.
+        Unit of the input: 1 radian, or the size along a slide.
     pairs : int, shape (p, 2)
     overlaps : float, shape (p,)
-        Distance of the outlines of each pair where the cores meet: less than nothing by the sum of the radii and more.
+        Distance assigned to each pair whose cores intersect: minus the sum of the radii, and a little more.
     """
 
     def __init__(self, mechanism: Mechanism, parts: Sequence[Part], pairs: Pairs) -> None:
@@ -72,9 +73,9 @@ class Scene:
         self._vertices = np.concatenate(points)
         self._starts = np.concatenate([[0], np.cumsum([len(own) for own in points])])
         self._stretches = stretches_of(self._vertices, self._starts)
-        # How far the vertices of a part are from each joint: a rotation about that joint moves them.
+        # Distance of a part's vertices from each joint: the lever of a rotation about that joint.
         self._reach = np.array([[np.abs(own - joint).max() for joint in place] for own in points])
-        # A disc about a joint of its link is carried by every link of that joint.
+        # A disc about a joint of its link belongs to every link of that joint.
         discs = np.array([len(own) == 1 for own in points])
         about = discs[:, None] & self._on[self._links] & (self._reach <= AT_JOINT)
         self._reach[about] = 0.0
@@ -87,7 +88,7 @@ class Scene:
             self._loops = loop_equations(mechanism, dict(zip(joints, place.tolist(), strict=True)))
 
     def divided(self, low: float, high: float) -> tuple[Real, Real]:
-        """Middles and halves of equal parts of a range, none of which is too large to begin with."""
+        """Divide a range into equal parts of at most the initial width; return their middles and half-widths."""
         if not (np.isfinite(low) and np.isfinite(high) and low <= high):
             raise DimensionError("range of the input", "finite, from the lower end to the higher", (low, high))
         count = max(int(np.ceil((high - low) / (2.0 * FIRST * self.unit))), 1)
@@ -95,34 +96,37 @@ class Scene:
         return np.asarray(low + half * (2.0 * np.arange(count) + 1.0), np.float64), np.full(count, half)
 
     def distances(self, pair: Indices, centre: Real, half: Real) -> tuple[Real, Real]:
-        """Distances of pairs at inputs, NaN where there is no position; and by how much they may be less around it.
+        """Measure distances of pairs at inputs (NaN without a position), and bound their decrease nearby.
 
         Parameters
         ----------
         pair : int, shape (m,)
-            Of :attr:`pairs`.
+            Indices into :attr:`pairs`.
         centre, half : float, shape (m,)
-            Inputs, and how far around them the input may be.
+            Inputs, and half the range of the input around them.
 
         Returns
         -------
         distance, bound : float, shape (m,)
-            Of the outlines, length units. The bound is infinite where nothing is known.
+            Of the outlines, in length units. The bound is infinite if unknown.
         """
+        # Pairs share positions: each distinct (input, half-width) is driven once, packed into a complex number.
         around, item = np.unique(centre + 1j * half, return_inverse=True)
         inputs, halves = around.real.copy(), around.imag.copy()
         pose = self._pose(inputs)
         shift = pose.places[self._pins] - pose.turn * self._program.code.joints[0][self._pins, None]
+        # The ground does not move, whatever rounding the formula leaves.
         shift[0] = 0.0
         items = np.stack([pair, item], axis=1)
         cores = self._vertices, self._starts, self._links, self.pairs
         apart = distances(*cores, items, pose.turn, shift, self._stretches)
+        # No position, no distance.
         apart[~pose.valid[item]] = np.nan
         nearer = approaches(self._on, self._carries, self._reach, self.pairs, items, *self._moves(pose, halves))
         return self.size * apart - self._radii[pair], self.size * nearer
 
     def reached(self, inputs: Real) -> NDArray[np.bool_]:
-        """Whether there is a position at each input."""
+        """Return whether the mechanism has a position at each input."""
         return self._pose(inputs).valid
 
     def _pose(self, inputs: Real) -> _Pose:
@@ -134,7 +138,7 @@ class Scene:
         return _Pose(places / self.size, rotations, np.exp(1j * rotations), motion.valid)
 
     def _moves(self, pose: _Pose, half: Real) -> tuple[Real, Real]:
-        """Bounds of the rotations of links and of the displacements of joints, (links, n) and (joints, n)."""
+        """Bound the rotations of links and the displacements of joints, (links, n) and (joints, n)."""
         code, links = self._program.code, self._program.links
         turned = np.full(pose.rotations.shape, np.pi)
         if self._loops is not None:

@@ -1,8 +1,8 @@
-"""Whether parts of a mechanism keep a distance at every input of a range, and how near they come.
+"""Proof that parts of a mechanism keep a distance at every input of a range, and their minimum distance.
 
-The range is divided until each part of it decides: with the distance d in the middle, and the two outlines moving by no
-more than m while the input stays in it, the distance is at least d − m there. Where a pair comes nearest, the distance
-is followed to its minimum. A part of the range that is still undecided at the limit of refinement counts as not kept.
+The range is divided until each part is decided: with the distance d in the middle, and the two outlines moving by at
+most m while the input stays in the part, the distance is at least d − m there. The minimum distance of a pair is then
+refined. A part of the range that is still undecided at the limit of refinement counts as a violation.
 """
 
 from __future__ import annotations
@@ -17,24 +17,24 @@ from kinematics.linkage.clearance.scene import Pairs, Scene
 from kinematics.linkage.planar.mechanism import Mechanism
 
 FINEST = 1e-10
-"""Half of a part at the limit of refinement, as :data:`scene.FIRST`: parts move by less in it than :data:`SURE` allows,
-so that what begins or ends at just the wanted distance is decided."""
+"""Minimum half-width of a part, in the units of :data:`scene.FIRST`: within it parts move by less than :data:`SURE`, so
+that a pair that only just reaches the required distance is decided."""
 
 ENDS = 1e-7
-"""How far from its ends a range has positions, in the same units: an end may be a toggle, to rounding."""
+"""Offset from the ends of a range at which it must have positions, in the same units: an end may be a toggle."""
 
 MOST = 400_000
-"""Distances of pairs that are looked at in a sweep at most; what is undecided then stays so."""
+"""Maximum number of distances computed in a sweep; pairs undecided by then stay undecided."""
 
 SURE = 1e-9
-"""Share of the mechanism's size by which a distance may be less than asked and be kept: what rounding leaves."""
+"""Share of the mechanism's size by which a distance may fall short of the required one: rounding."""
 
 COARSE = 2e-3
-"""Share of the size within which no place is nearer than where a minimum is looked for."""
+"""Share of the size by which a sample may exceed the smallest one and still start a search for the minimum."""
 
 SECTIONS, NARROWINGS = 9, 14
-"""Parts that a bracket is divided into, of which the two beside the least place are left, and how often: to 1e-9 of the
-bracket, where a minimum is known to rounding. Each time costs hardly more than one place would."""
+"""Number of sections of a bracket, of which the two next to the minimum are kept, and number of repetitions: to 1e-9 of
+the bracket, where a minimum is known to rounding. One batch costs hardly more than a single evaluation."""
 
 
 Interval = tuple[float, float]
@@ -43,19 +43,20 @@ Nearest = Literal["each", "all", "none"]
 
 
 class Swept(NamedTuple):
-    """What a pair of parts does over a range.
+    """Result for a pair of parts over a range.
 
     Attributes
     ----------
     least : float
-        Least distance between the outlines; where the cores meet, less than nothing by the sum of the radii, and by a
-        little more (:data:`outlines.MEETING`): links without width that cross are nearer than those that touch.
+        Minimum distance between the outlines. If the cores intersect it is minus the sum of the radii and a little
+        more (:data:`outlines.MEETING`), so that crossing links without width rank below touching ones.
     at : float
-        Input where it is so: radians, or position along the slide.
+        Input of the minimum: radians, or position along the slide.
     keeps : bool
-        Whether the distance is at least the wanted one at every input of the range. A proof but for rounding.
+        Whether the distance is at least the required one at every input of the range: a proof, except for rounding.
     decided : bool
-        Whether that could be decided; undecided pairs do not keep it. Where there is no position at an end none is.
+        Whether that could be decided; undecided pairs have ``keeps`` False. Without a position at an end of the range
+        no pair is decided.
     """
 
     least: float
@@ -74,7 +75,7 @@ def swept(
     *,
     nearest: Nearest = "each",
 ) -> list[Swept]:
-    """How near pairs of parts come over a range of the input, and whether they keep a distance everywhere in it.
+    """Sweep pairs of parts over a range of the input: minimum distance, and whether a distance is kept throughout.
 
     Parameters
     ----------
@@ -86,11 +87,11 @@ def swept(
     low, high : float
         The range, absolute: radians, or positions along the input slide. On the reference's branch.
     wanted : float
-        The distance that is to be kept, in length units; less than nothing allows outlines to overlap by as much.
+        Required distance, in length units; a negative one allows outlines to overlap by that amount.
     nearest : str
-        Of which pairs the least distance is looked for: of ``each``, of the one that comes nearest of ``all``, or of
-        ``none``. Of the others that of the places that were looked at is told, no more of them than it takes to decide.
-        With ``all`` no more is decided than whether all of them keep the distance.
+        Pairs whose minimum distance is refined: ``each``, the nearest of ``all``, or ``none``. For the others the
+        minimum over the samples needed for the decision is returned. With ``all`` only the question whether all pairs
+        keep the distance is decided.
 
     Returns
     -------
@@ -101,7 +102,7 @@ def swept(
     ------
     DimensionError
         For several designs, a range that is not finite or ends before it begins, a part without points or with a
-        radius below nothing, or one on a link that does not exist.
+        negative radius, or a part on an unknown link.
     """
     if not pairs:
         return []
@@ -118,13 +119,16 @@ def swept(
     while len(pair):
         here, bound = scene.distances(pair, centre, half)
         looked += len(pair)
+        # Unknown positions keep their part of the range undecided.
         known = np.isfinite(here)
         order = np.argsort(np.where(known, -here, -np.inf), kind="stable")  # the nearest of each pair is written last
         order = order[known[order] & (here[order] < best[pair[order]])]
         best[pair[order]], at[pair[order]] = here[order], centre[order]
+        # Lower bound of the distance in each part; intersecting cores have a fixed lowest value.
         least = np.where(known, np.maximum(here - bound, scene.overlaps[pair]), -np.inf)
         open_to_nearest = least < _nearer_than(nearest, best)[pair] - COARSE * scene.size
         open_to_wanted = (least < wanted - slack) & (best[pair] >= wanted - slack)
+        # One violation decides the question for all pairs.
         if nearest == "all" and best.min() < wanted - slack:
             decided[pair[open_to_wanted]] = False
             open_to_wanted[:] = False
@@ -133,6 +137,7 @@ def swept(
         if looked + 2 * np.count_nonzero(more) > MOST:
             decided[pair[open_to_wanted | ~known]] = False
             break
+        # Parts at the limit of refinement are given up as undecided.
         lost = more & (half <= FINEST * scene.unit)
         decided[pair[lost & (open_to_wanted | ~known)]] = False
         pair, centre, half = _halved(pair[more & ~lost], centre[more & ~lost], half[more & ~lost])
@@ -150,10 +155,10 @@ def swept(
 def free_inputs(
     mechanism: Mechanism, parts: Sequence[Part], pairs: Pairs, low: float, high: float, wanted: float, fine: float
 ) -> list[Interval]:
-    """The inputs of a range at which all pairs keep a distance, as intervals in ascending order.
+    """Find the inputs of a range at which all pairs keep a distance, as ascending intervals.
 
-    Each is proven to be free, and ends within ``fine`` (radians, or length along the slide) of where a pair is nearer,
-    or of where that could not be decided. Parameters and errors otherwise as of :func:`swept`.
+    Each interval is proved to be free, and ends within ``fine`` (radians, or length along the slide) of an input at
+    which a pair is closer or undecided. Other parameters and errors as for :func:`swept`.
     """
     free: list[Interval] = [(low, high)]
     for own in free_ranges(mechanism, parts, pairs, low, high, wanted, fine):
@@ -165,7 +170,7 @@ def free_inputs(
 def free_ranges(
     mechanism: Mechanism, parts: Sequence[Part], pairs: Pairs, low: float, high: float, wanted: float, fine: float
 ) -> list[list[Interval]]:
-    """The same of each pair by itself, in the order of ``pairs``."""
+    """Find the free intervals of each pair separately, in the order of ``pairs``; see :func:`free_inputs`."""
     if not pairs:
         return []
     scene = Scene(mechanism, parts, pairs)
@@ -177,14 +182,14 @@ def free_ranges(
     while len(pair):
         here, bound = scene.distances(pair, centre, half)
         kept = np.maximum(here - bound, scene.overlaps[pair]) >= wanted - slack
-        # Outlines that are nearer everywhere in a part of the range need no finer look.
+        # Parts in which the outlines are too close everywhere need no refinement.
         met = here + bound < wanted - slack
         start, end = np.clip([centre - half, centre + half], low, high)[:, kept]
         free.append((pair[kept], start, end))
-        # Where the bound is coarse, as it is near a toggle, far from the wanted distance no end is near.
+        # Near a toggle the bound is coarse: keep refining where the distance itself is clearly sufficient.
         coarse = (here > wanted + COARSE * scene.size) & (half > FINEST * scene.unit)
         more = ~kept & ~met & ((half > 0.5 * fine) | coarse)
-        # In quarters, since few large batches take less time than many small ones; the last may be halves.
+        # Divide into quarters, since few large batches are faster than many small ones; the last may be halves.
         times = 1 if half[0] <= fine else 2
         pair, centre, half = pair[more], centre[more], half[more]
         for _ in range(times):
@@ -194,7 +199,7 @@ def free_ranges(
 
 
 def _merged(starts: Real, ends: Real, near: float) -> list[Interval]:
-    """Intervals that do not overlap in order, those that follow on from each other as one."""
+    """Merge adjacent intervals into one; the given ones do not overlap."""
     if not len(starts):
         return []
     starts, ends = np.sort(starts), np.sort(ends)
@@ -209,7 +214,7 @@ def _halved(pair: Indices, centre: Real, half: Real) -> tuple[Indices, Real, Rea
 
 
 def _nearer_than(nearest: Nearest, best: Real) -> Real:
-    """The distance of each pair below which it is looked for."""
+    """Return the distance of each pair below which its minimum is searched."""
     if nearest == "each":
         return best
     return np.full(len(best), best.min() if nearest == "all" else -np.inf)
@@ -218,9 +223,9 @@ def _nearer_than(nearest: Nearest, best: Real) -> Real:
 def _nearest(
     scene: Scene, near: list[tuple[Indices, Real, Real]], low: float, high: float, than: Real
 ) -> tuple[Real, Real]:
-    """The least distance of each pair, from where it is least among the places that were looked at; and its input.
+    """Refine the minimum distance of each pair from its smallest samples; return distances and inputs.
 
-    Only from places hardly farther than ``than``, shape (pairs,).
+    Only samples close to ``than``, shape (pairs,), start a search.
     """
     pair, centre, here = (np.concatenate(columns) for columns in zip(*near, strict=True))
     best, at = np.full(len(scene.pairs), np.inf), np.full(len(scene.pairs), np.nan)
@@ -229,12 +234,12 @@ def _nearest(
         own = np.flatnonzero(pair == n)
         own = own[np.argsort(centre[own])]
         values = np.concatenate([[np.inf], here[own], [np.inf]])
-        # Of equal ones the first: a corner that stands still is as near all the time.
+        # Of equal samples take the first: the distance of a fixed corner is constant.
         valley = (values[1:-1] < values[:-2]) & (values[1:-1] <= values[2:])
         close = here[own] <= than[n] + COARSE * scene.size
-        # Nothing is nearer than where cores meet.
+        # Intersecting cores already have the lowest possible value.
         lowest = valley & close & (here[own] > scene.overlaps[n]) & (than[n] > scene.overlaps[n])
-        # The neighbours that were looked at bracket the minimum, and the ends of the range.
+        # The neighbouring samples, or the ends of the range, bracket the minimum.
         ends = np.concatenate([[low], centre[own], [high]])
         begins += [(n, ends[k], ends[k + 2]) for k in np.flatnonzero(lowest)]
     if not begins:

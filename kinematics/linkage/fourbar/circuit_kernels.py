@@ -1,4 +1,4 @@
-"""Compiled verdicts on fourbars, one a design: the formulas of :mod:`circuits` and :mod:`transmission` in scalars.
+"""Compiled analysis of fourbars, design by design: the formulas of :mod:`circuits` and :mod:`transmission` in scalars.
 
 ``pivots`` and ``lengths`` are the blocks of a :class:`Fourbar`, (3, D); ``start`` and ``end`` are absolute input
 angles, (M,). One design may be given for all M.
@@ -18,18 +18,19 @@ Integers = NDArray[np.int64]
 
 CHANGE_POINT = 1e-9
 """|S + L − P − Q| below this share of the perimeter counts as the special case: the transmission angle at such a
-change point is then below about 1e-4 rad, where no direction of motion can be relied on."""
+change point is then below about 1e-4 rad, where the direction of motion is unreliable."""
 
 AT_TOGGLE = 1e-12
-"""An end of a motion this near to a toggle, in radians, is on it: what rounding leaves of an angle after some turns."""
+"""Distance, radians, within which the end of a motion counts as at a toggle: rounding of an angle after some turns."""
 
 FULL_TURN = 2.0 * math.pi
 
 
 @njit(**OPTIONS)
 def _toggle(t: float, a: float, d: float, slack: float) -> tuple[float, bool]:
-    """|δ| where f = t, and whether f reaches t at all: |d − a| ≤ t ≤ d + a."""
+    """Find |δ| where f = t, and whether f reaches t at all: |d − a| ≤ t ≤ d + a."""
     below, above = t - abs(d - a), (d + a) - t
+    # Within the slack of a change point the toggle is taken to lie exactly on the ground line.
     numerator = (below if below > slack else 0.0) * (t + abs(d - a))
     denominator = (above if above > slack else 0.0) * ((d + a) + t)
     return 2.0 * math.atan2(math.sqrt(numerator), math.sqrt(denominator)), below >= -slack and above >= -slack
@@ -37,7 +38,7 @@ def _toggle(t: float, a: float, d: float, slack: float) -> tuple[float, bool]:
 
 @njit(**OPTIONS)
 def _limits(a: float, b: float, c: float, d: float) -> tuple[bool, float, float, bool, bool]:
-    """Whether the linkage can be assembled, the range of |δ|, and which ends of it are toggles."""
+    """Return whether the linkage can be assembled, the range of |δ|, and whether its ends are toggles."""
     slack = CHANGE_POINT * (a + b + c + d)
     folded_angle, folded = _toggle(abs(b - c), a, d, slack)
     extended_angle, extended = _toggle(b + c, a, d, slack)
@@ -48,7 +49,7 @@ def _limits(a: float, b: float, c: float, d: float) -> tuple[bool, float, float,
 
 @njit(**OPTIONS)
 def limits(pivots: Complex, lengths: Real, ends: Real, toggles: Mask) -> None:
-    """Lower and upper limit of |δ| into ``ends`` (2, D), whether they are toggles into ``toggles`` (2, D)."""
+    """Fill lower and upper limits of |δ| into ``ends`` (2, D), and whether they are toggles into ``toggles`` (2, D)."""
     for i in range(pivots.shape[1]):
         d = abs(pivots[1, i] - pivots[0, i])
         _, ends[0, i], ends[1, i], toggles[0, i], toggles[1, i] = _limits(
@@ -58,13 +59,14 @@ def limits(pivots: Complex, lengths: Real, ends: Real, toggles: Mask) -> None:
 
 @njit(**OPTIONS)
 def _stays(a: float, b: float, c: float, d: float, start: float, end: float) -> bool:
-    """Whether the input turns from start to end, measured from the ground line, without a toggle or change point."""
+    """Return whether the input turns from start to end (from the ground line) without a toggle or change point."""
     free, lower, upper, folded, extended = _limits(a, b, c, d)
     low, high = min(start, end), max(start, end)
     for toggle, exists in ((lower, folded), (upper, extended)):
         for sign in (1.0, -1.0):
             turns = math.ceil((low - AT_TOGGLE - sign * toggle) / FULL_TURN) if exists else 0.0
             free = free and not (exists and sign * toggle + turns * FULL_TURN <= high + AT_TOGGLE)
+    # No toggle in between: then one inner point decides whether the range can be assembled.
     middle = 0.5 * (low + high)
     middle = abs(math.atan2(math.sin(middle), math.cos(middle)))
     return bool(free and lower <= middle <= upper)
@@ -72,7 +74,7 @@ def _stays(a: float, b: float, c: float, d: float, start: float, end: float) -> 
 
 @njit(**OPTIONS)
 def stays(pivots: Complex, lengths: Real, start: Real, end: Real, free: Mask) -> None:
-    """Whether the input turns from start to end without a toggle or change point, into ``free`` (M,)."""
+    """Fill into ``free`` (M,) whether the input turns from start to end without a toggle or change point."""
     for i in range(len(free)):
         j = i if pivots.shape[1] > 1 else 0
         ground = pivots[1, j] - pivots[0, j]
@@ -84,7 +86,7 @@ def stays(pivots: Complex, lengths: Real, start: Real, end: Real, free: Mask) ->
 
 @njit(**OPTIONS)
 def _joined(a: float, b: float, c: float, d: float) -> bool:
-    """Whether the circuits meet at change points."""
+    """Return whether the circuits are joined at change points."""
     least, greatest, perimeter = min(d, a, b, c), max(d, a, b, c), d + a + b + c
     low, high = min(max(d, a), max(b, c)), max(min(d, a), min(b, c))
     return abs((greatest - max(low, high)) - (min(low, high) - least)) <= CHANGE_POINT * perimeter
@@ -92,14 +94,14 @@ def _joined(a: float, b: float, c: float, d: float) -> bool:
 
 @njit(**OPTIONS)
 def _side(delta: float) -> float:
-    """The side of the ground line on which the input lies: 1, −1, or 0 on it."""
+    """Return the side of the ground line on which the input lies: 1, −1, or 0 on it."""
     sine = math.sin(delta)
     return 1.0 if sine > 0.0 else (-1.0 if sine < 0.0 else 0.0)
 
 
 @njit(**OPTIONS)
 def circuits(pivots: Complex, lengths: Real, theta: Real, sign: Real, other: Real, others: Real, same: Mask) -> None:
-    """Whether configurations that close lie on one circuit, into ``same`` (M,)."""
+    """Fill into ``same`` (M,) whether two valid configurations lie on one circuit."""
     for i in range(len(same)):
         j = i if pivots.shape[1] > 1 else 0
         a, b, c, ground = lengths[0, j], lengths[1, j], lengths[2, j], pivots[1, j] - pivots[0, j]
@@ -116,7 +118,7 @@ def circuits(pivots: Complex, lengths: Real, theta: Real, sign: Real, other: Rea
 
 @njit(**OPTIONS)
 def _monotone(values: Real) -> bool:
-    """Whether values rise throughout, or fall throughout."""
+    """Return whether values are strictly monotonic."""
     rising, falling = True, True
     for k in range(1, len(values)):
         rising, falling = rising and values[k] > values[k - 1], falling and values[k] < values[k - 1]
@@ -125,7 +127,8 @@ def _monotone(values: Real) -> bool:
 
 @njit(**OPTIONS)
 def _least_cover(onward: Real) -> None:
-    """Rotations 0 ≤ ρ < 2π shifted by full turns into the shortest range that covers them and the first, in place."""
+    """Shift rotations 0 ≤ ρ < 2π by full turns, in place, into the shortest range that covers all of them."""
+    # The shortest cover is the circle without its widest gap.
     around = np.sort(onward)
     widest, end = around[0] + FULL_TURN - around[-1], around[-1]
     for k in range(len(around) - 1, 0, -1):
@@ -138,7 +141,7 @@ def _least_cover(onward: Real) -> None:
 
 @njit(**OPTIONS)
 def _limits_around(delta: float, lower: float, upper: float, folded: bool, extended: bool) -> tuple[float, float]:
-    """Ends of the range of δ, radians, that holds ``delta``, for an input that has toggles."""
+    """Find the ends of the range of δ, radians, that contains ``delta``, for an input with toggles."""
     if not folded:
         return -upper, upper
     if not extended:
@@ -150,9 +153,9 @@ def _limits_around(delta: float, lower: float, upper: float, folded: bool, exten
 def traverse(
     pivots: Complex, lengths: Real, theta: Real, sign: Real, angles: Real
 ) -> tuple[bool, bool, bool, float, float]:
-    """The motion of one design through targets (n,): on one branch, on one circuit, in order, and the range used.
+    """Traverse targets (n,) with one design: on one branch, on one circuit, in order, and the range used.
 
-    The targets' angles, continuous from the first, go into ``angles`` (n,).
+    The targets' angles, continuous from the first, are written into ``angles`` (n,).
     """
     n, first, last = len(theta), theta[0], len(theta) - 1
     a, b, c, ground = lengths[0, 0], lengths[1, 0], lengths[2, 0], pivots[1, 0] - pivots[0, 0]
@@ -192,6 +195,7 @@ def traverse(
     if one_assembly:
         free = _stays(a, b, c, d, start - ground_angle, end - ground_angle)
         return free, free or one_circuit, False, start, end
+    # Unroll the circuit: forward on the first assembly, through the toggle, back on the other.
     around = 2.0 * (high - low)
     for k in range(n):
         onward[k] = angles[k] - low if sign[k] == sign[0] else around - (angles[k] - low)
@@ -204,7 +208,7 @@ def traverse(
 
 @njit(**OPTIONS)
 def _included(b: float, c: float, f: float) -> float:
-    """Angle at B of the triangle with sides b and c and base f; 0 or π where the base is too short or too long."""
+    """Compute the angle at B of the triangle with sides b, c and base f; 0 or π for a base too short or too long."""
     numerator = (f + (b - c)) * (f - (b - c))
     denominator = (b + c + f) * (b + c - f)
     return 2.0 * math.atan2(math.sqrt(max(numerator, 0.0)), math.sqrt(max(denominator, 0.0)))
@@ -212,13 +216,13 @@ def _included(b: float, c: float, f: float) -> float:
 
 @njit(**OPTIONS)
 def _contains(low: float, high: float, angle: float) -> bool:
-    """Whether low ≤ angle + 2πm ≤ high for some integer m."""
+    """Return whether low ≤ angle + 2πm ≤ high for some integer m."""
     return math.floor((high - angle) / FULL_TURN) >= math.ceil((low - angle) / FULL_TURN)
 
 
 @njit(**OPTIONS)
 def extremes(pivots: Complex, lengths: Real, start: Real, end: Real, least: Real, greatest: Real) -> None:
-    """Least and greatest transmission angle over the ranges of the input, (M,)."""
+    """Fill the minimum and maximum transmission angle over the ranges of the input, (M,)."""
     for i in range(len(least)):
         j = i if pivots.shape[1] > 1 else 0
         a, b, c, ground = lengths[0, j], lengths[1, j], lengths[2, j], pivots[1, j] - pivots[0, j]
@@ -230,6 +234,7 @@ def extremes(pivots: Complex, lengths: Real, start: Real, end: Real, least: Real
         longest = d + a if _contains(low, high, math.pi) else max(f_low, f_high)
         gamma_low, gamma_high = _included(b, c, shortest), _included(b, c, longest)
         acute_low, acute_high = min(gamma_low, math.pi - gamma_low), min(gamma_high, math.pi - gamma_high)
+        # The included angle passes 90° inside the range: the acute angle then peaks there.
         square = gamma_low <= 0.5 * math.pi <= gamma_high
         least[i] = min(acute_low, acute_high)
         greatest[i] = 0.5 * math.pi if square else max(acute_low, acute_high)
@@ -237,15 +242,16 @@ def extremes(pivots: Complex, lengths: Real, start: Real, end: Real, least: Real
 
 @njit(**OPTIONS)
 def barker_types(pivots: Complex, lengths: Real, types: Integers) -> None:
-    """Barker's type numbers 1 to 14, or 0 where no position assembles the linkage, into ``types`` (D,)."""
+    """Fill Barker's type numbers 1 to 14 into ``types`` (D,), 0 for a linkage that cannot be assembled."""
     for i in range(len(types)):
         d, a, b, c = abs(pivots[1, i] - pivots[0, i]), lengths[0, i], lengths[1, i], lengths[2, i]
         least, greatest, perimeter = min(d, a, b, c), max(d, a, b, c), d + a + b + c
         shortest = 0 if d == least else (1 if a == least else (2 if b == least else 3))
         longest = 0 if d == greatest else (1 if a == greatest else (2 if b == greatest else 3))
-        # The two in the middle, in order.
+        # The two middle lengths, ascending.
         low, high = min(max(d, a), max(b, c)), max(min(d, a), min(b, c))
         p, q = min(low, high), max(low, high)
+        # Differences first: nearly equal lengths must not cancel.
         excess = (greatest - q) - (p - least)
         equal = CHANGE_POINT * perimeter
         if 2.0 * greatest > perimeter:

@@ -2,13 +2,13 @@
 
 Glossary (Chase and Mirth, J. Mech. Des. 115 (1993) 223, doi:10.1115/1.2919181; Norton, Sec. 4.13):
 
-circuit  all configurations that can be reached from one another without taking the linkage apart;
-branch   a part of a circuit between toggles: what the input can drive through without help;
+circuit  all configurations that can be reached from one another without disassembly;
+branch   a part of a circuit between toggles, which the input can drive through;
 toggle   a configuration with coupler and output in line, where the input cannot move on.
 
 Let δ be the input angle from the ground line O2 → O4 and f the diagonal, f² = a² + d² − 2 a d cos δ. The linkage
-closes for |b − c| ≤ f ≤ b + c; f rises with |δ|, so |δ| runs from a *folded* toggle (f = |b − c|), or from 0 when there
-is none, to an *extended* toggle (f = b + c), or to π when there is none. In half-angle form, exact near the ends,
+closes for |b − c| ≤ f ≤ b + c; f rises with |δ|, so |δ| runs from a *folded* toggle (f = |b − c|), or 0 without one, to
+an *extended* toggle (f = b + c), or π without one. In half-angle form, exact near the ends,
 
     tan²(δ/2) = (t² − (d − a)²) / ((d + a)² − t²),   t = |b − c| or b + c.
 
@@ -32,7 +32,7 @@ from kinematics.linkage.fourbar.closed_form import Fourbar, Mask, Real, one_shap
 
 
 class InputLimits(NamedTuple):
-    """Range of |δ| in radians, shape designs: from ``lower`` to ``upper``; the masks say which ends are toggles."""
+    """Range of |δ| in radians, shape designs: from ``lower`` to ``upper``; the masks mark ends that are toggles."""
 
     lower: Real
     upper: Real
@@ -41,7 +41,7 @@ class InputLimits(NamedTuple):
 
 
 def input_limits(linkage: Fourbar) -> InputLimits:
-    """Limits of the input link, from the closed-form toggle angles (Norton 4.37, in half angles).
+    """Find the limits of the input link from the closed-form toggle angles (Norton 4.37, in half angles).
 
     NaN for a linkage that cannot be assembled. A change point counts as a toggle at |δ| = 0 or π.
     """
@@ -53,23 +53,25 @@ def input_limits(linkage: Fourbar) -> InputLimits:
 
 
 def toggle_angles(linkage: Fourbar) -> Real:
-    """Absolute input angles of all toggles of one design, radians in (−π, π], ascending; empty for a crank."""
+    """Find the absolute input angles of all toggles of one design, radians in (−π, π], ascending; none for a crank."""
     limits = input_limits(linkage)
     inclinations = [limits.lower] * bool(limits.folded_toggle) + [limits.upper] * bool(limits.extended_toggle)
+    # Toggles occur at ±δ, which coincide on the ground line.
     twofold = [(1.0, -1.0) if 0.0 < t < np.pi else (1.0,) for t in inclinations]
     signed = np.array([s * float(t) for t, signs in zip(inclinations, twofold, strict=True) for s in signs])
+    # To (−π, π]; np.mod may round to the open end, which is corrected below.
     wrapped = np.pi - np.mod(np.pi - (signed + linkage.ground_angle), FULL_TURN)
     return np.unique(np.where(wrapped <= -np.pi, np.pi, wrapped))
 
 
 def full_rotation(linkage: Fourbar) -> Mask:
-    """Whether the input link turns through (is a crank) without a toggle or change point."""
+    """Return whether the input link is a crank: it rotates fully without a toggle or change point."""
     limits = input_limits(linkage)
     return can_assemble(linkage) & ~limits.folded_toggle & ~limits.extended_toggle
 
 
 def stays_on_branch(linkage: Fourbar, start: ArrayLike, end: ArrayLike) -> Mask:
-    """Whether the input turns from ``start`` to ``end`` without meeting a toggle or a change point.
+    """Return whether the input turns from ``start`` to ``end`` without meeting a toggle or a change point.
 
     Parameters
     ----------
@@ -95,7 +97,7 @@ def stays_on_branch(linkage: Fourbar, start: ArrayLike, end: ArrayLike) -> Mask:
 def same_circuit(
     linkage: Fourbar, angle: ArrayLike, assembly: ArrayLike, other_angle: ArrayLike, other_assembly: ArrayLike
 ) -> Mask:
-    """Whether two configurations (input angle, assembly sign), both of which close, lie on one circuit; shape S.
+    """Return whether two valid configurations (input angle, assembly sign) lie on one circuit; shape S.
 
     False for a linkage that cannot be assembled. Raises ShapeError for arrays that do not broadcast with the designs.
     """
@@ -112,10 +114,10 @@ class Traversal(NamedTuple):
     """The motion of one design through its targets.
 
     ``angles`` are the targets' input angles, absolute and continuous from the first; ``start`` and ``end`` bound the
-    range that is used, ``start`` being the first target where they are met in order. ``same_branch`` says that the
-    input turns over that range without a toggle and every target has one assembly; ``same_circuit`` that the linkage
-    reaches them all without being taken apart; ``in_order`` that the targets are met one after the other with the input
-    turning one way, or, where they lie on both branches of a circuit, going round the circuit one way.
+    used range, with ``start`` at the first target if they are met in order. ``same_branch``: the input turns over that
+    range without a toggle and all targets have one assembly. ``same_circuit``: the linkage reaches all targets without
+    disassembly. ``in_order``: the targets are met one after the other with the input turning in one direction or, if
+    they lie on both branches of a circuit, going around the circuit in one direction.
     """
 
     angles: Real
@@ -127,11 +129,11 @@ class Traversal(NamedTuple):
 
 
 def traverse(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike) -> Traversal:
-    """How one design moves from its first target to the last.
+    """Determine how one design moves from its first target to the last.
 
-    Of the two directions of the input the one is taken that meets all targets in their order within one turn and free
-    of toggles; of two such directions the shorter. When there is none the targets are met out of order, or on both
-    branches, within the input's limits around the first target.
+    The direction of the input is the one that meets all targets in order within one turn and without toggles; of two
+    such directions the shorter. If there is none, the targets are met out of order, or on both branches, within the
+    input's limits around the first target.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Grashof's condition and Barker's fourteen classes of the pin-jointed fourbar (Norton, Sec. 2.12 and Table 2-4).
 
 With S the shortest and L the longest link, P and Q the others: S + L < P + Q is Grashof (class I), > is non-Grashof
-(class II), = is the special case (class III) whose links can all fall into one line, the change points.
+(class II), = is the special case (class III) whose links can all lie in one line, the change points.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from kinematics.linkage.fourbar.closed_form import Fourbar, Mask, Real, require
 
 
 class BarkerClass(NamedTuple):
-    """One row of Barker's table. ``motion`` is the behaviour of input and output in words."""
+    """One row of Barker's table; ``motion`` names the behaviour of input and output."""
 
     type: int
     name: str
@@ -47,7 +47,7 @@ BARKER = (
 
 
 def grashof_excess(lengths: ArrayLike) -> Real:
-    """S + L − P − Q: negative for Grashof linkages, zero at change points.
+    """Return S + L − P − Q: negative for Grashof linkages, zero at change points.
 
     Parameters
     ----------
@@ -64,24 +64,26 @@ def grashof_excess(lengths: ArrayLike) -> Real:
         raise DimensionError("lengths", "four on the last axis", list(lengths.shape))
     require("lengths", "positive and finite", lengths, np.isfinite(lengths) & (lengths > 0.0))
     s, p, q, longest = np.moveaxis(np.sort(lengths, axis=-1), -1, 0)
+    # Differences first: the sums of nearly equal lengths would cancel.
     return np.asarray((longest - q) - (p - s))
 
 
 def grashof_class(lengths: ArrayLike) -> NDArray[np.int64]:
-    """Class 1 (Grashof), 2 (non-Grashof) or 3 (special case) of four lengths on the last axis (Norton 2.8).
+    """Return class 1 (Grashof), 2 (non-Grashof) or 3 (special case) of four lengths on the last axis (Norton 2.8).
 
     Raises as :func:`grashof_excess` does.
     """
     lengths = np.asarray(lengths, np.float64)
     excess = grashof_excess(lengths)
+    # Relative to the perimeter, so that the class does not depend on the unit.
     special = np.abs(excess) <= CHANGE_POINT * lengths.sum(axis=-1)
     return np.where(special, 3, np.where(excess < 0.0, 1, 2))
 
 
 def barker_type(linkage: Fourbar) -> NDArray[np.int64]:
-    """Barker's type number 1 to 14 of each design; look it up in :data:`BARKER`.
+    """Return Barker's type number 1 to 14 of each design; its row is in :data:`BARKER`.
 
-    A linkage that no position assembles (one link longer than the other three together) is of no class: type 0.
+    A linkage that cannot be assembled (one link longer than the other three together) has no class: type 0.
     """
     types = np.empty(linkage.input.shape, np.int64)
     kernels.barker_types(*over_designs(linkage.blocks, types.shape), types.reshape(-1))
@@ -89,12 +91,12 @@ def barker_type(linkage: Fourbar) -> NDArray[np.int64]:
 
 
 def barker_class(linkage: Fourbar) -> BarkerClass:
-    """Barker's row of a single design.
+    """Return Barker's row of a single design.
 
     Raises
     ------
     DimensionError
-        For a linkage that no position assembles, which is of no class.
+        For a linkage that cannot be assembled, which has no class.
     """
     number = int(barker_type(linkage))
     if number == 0:
@@ -107,5 +109,5 @@ def _listed(linkage: Fourbar) -> list[float]:
 
 
 def can_assemble(linkage: Fourbar) -> Mask:
-    """Whether any position exists: no link is longer than the other three together."""
+    """Return whether any position exists: no link is longer than the other three together."""
     return np.asarray(2.0 * linkage.lengths.max(axis=-1) <= linkage.lengths.sum(axis=-1))

@@ -4,12 +4,12 @@ Joints: O2 and O4 are the fixed pivots of input and output, A and B the moving p
 Link lengths are Norton's a (input), b (coupler), c (output), d (ground).
 
 Position. With A = O2 + a e^{iθ2}, the pin B lies on a circle of radius b about A and one of radius c about O4. On the
-axis from A to O4 (length f) it stands at x = (f² + b² − c²) / 2f with height h = ±√(b² − x²):
+axis from A to O4 (length f) it lies at x = (f² + b² − c²) / 2f with height h = ±√(b² − x²):
 
     B = A + (O4 − A)/f · (x + i σ h),        σ = +1 open, −1 crossed
 
 which is the half-angle solution of Norton 4.10 and 4.13 without its divisions by zero. The product under the root is
-kept in factors, 4 f² h² = (b + c + f)(b + c − f)(f + b − c)(f − b + c), so that it is exact near the toggles. The
+factored, 4 f² h² = (b + c + f)(b + c − f)(f + b − c)(f − b + c), so that it is accurate near the toggles. The
 sweeps over designs × angles are compiled (:mod:`kinematics.linkage.fourbar.kernels`).
 
 Derivatives. The loop A + b e^{iθ3} = O4 + c e^{iθ4} is differentiated with respect to time; each order is a real 2×2
@@ -76,9 +76,9 @@ AngleAxis = tuple[EllipsisType] | tuple[EllipsisType, None]
 
 @dataclass(frozen=True, eq=False)
 class Fourbar(DesignBatch):
-    """A batch of fourbars; all fields are kept with one shape, the *designs*. One design has shape ``()``.
+    """A batch of fourbars; all fields have one shape, the *designs*. A single design has shape ``()``.
 
-    A value: the arrays are copies of what was given and cannot be written to. Two batches compare by identity.
+    A value: the arrays are read-only copies of the arguments. Two batches compare by identity.
 
     Parameters
     ----------
@@ -115,6 +115,7 @@ class Fourbar(DesignBatch):
         output: ArrayLike,
         coupler_point: ArrayLike = 0.0,
     ) -> None:
+        # One compiled check for all fields; the slow diagnosis only runs on failure.
         if not kernels.sound_dimensions(*self._keep(input_pivot, output_pivot, coupler_point, input, coupler, output)):
             self._refuse()
 
@@ -125,6 +126,7 @@ class Fourbar(DesignBatch):
             require(name, "positive and finite", length, np.isfinite(length) & (length > 0.0))
         for name in ("input_pivot", "output_pivot", "coupler_point"):
             require(name, "finite", getattr(self, name), np.isfinite(getattr(self, name)))
+        # Pivots near the largest double overflow here and are reported below.
         with np.errstate(over="ignore"):
             ground = self.ground
         require("ground", "positive and finite", ground, np.isfinite(ground) & (ground > 0.0))
@@ -138,7 +140,7 @@ class Fourbar(DesignBatch):
         ground: ArrayLike,
         coupler_point: ArrayLike = 0.0,
     ) -> Fourbar:
-        """Fourbar of Norton's a, b, c, d with O2 at the origin and the ground link along +x."""
+        """Build a fourbar from Norton's a, b, c, d, with O2 at the origin and the ground link along +x."""
         length = np.asarray(ground, np.float64)
         require("ground", "positive and finite", length, np.isfinite(length) & (length > 0.0))
         return cls(np.zeros_like(length), length, input, coupler, output, coupler_point)
@@ -160,7 +162,7 @@ class Fourbar(DesignBatch):
 
 
 class Positions(NamedTuple):
-    """Configuration over designs × input angles. Where ``valid`` is False the numbers are NaN.
+    """Configuration over designs × input angles; NaN where ``valid`` is False.
 
     ``coupler_angle`` and ``output_angle`` (θ3 of A → B, θ4 of O4 → B) are absolute, radians in (−π, π].
     """
@@ -176,7 +178,7 @@ class Positions(NamedTuple):
 class CouplerMotion(NamedTuple):
     """Coupler points with velocity and acceleration over designs × input angles.
 
-    The position is NaN where not ``valid``, the derivatives are where not ``moves``: at toggles too.
+    The position is NaN where ``valid`` is False, the derivatives where ``moves`` is False, which includes toggles.
     """
 
     valid: Mask
@@ -207,7 +209,7 @@ class Motion(NamedTuple):
 
 
 def positions(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> Positions:
-    """Closed-form positions for every design at every input angle (Norton 4.10, 4.13).
+    """Compute closed-form positions for every design at every input angle (Norton 4.10, 4.13).
 
     Parameters
     ----------
@@ -243,7 +245,7 @@ def positions(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OP
 
 
 def coupler_points(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> CouplerPoints:
-    """Coupler points alone, for large sweeps; parameters, shapes and errors as for :func:`positions`."""
+    """Compute only coupler points, for large sweeps; parameters, shapes and errors as for :func:`positions`."""
     return swept_coupler_points(kernels, linkage.blocks, input_angle, assembly)
 
 
@@ -255,10 +257,11 @@ def coupler_motion(
     speed: ArrayLike = 1.0,
     acceleration: ArrayLike = 0.0,
 ) -> CouplerMotion:
-    """Position, velocity and acceleration of the coupler point alone, for large sweeps.
+    """Compute only position, velocity and acceleration of the coupler point, for large sweeps.
 
     Parameters, shapes and errors are those of :func:`motion`.
     """
+    # The jerk is not needed, but the rates have three rows.
     _, at, rates = rated_sweep(linkage.blocks, input_angle, assembly, speed, acceleration, 0.0)
     points, valid = np.empty((3, *at.flat), np.complex128), np.empty((2, *at.flat), np.bool_)
     kernels.coupler_motion(*at[:4], rates, points, valid)
@@ -275,7 +278,7 @@ def motion(
     acceleration: ArrayLike = 0.0,
     jerk: ArrayLike = 0.0,
 ) -> Motion:
-    """Positions and their first three time derivatives (Norton 6.18, 7.12, and once more differentiated).
+    """Compute positions and their first three time derivatives (Norton 6.18, 7.12, and one more differentiation).
 
     Parameters
     ----------
@@ -300,7 +303,7 @@ def motion(
 
 
 def with_angle_axis(linkage: Fourbar, input_angle: ArrayLike, assembly: tuple[int, ...] = ()) -> tuple[Real, AngleAxis]:
-    """Input angles, and the index that gives every field of the linkage its trailing angle axis."""
+    """Return input angles, and the index that gives every field of the linkage its trailing angle axis."""
     theta = np.asarray(input_angle, np.float64)
     designs = linkage.input.shape
     if theta.ndim == 0 and designs == assembly == ():
@@ -310,7 +313,7 @@ def with_angle_axis(linkage: Fourbar, input_angle: ArrayLike, assembly: tuple[in
 
 
 def closes(product: Real, b: Real, c: Real, f: Real) -> Mask:
-    """Whether sides b and c meet over the base f, a triangle folded flat (to rounding) included.
+    """Return whether sides b and c meet over the base f, including a triangle folded flat (to rounding).
 
     ``product`` is 4 f² h² = (b + c + f)(b + c − f)(f + b − c)(f − b + c).
     """

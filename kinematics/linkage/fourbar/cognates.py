@@ -1,21 +1,21 @@
 """Cognates of a fourbar: other linkages whose coupler point traces the same curve.
 
 With the complex link vectors u = A − O2, v = B − A, w = B − O4, g = O4 − O2 the loop is u + v = g + w, and the coupler
-point is P = A + ζ v with ζ = P's place in the coupler's frame divided by b. The theorem of Roberts and Chebyshev
+point is P = A + ζ v with ζ = (P in the coupler's frame)/b. The theorem of Roberts and Chebyshev
 (S. Roberts, Proc. London Math. Soc. 7 (1875) 14, doi:10.1112/plms/s1-7.1.14; Norton, Sec. 3.7) is the loop multiplied
 by ζ and by 1 − ζ. The third fixed pivot, which completes a ground triangle similar to the coupler triangle, is
 
     OC = O2 + ζ g.
 
-*Left* cognate, on O2 and OC. From O2 the vectors ζ v, then ζ u, end at OC + ζ w. On its coupler, ζ u, stands
+*Left* cognate, on O2 and OC. From O2 the vectors ζ v, then ζ u, end at OC + ζ w. Its coupler, ζ u, carries
 O2 + ζ v + u = P: the coupler point is the coupler divided by ζ.
 
-*Right* cognate, on OC and O4. From OC the vectors (1 − ζ) u, then −(1 − ζ) w, end at O4 − (1 − ζ) v. On its coupler
-stands OC + (1 − ζ) u + ζ w = P.
+*Right* cognate, on OC and O4. From OC the vectors (1 − ζ) u, then −(1 − ζ) w, end at O4 − (1 − ζ) v. Its coupler
+carries OC + (1 − ζ) u + ζ w = P.
 
-Every link of a cognate therefore turns with one link of the source, at a constant angle from it. Nothing here asks
-for a triangle: with P on the line A B (Cayley's diagram flattened) ζ is real and the formulas stay. With P at a moving
-pivot the curve is a circle or an arc of one, ζ or 1 − ζ vanishes, and there is no cognate.
+Every link of a cognate therefore turns with one link of the source, at a constant angle from it. A proper triangle is
+not required: with P on the line A B (Cayley's diagram flattened) ζ is real and the formulas still hold. With P at a
+moving pivot the curve is a circle or an arc, ζ or 1 − ζ vanishes, and there is no cognate.
 
 *Geared fivebar* (Norton, Fig. 3-28). The left cognate's link ζ v at O2 and the right one's −(1 − ζ) v at O4 both turn
 with the source's coupler, hence with each other; u and w, from their ends, meet in P.
@@ -47,8 +47,8 @@ from kinematics.linkage.fourbar.closed_form import (
 Link = Literal["input", "coupler", "output"]
 
 AT_PIVOT = 1e-9
-"""P nearer to A or B than this share of the coupler is at the pivot: the cognate would have shrunk to this share of the
-source, while its coupler point keeps its distance, and nine digits would be lost."""
+"""Share of the coupler within which P counts as at A or B: the cognate would shrink to this share of the source while
+its coupler point keeps its distance, and nine digits would be lost."""
 
 
 class Configuration(NamedTuple):
@@ -71,7 +71,7 @@ class Cognate:
     linkage : Fourbar
         The cognate, designs as in the source.
     source : Fourbar
-        The linkage it was made from.
+        The original linkage.
     turns_with : tuple of str
         Links of the source with which the cognate's input, coupler and output turn.
     offset : float
@@ -85,11 +85,11 @@ class Cognate:
     offset: Real
 
     def configuration(self, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> Configuration:
-        """Where the cognate stands while the source stands at ``input_angle`` in ``assembly``.
+        """Return the cognate's configuration while the source is at ``input_angle`` in ``assembly``.
 
         The parameters and errors are those of :func:`kinematics.linkage.positions`, for the source. The cognate's
-        assembly changes on the way, where its own input passes a toggle. While the coupler of a parallelogram only
-        translates, a cognate's link that turns with it stands still and drives nothing.
+        assembly changes where its own input passes a toggle. Since the coupler of a parallelogram only translates, a
+        cognate's link that turns with it does not move and cannot drive.
         """
         at = positions(self.source, input_angle, assembly)
         theta, axis = with_angle_axis(self.source, input_angle, np.shape(assembly))
@@ -101,6 +101,7 @@ class Cognate:
         own_input, own_coupler, own_output = (
             vector[link] * np.exp(1j * self.offset[..., k][axis]) for k, link in enumerate(self.turns_with)
         )
+        # The side of the output relative to the coupler decides the assembly.
         side = own_coupler.real * own_output.imag - own_coupler.imag * own_output.real
         angle = np.where(at.valid, np.angle(own_input), np.nan)
         return Configuration(at.valid, angle, np.where(side < 0.0, CROSSED, OPEN))
@@ -109,7 +110,7 @@ class Cognate:
 class Cognates(NamedTuple):
     """Both cognates: ``left`` on O2 (its input) and OC, ``right`` on OC (its input) and O4.
 
-    The right one turns its input with the source's input and is always in the other assembly; a crank stays a crank
+    The right one's input turns with the source's input, and it is always in the other assembly; a crank stays a crank
     and the transmission angle is the same (Norton, Sec. 3.7). The left one's input turns with the source's coupler.
     """
 
@@ -155,12 +156,12 @@ class ParallelMotion:
 
 
 def cognates(linkage: Fourbar) -> Cognates:
-    """Both Roberts–Chebyshev cognates (Norton, Sec. 3.7, Figs. 3-24 to 3-26).
+    """Build both Roberts–Chebyshev cognates (Norton, Sec. 3.7, Figs. 3-24 to 3-26).
 
     Raises
     ------
     DimensionError
-        For a coupler point at A or B, which has none.
+        For a coupler point at A or B, which has no cognates.
 
     Examples
     --------
@@ -173,6 +174,7 @@ def cognates(linkage: Fourbar) -> Cognates:
     zeta, rest = _ratios(linkage)
     pivot = linkage.input_pivot + zeta * (linkage.output_pivot - linkage.input_pivot)
     a, b, c = linkage.input, linkage.coupler, linkage.output
+    # Lengths scale by the moduli, angles by the arguments.
     stretch, shrink = np.abs(zeta), np.abs(rest)
     left = Fourbar(linkage.input_pivot, pivot, stretch * b, stretch * a, stretch * c, a * stretch / zeta)
     right = Fourbar(pivot, linkage.output_pivot, shrink * a, shrink * c, shrink * b, -c * zeta * shrink / rest)
@@ -189,7 +191,7 @@ def cognates(linkage: Fourbar) -> Cognates:
 
 
 def geared_fivebar_cognate(linkage: Fourbar) -> GearedFivebarCognate:
-    """The geared fivebar on O2 and O4 that traces the same curve (Norton, Sec. 3.7 and Fig. 3-28).
+    """Build the geared fivebar on O2 and O4 that traces the same curve (Norton, Sec. 3.7 and Fig. 3-28).
 
     Its links are AP, a, c and BP, its gear ratio is +1. The geared fivebars on the other two pairs of pivots are those
     of the cognates.
@@ -215,7 +217,7 @@ def geared_fivebar_cognate(linkage: Fourbar) -> GearedFivebarCognate:
 
 
 def parallel_motion(linkage: Fourbar) -> ParallelMotion:
-    """The Watt I sixbar that carries a link along the coupler curve without turning it (Norton, Example 3-11).
+    """Build the Watt I sixbar that moves a link along the coupler curve without rotation (Norton, Example 3-11).
 
     Raises
     ------
@@ -232,14 +234,15 @@ def parallel_motion(linkage: Fourbar) -> ParallelMotion:
 
 
 def _ratios(linkage: Fourbar) -> tuple[Complex, Complex]:
-    """ζ and 1 − ζ, neither of them zero."""
+    """Compute ζ and 1 − ζ; neither may be zero."""
     zeta = linkage.coupler_point / linkage.coupler
+    # Not 1 − ζ, which would cancel for P near B.
     rest = (linkage.coupler - linkage.coupler_point) / linkage.coupler
     apart = np.minimum(np.abs(zeta), np.abs(rest)) > AT_PIVOT
-    require("coupler_point", "apart from the moving pivots A and B", linkage.coupler_point, apart)
+    require("coupler_point", "away from the moving pivots A and B", linkage.coupler_point, apart)
     return zeta, rest
 
 
 def _wrapped(angle: Real) -> Real:
-    """Angle in (−π, π]."""
+    """Wrap an angle to (−π, π]."""
     return np.asarray(np.pi - np.mod(np.pi - angle, 2.0 * np.pi))

@@ -1,9 +1,9 @@
 """The coupler curve of a fourbar as an algebraic curve: a tricircular sextic with three double points.
 
 Equation (S. Roberts, Proc. London Math. Soc. 7 (1875) 14, doi:10.1112/plms/s1-7.1.14; A. Cayley, ibid. 136,
-doi:10.1112/plms/s1-7.1.136; Norton, Sec. 3.6). The point p = x + iy is held by the coupler's two bars, of lengths
-l = |z| to A and n = |z − b| to B, where z is the coupler point in the coupler's frame. With e = e^{iθ3}, q2 = p − O2
-and q4 = p − O4, A = p − z e lies on its circle about O2 and B = p − (z − b) e on its circle about O4:
+doi:10.1112/plms/s1-7.1.136; Norton, Sec. 3.6). The point p = x + iy is constrained by the coupler's two bars, of
+lengths l = |z| to A and n = |z − b| to B, where z is the coupler point in the coupler's frame. With e = e^{iθ3}, q2 = p
+− O2 and q4 = p − O4, A = p − z e lies on its circle about O2 and B = p − (z − b) e on its circle about O4:
 
     Re(m1 e) = k1,   m1 = q̄2 z,          k1 = (|q2|² + l² − a²) / 2
     Re(m2 e) = k2,   m2 = q̄4 (z − b),    k2 = (|q4|² + n² − c²) / 2
@@ -52,20 +52,20 @@ CRUNODE, CUSP, ACNODE = 1, 0, -1
 """Kinds of double points: the curve crosses itself, has a cusp, or is an isolated real point."""
 
 AT_CUSP = 1e-9
-"""1 − K²/|M|² within this is a cusp: the loop of the curve is then shorter than some 1e-4 rad of the coupler's turn,
-and its size goes with the cube of that, below 1e-12 of the linkage."""
+"""Bound of |1 − K²/|M|²| for a cusp: the loop of the curve then spans less than about 1e-4 rad of the coupler's
+rotation, and its size, which goes with the cube of that, is below 1e-12 of the linkage."""
 
 REAL_ROOT = 1e-7
-"""Imaginary part, relative to 1 + |root|, up to which a root is real: rounding splits a double root by √eps, and a
-pair split by so little meets the real equation to the square of this."""
+"""Imaginary part, relative to 1 + |root|, up to which a root counts as real: rounding splits a double root by √ε, and
+the real part of such a pair satisfies the equation to the square of this."""
 
 
 class DoublePoints(NamedTuple):
-    """The three double points on the circle of singular foci, shape designs + (3,), the real ones first.
+    """The three double points on the circle of singular foci, shape designs + (3,), real ones first.
 
     ``valid`` marks the real ones; ``kind`` is :data:`CRUNODE`, :data:`CUSP` or :data:`ACNODE` (also where ``valid`` is
-    False). ``input_angle`` (radians) and ``assembly``, shape designs + (3, 2), are the two configurations that pass a
-    crunode, twice the same at a cusp; NaN and +1 where there is none.
+    False). ``input_angle`` (radians) and ``assembly``, shape designs + (3, 2), are the two configurations at a crunode,
+    twice the same one at a cusp; NaN and +1 without a configuration.
     """
 
     valid: Mask
@@ -76,7 +76,8 @@ class DoublePoints(NamedTuple):
 
 
 def coupler_curve_degree(links: int) -> int:
-    """Highest degree of a coupler curve of a linkage of n links, m = 2 · 3^(n/2 − 1) (Wunderlich; Norton 3.3).
+    """Return the maximum degree of a coupler curve of a linkage of n links, m = 2 · 3^(n/2 − 1) (Wunderlich; Norton
+    3.3).
 
     Raises
     ------
@@ -94,21 +95,21 @@ def coupler_curve_degree(links: int) -> int:
 
 
 def curve_unit(linkage: Fourbar) -> Real:
-    """Unit of length of the monic sextic: a + b + c + d + |AP|, which no part of the linkage exceeds; shape designs."""
+    """Return the unit of length of the monic sextic, a + b + c + d + |AP|, which no link exceeds; shape designs."""
     return np.asarray(linkage.lengths.sum(axis=-1) + np.abs(linkage.coupler_point))
 
 
 def sextic_coefficients(linkage: Fourbar) -> Complex:
-    """Coefficients of the monic sextic Σ C[j, k] ξ^j ξ̄^k with j, k = 0 … 3 and ξ = (p − O2) / unit.
+    """Compute the coefficients of the monic sextic Σ C[j, k] ξ^j ξ̄^k with j, k = 0 … 3 and ξ = (p − O2) / unit.
 
-    Shape designs + (4, 4). C is Hermitian and C[3, 3] = 1: fifteen real numbers besides, the same for a
-    linkage and its cognates once these are brought to one origin and unit.
+    Shape designs + (4, 4). C is Hermitian and C[3, 3] = 1, which leaves fifteen real numbers. They are equal for a
+    linkage and its cognates in a common origin and unit.
     """
     _, a, b, c, z, rest, ground = _scaled(linkage)
     zero, half = np.zeros_like(z), np.full_like(z, 0.5)
 
     def grid(*rows: tuple[Complex, ...]) -> Complex:
-        """Rows by powers of ξ, columns by powers of ξ̄."""
+        """Build a grid with rows by powers of ξ and columns by powers of ξ̄."""
         return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
     k1 = grid((0.5 * (_square(z) - a * a) + zero, zero), (zero, half))
@@ -121,12 +122,13 @@ def sextic_coefficients(linkage: Fourbar) -> Complex:
     turned = _product(_adjoint(m1), m2)
     circle = -0.5j * (turned - _adjoint(turned))
     found = _product(cubic, _adjoint(cubic))
+    # D is real and of lower degree, so D² only affects the leading 3 × 3 block.
     found[..., :3, :3] -= _product(circle, circle)
     return np.asarray(found * (4.0 / (b * b))[..., None, None])
 
 
 def double_points(linkage: Fourbar) -> DoublePoints:
-    """The real double points of the coupler curve with the configurations that pass them.
+    """Find the real double points of the coupler curve and the configurations that pass them.
 
     Raises
     ------
@@ -157,10 +159,12 @@ def double_points(linkage: Fourbar) -> DoublePoints:
         k1, k2 = 0.5 * (_square(q2) + near**2 - a * a), 0.5 * (_square(q4) + far**2 - c * c)
         both = (k1 * second * near + k2 * first * far) / ((second * near) ** 2 + (first * far) ** 2)
         turn = -u * v * ground.conj() / delta.conj()
+        # Positive: two coupler directions, hence a crunode.
         gap = 1.0 - both**2 / _square(turn)
         kind = np.where(np.abs(gap) <= AT_CUSP, CUSP, np.where(gap > 0.0, CRUNODE, ACNODE))
         spread = np.sqrt(np.where(kind == CRUNODE, gap, 0.0)) * np.abs(turn)
         e = (both[..., None] + 1j * spread[..., None] * np.array([1.0, -1.0])) / turn[..., None]
+        # Remove rounding from the unit vectors.
         e = e / np.abs(e)
     reached = (real & (kind != ACNODE))[..., None]
     arm, output = q2[..., None] - z[..., None] * e, q4[..., None] - rest[..., None] * e
@@ -175,7 +179,7 @@ def double_points(linkage: Fourbar) -> DoublePoints:
 
 
 class _Scaled(NamedTuple):
-    """The dimensions in units of ``unit``: link lengths, z, z − b and O4 − O2."""
+    """Dimensions in units of ``unit``: link lengths, z, z − b and O4 − O2."""
 
     unit: Real
     a: Real
@@ -195,16 +199,18 @@ def _scaled(linkage: Fourbar) -> _Scaled:
 def _require_sextic(linkage: Fourbar) -> None:
     z, b = linkage.coupler_point, linkage.coupler
     apart = np.minimum(np.abs(z), np.abs(z - b)) > AT_PIVOT * b
-    require("coupler_point", "apart from the moving pivots A and B", z, apart)
+    require("coupler_point", "away from the moving pivots A and B", z, apart)
 
 
 def _form_roots(form: Real) -> tuple[Real, Real, Mask]:
-    """Zeros (σ0, σ1) of the binary cubics Σ form[k] σ0^(3−k) σ1^k on the unit circle, real ones first and marked.
+    """Find the zeros (σ0, σ1) of the binary cubics Σ form[k] σ0^(3−k) σ1^k on the unit circle, real ones first.
 
-    The form is turned until its greatest value on six directions leads, so that no root is far away.
+    The form is rotated so that its largest value over six directions becomes the leading coefficient; then no root is
+    large.
     """
     angle = np.arange(6) * (np.pi / 6.0)
     directions = np.stack([np.cos(angle), np.sin(angle)])
+    # A cubic form cannot be small in all six directions.
     best = angle[np.abs(_form(form[..., None, :], *directions)).argmax(axis=-1)]
     x, y = np.cos(best), np.sin(best)
     along = _form_slope(form, x, y)
@@ -225,14 +231,14 @@ def _form(form: Real, x: Real, y: Real) -> Real:
 
 
 def _form_slope(form: Real, x: Real, y: Real) -> tuple[Real, Real]:
-    """Partial derivatives of the form."""
+    """Compute the partial derivatives of the form."""
     by_x = (3.0 * form[..., 0] * x + 2.0 * form[..., 1] * y) * x + form[..., 2] * y * y
     by_y = (form[..., 1] * x + 2.0 * form[..., 2] * y) * x + 3.0 * form[..., 3] * y * y
     return by_x, by_y
 
 
 def _roots(polynomial: Real) -> Complex:
-    """Roots of polynomials, lowest power first on the last axis, as eigenvalues of their companion matrices."""
+    """Find roots of polynomials, lowest power first on the last axis, as eigenvalues of companion matrices."""
     degree = polynomial.shape[-1] - 1
     companion = np.zeros((*polynomial.shape[:-1], degree, degree))
     companion[..., 1:, :-1] = np.eye(degree - 1)
@@ -241,7 +247,7 @@ def _roots(polynomial: Real) -> Complex:
 
 
 def _product(first: Complex, second: Complex) -> Complex:
-    """Product of polynomials in two variables, powers on the last two axes."""
+    """Multiply polynomials in two variables, powers on the last two axes."""
     (j, k), (m, n) = first.shape[-2:], second.shape[-2:]
     batch = np.broadcast_shapes(first.shape[:-2], second.shape[:-2])
     product = np.zeros((*batch, j + m - 1, k + n - 1), np.complex128)
@@ -252,10 +258,10 @@ def _product(first: Complex, second: Complex) -> Complex:
 
 
 def _adjoint(grid: Complex) -> Complex:
-    """The conjugate polynomial: powers of ξ and ξ̄ exchanged."""
+    """Return the conjugate polynomial: powers of ξ and ξ̄ exchanged."""
     return np.asarray(np.swapaxes(grid, -1, -2).conj())
 
 
 def _square(x: Complex | Real) -> Real:
-    """|x|²."""
+    """Return |x|²."""
     return np.asarray(x.real**2 + x.imag**2, np.float64)

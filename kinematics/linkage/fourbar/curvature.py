@@ -1,16 +1,16 @@
-"""Instantaneous kinematics of the fourbar: the coupler's pole, the centrodes, the curvature of its path.
+"""Instantaneous kinematics of the fourbar: the coupler's pole, the centrodes, the curvature of its point's path.
 
 With the link vectors u = A − O2, v = B − A and w = B − O4 the derivative of the closed loop gives the angular
 rates ω2 u + ω3 v = ω4 w up to a common factor by cross products, without a division:
 
     ω2 : ω3 : ω4 = v×w : w×u : v×u.
 
-Taken as the rates themselves they are a motion that goes smoothly through toggles (ω2 = 0) and through instants at
-which the coupler does not turn (ω3 = 0); only a change point (all zero) stops it. Its accelerations are
+Used directly as rates they define a motion that passes smoothly through toggles (ω2 = 0) and through instants without
+rotation of the coupler (ω3 = 0); only a change point (all zero) stops it. Its accelerations are
 
     ω2' = (ω4 − ω3) v·w,    ω3' = (ω2 − ω4) u·w,    ω4' = (ω2 − ω3) u·v,
 
-from u' = iω2 u and so on. What depends on geometry alone is taken from this motion.
+from u' = iω2 u and so on. Purely geometric quantities are computed from this motion.
 
 Pole (Norton, Sec. 6.4, 6.5; J. J. Uicker, G. R. Pennock, J. E. Shigley, *Theory of Machines and Mechanisms*, 3rd ed.,
 ch. 4). With the coupler angle φ = θ3 as the parameter, h = (v×w)/(u×w) and k = dθ4/dφ = (u×v)/(u×w), the pole
@@ -47,14 +47,15 @@ from kinematics.linkage.fourbar.closed_form import (
 )
 
 PARALLEL = 1e-12
-"""Sine below which two lines are parallel: their intersection, at 1e12 lengths, has no digit left."""
+"""Sine below which two lines are parallel: their intersection, 1e12 lengths away, has no correct digit."""
 
 STRAIGHT = 1e-12
-"""Curvature below this, per size of the linkage, is none: the centre of curvature has no digit left."""
+"""Curvature, per size of the linkage, below which the path is straight: the centre of curvature has no correct
+digit."""
 
 STATIONARY = 1e-9
-"""Speed of the coupler point below this, as a share of the speeds of the moving pivots, is rest: a cusp of its path,
-near which rounding of the position decides the direction."""
+"""Speed of the coupler point, as a share of the speeds of its components, below which it is at rest: a cusp of its
+path, where rounding of the position determines the direction."""
 
 
 class Pole(NamedTuple):
@@ -79,8 +80,8 @@ class Pole(NamedTuple):
 class PathCurvature(NamedTuple):
     """Curvature of the coupler point's path over designs × input angles.
 
-    ``curvature`` is positive where the path bends to the left while the input angle rises; NaN where ``valid`` is
-    False: no position, a change point, or a cusp. ``curved`` is False at inflections, where ``center`` is NaN.
+    ``curvature`` is positive where the path bends to the left for a rising input angle; NaN where ``valid`` is False:
+    no position, a change point, or a cusp. ``curved`` is False at inflections, where ``center`` is NaN.
     """
 
     valid: Mask
@@ -123,7 +124,7 @@ def pole(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -
 
 
 def path_curvature(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> PathCurvature:
-    """Curvature of the path of the coupler point, and its centre."""
+    """Compute the curvature of the path of the coupler point, and its centre."""
     x = _vectors(linkage, input_angle, assembly)
     place = (linkage.coupler_point / linkage.coupler)[x.axis]
     two, three, _ = x.rates
@@ -137,6 +138,7 @@ def path_curvature(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike
         bend = np.where(valid, _cross(velocity, acceleration) / speed**3, np.nan)
         curved = valid & (np.abs(bend) > STRAIGHT)
         center = np.where(curved, x.at.p + x.unit * 1j * velocity / speed / bend, np.nan)
+        # The smooth motion turns the input backwards in the crossed assembly, which reverses the curvature's sign.
         sign = np.asarray(assembly)[x.axis]
         return PathCurvature(valid, bend * sign / x.unit, curved, center)
 
@@ -144,6 +146,7 @@ def path_curvature(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike
 def _vectors(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike) -> _Vectors:
     at = positions(linkage, input_angle, assembly)
     theta, axis = with_angle_axis(linkage, input_angle, np.shape(assembly))
+    # Dimensionless vectors keep the tolerances independent of the unit.
     unit = linkage.lengths.sum(axis=-1)[axis]
     u = np.broadcast_to(linkage.input[axis] * np.exp(1j * theta) / unit, at.b.shape)
     v, w = (at.b - at.a) / unit, (at.b - linkage.output_pivot[axis]) / unit
@@ -151,13 +154,14 @@ def _vectors(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike) -> _
     rates = np.stack((_cross(v, w), _cross(w, u), _cross(v, u)))
     valid = at.valid & moves
     with np.errstate(divide="ignore", invalid="ignore"):
+        # The rates have a common factor; normalize the largest to 1.
         scale = np.where(valid, 1.0 / np.abs(rates).max(axis=0), np.nan)
         two, three, four = rates * scale
     return _Vectors(at, axis, valid, np.broadcast_to(unit, at.b.shape), u, v, w, (two, three, four), scale)
 
 
 def _accelerations(x: _Vectors) -> tuple[Real, Real, Real]:
-    """Rates of change of the three angular rates along the smooth motion."""
+    """Compute the derivatives of the three angular rates along the smooth motion."""
     two, three, four = x.rates
     return (
         (four - three) * _dot(x.v, x.w) * x.scale,
@@ -167,12 +171,12 @@ def _accelerations(x: _Vectors) -> tuple[Real, Real, Real]:
 
 
 def _crossing(one: Complex, other: Complex, least_sine: float = PARALLEL) -> Mask:
-    """Whether two directions differ; False for NaN."""
+    """Return whether two directions differ; False for NaN."""
     return np.asarray(np.abs(_cross(one, other)) > least_sine * np.abs(one) * np.abs(other))
 
 
 def _cross(one: Complex, other: Complex) -> Real:
-    """Cross product of vectors written as complex numbers."""
+    """Return the cross product of vectors given as complex numbers."""
     return np.asarray(one.real * other.imag - one.imag * other.real)
 
 

@@ -36,7 +36,7 @@ from kinematics.linkage.kernels import (
 
 @njit(**OPTIONS)
 def sound_dimensions(pivots: Complex, lengths: Real) -> bool:
-    """Whether all lengths, the ground's too, are positive and finite, and all points finite."""
+    """Return whether all lengths including the ground's are positive and finite, and all points finite."""
     for i in range(pivots.shape[1]):
         ground = abs(pivots[1, i] - pivots[0, i])
         good = math.isfinite(ground) and ground > 0.0
@@ -50,15 +50,17 @@ def sound_dimensions(pivots: Complex, lengths: Real) -> bool:
 
 @njit(**OPTIONS)
 def _coupler(gx: float, gy: float, kx: float, ky: float, b: float, c: float, sign: float) -> tuple[bool, float, float]:
-    """Whether the loop closes, and the vector u = B − A (NaN where not), from ground and crank vectors."""
+    """Close the loop: return whether it closes, and the vector u = B − A (else NaN), from ground and crank vectors."""
     dx, dy = gx - kx, gy - ky
     square = dx * dx + dy * dy
     f = math.sqrt(square)
     product = (b + c + f) * (b + c - f) * (f + (b - c)) * (f - (b - c))
+    # Non-short-circuit & keeps the loop free of branches.
     valid = (product >= -4.0 * ON_TOGGLE * b * c * square) & (f > 0.0)
     root = math.sqrt(product if product > 0.0 else 0.0)
     half = 0.5 / square
     along = (square + (b - c) * (b + c)) * half
+    # NaN marks an open loop and spreads to everything that depends on it.
     height = (sign * root if valid else math.nan) * half
     return valid, dx * along - dy * height, dy * along + dx * height
 
@@ -67,14 +69,15 @@ def _coupler(gx: float, gy: float, kx: float, ky: float, b: float, c: float, sig
 def _rates(
     gx: float, gy: float, kx: float, ky: float, ux: float, uy: float, least: float, w2: float, a2: float
 ) -> tuple[bool, float, float, float, float, float]:
-    """Whether Δ is sound, 1/Δ (NaN where not), and ω3, ω4, α3, α4."""
+    """Compute whether Δ is large enough, 1/Δ (else NaN), and ω3, ω4, α3, α4."""
     vx, vy = (kx - gx) + ux, (ky - gy) + uy
     determinant = vx * uy - vy * ux
     sound = math.fabs(determinant) > least
+    # A single division serves all orders of derivatives.
     inverse = (1.0 if sound else math.nan) / determinant
     w3 = -w2 * (vx * ky - vy * kx) * inverse
     w4 = -w2 * (ux * ky - uy * kx) * inverse
-    # What the loop's second derivative holds without α3 and α4.
+    # Second derivative of the loop without the terms in α3 and α4.
     x = -a2 * ky - w2 * w2 * kx - w3 * w3 * ux + w4 * w4 * vx
     y = a2 * kx - w2 * w2 * ky - w3 * w3 * uy + w4 * w4 * vy
     return sound, inverse, w3, w4, (vx * x + vy * y) * inverse, (ux * x + uy * y) * inverse
@@ -97,7 +100,7 @@ def _third(
     w4: float,
     a4: float,
 ) -> tuple[float, float]:
-    """φ3 and φ4."""
+    """Compute φ3 and φ4."""
     vx, vy = (kx - gx) + ux, (ky - gy) + uy
     n2, t2, n3, n4 = 3.0 * w2 * a2, j2 - w2 * w2 * w2, 3.0 * w3 * a3, 3.0 * w4 * a4
     x = -n2 * kx - t2 * ky - n3 * ux + n4 * vx
@@ -107,7 +110,7 @@ def _third(
 
 @njit(**OPTIONS)
 def coupler_points(pivots: Complex, lengths: Real, sign: Real, theta: Real, point: Complex, valid: Mask) -> None:
-    """P into ``point`` and ``valid``, shape (D, N)."""
+    """Fill P into ``point``, and ``valid``, shape (D, N)."""
     designs, n = valid.shape
     cosine, sine = np.empty(n), np.empty(n)
     for i in range(designs):
@@ -131,7 +134,7 @@ def coupler_points(pivots: Complex, lengths: Real, sign: Real, theta: Real, poin
 def whole_positions(
     pivots: Complex, lengths: Real, sign: Real, theta: Real, points: Complex, angles: Real, valid: Mask
 ) -> None:
-    """A, B, P into ``points`` (3, D, N), angles of coupler and output into ``angles`` (2, D, N), ``valid`` (D, N)."""
+    """Fill A, B, P into ``points`` (3, D, N), coupler and output angles into ``angles`` (2, D, N), ``valid`` (D, N)."""
     designs, n = valid.shape
     cosine, sine, work = np.empty(n), np.empty(n), np.empty((4, TILE))
     ax, ay, ux, uy = work[0], work[1], work[2], work[3]
@@ -164,9 +167,9 @@ def whole_positions(
 def coupler_motion(
     pivots: Complex, lengths: Real, sign: Real, theta: Real, rates: Real, points: Complex, valid: Mask
 ) -> None:
-    """Position, velocity and acceleration of P into ``points`` (3, D, N).
+    """Fill position, velocity and acceleration of P into ``points`` (3, D, N).
 
-    ``valid`` (2, D, N) tells where the position exists, and where its derivatives do.
+    ``valid`` (2, D, N) marks where the position exists, and where its derivatives exist.
     """
     _, designs, n = valid.shape
     cosine, sine, work = np.empty(n), np.empty(n), np.empty((9, TILE))
@@ -215,9 +218,9 @@ def coupler_motion(
 def whole_motion(
     pivots: Complex, lengths: Real, sign: Real, theta: Real, rates: Real, points: Complex, angles: Real, valid: Mask
 ) -> None:
-    """Positions and three derivatives: A, B, P into ``points`` (4, 3, D, N), links into ``angles`` (4, 2, D, N).
+    """Fill positions and three derivatives: A, B, P into ``points`` (4, 3, D, N), links into ``angles`` (4, 2, D, N).
 
-    ``valid`` (2, D, N) tells where the position exists, and where its derivatives do.
+    ``valid`` (2, D, N) marks where the position exists, and where its derivatives exist.
     """
     _, designs, n = valid.shape
     cosine, sine, work = np.empty(n), np.empty(n), np.empty((8, TILE))

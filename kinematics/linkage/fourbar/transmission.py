@@ -5,7 +5,7 @@ The included angle γ at B of the triangle A B O4 depends on the diagonal f = |O
     tan²(γ/2) = (f² − (b − c)²) / ((b + c)² − f²),
 
 and rises with f; f in turn rises with the distance of the input angle from the ground line. Over a range of input
-angles the extremes therefore stand at its ends, or where the input lies along the ground line.
+angles the extremes therefore occur at its ends, or where the input lies along the ground line.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from kinematics.linkage.fourbar.closed_form import Fourbar, Real, closes, one_sh
 
 
 def transmission_angle(linkage: Fourbar, input_angle: ArrayLike) -> Real:
-    """Transmission angle in radians, 0 to π/2; the same for both assemblies; NaN where none exists.
+    """Return the transmission angle in radians, 0 to π/2; the same for both assemblies; NaN without a position.
 
     Parameters
     ----------
@@ -31,12 +31,13 @@ def transmission_angle(linkage: Fourbar, input_angle: ArrayLike) -> Real:
     theta, axis = with_angle_axis(linkage, input_angle)
     b, c = linkage.coupler[axis], linkage.output[axis]
     f = np.abs((linkage.output_pivot - linkage.input_pivot)[axis] - linkage.input[axis] * np.exp(1j * theta))
+    # Heron's product in factored form, accurate near a toggle.
     product = (b + c + f) * (b + c - f) * (f + (b - c)) * (f - (b - c))
     return np.where(closes(product, b, c, f) & (f > 0.0), _acute(_included(b, c, f)), np.nan)
 
 
 def transmission_extremes(linkage: Fourbar, start: ArrayLike, end: ArrayLike) -> tuple[Real, Real]:
-    """Least and greatest transmission angle while the input turns from ``start`` to ``end``, exactly.
+    """Find the exact minimum and maximum transmission angle while the input turns from ``start`` to ``end``.
 
     Parameters
     ----------
@@ -48,8 +49,8 @@ def transmission_extremes(linkage: Fourbar, start: ArrayLike, end: ArrayLike) ->
     Returns
     -------
     least, greatest : float
-        Radians in 0 to π/2, shape S. Where the range leaves what can be assembled ``least`` is 0, as the linkage
-        stops at a toggle there, and ``greatest`` belongs to the rest of the range (0 where there is none).
+        Radians in 0 to π/2, shape S. If the range contains inputs that cannot be assembled, ``least`` is 0, since the
+        linkage stops at a toggle there, and ``greatest`` refers to the rest of the range (0 if empty).
 
     Raises
     ------
@@ -66,7 +67,7 @@ def transmission_extremes(linkage: Fourbar, start: ArrayLike, end: ArrayLike) ->
 
 
 def _included(b: Real, c: Real, f: Real) -> Real:
-    """Angle at B of the triangle with sides b and c and base f; 0 or π where the base is too short or too long."""
+    """Compute the angle at B of the triangle with sides b, c and base f; 0 or π for a base too short or too long."""
     numerator = (f + (b - c)) * (f - (b - c))
     denominator = (b + c + f) * (b + c - f)
     return np.asarray(2.0 * np.arctan2(np.sqrt(np.maximum(numerator, 0.0)), np.sqrt(np.maximum(denominator, 0.0))))

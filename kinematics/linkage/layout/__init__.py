@@ -1,10 +1,10 @@
-"""How a finished linkage is built in planes: what crosses in its motion, and which plate lies where.
+"""Arrangement of a finished linkage in parallel planes: collisions during its motion, and a plane for each plate.
 
-A linkage is drawn in one plane, but built in several: links that a pin joins lie on each other, and whatever else meets
-in the motion has to be kept apart as well. :mod:`~kinematics.linkage.layout.parts` says what is built,
-:mod:`~kinematics.linkage.layout.planes` finds the fewest planes, and :mod:`~kinematics.linkage.layout.plan` sweeps the
-motion and puts both together. What no planes between two bases can part, :mod:`~kinematics.linkage.layout.divided` lays
-out on either side of a base.
+A linkage is drawn in one plane but built in several: links joined by a pin lie on top of each other, and other parts
+that would collide during the motion need different planes as well. :mod:`~kinematics.linkage.layout.parts` lists the
+parts, :mod:`~kinematics.linkage.layout.planes` minimizes the number of planes, and
+:mod:`~kinematics.linkage.layout.plan` sweeps the motion and combines both. If no arrangement between two bases works,
+:mod:`~kinematics.linkage.layout.divided` places parts on both sides of a base.
 """
 
 from kinematics.linkage.layout.divided import DividedLayout, divisions, laid_out_divided

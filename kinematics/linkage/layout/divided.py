@@ -1,18 +1,17 @@
 """A linkage on both sides of a base: one of its links is two plates on a shaft that turns in that base.
 
-Where a crank goes all the way round the fixed pivot of a link whose coupler passes over both shafts, as in a Whitworth
-quick return, every plane is in the way of some shaft. The link is then *divided*: a plate below a second base and one
-above it, both keyed to one shaft through it. From below there are
+If a crank turns fully around the fixed pivot of a link whose coupler passes over both shafts, as in a Whitworth quick
+return, every plane is blocked by some shaft. The link is then *divided*: one plate below a second base and one above
+it, both keyed to a shaft through it. From below there are
 
 * the base, plane 0;
-* the planes *inside*, between the two bases: the lower plate, and the links that are joined to it;
+* the planes *inside*, between the two bases: the lower plate, and the links joined to it;
 * the second base, which bears the shaft;
-* the planes above it: the upper plate, and the links that are joined to that.
+* the planes above it: the upper plate, and the links joined to that.
 
-What is inside is kept from what is above by the base itself. A shaft of an inside link stands on the first base or
-hangs from the second, whichever is better, and one above stands on the second; a slide on the ground is a slot in
-that base. Each side is arranged in the fewest planes by :mod:`~kinematics.linkage.layout.planes`, for every choice of
-bases.
+The second base itself separates both sides. A shaft of an inside link stands on the first base or hangs from the
+second, whichever is better, and one above stands on the second; a slide on the ground is a slot in that base. Each side
+is arranged in the minimum number of planes by :mod:`~kinematics.linkage.layout.planes`, for every choice of bases.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 
 
 class Meeting(NamedTuple):
-    """Two parts that come too near, by their names, and an input at which they do."""
+    """Two parts that come too close, by their names, and an input at which they do."""
 
     parts: tuple[str, str]
     at: float
@@ -42,13 +41,14 @@ class DividedLayout:
     Attributes
     ----------
     planes : dict of str to int
-        Of each plate, from 1; those of the divided link are named by :func:`~kinematics.linkage.layout.parts.halves`.
+        Plane of each plate, from 1; the plates of the divided link are named by
+        :func:`~kinematics.linkage.layout.parts.halves`.
     pins : dict of str to pair of int
         The lowest and the highest plane that each pin joins, by its joint.
     base : int
         The plane of the second base.
     clashes : list of Meeting
-        What these planes do not part; empty where it can be built.
+        Collisions that these planes do not prevent; empty if the linkage can be built.
     """
 
     planes: dict[str, int]
@@ -58,10 +58,10 @@ class DividedLayout:
 
 
 def divisions(mechanism: Mechanism) -> list[Division]:
-    """The ways in which one link of a mechanism can be divided; none of one with gears.
+    """List the ways in which one link of a mechanism can be divided; none for a mechanism with gears.
 
-    A link can be where it alone has a fixed pivot, and what is joined to it falls apart into groups that hang together
-    by it and by the ground alone. Each group lies wholly on one side.
+    A link can be divided if no other link shares its fixed pivot and the links joined to it form several groups that
+    are connected only through this link and the ground. Each group lies wholly on one side.
     """
     if mechanism.gears:
         return []
@@ -69,6 +69,7 @@ def divisions(mechanism: Mechanism) -> list[Division]:
     ground, pinned = joints_of(mechanism, GROUND), places(mechanism)
     for link in mechanism.links:
         pivots = [place for place in pinned if place & ground and place & joints_of(mechanism, link)]
+        # The names of the halves must not collide with other links.
         if link == GROUND or len(pivots) != 1 or taken & {*halves(link)}:
             continue
         others = [other for other in mechanism.links if other not in (GROUND, link)]
@@ -83,6 +84,7 @@ def divisions(mechanism: Mechanism) -> list[Division]:
         if len(groups) < 2 or not all(joined):
             continue
         for inside in product((False, True), repeat=len(groups)):
+            # Both sides of the base need at least one group.
             if not all(inside) and any(inside):
                 lower = frozenset().union(*(joints for joints, below in zip(joined, inside, strict=True) if below))
                 links = frozenset().union(*(group for group, below in zip(groups, inside, strict=True) if below))
@@ -93,12 +95,12 @@ def divisions(mechanism: Mechanism) -> list[Division]:
 
 
 def _held(mechanism: Mechanism, link: str, pinned: Sequence[set[str]]) -> frozenset[str]:
-    """All joints that have a pin with those of a link."""
+    """Find all joints that share a pin with joints of a link."""
     return frozenset().union(*(place for place in pinned if place & joints_of(mechanism, link)))
 
 
 def _groups(held: dict[str, frozenset[str]]) -> list[frozenset[str]]:
-    """Links that pins join, directly or by one another."""
+    """Group links that pins connect, directly or through each other."""
     groups: list[frozenset[str]] = []
     for link in held:
         near = [group for group in groups if any(held[link] & held[other] for other in group)]
@@ -124,14 +126,14 @@ def laid_out_divided(
     mechanism : Mechanism
         A single design, of shape ().
     low, high : float
-        Least and greatest input of the motion, radians or positions along the input slide; the mechanism can be
-        assembled at all between them.
+        Minimum and maximum input of the motion, radians or positions along the input slide; the mechanism can be
+        assembled at all inputs between them.
     division : Division
         One of :func:`divisions`.
     link_width, pin_diameter, gap : float
         Length units; the pin is not wider than the link.
     slot_ends : float
-        How much farther than its joint goes a slot of a link reaches at either end.
+        Length by which a link's slot extends beyond the travel of its joint at either end.
 
     Raises
     ------
@@ -143,6 +145,7 @@ def laid_out_divided(
     below = {n for n, plate in enumerate(parts.plates) if plate.name == lower or plate.link in division.inside}
     met = _met(mechanism, parts, below, low, high, gap)
     free = [n for n, pin in enumerate(parts.pins) if pin.grounded and pin.plates <= below]
+    # Each shaft inside can stand on the first base or hang from the second: try all combinations.
     ways = [
         _Way(parts, below, dict(zip(free, hung, strict=True)), met) for hung in product((False, True), repeat=len(free))
     ]
@@ -157,11 +160,12 @@ def laid_out_divided(
 
 
 _Met = Sequence[tuple[int, int, float]]
-"""Parts that come too near, plates before pins, by their numbers in one list; and an input at which they do."""
+"""Parts that come too close, by their numbers (plates before pins), and an input at which they do."""
 
 
 def _met(mechanism: Mechanism, parts: Parts, below: set[int], low: float, high: float, gap: float) -> _Met:
-    """What comes too near, of plates and pins that no pin joins and that may be on one side of the base."""
+    """Find plates and pins that come too close, among those not joined by a pin and possibly on one side of the
+    base."""
     plates, pins = parts.plates, parts.pins
     count = len(plates)
     joined = {pair for pin in pins for pair in combinations(sorted(pin.plates), 2)}
@@ -183,7 +187,7 @@ def _met(mechanism: Mechanism, parts: Parts, below: set[int], low: float, high: 
 
 
 class _Way:
-    """The best planes of both sides with a choice of bases for the shafts inside: ``hung`` from the second one."""
+    """Best planes of both sides for one choice of bases for the shafts inside; ``hung``: from the second base."""
 
     def __init__(self, parts: Parts, below: set[int], hung: dict[int, bool], met: _Met) -> None:
         self._parts, self._hung, self._met = parts, hung, met
@@ -202,7 +206,7 @@ class _Way:
 
     @property
     def merit(self) -> tuple[int, int, int]:
-        """What clashes, the planes, and those that pins reach through; less is better."""
+        """Number of clashes, number of planes, and total length of the pins in planes; smaller is better."""
         return len(self.clashes), max(self.planes), sum(high - low for low, high in self.reaches)
 
     def _stacked(self, side: int, plates: Sequence[int]) -> tuple[int, ...]:
@@ -213,7 +217,7 @@ class _Way:
         return stacked(len(plates), apart, spindles)
 
     def _spindle(self, number: int, side: int) -> Spindle | None:
-        """What of a pin is on one side of the second base; None where nothing is."""
+        """Return the part of a pin on one side of the second base; None if it has no plate there."""
         pin = self._parts.pins[number]
         plates = frozenset(self._own[plate] for plate in pin.plates if self._side[plate] == side)
         if not plates:
@@ -227,9 +231,10 @@ class _Way:
         return Spindle(plates, meets, below=side in bases, above=side == 0 and 1 in bases)
 
     def _bases(self, number: int) -> set[int]:
-        """Those that hold a pin: 0 for the first, 1 for the second."""
+        """List the bases that hold a pin: 0 for the first, 1 for the second."""
         if not self._parts.pins[number].grounded:
             return set()
+        # Shafts above the second base stand on it.
         return {0} if self._hung.get(number) is False else {1}
 
     def _reach(self, number: int) -> tuple[int, int]:
@@ -242,7 +247,8 @@ class _Way:
         return min(ends), max(ends)
 
     def _parted(self, one: int, other: int) -> bool:
-        """Whether two parts that come too near are kept from each other."""
+        """Return whether the arrangement separates two parts that come too close."""
+        # Colliding plates of one side already lie in different planes.
         if other < self._count:
             return True
         if one >= self._count:

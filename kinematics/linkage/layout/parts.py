@@ -1,14 +1,14 @@
-"""What a planar mechanism is built of: plates that lie in planes, and pins that join them.
+"""Parts of a planar mechanism: plates that lie in planes, and pins that join them.
 
-* The *plate* of a link is the hull of its joints, the coupler point among them, widened by half of the link width.
-* A *pin* stands at every joint of two links or more; the ground counts as one, so that its joints are pivots.
-* On a *slide* a block runs in a slot of the link that has the line, in the plane of its plate, and turns on a pin at
-  the joint: the plate takes in the slot, from where the joint is least along the line in the motion to where it is
-  most, and the pin joins it as it joins the links of the joint. A slide on the ground is a slot in the base.
-* A *gear* is a disc of its pitch radius about the pivot of its link, a plate of its own, keyed to that link by the
-  shaft of the pivot. Gears that turn the same way have an idler between them, as large as the smaller of the two.
-* Joints of one link that lie on each other have one pin, and fixed pivots that do one shaft.
-* A *divided* link is two plates, one on either side of a base, on the one shaft of its fixed pivot.
+* The *plate* of a link is the hull of its joints, including the coupler point, widened by half the link width.
+* A *pin* is placed at every joint of two or more links; the ground counts as one, so its joints are pivots.
+* On a *slide* a block runs in a slot of the link with the line, in the plane of its plate, and turns on a pin at the
+  joint. The plate includes the slot, over the travel of the joint along the line, and the pin joins it like the other
+  links of the joint. A slide on the ground is a slot in the base.
+* A *gear* is a disc of its pitch radius about the pivot of its link: a separate plate, keyed to the link by the shaft.
+  Gears with the same sense of rotation have an idler between them, as large as the smaller of the two.
+* Coincident joints of one link share a pin, and coincident fixed pivots share a shaft.
+* A *divided* link is two plates, one on either side of a base, on the shaft of its fixed pivot.
 """
 
 from __future__ import annotations
@@ -28,23 +28,23 @@ Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
 
 GRID = 1441
-"""Inputs at which the ends of slots are looked for: a quarter of a degree of a full turn apart."""
+"""Number of inputs at which the ends of slots are searched: spaced by a quarter of a degree over a full turn."""
 
 ONE_PLACE = 1e-9
-"""Distance as a share of the mechanism's size below which joints lie on each other: one pin."""
+"""Distance, as a share of the mechanism's size, below which joints coincide and share a pin."""
 
 
 class Division(NamedTuple):
-    """A link that is made of two plates, both keyed to its shaft, which turns in a base between them.
+    """A link made of two plates, both keyed to its shaft, which turns in a base between them.
 
     Attributes
     ----------
     link : str
-        That has a fixed pivot of its own.
+        The link, which has a fixed pivot of its own.
     pivot : str
         The joint of the shaft.
     lower, upper : frozenset of str
-        Joints of either plate, those of blocks in its slots among them; the pivot is in both.
+        Joints of each plate, including those of blocks in its slots; the pivot belongs to both.
     inside : frozenset of str
         The other links that lie below that base.
     """
@@ -65,7 +65,7 @@ class Piece(NamedTuple):
 
 
 class Plate(NamedTuple):
-    """What lies in one plane: a link, or a gear that turns with it."""
+    """A part that lies in one plane: a link, or a gear that turns with it."""
 
     name: str
     link: str
@@ -78,11 +78,11 @@ class Pin(NamedTuple):
     Attributes
     ----------
     joint : str
-        Its joint; the first of those that lie on one another.
+        Its joint; the first of coincident ones.
     plates : frozenset of int
         The plates that it joins.
     grounded : bool
-        Whether it stands on the base, fixed or by a block in a slot there.
+        Whether it stands on the base, fixed or on a block in a slot there.
     outline : Part
         Its disc.
     """
@@ -94,12 +94,12 @@ class Pin(NamedTuple):
 
     @property
     def name(self) -> str:
-        """As an answer calls it."""
+        """Name used in answers."""
         return f"pin {self.joint}"
 
 
 class GearDisc(NamedTuple):
-    """The pitch circle of a gear that ties links; ``joint`` is that of its shaft, None of an idler's own."""
+    """Pitch circle of a gear that couples links; ``joint`` is that of its shaft, None for an idler."""
 
     joint: str | None
     name: str
@@ -109,7 +109,7 @@ class GearDisc(NamedTuple):
 
 
 class Parts(NamedTuple):
-    """Plates and pins; ``meshes`` are the gears that lie in one plane, plates by their numbers."""
+    """Plates and pins; ``meshes`` are the gears that lie in one plane, as numbers of plates."""
 
     plates: tuple[Plate, ...]
     pins: tuple[Pin, ...]
@@ -126,23 +126,23 @@ def parts_of(
     addendum: float = 0.0,
     division: Division | None = None,
 ) -> Parts:
-    """The parts of one design.
+    """Build the parts of one design.
 
     Parameters
     ----------
     mechanism : Mechanism
         A single design, of shape ().
     link_width, pin_diameter : float
-        Length units; the pin's at most the link's.
+        Width and diameter in length units; the pin is not wider than the link.
     low, high : float
-        Least and greatest input of the motion, radians or positions along the input slide: slots are as long as it
-        needs them.
+        Minimum and maximum input of the motion, radians or positions along the input slide; they determine the length
+        of slots.
     slot_ends : float
-        How much farther than its joint goes a slot of a link reaches at either end.
+        Length by which a link's slot extends beyond the travel of its joint at either end.
     addendum : float
-        How far the teeth of gears reach beyond their pitch circles.
+        Height of gear teeth beyond their pitch circles.
     division : Division, optional
-        Of a link that is made of two plates.
+        Division of a link into two plates.
 
     Raises
     ------
@@ -150,6 +150,7 @@ def parts_of(
         For gears on a link that is not pinned to the ground, of the ratio 0, or on one shaft.
     """
     travel = _travel(mechanism, low, high)
+    # Scale of the tolerance for coincident joints.
     size = max(abs(complex(z) - complex(w)) for z, w in combinations(mechanism.joints.values(), 2))
     moving = [link for link in mechanism.links if link != GROUND]
     own = pieces(mechanism, division)
@@ -183,6 +184,7 @@ def parts_of(
         joined = {n for n, piece in enumerate(own) if piece.joints & place}
         joined |= {plate for joint in place for plate in shafts.get(joint, ())}
         grounded = bool(ground & place)
+        # A joint of a single plate, such as a coupler point, needs no pin.
         if joined and len(joined) + grounded > 1:
             joint = next(name for name in mechanism.joints if name in place)
             carrier = next(link for link in (GROUND, *moving) if joint in mechanism.links.get(link, ()))
@@ -192,7 +194,7 @@ def parts_of(
 
 
 def _travel(mechanism: Mechanism, low: float, high: float) -> list[tuple[float, float]]:
-    """The least and the greatest travel of each slide: of a grid, by the parabola through three neighbours."""
+    """Find the minimum and maximum travel of each slide on a grid, refined by a parabola through three neighbours."""
     if not mechanism.slides:
         return []
     motion = drive(mechanism, np.linspace(low, high, GRID), order=0)
@@ -204,17 +206,18 @@ def _least(values: Real) -> float:
     if not 0 < k < len(values) - 1:
         return float(values[k])
     before, at, after = values[k - 1 : k + 2]
+    # Vertex of the parabola through three equally spaced samples.
     bend = before - 2.0 * at + after
     return float(at - 0.125 * (after - before) ** 2 / bend) if bend > 0.0 else float(at)
 
 
 def joints_of(mechanism: Mechanism, link: str) -> frozenset[str]:
-    """The joints of a link, and of the blocks in its slots."""
+    """List the joints of a link, and of the blocks in its slots."""
     return frozenset(mechanism.links[link]) | {slide.joint for slide in mechanism.slides if slide.link == link}
 
 
 def pieces(mechanism: Mechanism, division: Division | None = None) -> list[Piece]:
-    """The plates of the moving links: one of each, and two of a divided one."""
+    """List the plates of the moving links: one each, two for a divided link."""
     found = []
     for link in mechanism.links:
         if division is not None and link == division.link:
@@ -227,12 +230,12 @@ def pieces(mechanism: Mechanism, division: Division | None = None) -> list[Piece
 
 
 def halves(link: str) -> tuple[str, str]:
-    """The names of the two plates of a divided link."""
+    """Return the names of the two plates of a divided link."""
     return f"lower {link}", f"upper {link}"
 
 
 def places(mechanism: Mechanism) -> list[set[str]]:
-    """Joints, those of one link that lie on each other together: where a pin may stand."""
+    """Group the joints into possible places of pins: coincident joints of one link belong together."""
     near = ONE_PLACE * max(abs(complex(z) - complex(w)) for z, w in combinations(mechanism.joints.values(), 2))
     found = [{joint} for joint in mechanism.joints]
     for listed in mechanism.links.values():
@@ -246,10 +249,10 @@ def places(mechanism: Mechanism) -> list[set[str]]:
 
 
 def gear_discs(mechanism: Mechanism, gear: GearPair) -> list[GearDisc]:
-    """Gears that tie two links by a ratio: of the first, of the second, and an idler where both turn the same way.
+    """List the gears that couple two links by a ratio: first, second, and an idler if both turn the same way.
 
-    With radii in the ratio |λ| to 1 the discs touch on the line of the pivots: r + |λ| r = d, and with an idler as
-    large as the smaller one between them r + |λ| r + 2 min(r, |λ| r) = d.
+    With radii in the ratio |λ| to 1 the discs touch on the line of the pivots: r + |λ| r = d, or with an idler as large
+    as the smaller one between them r + |λ| r + 2 min(r, |λ| r) = d.
 
     Raises
     ------
@@ -265,7 +268,8 @@ def gear_discs(mechanism: Mechanism, gear: GearPair) -> list[GearDisc]:
         pivots.append(shared[0])
     o, q = (complex(mechanism.joints[joint]) for joint in pivots)
     if ratio == 0.0 or o == q:
-        raise TopologyError(f"gears of {first!r} and {second!r} need a ratio other than 0 and shafts apart")
+        raise TopologyError(f"gears of {first!r} and {second!r} need a ratio other than 0 and two distinct shafts")
+    # Equal sense of rotation requires an idler.
     idled = 2.0 * min(1.0, abs(ratio)) if ratio > 0.0 else 0.0
     unit = abs(q - o) / (1.0 + abs(ratio) + idled)
     found = [
@@ -279,9 +283,10 @@ def gear_discs(mechanism: Mechanism, gear: GearPair) -> list[GearDisc]:
 
 
 def _hull(points: Sequence[complex], near: float) -> Complex:
-    """Corners of the convex hull, counter-clockwise (Andrew's chain); of points on a line the two ends, or the one."""
+    """Find the corners of the convex hull, counter-clockwise (Andrew's chain); one or two if all are collinear."""
     listed: list[complex] = []
     for point in sorted(points, key=lambda z: (z.real, z.imag)):
+        # Nearly coincident points would create degenerate edges.
         if all(abs(point - other) > near for other in listed):
             listed.append(point)
     if len(listed) < 3:

@@ -1,13 +1,13 @@
-"""A finished linkage laid out in planes: what meets in its motion, which plate lies where, and what cannot be built.
+"""A finished linkage arranged in planes: collisions in its motion, a plane for each plate, and remaining clashes.
 
-Parts that come nearer to each other than the gap *meet*. Plates that meet lie in different planes, and so do plates
-that a pin joins; a plate that meets a pin lies nowhere between the planes that the pin joins
-(:mod:`~kinematics.linkage.layout.planes`). Where no arrangement is possible over the whole motion, the longest range
-of the input over which one is possible is found: its ends are ends of ranges in which some pair keeps the gap, and
-what meets in a range meets in every wider one, so that one pass over these ends finds it.
+Parts that come closer to each other than the gap *meet*. Plates that meet lie in different planes, and so do plates
+joined by a pin; a plate that meets a pin must not lie between the planes that the pin joins
+(:mod:`~kinematics.linkage.layout.planes`). If no arrangement is possible over the whole motion, the longest feasible
+range of the input is found: it starts and ends where some pair begins or ceases to keep the gap, and a collision in a
+range is one in every wider range, so a single pass over these ends finds it.
 
-A through shaft at a fixed pivot is held by two bases and fills every plane. A plate that meets it could lie nowhere: a
-stub shaft has to stand in for it, from one of the bases, whichever is better, to the farthest of its plates.
+A through shaft at a fixed pivot is held by two bases and occupies every plane. A plate that meets it would have no
+place: the shaft is replaced by a stub shaft, from one of the bases (whichever is better) to the farthest of its plates.
 """
 
 from __future__ import annotations
@@ -30,21 +30,22 @@ from kinematics.linkage.planar.mechanism import Mechanism
 Interval = tuple[float, float]
 
 FINE = 1e-4
-"""How finely the ends of free ranges are found: radians, or share of the mechanism's size along an input slide."""
+"""Accuracy of the ends of free ranges: radians, or share of the mechanism's size along an input slide."""
 
 MOST_STEPS = 3**12
-"""Steps of an arrangement, with every choice of sides for the stub shafts, at most; a free range takes some dozens."""
+"""Maximum number of steps of an arrangement over all choices of sides for stub shafts; a free range needs some dozens
+of arrangements."""
 
 NEAR, CLOSER, LOOKS = 0.1, 33, 4
-"""How far from a place that is known to be near the nearest is looked for, in the same units; at how many inputs, and
-how often: each time an eighth as wide."""
+"""Search for the minimum distance near a known close position: half-width in the same units, number of inputs, and
+number of rounds, each an eighth as wide as the one before."""
 
 
 class Clash(NamedTuple):
-    """Two parts that the planes do not keep apart, by their names.
+    """Two parts that the planes do not separate, by their names.
 
-    ``distance`` is the least of their outlines near the input ``at``, where they come about as near as anywhere; less
-    than nothing where they overlap, but no less than the sum of what they are widened by.
+    ``distance`` is the minimum of their outlines near the input ``at``, about the minimum over the motion; negative if
+    they overlap, but not below minus the sum of their radii.
     """
 
     parts: tuple[str, str]
@@ -59,19 +60,19 @@ class Layout:
     Attributes
     ----------
     planes : dict of str to int
-        Of each plate, from 1; the base is plane 0.
+        Plane of each plate, from 1; the base is plane 0.
     pins : dict of str to pair of int
-        The lowest and the highest plane that each pin joins, by its joint; 0 is the base, and one more than there are
-        planes what holds a through shaft at its other end.
+        Lowest and highest plane of each pin, by its joint; 0 is the base, and the number of planes + 1 is the support
+        of a through shaft at its other end.
     crossings : list of pairs of str
-        Plates that cross, and plates that pass over pins, but for those that a pin joins.
+        Plates that cross, and plates that pass over pins, except those joined by a pin.
     clashes : list of Clash
-        Those of them, and of the pins of one plate, that these planes do not part.
+        Crossings, and pairs of pins of one plate, that these planes do not separate.
     stub_shafts : list of str
-        Joints at which a stub shaft has to stand in for a through shaft.
+        Joints at which a stub shaft has to replace a through shaft.
     free : pair of float or None
-        The inputs between which nothing clashes: the whole motion where there is no clash; None where nothing can be
-        built. Of a whole cycle the range may begin anywhere in it.
+        Range of inputs without a clash: the whole motion if there is none; None if nothing can be built. For a whole
+        cycle the range may begin anywhere.
     """
 
     planes: dict[str, int]
@@ -83,12 +84,12 @@ class Layout:
 
     @property
     def count(self) -> int:
-        """The number of planes; the least there is."""
+        """Number of planes; proved to be the minimum."""
         return max(self.planes.values())
 
 
 class _Pair(NamedTuple):
-    """Two parts that come too near, at the input ``near``: plates, a pin and a plate, or pins, each by its number."""
+    """Two parts that come too close at the input ``near``: plates, a pin and a plate, or pins, each by its number."""
 
     parts: tuple[str, str]
     near: float
@@ -117,21 +118,21 @@ def laid_out(
     mechanism : Mechanism
         A single design, of shape ().
     low, high : float
-        Least and greatest input of the motion, radians or positions along the input slide; the mechanism can be
-        assembled at all between them.
+        Minimum and maximum input of the motion, radians or positions along the input slide; the mechanism can be
+        assembled at all inputs between them.
     link_width, pin_diameter, gap : float
         Length units; the pin is not wider than the link.
     through : bool
-        Whether shafts at fixed pivots are to pass all planes, and are held on both sides.
+        Whether shafts at fixed pivots pass through all planes, held on both sides.
     closed : bool
-        Whether the motion is one whole cycle, at whose ends everything stands alike.
+        Whether the motion is one whole cycle, with equal configurations at both ends.
     slot_ends : float
-        How much farther than its joint goes a slot of a link reaches at either end, for a block that is longer than
-        the pin in it.
+        Length by which a link's slot extends beyond the travel of its joint at either end, for a block that is longer
+        than its pin.
     addendum : float
-        How far the teeth of gears reach beyond their pitch circles.
+        Height of gear teeth beyond their pitch circles.
     whole : bool
-        Whether only the whole motion will do: then no free range is looked for, which takes the longest.
+        Whether only the whole motion is acceptable: then the free range, the slowest part, is not searched.
 
     Raises
     ------
@@ -144,6 +145,7 @@ def laid_out(
     scene = _Scene(mechanism, parts, low, high, gap)
     found = scene.met()
     shafts = {n for n, pin in enumerate(parts.pins) if through and pin.grounded}
+    # A through shaft that meets a plate anywhere must become a stub.
     stubs = {n for pair in found if pair.plates for n in pair.pins} & shafts
     builder = _Builder(parts, shafts, stubs)
     built = builder.best(found)
@@ -171,16 +173,17 @@ def laid_out(
 
 
 class _Built(NamedTuple):
-    """Planes of the plates, and the pins as they are held."""
+    """Planes of the plates, and the pins with their bases."""
 
     planes: tuple[int, ...]
     pins: tuple[Spindle, ...]
 
     def unparted(self, pairs: Sequence[_Pair]) -> list[_Pair]:
-        """The pairs that meet and are not kept from each other."""
+        """Find the pairs that meet and are not separated."""
         return [pair for pair in pairs if not self._parts(pair)]
 
     def _parts(self, pair: _Pair) -> bool:
+        # Two pins through one plate always share its plane.
         if len(pair.pins) == 2:
             return False
         if not pair.pins:
@@ -189,18 +192,19 @@ class _Built(NamedTuple):
 
 
 class _Builder:
-    """Finds the best planes for what meets; ``shafts`` are to be through, ``stubs`` those of them that cannot."""
+    """Search for the best planes; ``shafts`` should pass through all planes, ``stubs`` are those that cannot."""
 
     def __init__(self, parts: Parts, shafts: set[int], stubs: set[int]) -> None:
         self._parts = parts
         self._apart = _joined(parts)
         self._shafts, self._stubs = shafts, sorted(stubs)
         steps = 3 ** len(parts.plates) << len(stubs)
+        # Every choice of sides doubles the effort.
         if len(stubs) > 1 and steps > MOST_STEPS:
             raise DimensionError("stub shafts", f"fewer among {len(parts.plates)} plates", len(stubs))
 
     def best(self, pairs: Sequence[_Pair]) -> _Built:
-        """The planes in which the fewest of these pairs are in each other's way, then the fewest planes."""
+        """Find the planes with the fewest collisions among these pairs, then the fewest planes."""
 
         def merit(way: _Built) -> tuple[int, int, int]:
             reaches = [reach(way.planes, pin) for pin in way.pins]
@@ -209,11 +213,11 @@ class _Builder:
         return min(self._ways(pairs), key=merit)
 
     def parts(self, pairs: Sequence[_Pair]) -> bool:
-        """Whether there are planes in which none of these pairs is in each other's way."""
+        """Return whether there are planes without a collision among these pairs."""
         return any(not way.unparted(pairs) for way in self._ways(pairs))
 
     def _ways(self, pairs: Sequence[_Pair]) -> Iterator[_Built]:
-        """The best planes with each choice of sides for the stub shafts."""
+        """List the best planes for each choice of sides for the stub shafts."""
         apart = self._apart + [(pair.plates[0], pair.plates[1]) for pair in pairs if not pair.pins]
         meets: dict[int, set[int]] = {}
         for pair in pairs:
@@ -228,7 +232,7 @@ class _Builder:
             yield _Built(planes, pins)
 
     def _held(self, number: int, meets: frozenset[int], hung: dict[int, bool]) -> Spindle:
-        """A pin with the bases that hold it."""
+        """Return a pin with the bases that hold it."""
         pin = self._parts.pins[number]
         if number in hung:
             return Spindle(pin.plates, meets, below=not hung[number], above=hung[number])
@@ -236,12 +240,12 @@ class _Builder:
 
 
 def _joined(parts: Parts) -> list[tuple[int, int]]:
-    """Plates that a pin joins."""
+    """List the pairs of plates that a pin joins."""
     return sorted({pair for pin in parts.pins for pair in combinations(sorted(pin.plates), 2)})
 
 
 class _Scene:
-    """The parts of a mechanism in its motion, and which of them come nearer than the gap."""
+    """Parts of a mechanism in motion, and the pairs that come closer than the gap."""
 
     def __init__(self, mechanism: Mechanism, parts: Parts, low: float, high: float, gap: float) -> None:
         self._mechanism, self._parts = mechanism, parts
@@ -249,13 +253,13 @@ class _Scene:
         self._low, self._high, self._gap = low, high, gap
 
     def met(self) -> list[_Pair]:
-        """All pairs that do so somewhere, but for those that belong together."""
+        """Find all pairs that come too close somewhere, except those that belong together."""
         plates, pins = self._parts.plates, self._parts.pins
         joined = {*_joined(self._parts), *(pair for mesh in self._parts.meshes for pair in combinations(mesh, 2))}
         pairs: list[tuple[tuple[int, ...], tuple[int, ...]]] = []
         pairs += [(pair, ()) for pair in combinations(range(len(plates)), 2) if pair not in joined]
         pairs += [((k,), (n,)) for n, pin in enumerate(pins) for k in range(len(plates)) if k not in pin.plates]
-        # A plate that two pins pierce keeps them in one plane; so does the base.
+        # Two pins through the same plate, or on the base, share a plane there and cannot be separated.
         pairs += [
             ((), (n, m))
             for n, m in combinations(range(len(pins)), 2)
@@ -275,7 +279,7 @@ class _Scene:
         return one, other
 
     def clashes(self, pairs: Sequence[_Pair]) -> list[Clash]:
-        """How near pairs come, looked for more and more closely around the places that are known."""
+        """Measure the minimum distance of pairs by an ever finer search around their known close positions."""
         if not pairs:
             return []
         scene = Scene(self._mechanism, self._outlines, [self._numbers(pair.plates, pair.pins) for pair in pairs])
@@ -285,6 +289,7 @@ class _Scene:
             around = at[:, None] + width * np.linspace(-1.0, 1.0, CLOSER)
             inputs = np.clip(around, self._low, self._high)
             apart = scene.distances(rows, inputs.ravel(), none)[0].reshape(inputs.shape)
+            # NaN marks inputs without a position.
             nearest = np.nanargmin(apart, axis=1)[:, None]
             at = np.take_along_axis(inputs, nearest, axis=1)[:, 0]
             width *= 4.0 / (CLOSER - 1)
@@ -294,7 +299,7 @@ class _Scene:
         ]
 
     def free(self, pairs: Sequence[_Pair], *, closed: bool) -> list[list[Interval]]:
-        """The ranges in which each pair keeps the gap; of a cycle those of two, on end."""
+        """Find the ranges in which each pair keeps the gap; for a cycle over two consecutive cycles."""
         numbers = [self._numbers(pair.plates, pair.pins) for pair in pairs]
         fine = FINE * (_size(self._mechanism) if self._mechanism.driven_by_slide else 1.0)
         low, high = self._low, self._high
@@ -303,7 +308,7 @@ class _Scene:
 
 
 def _on_end(ranges: list[Interval], cycle: float) -> list[Interval]:
-    """The ranges of two cycles, those that meet between them as one."""
+    """Return the ranges of two consecutive cycles, joining those that meet at the boundary."""
     again = [(start + cycle, end + cycle) for start, end in ranges]
     if ranges and again[0][0] - ranges[-1][1] <= FINE:
         return [*ranges[:-1], (ranges[-1][0], again[0][1]), *again[1:]]
@@ -311,7 +316,7 @@ def _on_end(ranges: list[Interval], cycle: float) -> list[Interval]:
 
 
 def _size(mechanism: Mechanism) -> float:
-    """The greatest distance of two joints."""
+    """Measure the largest distance of two joints."""
     return max(abs(complex(z) - complex(w)) for z, w in combinations(mechanism.joints.values(), 2))
 
 
@@ -323,23 +328,24 @@ def _longest_free(
     *,
     closed: bool,
 ) -> tuple[Interval, tuple[int, ...]] | None:
-    """The longest range over which what meets can be built, and what meets in it; None where there is none.
+    """Find the longest buildable range, and the pairs that meet in it; None if there is none.
 
-    It begins and ends where the motion or a range of some pair does. The farthest end never moves back while the
-    beginning moves on, so each is looked at once.
+    It begins and ends where the motion or a free range of some pair does. As the start moves forward, the farthest
+    feasible end never moves back, so each end is examined once.
 
     Parameters
     ----------
     ranges : sequence of sequences of pairs of float
-        Where each pair keeps the gap, in order; of a ``closed`` motion over two cycles.
+        Ranges in which each pair keeps the gap, ascending; for a ``closed`` motion over two cycles.
     buildable : callable
-        Whether there are planes for pairs that meet, by their numbers.
+        Whether an arrangement exists for a set of pairs that meet, by their numbers.
     """
     bounds = {x for own in ranges for interval in own for x in interval} | (set() if closed else {low, high})
     ends = sorted(bounds)
     best: tuple[Interval, tuple[int, ...]] | None = None
     reached = 0
     for first, begin in enumerate(ends):
+        # Starts in the second cycle repeat those of the first.
         if closed and begin >= high:
             break
         farthest = begin + high - low if closed else high
@@ -355,7 +361,7 @@ def _longest_free(
 
 
 def _meeting(ranges: Sequence[Sequence[Interval]], span: Interval) -> tuple[int, ...]:
-    """The pairs that do not keep the gap all over a range."""
+    """List the pairs that do not keep the gap throughout a range."""
     return tuple(
         n for n, own in enumerate(ranges) if not any(start <= span[0] and span[1] <= end for start, end in own)
     )

@@ -1,16 +1,16 @@
-"""The least number of planes in which plates can lie that pins join and that have to keep out of one another's way.
+"""Minimum number of planes for plates that are joined by pins and must not collide.
 
 *Plates* lie in planes 1, 2, ... above the base, plane 0. Plates that are *apart* lie in different planes, and plates of
-one *mesh* in the same one. A *pin* reaches from the lowest of its plates to the highest; one that stands on the base
-from there, one that hangs on a second base above all plates up to that. A plate that *meets* it may not lie anywhere
-between, these planes included.
+one *mesh* in the same one. A *pin* reaches from the lowest of its plates to the highest; a pin on the base starts
+there, and one held by a second base above all plates ends there. A plate that *meets* a pin must not lie in any plane
+that the pin reaches.
 
-An arrangement is built plane by plane. Whether plates T may make the next plane depends on the set S of the plates that
-lie below alone, not on how these lie: a pin is there if it has begun, by a plate in S or T or at the base, and not
-ended, with all of its plates in S and no base above to reach. So the least for all plates follows from the least for
-fewer (Bellman), over all sets and all next planes, 3ⁿ steps for n plates; nothing is left out, and the number is proved
-to be the least. What is least is, in this order, the plates that lie in the way of a pin they meet, the planes, and the
-planes that pins reach through: the shortest pins.
+An arrangement is built plane by plane. Whether plates T can form the next plane depends only on the set S of plates
+below, not on their order: a pin is present if it has begun (a plate in S or T, or the base) and has not ended (all its
+plates in S and no base above). So the optimum for all plates follows from the optimum for fewer (Bellman), over all
+sets and all next planes, 3ⁿ steps for n plates; the search is exhaustive, and the minimum is proved. Minimized are, in
+this order, the number of plates that block a pin they meet, the number of planes, and the total length of the pins in
+planes.
 """
 
 from __future__ import annotations
@@ -27,18 +27,19 @@ from kinematics.errors import DimensionError
 Masks = NDArray[np.int64]
 
 MOST_PLATES = 12
-"""Plates that are arranged at most, a mesh as one: 3¹² steps take some milliseconds, and no linkage of a book has more
-moving links than seven."""
+"""Maximum number of plates, a mesh counted as one: 3¹² steps take a few milliseconds, and no linkage in textbooks has
+more than seven moving links."""
 
 _BROKEN, _PLANE = 1 << 24, 1 << 12
-"""What a plate in the way of a pin and a plane weigh against a plane that a pin reaches through: of these there are
-fewer than 4096, 12 planes at most times 200 pins."""
+"""Weights of a blocked pin and of a plane relative to one plane of pin length. The total pin length is below 4096: at
+most 12 planes times 200 pins, so the order of the criteria is lexicographic."""
 
 _UNKNOWN = np.iinfo(np.int64).max
 
 
 class Spindle(NamedTuple):
-    """A pin by numbers: the plates that it joins, those that meet it, and the bases, below and above, that hold it."""
+    """A pin by numbers: the plates that it joins, the plates that meet it, and the bases (below, above) that hold
+    it."""
 
     plates: frozenset[int]
     meets: frozenset[int] = frozenset()
@@ -52,14 +53,14 @@ def stacked(
     pins: Sequence[Spindle],
     meshes: Sequence[Sequence[int]] = (),
 ) -> tuple[int, ...]:
-    """The arrangement with the least plates in the way of pins, of these with the fewest planes.
+    """Find the arrangement with the fewest plates that block pins, and among these with the fewest planes.
 
     Parameters
     ----------
     count : int
         Number of plates, at most :data:`MOST_PLATES` with each mesh as one.
     apart : sequence of pairs of int
-        Plates that lie in different planes. Of one mesh there is none: its plates are in one plane by design.
+        Plates that lie in different planes. Pairs within a mesh are ignored: its plates share a plane by design.
     pins : sequence of Spindle
         At most 200.
     meshes : sequence of sequences of int
@@ -77,8 +78,8 @@ def stacked(
 
     Examples
     --------
-    Input, coupler and output of a fourbar (0, 1, 2). Where nothing meets, two planes do; where the input meets the
-    output's pivot (pin 1) it lies above it:
+    Input, coupler and output of a fourbar (0, 1, 2). Without collisions two planes suffice; an input that meets the
+    output's pivot (pin 1) lies above it:
 
     >>> O2, O4 = Spindle(frozenset({0}), below=True), Spindle(frozenset({2}), below=True)
     >>> stacked(3, [(0, 1), (1, 2)], [O2, O4])
@@ -88,20 +89,21 @@ def stacked(
     """
     own = list(range(count))
     for mesh in meshes:
+        # Merge the plates of a mesh into one, as they share a plane.
         first = min(own[plate] for plate in mesh)
         merged = {own[plate] for plate in mesh}
         own = [first if plate in merged else plate for plate in own]
     kept = sorted(set(own))
     place = [kept.index(plate) for plate in own]
     if len(kept) > MOST_PLATES:
-        raise DimensionError("plates", f"{MOST_PLATES} at most", len(kept))
+        raise DimensionError("plates", f"at most {MOST_PLATES}", len(kept))
     parted = np.zeros(len(kept), np.int64)
     for one, other in apart:
         if place[one] != place[other]:
             parted[place[one]] |= 1 << place[other]
             parted[place[other]] |= 1 << place[one]
     joined = np.array([_mask(place, pin.plates) for pin in pins], np.int64)
-    # Of a mesh two plates may meet a pin: each counts.
+    # Several plates of a mesh may meet a pin: each counts.
     met = np.zeros((len(pins), len(kept)), np.int64)
     for n, pin in enumerate(pins):
         for plate in pin.meets:
@@ -118,13 +120,13 @@ def stacked(
 
 
 def reach(planes: Sequence[int], pin: Spindle) -> tuple[int, int]:
-    """The lowest and the highest plane of a pin; 0 is the base, and one more than there are planes that above them."""
+    """Return the lowest and highest plane of a pin; 0 is the base, number of planes + 1 the upper base."""
     own = [planes[plate] for plate in pin.plates]
     return 0 if pin.below else min(own), max(planes) + 1 if pin.above else max(own)
 
 
 def in_the_way(planes: Sequence[int], pin: Spindle, plate: int) -> bool:
-    """Whether a plate lies where a pin reaches."""
+    """Return whether a plate lies in a plane that a pin reaches."""
     low, high = reach(planes, pin)
     return low <= planes[plate] <= high
 
@@ -138,7 +140,7 @@ def _mask(place: Sequence[int], plates: frozenset[int]) -> int:
 
 @njit(cache=True, nogil=True)
 def _fewest(count: int, parted: Masks, joined: Masks, held: NDArray[np.bool_], met: Masks) -> Masks:
-    """For each set of plates the highest plane of its best arrangement, as a set."""
+    """Compute for each set of plates the top plane of its best arrangement, as a set."""
     sets = 1 << count
     in_one_plane = np.ones(sets, np.bool_)
     for layer in range(1, sets):
@@ -149,6 +151,7 @@ def _fewest(count: int, parted: Masks, joined: Masks, held: NDArray[np.bool_], m
     least = np.full(sets, _UNKNOWN, np.int64)
     last = np.zeros(sets, np.int64)
     least[0] = 0
+    # Sets in increasing order: all subsets of a set come before it.
     for below in range(sets - 1):
         if least[below] == _UNKNOWN:
             continue
@@ -158,6 +161,7 @@ def _fewest(count: int, parted: Masks, joined: Masks, held: NDArray[np.bool_], m
             if in_one_plane[layer]:
                 cost = least[below] + _PLANE
                 for pin in range(len(joined)):
+                    # The pin passes this plane if it has begun and not yet ended.
                     begun = held[pin, 0] or (joined[pin] & (below | layer)) != 0
                     if begun and (held[pin, 1] or (joined[pin] & ~below) != 0):
                         cost += 1
@@ -167,5 +171,6 @@ def _fewest(count: int, parted: Masks, joined: Masks, held: NDArray[np.bool_], m
                 if cost < least[below | layer]:
                     least[below | layer] = cost
                     last[below | layer] = layer
+            # Next smaller subset of ``rest``.
             layer = (layer - 1) & rest
     return last

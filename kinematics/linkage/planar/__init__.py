@@ -1,6 +1,6 @@
 """Planar linkages of any number of links, as dyads and triads: description and motion.
 
-Branches and circuits are in :mod:`kinematics.linkage.planar.limits`, which is not imported here for the time it takes.
+Branches and circuits are in :mod:`kinematics.linkage.planar.limits`, which is not imported here to save start-up time.
 """
 
 from kinematics.linkage.planar import catalogue

@@ -1,10 +1,10 @@
 """All circuits and branches of a mechanism that closes by dyads from its input link, by root finding.
 
-The configurations form curves (:mod:`kinematics.linkage.planar.configuration_curves`). Cut where the input turns back,
-and where curves cross, they are the branches. Each toggle stands between two neighbours on its curve, hence no branch
-can be listed without the one that it goes over into, and the number of ends is even.
+The configurations form curves (:mod:`kinematics.linkage.planar.configuration_curves`). Cutting these where the input
+reverses, and where curves cross, gives the branches. Each toggle separates two neighbours on its curve, so no branch is
+listed without its neighbour, and the number of ends is even.
 
-Words: see :mod:`kinematics.linkage.fourbar.circuits`.
+Terms: see :mod:`kinematics.linkage.fourbar.circuits`.
 """
 
 from __future__ import annotations
@@ -32,23 +32,23 @@ Real = NDArray[np.float64]
 FULL_TURN = 2.0 * np.pi
 
 SAME_END = 1e-7
-"""The reference belongs to a branch when it is at most so far beyond its ends, radians."""
+"""Distance beyond the ends of a branch, radians, within which the reference still belongs to it."""
 
 TURNS_AT_MOST = 200
-"""Turns of the input until a geared mechanism repeats, at most."""
+"""Maximum number of turns of the input until a geared mechanism repeats."""
 
 MOST_TURNS = 1000.0
-"""Turns of the fastest geared link until all repeats, at most: what is to be looked at grows with them."""
+"""Maximum number of turns of the fastest geared link until the mechanism repeats: the effort is proportional to it."""
 
 REPEATS = 1e-9
-"""Angle by which a geared link may miss its place after a cycle, radians."""
+"""Angle, radians, by which a geared link may miss its initial position after a cycle."""
 
 
 class Branch(NamedTuple):
-    """One branch: what the input drives through.
+    """One branch: a range that the input can drive through.
 
-    ``low`` and ``high`` are input angles (radians, ``low`` within the first turn) or positions; ``full`` says that the
-    input turns through, the range then being one whole cycle. ``signs`` are the assemblies by closure, ``low_closure``
+    ``low`` and ``high`` are input angles (radians, ``low`` within the first turn) or positions; ``full``: the input
+    rotates fully, and the range is one whole cycle. ``signs`` are the assemblies by closure, ``low_closure``
     and ``high_closure`` the link whose closure folds flat at the ends. ``circuit`` counts from 0.
     """
 
@@ -62,41 +62,42 @@ class Branch(NamedTuple):
 
 
 def turns_until_repeated(*ratios: float) -> int:
-    """Turns of the input after which all gears of these ratios stand as before; :data:`TURNS_AT_MOST` at most."""
+    """Count the turns of the input until gears of these ratios repeat; at most :data:`TURNS_AT_MOST`."""
     turns = 1
     for ratio in ratios:
+        # The output repeats when ratio × turns is an integer.
         turns = int(np.lcm(turns, Fraction(ratio).limit_denominator(TURNS_AT_MOST).denominator))
     return min(turns, TURNS_AT_MOST)
 
 
 def cycle(mechanism: Mechanism) -> float:
-    """Input rotation after which the mechanism repeats, radians: a full turn, or as many as its gears need."""
+    """Compute the input rotation after which the mechanism repeats, radians: one turn, or several with gears."""
     return FULL_TURN * turns_until_repeated(*(gear.ratio for gear in mechanism.gears))
 
 
 def cycle_on(mechanism: Mechanism, branch: Branch) -> float:
-    """Input rotation after which a mechanism repeats on a full branch: :func:`cycle`, or with a triad a multiple of it.
+    """Compute the input rotation after which a mechanism repeats on a full branch: :func:`cycle` or a multiple.
 
-    A triad may come to another place in one turn of its input, and back in two.
+    A triad may be in another position after one turn of its input, and back after two.
     """
     period = cycle(mechanism)
     return period * max(1, round((branch.high - branch.low) / period))
 
 
 def most_turns(mechanism: Mechanism) -> float:
-    """Turns of the fastest link that gears tie to the input, or of the input, until the mechanism repeats."""
+    """Count the turns of the fastest link geared to the input, or of the input, until the mechanism repeats."""
     return max(map(abs, gear_rotations(mechanism, decompose(mechanism).steps).values())) * cycle(mechanism) / FULL_TURN
 
 
 def dyadic_branches(mechanism: Mechanism) -> list[Branch]:
-    """All branches of one design that closes by dyads from its input link; the reference's circuit first.
+    """Find all branches of one design that closes by dyads from its input link; the reference's circuit first.
 
     Raises
     ------
     TopologyError
-        For a class III mechanism or one that is driven by a slide; where the gears do not bring it back within
-        ``TURNS_AT_MOST`` turns, or turn a link more than ``MOST_TURNS`` times until then; or where a link swings freely
-        at a change point and others depend on it.
+        For a class III mechanism or one driven by a slide; if gears do not repeat within ``TURNS_AT_MOST`` turns, or
+        turn a link more than ``MOST_TURNS`` times until then; or if a link swings freely at a change point and others
+        depend on it.
     """
     decomposition = decompose(mechanism)
     if decomposition.left or mechanism.driven_by_slide:
@@ -104,11 +105,12 @@ def dyadic_branches(mechanism: Mechanism) -> list[Branch]:
     period = cycle(mechanism)
     for gear in mechanism.gears:
         turned = gear.ratio * period
+        # An irrational ratio never repeats; its best fraction may miss the start.
         if abs(turned - 2.0 * np.pi * np.round(turned / (2.0 * np.pi))) > REPEATS:
             raise TopologyError(f"a gear ratio of {gear.ratio!r} does not repeat within {TURNS_AT_MOST} turns")
     if most_turns(mechanism) > MOST_TURNS:
         raise TopologyError(
-            f"gears turn a link more than {MOST_TURNS:g} times until all repeats; circuits are not known"
+            f"gears turn a link more than {MOST_TURNS:g} times before the mechanism repeats; circuits are not known"
         )
     closures = Closures(mechanism, decomposition)
     curves = configuration_curves(mechanism, closures, period)
@@ -123,9 +125,10 @@ def dyadic_branches(mechanism: Mechanism) -> list[Branch]:
 
 
 def _branches_of(curve: Curve, circuit: int, links: list[str], period: float) -> list[Branch]:
-    """A curve cut at its turns."""
+    """Cut a curve at its turns into branches."""
     cuts = [(turn.at, turn.theta, links[turn.level]) for turn in curve.turns]
     if curve.closed:
+        # No reversal: the input rotates fully.
         if not cuts:
             signs = tuple(int(s) for s in curve.place(np.array([curve.low])).signs[:, 0])
             return [Branch(circuit, 0.0, period, True, signs, "", "")]
@@ -135,9 +138,11 @@ def _branches_of(curve: Curve, circuit: int, links: list[str], period: float) ->
         cuts = [(curve.low, *low), *cuts, (curve.high, *high)]
     middles = curve.place(np.array([0.5 * (start_cut[0] + end_cut[0]) for start_cut, end_cut in pairwise(cuts)])).signs
     branches = []
+    # Orient each branch from its lower to its higher input.
     rising = [end_cut[1] > start_cut[1] for start_cut, end_cut in pairwise(cuts)]
+    # Between turns the input must alternate between rising and falling; otherwise a turn was missed.
     if any(before == after for before, after in pairwise(rising)) or (curve.closed and len(rising) % 2):
-        raise TopologyError("two limits lie closer together than they can be told apart; circuits are not known")
+        raise TopologyError("two limits are too close to be separated; circuits are not known")
     for n, (start_cut, end_cut) in enumerate(pairwise(cuts)):
         (_, low_at, low_link), (_, high_at, high_link) = (start_cut, end_cut) if rising[n] else (end_cut, start_cut)
         start = float(np.mod(low_at, period))
@@ -147,8 +152,9 @@ def _branches_of(curve: Curve, circuit: int, links: list[str], period: float) ->
 
 
 def _holding(branches: list[Branch], choice: tuple[int, ...], at: float, period: float) -> int:
-    """Index of the branch that holds the reference configuration."""
+    """Find the index of the branch that contains the reference configuration."""
     for n, branch in enumerate(branches):
+        # Signs and input together identify a configuration.
         within = branch.high - branch.low + 2.0 * SAME_END
         if branch.signs == choice and np.mod(at - branch.low + SAME_END, period) <= within:
             return n
@@ -156,7 +162,7 @@ def _holding(branches: list[Branch], choice: tuple[int, ...], at: float, period:
 
 
 def reference_first(branches: list[Branch], first: int) -> list[Branch]:
-    """The branches by circuits, which are counted from the first one's."""
+    """Sort the branches by circuit, numbering the circuits from that of branch ``first``."""
     if not branches:
         return []
     numbers = {branches[first].circuit: 0}

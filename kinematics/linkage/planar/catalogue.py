@@ -1,7 +1,7 @@
-"""The mechanisms of the books as descriptions: joints, links, slides and gears of a :class:`Mechanism`.
+"""Catalogue of textbook mechanisms: joints, links, slides and gears of a :class:`Mechanism`.
 
-Each function takes the dimensions that the field knows a mechanism by and gives its skeleton at one input angle, from
-which :func:`kinematics.linkage.planar.drive.drive` does the rest; no mechanism has a solver of its own. Joints: O2, O4,
+Each function takes the usual dimensions of a mechanism and returns its skeleton at one input angle; the general solver
+:func:`kinematics.linkage.planar.drive.drive` then handles all of them alike. Joints: O2, O4,
 O5, O6 fixed pivots, A, B, C, D moving pivots, P the coupler point. Angles are radians, absolute.
 """
 
@@ -19,7 +19,7 @@ from kinematics.linkage.planar.mechanism import GearPair, Mechanism, Slide
 Complex = NDArray[np.complex128]
 
 ON_PIVOT = 1e-14
-"""A crank pin this near to a pivot, as a share of the ground, lies on it: no direction is left but rounding."""
+"""Distance, as a share of the ground, within which a crank pin coincides with a pivot: its direction is rounding."""
 
 
 def _require_sign(name: str, sign: int) -> None:
@@ -27,12 +27,12 @@ def _require_sign(name: str, sign: int) -> None:
 
 
 def fourbar(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> Mechanism:
-    """The pin-jointed fourbar at an input angle, as a mechanism; shape that of the designs.
+    """Build the pin-jointed fourbar at an input angle, as a mechanism with the designs' shape.
 
     Raises
     ------
     DimensionError
-        Where it cannot be assembled at that angle.
+        If it cannot be assembled at that angle.
     """
     angle = np.asarray(input_angle, np.float64)
     at = positions(linkage, angle[..., None], assembly)
@@ -62,7 +62,7 @@ def slider_crank(
     coupler_point: complex = 0.0,
     driven_by: str = "crank",
 ) -> Mechanism:
-    """The slider-crank, offset or in line (Norton, Sec. 4.5).
+    """Build the slider-crank, offset or in line (Norton, Sec. 4.5).
 
     ``open`` is the slider's position farther along the slide's direction. ``coupler_point`` is P in the coupler's
     frame, origin at A, real axis towards B. ``driven_by`` is ``crank`` or ``slider``.
@@ -86,24 +86,24 @@ def slider_crank(
 def inverted_slider_crank(
     o2: complex, o4: complex, crank: float, output: float, line_angle: float, crank_angle: float, assembly: int = OPEN
 ) -> Mechanism:
-    """The inverted slider-crank (Norton, Sec. 4.7): pin A of the crank slides on a line fixed in the output link.
+    """Build the inverted slider-crank (Norton, Sec. 4.7): crank pin A slides on a line fixed in the output link.
 
     The line passes through B, the end of the output link of length c from O4, at ``line_angle`` (Norton's γ, the angle
-    of link 3 minus that of link 4) from the line O4 → B. It has a direction, from B on at that angle, and a point
-    nearest to O4: in an ``open`` mechanism A lies ahead of that point, in a ``crossed`` one behind it. With c = 0 the
-    line passes through O4 itself, and B only marks the direction of the output link.
+    of link 3 minus that of link 4) from the line O4 → B. The line is directed from B at that angle. In an ``open``
+    mechanism A lies ahead of its point nearest to O4, in a ``crossed`` one behind it. With c = 0 the line passes
+    through O4, and B only marks the direction of the output link.
 
     Raises
     ------
     DimensionError
-        Where A lies on O4 or does not reach the line, and for an assembly other than +1 and −1.
+        If A lies on O4 or does not reach the line, or for an assembly other than +1 and −1.
     """
     _require_sign("assembly", assembly)
     pin_a = o2 + crank * np.exp(1j * crank_angle)
     reach = pin_a - o4
     if abs(reach) <= ON_PIVOT * abs(o4 - o2):
         raise DimensionError("crank_angle", "one at which the crank pin is not on O4", crank_angle)
-    # The line's distance from O4 is c sin γ: the output stands where a line at that distance passes through A.
+    # The line's distance from O4 is c sin γ: a line at that distance has to pass through A.
     if abs(output * np.sin(line_angle)) > abs(reach):
         raise DimensionError("crank_angle", "one at which the inverted slider-crank can be assembled", crank_angle)
     # In the output's frame A lies on the line at t along it from B: |c + t e^{iγ}| = |reach|.
@@ -131,7 +131,7 @@ def quick_return(
     ram: int = OPEN,
     rocker_side: int = OPEN,
 ) -> Mechanism:
-    """Crank-shaper (crank shorter than the ground) and Whitworth (crank longer): both invert the slider-crank.
+    """Build a crank-shaper (crank shorter than the ground) or Whitworth (longer) quick return.
 
     The crank pin A slides in the link that turns about O4, through O4 itself; its end C, ``rocker`` from O4 (on A's
     side for ``open``), drives the ram D through the coupler; the ram slides on the given line.
@@ -173,7 +173,7 @@ def geared_fivebar(
     assembly: int = OPEN,
     coupler_point: complex = 0.0,
 ) -> Mechanism:
-    """The geared fivebar (Norton, Sec. 4.8): θ5 = λ θ2 + φ, both from the ground line O2 → O5.
+    """Build the geared fivebar (Norton, Sec. 4.8): θ5 = λ θ2 + φ, both from the ground line O2 → O5.
 
     ``open``: C, where the couplers meet, lies to the left of the directed line from A to B. ``coupler_point`` is P on
     coupler 1 in its frame, origin at A, real axis towards C. ``input_angle`` counts full turns.
@@ -186,6 +186,7 @@ def geared_fivebar(
     base = pin_b - pin_a
     f = abs(base)
     product = (coupler_1 + coupler_2 + f) * (coupler_1 + coupler_2 - f)
+    # Heron's product in factored form, accurate near a toggle.
     product *= (f + (coupler_1 - coupler_2)) * (f - (coupler_1 - coupler_2))
     if product < 0.0 or f == 0.0:
         raise DimensionError("input_angle", "one at which the geared fivebar can be assembled", input_angle)
@@ -214,7 +215,7 @@ def geared_fivebar(
 
 
 def peaucellier(o2: complex, o4: complex, crank: float, arm: float, side: float, input_angle: float) -> Mechanism:
-    """Peaucellier's eightbar: P runs on a straight line exactly when the crank equals the distance O2 O4.
+    """Build Peaucellier's eightbar: P moves on a straight line exactly if the crank equals the distance O2 O4.
 
     ``arm`` is the length of the two links from O4 to the rhombus A B P C of the given ``side``; arm > side.
     """
@@ -224,6 +225,7 @@ def peaucellier(o2: complex, o4: complex, crank: float, arm: float, side: float,
     half = (f * f + (arm - side) * (arm + side)) / (2.0 * f) if f > 0.0 else np.inf
     if not abs(half) < arm:
         raise DimensionError("input_angle", "one at which the arms reach the rhombus", input_angle)
+    # B and C are symmetric about the line from O4 to A.
     unit, height = reach / f, np.sqrt((arm - half) * (arm + half))
     pin_b, pin_c = o4 + unit * (half + 1j * height), o4 + unit * (half - 1j * height)
     return Mechanism(
@@ -252,12 +254,12 @@ def hart(
     input_angle: float,
     side: int = OPEN,
 ) -> Mechanism:
-    """Hart's inversor, a sixbar: P runs on a straight line exactly when the crank equals the distance O2 O4.
+    """Build Hart's inversor, a sixbar: P moves on a straight line exactly if the crank equals the distance O2 O4.
 
-    Crossed parallelogram B C E D with ``long`` links B C and D E and ``short`` links B D and C E. At the same ``share``
-    of their lengths from B, B, and E stand the fixed pivot O4 on B C, the crank pin A on B D, and P on E C. They are in
-    line, parallel to B E and D C, with O4 A = share · D C and O4 P = (1 − share) · B E on the other side of O4, and by
-    Ptolemy's theorem
+    Crossed parallelogram B C E D with ``long`` links B C and D E and ``short`` links B D and C E. The fixed pivot O4 on
+    B C, the crank pin A on B D and P on E C divide these links at the same ``share``, from B, B and E. They are
+    collinear, parallel to B E and D C, with O4 A = share · D C and O4 P = (1 − share) · B E on the other side of O4,
+    and by Ptolemy's theorem
 
         O4 A · O4 P = share (1 − share) (long² − short²)                              (Rao, Sec. 4.2.2).
 
@@ -266,14 +268,15 @@ def hart(
     Raises
     ------
     DimensionError
-        Where the short and the long link do not reach from A and O4 to each other, for a share outside 0 … 1, a short
-        link that is not shorter, and a side other than +1 and −1.
+        If the short and the long link do not reach from A and O4 to each other, for a share outside 0 … 1, a short
+        link that is not shorter, or a side other than +1 and −1.
     """
     _require_sign("side", side)
     require("share", "between 0 and 1", np.asarray(share), np.bool_(0.0 < share < 1.0))
     require("short", "shorter than the long link", np.asarray(short), np.bool_(short < long))
     pin_a = o2 + crank * np.exp(1j * input_angle)
     reach = pin_a - o4
+    # The distance D C follows from O4 A = share · D C.
     base = abs(reach) / share
     if not long - short < base < long + short:
         raise DimensionError("input_angle", "one at which the links reach each other", input_angle)
@@ -304,16 +307,16 @@ def hart(
 def pantograph(
     o2: complex, o4: complex, crank: float, near: float, far: float, arm: float, input_angle: float, side: int = OPEN
 ) -> Mechanism:
-    """The pantograph, its tracing pin P on a crank: Q draws the path of P enlarged by far / near about O4.
+    """Build the pantograph with its tracing pin P on a crank: Q draws the path of P enlarged by far / near about O4.
 
     The bar O4 A B has A at ``near`` and B at ``far`` from O4; A B D P is a parallelogram with A P = ``arm``, and Q
-    stands on B D with B Q = arm · far / near, so that O4, P, Q are in line (Rao, Sec. 4.4). ``open``: A lies to the
+    lies on B D with B Q = arm · far / near, so that O4, P, Q are collinear (Rao, Sec. 4.4). ``open``: A lies to the
     left of the directed line from P to O4.
 
     Raises
     ------
     DimensionError
-        Where the bar and the arm do not reach from O4 to P, for ``far`` not longer than ``near``, and a side other than
+        If the bar and the arm do not reach from O4 to P, for ``far`` not longer than ``near``, or a side other than
         +1 and −1.
     """
     _require_sign("side", side)
@@ -387,7 +390,7 @@ SIXBAR_LINKS: dict[str, dict[str, tuple[str, ...]]] = {
 
 
 def sixbar(kind: str, joints: Mapping[str, ArrayLike], input: str = "input") -> Mechanism:
-    """A sixbar by the positions of its joints; ``kind`` is a key of :data:`SIXBAR_LINKS`, P may be left out.
+    """Build a sixbar from the positions of its joints; ``kind`` is a key of :data:`SIXBAR_LINKS`, P is optional.
 
     ``input`` is any link that is pinned to the ground.
     """

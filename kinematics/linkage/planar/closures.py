@@ -1,9 +1,9 @@
-"""Closures: how the links of a mechanism follow from its input, one small group of links after the other.
+"""Closures: the order in which the links of a mechanism follow from its input, one small group after the other.
 
-A link whose motion is known makes its joints known. Each step makes one more link known, or two:
+A link with known motion determines its joints. Each step determines one more link, or two:
 
     gear     a link on a known pin, geared to a known link;
-    carried  a link on two known pins (an overconstrained mechanism has such);
+    carried  a link on two known pins (in an overconstrained mechanism);
     RRP      a link on a known pin, one of whose joints slides on a line of a known link;
     RPR      a link on a known pin, on a line of which a known joint slides;
     RRR      two links, each on a known pin, that share a joint.
@@ -15,8 +15,8 @@ where k and r are known jets:
     RPR   k = conj(n)(q − p),    r = Re(conj(n) (x − p))_reference
     RRR   k = conj(b)(q − p),    r = (|b|² + |q − p|² − c²)/2       c: length from the second pin to the joint
 
-Each has two solutions; the reference configuration says which: the sign of Im k there. Groups of more links (class III)
-have no such steps; :mod:`kinematics.linkage.planar.triads` follows them by continuation.
+Each has two solutions; the reference configuration selects one by the sign of Im k there. Groups of more links (class
+III) have no such steps; :mod:`kinematics.linkage.planar.triads` follows them by continuation.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from typing import Literal, NamedTuple
 from kinematics.linkage.planar.mechanism import GROUND, GearPair, Mechanism, Slide
 
 RECENT = 8
-"""Mechanisms whose order of closures is remembered: root finding asks for it dozens of times."""
+"""Number of mechanisms whose closures are cached: root finding needs them dozens of times."""
 
 
 class Step(NamedTuple):
@@ -70,7 +70,7 @@ def decompose(mechanism: Mechanism) -> Decomposition:
 def order_of_closures(
     links: dict[str, tuple[str, ...]], input: str, slides: tuple[Slide, ...], gears: tuple[GearPair, ...]
 ) -> Decomposition:
-    """The same from what joins the links alone."""
+    """Order the closures from the links, slides and gears alone; see :func:`decompose`."""
     known = [GROUND, input] if input in links else [GROUND]
     joints = {joint for link in known for joint in links[link]}
     if input not in links:
@@ -97,6 +97,7 @@ def _next(
 ) -> Step | None:
     unknown = [link for link in links if link not in known]
     pins = {link: [joint for joint in links[link] if joint in joints] for link in unknown}
+    # Prefer single links to pairs: a link on two known pins first, then gears and slides, dyads last.
     for link in unknown:
         if len(pins[link]) >= 2:
             return Step("carried", link, pins[link][0], pins[link][1])
@@ -117,6 +118,7 @@ def _next(
     for link in unknown:
         for other in unknown:
             shared = [j for j in links[link] if j in links[other] and j not in joints]
+            # Each pair once, in a reproducible order.
             if link < other and pins[link] and pins[other] and shared:
                 return Step("RRR", link, pins[link][0], shared[0], other=other, other_pin=pins[other][0])
     return None

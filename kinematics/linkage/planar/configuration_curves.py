@@ -1,21 +1,21 @@
 """All configurations of a mechanism that closes by dyads, as curves on which everything is smooth.
 
 Take the closures in their order. Before the first one, configurations are the input's circle. Each closure has a margin
-m on the curves found so far: a smooth function that is positive where the closure exists. Where m is positive all along
+m on the current curves: a smooth function that is positive where the closure exists. Where m is positive all along
 a closed curve there are two closed curves of configurations, one for each assembly. An arc a < u < b at whose ends m
 vanishes gives one closed curve: there the two assemblies meet, and with
 
     u = (a + b)/2 − (b − a)/2 · cos v,    assembly + for 0 < v < π, − for π < v < 2π
 
-everything is smooth in v, the square root of the margin too. So curve comes from curve, closure by closure; a fold can
-neither be met by one assembly only nor lost between two closures, because each margin is searched alone, on a curve
-where it has no corner.
+everything is smooth in v, including the square root of the margin. So curves are built from curves, closure by closure.
+No fold can be missed by one assembly or between two closures, because each margin is searched alone, on a curve where
+it has no corner.
 
-Where m only touches zero two motions cross, a *change point*. Arcs end there openly: a curve between two of them has
-two ends, and one between a change point and a fold, with u = a + (b − a) v² for −1 < v < 1, has two as well.
+Where m only touches zero two motions cross, a *change point*. Arcs end there openly: a curve between two change points
+has two ends, and so has one between a change point and a fold, with u = a + (b − a) v² for −1 < v < 1.
 
-The *turns* of a curve are the places where the input turns back: where its own closure is folded flat, and the turns of
-the curves that it comes from.
+The *turns* of a curve are the places where the input reverses: where its own closure is folded flat, and the turns of
+the curves below it.
 """
 
 from __future__ import annotations
@@ -40,22 +40,22 @@ Real = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 CELLS = 64
-"""Cells that a curve is divided into at first, and for each turn that a link makes along it."""
+"""Initial number of cells of a curve, per turn of its fastest link."""
 
 INSIDE = 1e-7
-"""A turn nearer than this (as part of an arc) to the arc's folded end is that end: the input differs by rounding."""
+"""Share of an arc within which a turn coincides with the arc's folded end: the input differs only by rounding."""
 
 SWING = 0.1
-"""Directions of a link on the two assemblies at a change point that differ by this, radians, are not one."""
+"""Difference, radians, of a link's directions in the two assemblies at a change point above which it swings freely."""
 
 
 SHAPES = ("straight", "round", "bend")
 STRAIGHT, ROUND, BEND = range(3)
-"""How the parameter of a curve gives that of the curve below, by number."""
+"""Codes of the maps from the parameter of a curve to that of the curve below."""
 
 
 class Turn(NamedTuple):
-    """Where the input turns back on a curve: parameter, input, and number of the closure that folds flat."""
+    """Reversal of the input on a curve: parameter, input, and number of the closure that folds flat."""
 
     at: float
     theta: float
@@ -64,7 +64,7 @@ class Turn(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class ChangePoint:
-    """Where curves of one closure cross: the closure's number. ``swings``: a link is free there, its pins coincide."""
+    """Crossing of curves of one closure, by its number. ``swings``: a link is free there, since its pins coincide."""
 
     level: int
     swings: bool
@@ -79,7 +79,7 @@ class End(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Places on a curve: the input, its first two derivatives by the parameter, and signs (closures so far, n)."""
+    """Places on a curve: the input, its first two derivatives by the parameter, and signs (closures, n)."""
 
     theta: Real
     rate: Real
@@ -89,10 +89,10 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Configurations by a parameter from ``low`` to ``high``, round a circle where ``closed``.
+    """Configurations by a parameter from ``low`` to ``high``, on a circle if ``closed``.
 
-    ``shape`` says how the parameter v gives that of the curve ``below``, u: both alike (``straight``), by a cosine
-    between two folds (``round``), or as v² from the fold ``a`` to the open end ``b`` (``bend``).
+    ``shape`` is the map from the parameter v to that of the curve ``below``, u: identity (``straight``), a cosine
+    between two folds (``round``), or v² from the fold ``a`` to the open end ``b`` (``bend``).
     """
 
     below: Curve | None
@@ -108,23 +108,23 @@ class Curve:
 
     @cached_property
     def chain(self) -> Real:
-        """This curve and those below it but for the input's circle, shape (closures, 4): shape, a, b − a and sign."""
+        """This curve and those below it except the input's circle, shape (closures, 4): shape, a, b − a and sign."""
         if self.below is None:
             return np.empty((0, 4))
         own = np.array([[SHAPES.index(self.shape), self.a, self.b - self.a, self.sign]])
         return np.concatenate([own, self.below.chain])
 
     def place(self, v: Real) -> Place:
-        """Input and signs along the curve."""
+        """Return input and signs along the curve."""
         return places(self.chain[None], np.zeros(len(v), np.int64), v)
 
     def input_at(self, v: float) -> float:
-        """The input at one place."""
+        """Return the input at one place."""
         return float(self.place(np.array([v])).theta[0])
 
 
 class Closures:
-    """What the search needs of a mechanism: the margins of its closures with two assemblies, by their numbers."""
+    """Margins of a mechanism's closures with two assemblies, by their numbers."""
 
     def __init__(self, mechanism: Mechanism, decomposition: Decomposition) -> None:
         self.mechanism, self.steps = mechanism, decomposition.steps
@@ -132,18 +132,19 @@ class Closures:
         self.links = [self.steps[n].link for n in self.position]
 
     def signs(self, chosen: Rows) -> Rows:
-        """Signs for every step from those of the first closures with two assemblies, shape (closures, n)."""
+        """Return signs for every step from those of the first closures with two assemblies, shape (closures, n)."""
         every = np.ones((len(self.steps), chosen.shape[1]), np.int64)
         every[self.position[: len(chosen)]] = chosen
         return every
 
     def margin(self, level: int, place: Place) -> tuple[Real, Real]:
-        """Margin of a closure and its rate by the curve's parameter."""
+        """Return the margin of a closure and its rate by the curve's parameter."""
         margin = margins_of_one(self.mechanism, place.theta, self.signs(place.signs))[level]
         return margin[0], margin[1] * place.rate
 
     def always_folded(self, level: int, curve: Curve) -> bool:
-        """Whether a closure is folded flat all along a curve, where it yet exists: not so where its pins coincide."""
+        """Return whether a closure exists but is folded flat all along a curve; False if its pins coincide."""
+        # Four irregular places: a margin that vanishes at all of them vanishes everywhere.
         place = curve.place(curve.low + (curve.high - curve.low) * np.array([0.13, 0.31, 0.57, 0.77]))
         if not np.all(np.abs(self.margin(level, place)[0]) <= TOUCHES):
             return False
@@ -154,7 +155,7 @@ class Closures:
         return bool(np.isfinite(motion.margins[self.links[level + 1]]).any())
 
     def swings(self, level: int, curve: Curve, v: float) -> bool:
-        """Whether the closure's assemblies do not meet at a change point: its pins coincide, and a link is free."""
+        """Return whether the assemblies do not meet at a change point: the pins coincide and a link is free."""
         place = curve.place(np.array([v - 1e-7, v - 1e-7, v + 1e-7, v + 1e-7]))
         signs = np.vstack([place.signs, [1, -1, 1, -1]])
         motion = drive_one(self.mechanism, place.theta[:, None], self.signs(signs), 0)
@@ -164,13 +165,14 @@ class Closures:
 
 
 def configuration_curves(mechanism: Mechanism, closures: Closures, period: float) -> list[Curve]:
-    """All curves of configurations of one design, in the parameters of its last closure.
+    """Find all curves of configurations of one design, in the parameters of its last closure.
 
     Raises
     ------
     TopologyError
-        Where a link swings freely at a change point while others depend on it, or a dyad is always folded flat.
+        If a link swings freely at a change point while others depend on it, or a dyad is always folded flat.
     """
+    # Faster geared links need proportionally more cells.
     waves = max(map(abs, gear_rotations(mechanism, closures.steps).values()))
     curves = [Curve(None, "straight", 0.0, 0.0, 1, 0.0, period, True, (), ())]
     for level in range(len(closures.links)):
@@ -189,7 +191,7 @@ def configuration_curves(mechanism: Mechanism, closures: Closures, period: float
 
 
 def gear_rotations(mechanism: Mechanism, steps: Sequence[Step]) -> dict[str, float]:
-    """Rotations of the input and of all links that gears alone tie to it, by the input's."""
+    """Compute rotations of the input and of all links geared directly to it, per rotation of the input."""
     turned = {mechanism.input: 1.0}
     for step in steps:
         if step.kind == "gear":
@@ -198,12 +200,12 @@ def gear_rotations(mechanism: Mechanism, steps: Sequence[Step]) -> dict[str, flo
 
 
 def chains(curves: Sequence[Curve]) -> Real:
-    """What :func:`places` needs of curves of one closure; shape (curves, closures, 4)."""
+    """Stack the chains of curves of one closure, for :func:`places`; shape (curves, closures, 4)."""
     return np.stack([curve.chain for curve in curves])
 
 
 def places(chains: Real, row: Rows, at: Real) -> Place:
-    """Places on many curves."""
+    """Evaluate places on many curves."""
     place = np.empty((3, len(at)))
     signs = np.empty((chains.shape[1], len(at)), np.int64)
     _places(chains, row, at, place, signs)
@@ -228,13 +230,14 @@ def _places(chains: Real, row: Rows, at: Real, place: Real, signs: Rows) -> None
                 sign = u
                 u, first, bend = a + half * u * u, 2.0 * half * u, 2.0 * half
             signs[closures - 1 - link, n] = 1 if sign >= 0.0 else -1
+            # Chain rule for the second derivative, from the top curve down to the input.
             second = bend * rate * rate + first * second
             rate *= first
         place[0, n], place[1, n], place[2, n] = u, rate, second
 
 
 def _way(curve: Curve, period: float) -> float:
-    """The input's way along a curve, forth and back."""
+    """Measure the input's total travel along a curve, back and forth."""
     if curve.closed and not curve.turns:
         return period
     cuts = [turn.theta for turn in curve.turns]
@@ -243,9 +246,9 @@ def _way(curve: Curve, period: float) -> float:
 
 
 def _next(closures: Closures, level: int, curve: Curve, arcs: list[Arc]) -> list[Curve]:
-    """The curves of the next closure over a curve's arcs."""
+    """Build the curves of the next closure over a curve's arcs."""
     if not arcs and closures.always_folded(level, curve):
-        raise TopologyError(f"{closures.links[level]!r} is folded flat at every input; its circuits are not known")
+        raise TopologyError(f"{closures.links[level]!r} is folded flat at every input; circuits are not known")
     curves: list[Curve] = []
     points: dict[float, ChangePoint] = {}
     length = curve.high - curve.low
@@ -255,13 +258,14 @@ def _next(closures: Closures, level: int, curve: Curve, arcs: list[Arc]) -> list
             own = curve.ends[side]
             margin = closures.margin(level, curve.place(np.array([at + (1e-6 - 2e-6 * side) * length])))[0][0]
             return own._replace(folded=own.folded | {level}) if margin < 1e-9 else own
+        # Rounded, so that both arcs that end at a change point of a closed curve share it.
         around = round(float(np.mod(at - curve.low, length)), 9) if curve.closed else at
         if around not in points:
             points[around] = ChangePoint(level, closures.swings(level, curve, at))
             if points[around].swings and level + 1 < len(closures.links):
                 raise TopologyError(
-                    f"{closures.links[level]!r} swings freely at a change point, its pins on each other, and other "
-                    "links with it; its circuits are not known"
+                    f"{closures.links[level]!r} swings freely at a change point, where its pins coincide, and other "
+                    "links depend on it; circuits are not known"
                 )
         return End(curve.input_at(at), points[around], frozenset({level}))
 
@@ -275,6 +279,7 @@ def _next(closures: Closures, level: int, curve: Curve, arcs: list[Arc]) -> list
             if arc.at_low == "whole" or low < turn.at + k * length < high
         ]
         if arc.at_low == "whole":
+            # The margin is positive all around: one closed curve per assembly.
             curves += [replace(curve, below=curve, shape="straight", sign=sign, turns=curve.turns) for sign in (1, -1)]
         elif arc.at_low == arc.at_high == "zero":
             curves.append(_round(curve, level, low, high, turns))
@@ -290,6 +295,7 @@ def _next(closures: Closures, level: int, curve: Curve, arcs: list[Arc]) -> list
 
 
 def _round(curve: Curve, level: int, a: float, b: float, turns: list[Turn]) -> Curve:
+    # Both folds, plus two images of each turn of the curve below.
     own = [Turn(0.0, curve.input_at(a), level), Turn(np.pi, curve.input_at(b), level)]
     for turn in turns:
         part = (turn.at - a) / (b - a)
@@ -309,7 +315,7 @@ def _bend(curve: Curve, level: int, fold: float, opening: float, turns: list[Tur
 
 
 def circuits(curves: Sequence[Curve]) -> list[int]:
-    """Number of the circuit of each curve: those that meet at a change point belong together."""
+    """Number the circuit of each curve: curves that meet at a change point belong together."""
     parent = list(range(len(curves)))
 
     def root(n: int) -> int:
@@ -324,6 +330,7 @@ def circuits(curves: Sequence[Curve]) -> list[int]:
         for end, at in zip(curve.ends, _near_ends(curve), strict=True)
     ]
     for (n, one, mine), (m, other, theirs) in itertools.combinations(ends, 2):
+        # Identity, not equality: both ends must stem from the same crossing.
         if one.point is other.point:
             later = set(range(one.point.level + 1, len(mine)))
             if all(mine[k] == theirs[k] for k in later - one.folded - other.folded):

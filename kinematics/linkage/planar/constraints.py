@@ -1,18 +1,18 @@
-"""All constraints of a mechanism at once, for those that have more than they need.
+"""All constraints of a mechanism at once, for mechanisms with redundant constraints.
 
-A parallelogram with a third crank moves because its dimensions agree, though a count of its links and joints leaves it
-no freedom. Dyads alone cannot say so: they leave the constraints out that are not needed. Here the unknowns are the
-poses of all links in motion, z + (p − p₀) e^{iφ} for the point p of the reference, p₀ the link's first joint, and
+A parallelogram with a third crank moves because its dimensions agree, although a count of its links and joints gives no
+freedom. Dyads cannot show that, since they ignore redundant constraints. Here the unknowns are the poses of all moving
+links, z + (p − p₀) e^{iφ} for the point p of the reference, p₀ the link's first joint, and
 
     pin     point of a link = point of the hub, the first link at that joint      two equations
     slide   Re(n̄ (joint − point of the line)) = 0, n the line's normal            one
     gears   rotation of the second − ratio × rotation of the first = 0            one
     input   rotation of the input link, or Re(t̄ (joint − point of the line)),     one
-            less what is given
+            minus the given input
 
-are more equations than unknowns. Their rank says how free the mechanism is (mobility = unknowns − rank of all but the
-input's); least squares give poses from poses nearby, and, derivative by derivative, the rates: the n-th derivative of
-every equation is its Jacobian times the n-th derivatives of the unknowns, and something that is known by then.
+are more equations than unknowns. Their rank gives the mobility (unknowns − rank of all but the input's equation). Least
+squares give poses from nearby poses and, derivative by derivative, the rates: the n-th derivative of every equation is
+its Jacobian times the n-th derivatives of the unknowns, plus terms that are known by then.
 """
 
 from __future__ import annotations
@@ -28,64 +28,64 @@ Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
 
 CONSISTENT = 3e-6
-"""Largest misfit of the constraints, as a share of the size, with which they are met: dimensions may be rounded."""
+"""Maximum misfit, as a share of the size, at which constraints count as satisfied: dimensions may be rounded."""
 
 DEPENDENT = 1e-5
-"""Singular value, as a share of the largest, below which constraints depend on each other, so rounded."""
+"""Singular value, as a share of the largest, below which constraints of rounded dimensions are dependent."""
 
 FAR_ENOUGH = 0.2
-"""Move of the input from the reference, radians or shares of the size, by which a mechanism has shown that it moves."""
+"""Move of the input from the reference, radians or shares of the size, that proves that a mechanism moves."""
 
 LEAST_STEP = 1e-9
-"""Step of the input below which the way from the reference has an end."""
+"""Step of the input below which the motion from the reference ends."""
 
 TRIALS = 100
-"""Steps at most, with those that were too long."""
+"""Maximum number of steps, including rejected ones."""
 
 AT_A_LIMIT = 0.1
-"""Least singular value, as a share of its greatest on the way, at an end that is a limit of the motion: there it goes
-with the root of the distance. At an end where constraints disagree it is what it was."""
+"""Smallest singular value, as a share of its maximum along the motion, that marks an end as a limit of the motion:
+there it goes with the root of the distance. At an end where constraints disagree it hardly changes."""
 
 MOST_TURN = 0.5
-"""Rotation of a link in one step, radians, beyond which another assembly might have been come upon."""
+"""Rotation of a link in one step, radians, above which the step may have reached another assembly."""
 
 SINGULAR = 1e-6
-"""Least singular value, as a share of the largest, below which rates are undefined: accelerations go with rounding over
-its square, and are known to a hundred-thousandth above it."""
+"""Smallest singular value, as a share of the largest, below which rates are undefined: the error of accelerations goes
+with rounding over its square, about 1e-5 at this limit."""
 
 PASSES = 60
-"""Steps of Gauss's and Newton's method at most. From a dyad's position two do as a rule; near a change point every step
-only halves the error, of which the misfit is the square."""
+"""Maximum number of Gauss-Newton steps. Starting from a dyad's position two usually suffice; near a change point every
+step only halves the error, and the misfit is its square."""
 
 SETTLED = 1e-10
-"""Step, as a share of the size or in radians, from which poses are settled."""
+"""Step, as a share of the size or in radians, at which the iteration has converged."""
 
 ROUNDING = 1e-14
-"""The same near a singular position, times the least singular value: rounding moves poses by as much there."""
+"""The same near a singular position, times the smallest singular value: rounding moves poses by this amount there."""
 
 
 class Poses(NamedTuple):
-    """Places of the links' first joints and rotations from the reference, as jets of shape (n, links, M)."""
+    """Positions of the links' first joints and rotations from the reference, as jets of shape (n, links, M)."""
 
     places: Complex
     rotations: Real
 
     @classmethod
     def unknown(cls, length: int, links: int, count: int) -> Poses:
-        """Poses that are not known yet: NaN."""
+        """Make unknown poses: NaN."""
         return cls(np.full((length, links, count), np.nan + 0j), np.full((length, links, count), np.nan))
 
     def take(self, which: NDArray[Any]) -> Poses:
-        """Those of some positions."""
+        """Select the poses at some positions."""
         return Poses(self.places[:, :, which], self.rotations[:, :, which])
 
     def apart(self, which: NDArray[Any], others: Poses) -> Real:
-        """How far others are from those of some positions, shape (M,); not a number where these are unknown."""
+        """Measure the distance of other poses from those at some positions, shape (M,); NaN where these are unknown."""
         places = np.abs(self.places[0, :, which].T - others.places[0]).max(axis=0)
         return np.asarray(np.maximum(places, np.abs(self.rotations[0, :, which].T - others.rotations[0]).max(axis=0)))
 
     def put(self, which: NDArray[Any], others: Poses) -> None:
-        """Fill in some positions."""
+        """Store poses at some positions."""
         self.places[:, :, which], self.rotations[:, :, which] = others
 
 
@@ -95,9 +95,9 @@ class Constraints:
     Parameters
     ----------
     joints : mapping of str to complex, shape (M,)
-        Places in the reference.
+        Positions in the reference.
     links : mapping of str to sequence of str
-        Joints of every link; ``ground`` is the one that does not move.
+        Joints of every link; ``ground`` is the fixed one.
     slides : sequence of (joint, link, point, angle)
         Points and angles in the reference, shape (M,).
     gears : sequence of (first, second, ratio)
@@ -143,32 +143,32 @@ class Constraints:
 
     @property
     def reference(self) -> Poses:
-        """The poses of the reference."""
+        """Poses of the reference."""
         places = self._base[None, :-1].copy()
         return Poses(places, np.zeros(places.shape))
 
     def given(self, poses: Poses) -> Real:
-        """What the input stands at, shape (n, M)."""
+        """Return the input, shape (n, M)."""
         return self._driven(self._jets(poses))
 
     def settled(self, start: Poses, input: Real) -> tuple[Poses, Real, Real]:
-        """Poses that meet all constraints, and their derivatives.
+        """Solve for poses that satisfy all constraints, and their derivatives, from nearby poses.
 
         Parameters
         ----------
         start : Poses
             Poses nearby, shape (1, links, M).
         input : float, shape (n, M)
-            The input from the reference, and its rates.
+            Input relative to the reference, and its rates.
 
         Returns
         -------
         poses : Poses, shape (n, links, M)
         misfit : float, shape (M,)
-            The largest residual that is left; infinite where the poses still move.
+            Largest remaining residual; infinite if the iteration has not converged.
         least : float, shape (M,)
-            Least singular value of the Jacobian as a share of the largest: 0 where the input does not say how the links
-            move.
+            Smallest singular value of the Jacobian as a share of the largest: 0 where the input does not determine
+            the motion of the links.
         """
         poses = start
         for _ in range(PASSES):
@@ -177,6 +177,7 @@ class Constraints:
             change = self._step(inverse, self._residuals(jets, input[:1])[0])
             poses = Poses(poses.places - change[0], poses.rotations - change[1])
             moved = np.maximum(np.abs(change[0]).max(axis=0), np.abs(change[1]).max(axis=0))
+            # Both sides times the smallest singular value: near a singular position rounding limits the step.
             still = moved * least <= np.maximum(SETTLED * least, ROUNDING)
             if np.all(still | ~np.isfinite(moved)):
                 break
@@ -187,11 +188,12 @@ class Constraints:
             further = np.zeros_like(poses.places[:1]), np.zeros_like(poses.rotations[:1])
             poses = Poses(*(np.concatenate([jet, none]) for jet, none in zip(poses, further, strict=True)))
             change = self._step(inverse, self._residuals(self._jets(poses), input[: n + 1])[n])
+            # With the unknown derivative set to zero the residual is what it must cancel.
             poses.places[n], poses.rotations[n] = -change[0], -change[1]
         return poses, misfit, least
 
     def mobility(self, poses: Poses) -> NDArray[np.int64]:
-        """Unknowns less the rank of all constraints but the input's, shape (M,)."""
+        """Return the mobility: unknowns minus the rank of all constraints but the input's, shape (M,)."""
         jacobian = self._jacobian(self._jets(poses))[:, :-1]
         unknowns = jacobian.shape[2]
         if not jacobian.shape[1]:
@@ -200,12 +202,13 @@ class Constraints:
         return np.asarray(unknowns - (values > DEPENDENT * values[:, :1]).sum(axis=1))
 
     def moves(self) -> bool:
-        """Whether the input moves all designs from the reference, one way at least, while all constraints are met.
+        """Return whether the input can move all designs from the reference, in at least one direction.
 
-        It is followed in steps along the tangent until it has moved :data:`FAR_ENOUGH`, or to a limit of the motion.
+        The motion is followed in steps along the tangent until it has moved :data:`FAR_ENOUGH`, or to a limit.
         """
         at = self.given(self.reference)
         moved = np.zeros(at.shape[1], np.bool_)
+        # A mechanism at a limit of its motion can move in one direction only.
         for way in (-1.0, 1.0):
             moved |= self._moves(at, way)
         return bool(moved.all())
@@ -215,6 +218,7 @@ class Constraints:
         rates = np.concatenate([at, np.full((1, count), way)])
         poses, _, least = self.settled(self.reference, rates)
         most, done = least.copy(), np.zeros(count)
+        # Steps grow after success and shrink after failure.
         step = np.full(count, 0.25 * FAR_ENOUGH)
         for _ in range(TRIALS):
             shown = (done >= FAR_ENOUGH) | ((done > 0.0) & (least < AT_A_LIMIT * most))
@@ -232,21 +236,21 @@ class Constraints:
         return (done >= FAR_ENOUGH) | ((done > 0.0) & (least < AT_A_LIMIT * most))
 
     def misfit(self, poses: Poses, input: Real) -> Real:
-        """The largest residual of poses of shape (1, links, M) at inputs (1, M); NaN where they are, shape (M,)."""
+        """Return the largest residual of poses of shape (1, links, M) at inputs (1, M), shape (M,); NaN for NaN."""
         return np.asarray(np.abs(self._residuals(self._jets(poses), input)[0]).max(axis=0))
 
     def points(self, poses: Poses) -> dict[str, Complex]:
-        """Jets of all joints, shape (n, M) each."""
+        """Return the jets of all joints, shape (n, M) each."""
         jets = self._jets(poses)
         return {joint: self._point(jets, hub, at) for joint, (hub, at) in self._joints.items()}
 
     def travels(self, poses: Poses) -> list[Real]:
-        """Jets of where the slides' joints stand along their lines, from the lines' points; shape (n, M) each."""
+        """Return the jets of the slides' positions along their lines, from the lines' points; shape (n, M) each."""
         jets = self._jets(poses)
         return [self._along_line(jets, *line[:4], -1j * line[4]) for line in self._slides]
 
     def _jets(self, poses: Poses) -> tuple[Complex, Complex, Real]:
-        """Places, e^{iφ} and φ of all links, the ground last; shape (n, links + 1, M)."""
+        """Evaluate positions, e^{iφ} and φ of all links, the ground last; shape (n, links + 1, M)."""
         places, rotations = poses
         n, _, count = places.shape
         unit = np.empty(rotations.shape, np.complex128)
@@ -281,7 +285,7 @@ class Constraints:
     def _along_line(
         self, jets: tuple[Complex, Complex, Real], hub: int, at: Complex, on: int, point: Complex, direction: Complex
     ) -> Real:
-        """Jet of how far a joint is from a line's point, along a direction of the line's link; shape (n, M)."""
+        """Measure the jet of a joint's distance from a line's point, along a direction of the line's link; (n, M)."""
         offset = self._point(jets, hub, at) - self._point(jets, on, point)
         along = np.conj(jets[1][:, on] * direction)
         return np.stack(
@@ -292,7 +296,7 @@ class Constraints:
         )
 
     def _residuals(self, jets: tuple[Complex, Complex, Real], input: Real) -> Real:
-        """All equations and their derivatives, shape (n, equations, M)."""
+        """Compute all equations and their derivatives, shape (n, equations, M)."""
         rows: list[Real] = []
         for link, hub, at in self._pins:
             apart = self._point(jets, link, at) - self._point(jets, hub, at)
@@ -300,13 +304,14 @@ class Constraints:
         rows += [self._along_line(jets, *line) for line in self._slides]
         for first, second, ratio in self._gears:
             turned = jets[2][:, second] - ratio * jets[2][:, first]
+            # Gears couple rotations modulo full turns.
             turned[0] = np.remainder(turned[0] + np.pi, 2.0 * np.pi) - np.pi
             rows.append(turned)
         rows.append(self._driven(jets) - input)
         return np.stack(rows, axis=1)
 
     def _jacobian(self, jets: tuple[Complex, Complex, Real]) -> Real:
-        """Of the equations by x, y, φ of each link, shape (M, equations, 3 × links)."""
+        """Build the Jacobian of the equations by x, y, φ of each link, shape (M, equations, 3 × links)."""
         count = jets[0].shape[2]
         moving = len(self.links)
         rows: list[NDArray[np.float64]] = []
@@ -316,7 +321,7 @@ class Constraints:
             return rows[-1]
 
         def add(into: Real, direction: Complex, link: int, at: Complex, sign: float) -> None:
-            """The derivative of Re(conj(direction) · point of the link)."""
+            """Add the derivative of Re(conj(direction) · point of the link)."""
             arm = 1j * jets[1][0, link] * (at - self._base[link])
             into[3 * link] += sign * direction.real
             into[3 * link + 1] += sign * direction.imag
@@ -347,18 +352,19 @@ class Constraints:
         return np.moveaxis(np.stack(rows), 2, 0)[:, :, : 3 * moving]
 
     def _inverse(self, jets: tuple[Complex, Complex, Real]) -> tuple[Real, Real]:
-        """The pseudoinverse of the Jacobian, and its least singular value over the largest."""
+        """Compute the pseudoinverse of the Jacobian, and its smallest singular value over the largest."""
         jacobian = self._jacobian(jets)
         known: NDArray[np.bool_] = np.asarray(np.isfinite(jacobian).all(axis=(1, 2)))
         left, values, right = np.linalg.svd(np.where(known[:, None, None], jacobian, 0.0), full_matrices=False)
         largest = values[:, :1]
+        # Dependent constraints are dropped from the pseudoinverse.
         kept = values > 1e-9 * largest
         inverse = np.where(kept, 1.0 / np.where(kept, values, 1.0), 0.0)
         least = np.where(known, values[:, -1] / np.where(largest[:, 0] > 0.0, largest[:, 0], 1.0), np.nan)
         return np.swapaxes(right, 1, 2) * inverse[:, None, :] @ np.swapaxes(left, 1, 2), least
 
     def _step(self, inverse: Real, residuals: Real) -> tuple[Complex, Real]:
-        """Changes of places and rotations, shape (links, M), for residuals of shape (equations, M)."""
+        """Compute changes of positions and rotations, shape (links, M), for residuals of shape (equations, M)."""
         change = np.einsum("mij,jm->im", inverse, residuals).reshape(-1, 3, residuals.shape[1])
         return change[:, 0] + 1j * change[:, 1], change[:, 2]
 

@@ -1,6 +1,6 @@
 """Driving a mechanism: positions, velocities, accelerations and jerks of every link and joint, closure by closure.
 
-Here inputs and assemblies are put in rows for the compiled sweep (:mod:`drive_kernels`), and what it fills is named.
+This module arranges inputs and assemblies in rows for the compiled sweep (:mod:`drive_kernels`), and names its results.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ RealJet = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 MOST_CLOSURES = 6
-"""Closures of a mechanism with redundant constraints up to which all assemblies are tried at a position."""
+"""Number of closures of a mechanism with redundant constraints up to which all assemblies are tried."""
 
 
 @dataclass(frozen=True)
 class MechanismMotion:
-    """What a mechanism does over designs × inputs; the first axis of a jet is value, velocity, acceleration, jerk.
+    """Motion of a mechanism over designs × inputs; the first axis of a jet is value, velocity, acceleration, jerk.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class MechanismMotion:
         square of the sine; where a known joint slides in the link, |q − p|² − r² in unit coordinates, with q − p from
         the link's pin to that joint and r the line's distance from the pin.
 
-    Where constraints are redundant there are neither sines nor margins: which link closes a loop is not determined.
+    With redundant constraints there are neither sines nor margins: it is not determined which link closes a loop.
     """
 
     valid: Mask
@@ -85,7 +85,7 @@ def drive(
     signs: tuple[Signs, ...] | None = None,
     order: int = 3,
 ) -> MechanismMotion:
-    """Drive a mechanism to inputs: by its dyadic closures, or by continuation from the reference where it has none.
+    """Drive a mechanism to inputs: by its dyadic closures, or by continuation from the reference if it has none.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def drive(
         Designs of shape S.
     input : float
         Absolute input angles, radians (or positions along the input slide), broadcasting with S + (1,); not reduced by
-        full turns, which matters for gears.
+        full turns, which matter for gears.
     speed, acceleration, jerk : float
         Rates of the input, broadcasting with the inputs; with the defaults results are derivatives by the input.
     signs : tuple of int arrays, optional
@@ -113,7 +113,7 @@ def drive(
     DimensionError
         For an infinite input, signs other than +1 and −1 or not one for each closure, an order that is not 0 to 3, a
         link without length between the joints by which it closes, or a class III mechanism whose reference is at a
-        toggle: two branches meet there, and only signs, which it has not, could say which one is meant.
+        toggle: two branches meet there, and a class III mechanism has no signs that could select one.
     ShapeError
         For inputs that do not broadcast.
 
@@ -149,6 +149,7 @@ def drive(
     rows = np.ones((len(program.code.rows), *designs), np.int64)
     for n, sign in enumerate(chosen):
         rows[n, ...] = sign
+    # Index of the mechanism behind each broadcast design.
     own = np.broadcast_to(np.arange(len(program.code.frame)).reshape(mechanism.shape), designs).ravel()
     if mechanism.redundant:
         return _settled(mechanism, program, inputs, own, rows.reshape(len(rows), len(own)))
@@ -156,7 +157,7 @@ def drive(
 
 
 def drive_one(mechanism: Mechanism, input: Real, signs: Signs, order: int) -> MechanismMotion:
-    """One design at inputs (D, N) on assemblies (steps, D) each, by the input, unchecked: what root finding calls."""
+    """Drive one design at inputs (D, N) on assemblies (steps, D), without checks; used by root finding."""
     program = program_of(mechanism)
     inputs = np.zeros((order + 1, *input.shape))
     inputs[0], inputs[1:2] = input, 1.0
@@ -164,12 +165,13 @@ def drive_one(mechanism: Mechanism, input: Real, signs: Signs, order: int) -> Me
 
 
 def margins_of_one(mechanism: Mechanism, input: Real, signs: Signs) -> Real:
-    """Margins of one design's closures at inputs (N,) on assemblies (steps, N), and rates; shape (closures, 2, N)."""
+    """Compute margins of one design's closures and rates at inputs (N,), assemblies (steps, N); (closures, 2, N)."""
     program, count = program_of(mechanism), len(input)
     moved = np.ones((count, 2, 1))
     moved[:, 0, 0] = input - program.reference_input[0]
     sines, margins = np.empty((len(program.closing), count, 1)), np.empty((len(program.closing), 2, count, 1))
     own = np.zeros(count, np.int64)
+    # Without points the kernel skips everything but margins and sines.
     none, no_points = np.empty((0, 0, 0, 0)), np.empty((0, 0, 0, 0), np.complex128)
     results = kernels.Sweep(no_points, none, none, sines, margins, np.empty((2, 0, 0), np.bool_))
     kernels.drive(*program.code, own, signs, moved, none, *results)
@@ -177,10 +179,11 @@ def margins_of_one(mechanism: Mechanism, input: Real, signs: Signs) -> Real:
 
 
 def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, signs: Signs) -> MechanismMotion:
-    """Sweep, and name what comes out."""
+    """Run the compiled sweep, and name its results."""
     length, *shape = inputs.shape
     flat = len(own), shape[-1]
     moved = inputs.reshape(length, *flat).swapaxes(0, 1).copy()
+    # The kernel works with rotations from the reference.
     moved[:, 0] -= program.reference_input[own, None]
     given = _class_iii(mechanism, program, own, moved) if program.class_iii else np.empty((0, 0, 0, 0))
     points = np.empty((len(mechanism.joints), length, *flat), np.complex128)
@@ -210,7 +213,7 @@ def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, sig
 
 
 def _settled(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, signs: Signs) -> MechanismMotion:
-    """The motion of a mechanism with redundant constraints: dyads say where it is nearly, all constraints exactly."""
+    """Drive a mechanism with redundant constraints: dyads give approximate positions, all constraints exact ones."""
     if program.class_iii:
         raise TopologyError("a mechanism with redundant constraints must close by dyads; this one does not")
 
@@ -223,6 +226,7 @@ def _settled(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, s
     if len(closing) <= MOST_CLOSURES:
         for turned in list(product((1, -1), repeat=len(closing)))[1:]:
             other = signs.copy()
+            # Flip the chosen closures, for all designs at once.
             other[closing] *= np.array(turned).reshape(-1, 1)
             assemblies.append(other)
     found = settle(mechanism, own, inputs, map(nearly, assemblies), program.reference_input)
@@ -230,7 +234,7 @@ def _settled(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, s
 
 
 def _class_iii(mechanism: Mechanism, program: Program, own: Signs, moved: Real) -> Real:
-    """Rotations of all links of a class III mechanism, design by design; shape (links, D, n, N)."""
+    """Follow the rotations of all links of a class III mechanism, design by design; shape (links, D, n, N)."""
     designs, length, count = moved.shape
     given = np.full((len(program.links), designs, length, count), np.nan)
     for design in range(designs):
@@ -245,10 +249,10 @@ def _class_iii(mechanism: Mechanism, program: Program, own: Signs, moved: Real) 
 
 
 def followed_to(mechanism: Mechanism, inputs: Real) -> Mask:
-    """Whether the motion of a class III design leads from the reference to inputs, shape (N,), without a toggle.
+    """Return whether a class III design reaches inputs, shape (N,), from the reference without a toggle.
 
-    A branch of more than a turn has some inputs twice. The positions that :func:`drive` gives are of either place; this
-    takes each input for the place that many full turns away that it says.
+    A branch of more than a turn contains some inputs twice, and :func:`drive` may return either position. Here each
+    input counts with its own number of full turns.
     """
     at = float(mechanism.reference_input)
     there: Mask = np.isfinite(_track(mechanism, 0)[1].followed(inputs - at)[0])
@@ -256,20 +260,21 @@ def followed_to(mechanism: Mechanism, inputs: Real) -> Mask:
 
 
 def given_up(mechanism: Mechanism) -> bool:
-    """Whether continuation, in drives of this class III design so far, left a way before its end.
+    """Return whether continuation of this class III design was abandoned before its end in any drive up to now.
 
-    Links of very different lengths need more certified steps than can be waited for. Positions beyond are not valid in
-    the answer though they may exist.
+    Links of very different lengths can need too many certified steps. Positions beyond are reported as not valid
+    although they may exist.
     """
     return bool(decompose(mechanism).left) and _track(mechanism, 0)[1].given_up
 
 
 @lru_cache(maxsize=RECENT)
 def _track(mechanism: Mechanism, design: int) -> tuple[Loops, Track]:
-    """The loops of one design of a class III mechanism and what is known of their solutions."""
+    """Build the loops of one design of a class III mechanism, and the cached track of their solutions."""
     joints = program_of(mechanism).code.joints[design]
     loops = loop_equations(mechanism, dict(zip(mechanism.joints, joints.tolist(), strict=True)))
     track = Track(loops)
+    # A zero step means a toggle or more than one freedom; the rank distinguishes both.
     if track.first_step < STALLED:
         constraints = mechanism.constraints(np.array([design]))
         free = int(constraints.mobility(constraints.reference)[0])

@@ -1,19 +1,19 @@
 """Driving a mechanism as a compiled sweep over designs × inputs: the closures of :mod:`closures`, one after the other.
 
-A mechanism comes as a *program*: rows of integers that say which link follows by which closure and which joints it
-makes known. At each position the kernel keeps, of every joint and of every link's rotation φ, e^{iφ} and shift, the
-value and the first derivatives (a jet), and goes through the rows.
+A mechanism is given as a *program*: rows of integers that specify the closure of each link and the joints that it
+determines. At each position the kernel stores the value and the first derivatives (a jet) of every joint and of every
+link's rotation φ, e^{iφ} and shift, and processes the rows in order.
 
 Every closure is Re(e^{−iφ} k) = r. With d = sign · √(|k|² − r²) it is solved by e^{iφ} = k (r − i d) / |k|², without an
-angle; those are taken at the end. The derivatives follow from differentiating the equation:
+angle; angles are computed at the end. The derivatives follow from differentiating the equation:
 
     Re(e^{−iφ} k') + φ' d = r',
     Re(e^{−iφ} (k'' − 2iφ'k' − φ'²k)) + φ'' d = r'',
     Re(e^{−iφ} (k''' − 3iφ'k'' − 3(iφ'' + φ'²)k' + (iφ'³ − 3φ'φ'')k)) + φ''' d = r'''.
 
 A closure's *margin* is the jet of |k|² − r², which changes sign at its limits, in a scale of its own: by |b|² for RRP
-and by |b|² c² for RRR it is the square of the sine. Where k vanishes beside its *reach* (|b|; 1 for RPR) any φ solves
-the equation, or none does: the closure says nothing, and there is no solution to give.
+and by |b|² c² for RRR it is the square of the sine. Where k vanishes relative to its *reach* (|b|; 1 for RPR) any φ
+solves the equation, or none does: the closure is undetermined, and no solution is returned.
 """
 
 from __future__ import annotations
@@ -33,34 +33,34 @@ Mask = NDArray[np.bool_]
 Rows = NDArray[np.int64]
 
 GEAR, CARRIED, RRP, RPR, RRR, GIVEN = range(6)
-"""Closures by number; GIVEN is a link whose rotation is handed in (class III, solved by :mod:`triads`)."""
+"""Codes of closures; GIVEN is a link whose rotation is an argument (class III, solved by :mod:`triads`)."""
 
 KIND, LINK, PIN, JOINT, OTHER, OTHER_PIN, SLIDE, CLOSING = range(8)
-"""Columns of a program. CLOSING counts the closures that have two solutions; −1 elsewhere."""
+"""Columns of a program. CLOSING numbers the closures with two solutions; −1 elsewhere."""
 
 COINCIDENT = 1e-13
-"""A share of its reach below which the vector that gives a link its direction has none: only rounding is left."""
+"""Length of the vector k, as a share of its reach, below which its direction is only rounding."""
 
 AT_LIMIT = 16.0 * ON_TOGGLE
-"""A margin this far below zero counts as zero, so that a mechanism exists at its own limits: a limit is known to the
-rounding of an angle, which the margin's rate, up to some ten in unit coordinates, multiplies."""
+"""Negative margin that still counts as zero, so that a mechanism exists at its own limits: a limit is known to the
+rounding of an angle, times the margin's rate, which is up to about ten in unit coordinates."""
 
 
 OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
-"""How the kernels are compiled."""
+"""Options of the kernels."""
 
 STEP: dict[str, Any] = OPTIONS | {"forceinline": True}
-"""A step of the sweep that is called in one place: LLVM inlines it, since a call there would pass its arrays at each
-position. Numba's own ``inline`` in place of this makes the sweep up to a fifth slower."""
+"""Options of a step that is called in one place: LLVM inlines it, since a call would pass its arrays at each position.
+Numba's own ``inline`` would make the sweep up to 20 % slower."""
 
 
 class Code(NamedTuple):
-    """M mechanisms of one make, joints and lines in unit coordinates.
+    """M mechanisms of one topology, joints and lines in unit coordinates.
 
-    ``rows`` (steps, 8) is the program, ``ratios`` (steps,) those of its gears. ``gives`` (links, 1 + joints): how many
-    joints a link makes known, and which; link 0 is the ground. ``joints``, ``lines``, ``line_angles`` and
-    ``link_angles`` have the shape (M, count); ``frame`` (M, 2) is origin and size. ``slides`` (slides, 2): joint and
-    link. ``driver``: the input link (or −1), its pin (or the input slide's joint), and the input slide.
+    ``rows`` (steps, 8) is the program, ``ratios`` (steps,) its gear ratios. ``gives`` (links, 1 + joints): the number
+    of joints that a link determines, and their indices; link 0 is the ground. ``joints``, ``lines``, ``line_angles``
+    and ``link_angles`` have the shape (M, count); ``frame`` (M, 2) is origin and size. ``slides`` (slides, 2): joint
+    and link. ``driver``: the input link (or −1), its pin (or the input slide's joint), and the input slide.
     """
 
     rows: Rows
@@ -76,7 +76,7 @@ class Code(NamedTuple):
 
 
 class Sweep(NamedTuple):
-    """What the sweep fills, for D designs at N inputs; n is the length of a jet.
+    """Results of the sweep for D designs at N inputs; n is the length of a jet.
 
     ``points`` (joints, n, D, N), ``angles`` (links, n, D, N), ``travels`` (slides, n, D, N); by closure, ``sines``
     (closures, D, N) and ``margins`` (closures, 1 or 2, D, N); ``masks`` (2, D, N): valid, smooth.
@@ -113,12 +113,12 @@ def drive(
     margins: Real,
     masks: Mask,
 ) -> None:
-    """Fill margins and sines, and, unless ``points`` has no rows, all the others.
+    """Drive all designs: fill margins and sines and, unless ``points`` has no rows, all other results.
 
-    It takes the arrays of a :class:`Code` and of a :class:`Sweep` one by one: to take a tuple of arrays apart costs two
-    microseconds a call, a quarter of a call of root finding.
+    The arrays of a :class:`Code` and of a :class:`Sweep` are separate arguments: unpacking a tuple of arrays costs 2 µs
+    per call, a quarter of a call in root finding.
 
-    own : (D,), which of the M mechanisms a design is. signs : (steps, D). moved : (D, n, N), input from the reference.
+    own : (D,), index of the mechanism of each design. signs : (steps, D). moved : (D, n, N), input from the reference.
     given : (links, D, n, N), rotations of GIVEN links.
     """
     length = moved.shape[1]
@@ -134,6 +134,7 @@ def drive(
         m = own[design]
         place, line, along = joints[m], lines[m], line_angles[m]
         origin, size = frame[m, 0], frame[m, 1].real
+        # Consecutive designs often repeat a mechanism: recompute its constants only on a change.
         if design == 0 or m != own[design - 1]:
             for n in range(1, gives[0, 0] + 1):
                 x[gives[0, n], 0] = place[gives[0, n]]
@@ -154,6 +155,7 @@ def drive(
                 kind, link, pin, joint = step[KIND], step[LINK], step[PIN], step[JOINT]
                 other, other_pin, closing = step[OTHER], step[OTHER_PIN], step[CLOSING]
                 if kind == GEAR:
+                    # Gears need the angle itself, which dyads do not compute.
                     if not turned[other]:
                         rotation[other, 0] = math.atan2(unit[other, 0].imag, unit[other, 0].real)
                     for n in range(length):
@@ -166,7 +168,8 @@ def drive(
                         rotation[link, n] = given[link, design, n, at]
                     turned[link] = True
                 elif kind == RRR:
-                    # The shorter link is solved for: beside it the squares of long ones would leave nothing of its own.
+                    # Solve for the shorter link: in an equation for the longer one its square would be lost to
+                    # rounding.
                     first = 1 if lengths[row, 1] < lengths[row, 0] else 0
                     solved, sign = (other, -signs[row, design]) if first else (link, signs[row, design])
                     reach, far = lengths[row, first], lengths[row, 1 - first]
@@ -188,7 +191,7 @@ def drive(
                         at,
                         length,
                     )
-                    # Sine of the angle between the two links: the base's part of |k| is not the force's.
+                    # Convert to the sine of the angle between the two links, which is the transmission angle.
                     sine *= math.sqrt(square) / far
                     sines[closing, design, at] = -sine if first else sine
                 else:
@@ -209,7 +212,7 @@ def drive(
                     _towards(link, pin, joint, arms[row, 0], rotation, unit, x, length)
                 _pose(link, pin, place, gives, rotation, turned, unit, shift, x, length)
                 if kind == RRR and first:
-                    # Again: the link's own pose has put the joint where rounding of the longer arm has it.
+                    # Restore the joint: the longer link's pose has overwritten it with a larger rounding error.
                     _carry(other, joint, place, unit, shift, x, length)
                 elif kind == RRR:
                     _towards(other, other_pin, joint, arms[row, 1], rotation, unit, x, length)
@@ -218,6 +221,7 @@ def drive(
                 continue
             valid, smooth = _exists(x, length)
             masks[0, design, at], masks[1, design, at] = valid, smooth
+            # At a toggle only the position is returned.
             known = length if smooth else (1 if valid else 0)
             _write_joints(x, origin, size, points, known, length, design, at)
             _write_rotations(rotation, unit, turned, link_angles[m], angles, known, length, design, at)
@@ -239,7 +243,7 @@ def _reference(
     reaches: Real,
     norms: Real,
 ) -> None:
-    """What stays the same at all inputs: by row, the vectors from the pins to the joint, and the slide's normal."""
+    """Compute the constants over all inputs: by row, the vectors from the pins to the joint, and the slide's normal."""
     for row in range(len(rows)):
         kind, pin, joint, slide = rows[row, KIND], rows[row, PIN], rows[row, JOINT], rows[row, SLIDE]
         if kind in (GEAR, GIVEN):
@@ -271,7 +275,7 @@ def _equate_links(
     base: Complex,
     length: int,
 ) -> None:
-    """k and r of two links that meet (RRR), for the link of this arm and length ``reach``; ``first``: the other one.
+    """Set k and r of two links that meet (RRR), for the link with this arm and length ``reach``; ``first``: the other.
 
     With the base from pin to pin, k = arm̄ · base and r = (|base|² + reach² − far²)/2.
     """
@@ -282,6 +286,7 @@ def _equate_links(
         r[n] = 0.0
         for j in range(n + 1):
             r[n] += 0.5 * _binomial(n, j) * (base[j] * base[n - j].conjugate()).real
+    # Factored difference of squares, against cancellation of nearly equal lengths.
     r[0] += (reach - far) * (reach + far) / 2.0
 
 
@@ -300,7 +305,7 @@ def _equate_joint_on_line(
     base: Complex,
     length: int,
 ) -> None:
-    """k and r of a link whose joint slides on a line of another link (RRP): its distance from the line is zero."""
+    """Set k and r of a link whose joint slides on a line of another link (RRP): its distance from the line is zero."""
     for n in range(length):
         k[n] = unit[other, n] * normal * arm.conjugate()
         base[n] = unit[other, n] * on_line + shift[other, n] - x[pin, n]
@@ -314,7 +319,7 @@ def _equate_joint_on_line(
 def _equate_line_on_joint(
     pin: int, joint: int, arm: complex, normal: complex, x: Complex, k: Complex, r: Real, length: int
 ) -> None:
-    """k and r of a link with a line that slides on a known joint (RPR): the line keeps its distance from the pin."""
+    """Set k and r of a link whose line slides on a known joint (RPR): the line keeps its distance from the pin."""
     for n in range(length):
         k[n] = normal.conjugate() * (x[joint, n] - x[pin, n])
         r[n] = 0.0
@@ -323,7 +328,7 @@ def _equate_line_on_joint(
 
 @njit(**STEP)
 def _exists(x: Complex, length: int) -> tuple[bool, bool]:
-    """Whether all joints have a place, and all their derivatives."""
+    """Return whether all joints have positions, and all their derivatives."""
     valid, smooth = True, True
     for joint in range(len(x)):
         valid = valid and np.isfinite(x[joint, 0])
@@ -336,7 +341,7 @@ def _exists(x: Complex, length: int) -> tuple[bool, bool]:
 def _write_joints(
     x: Complex, origin: complex, size: float, points: Complex, known: int, length: int, design: int, at: int
 ) -> None:
-    """Joints in the mechanism's own coordinates; NaN from the derivative ``known`` on."""
+    """Write joints in the mechanism's own coordinates; NaN from the derivative ``known`` on."""
     for joint in range(len(x)):
         points[joint, 0, design, at] = x[joint, 0] * size + origin if known else complex(np.nan, np.nan)
         for n in range(1, length):
@@ -355,7 +360,7 @@ def _write_rotations(
     design: int,
     at: int,
 ) -> None:
-    """Angles of the links: their rotations from those of the reference; NaN from the derivative ``known`` on."""
+    """Write angles of the links, rotation plus reference angle; NaN from the derivative ``known`` on."""
     for link in range(1, len(rotation)):
         if not turned[link]:
             rotation[link, 0] = math.atan2(unit[link, 0].imag, unit[link, 0].real)
@@ -379,7 +384,7 @@ def _write_travels(
     design: int,
     at: int,
 ) -> None:
-    """Places of the slides' joints along their lines; NaN from the derivative ``known`` on."""
+    """Write positions of the slides' joints along their lines; NaN from the derivative ``known`` on."""
     for slide in range(len(slides)):
         joint, link = slides[slide, 0], slides[slide, 1]
         for n in range(length):
@@ -391,13 +396,13 @@ def _write_travels(
 
 @njit(**OPTIONS)
 def _abs(z: complex) -> float:
-    """|z| of numbers near one, where nothing overflows."""
+    """Return |z| for numbers near one, without protection from overflow."""
     return math.sqrt(z.real * z.real + z.imag * z.imag)
 
 
 @njit(**OPTIONS)
 def _binomial(n: int, k: int) -> float:
-    """n over k for n up to 3."""
+    """Return the binomial coefficient n over k for n up to 3."""
     if k == 0 or k == n:
         return 1.0
     return float(n)
@@ -407,7 +412,7 @@ def _binomial(n: int, k: int) -> float:
 def _travel(
     x: Complex, unit: Complex, shift: Complex, joint: int, link: int, line: complex, angle: float, n: int
 ) -> float:
-    """Derivative n of where a joint stands along a line fixed in a link."""
+    """Return derivative n of a joint's position along a line fixed in a link."""
     direction = complex(math.cos(angle), math.sin(angle))
     total = 0.0
     for j in range(n + 1):
@@ -429,7 +434,8 @@ def _pose(
     x: Complex,
     length: int,
 ) -> None:
-    """From a link's rotation (or e^{iφ} and its rates) and its known pin: the shift, and the joints it makes known."""
+    """Place a link from its rotation (or e^{iφ} and rates) and its known pin: its shift, and the joints it
+    determines."""
     if turned[link]:
         unit[link, 0] = complex(math.cos(rotation[link, 0]), math.sin(rotation[link, 0]))
     u = unit[link, 0]
@@ -449,7 +455,7 @@ def _pose(
 
 @njit(**OPTIONS)
 def _carry(link: int, joint: int, place: Complex, unit: Complex, shift: Complex, x: Complex, length: int) -> None:
-    """A joint where a link has it."""
+    """Place a joint on a link."""
     for n in range(length):
         x[joint, n] = unit[link, n] * place[joint] + shift[link, n]
 
@@ -458,7 +464,7 @@ def _carry(link: int, joint: int, place: Complex, unit: Complex, shift: Complex,
 def _towards(
     link: int, pin: int, joint: int, arm: complex, rotation: Real, unit: Complex, x: Complex, length: int
 ) -> None:
-    """e^{iφ} of a link on two known joints, and the rates of φ, from the line between the joints."""
+    """Compute e^{iφ} of a link on two known joints, and the rates of φ, from the line between the joints."""
     line = x[joint, 0] - x[pin, 0]
     turned = line * arm.conjugate()
     unit[link, 0] = turned / _abs(turned)
@@ -491,12 +497,13 @@ def _close(
     at: int,
     length: int,
 ) -> float:
-    """Solve a closure: e^{iφ} and the rates of φ, margin and its rate; returns the sine that vanishes at its limit.
+    """Solve a closure for e^{iφ}, rates of φ, margin and its rate; return the sine that vanishes at its limit.
 
-    r is a difference of squares; ``slack`` is the size of these where it is more than |k|: r carries their rounding.
+    r is a difference of squares; ``slack`` is their size if that exceeds |k|, since r carries their rounding.
     """
     square = k[0].real * k[0].real + k[0].imag * k[0].imag
     size = math.sqrt(square)
+    # |k|² − r², factored against cancellation near a limit.
     excess = (size - r[0]) * (size + r[0])
     exists = size > COINCIDENT * reach and excess >= -AT_LIMIT * size * max(size, slack)
     margins[closing, 0, design, at] = excess / norm
@@ -513,6 +520,7 @@ def _close(
     unit[link, 0] = u
     if length > 1:
         e = u.conjugate()
+        # NaN at a toggle, or where the closure is undetermined.
         scale = 1.0 / (sign * root) if root > TOGGLE_SINE * size and size > TOGGLE_SINE * reach else np.nan
         w = (r[1] - (e * k[1]).real) * scale
         rotation[link, 1] = w

@@ -1,12 +1,12 @@
-"""Instant centres of any planar mechanism: the point that two links have in common at an instant.
+"""Instant centres of any planar mechanism: the point with the same velocity on two links.
 
-A link that turns at ω and carries a point z at velocity v moves every point p at v + iω(p − z). Two links move a point
-alike at
+A link that turns at ω and moves a point z at velocity v moves every point p at v + iω(p − z). The velocities of two
+links agree at
 
     p = z + i (v − w) / (ω − σ),   w = velocity of z as a point of the other link, which turns at σ,
 
-wherever their angular velocities differ (Norton, Sec. 6.3; Kennedy's theorem follows). Where they are equal the centre
-lies at infinity, square to v − w.
+if their angular velocities differ (Norton, Sec. 6.3; Kennedy's theorem follows). If they are equal the centre lies at
+infinity, normal to v − w.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ from kinematics.linkage.planar.drive import MechanismMotion
 from kinematics.linkage.planar.mechanism import GROUND, Complex, Mechanism, Real
 
 PARALLEL = 1e-9
-"""Difference of angular velocities, as a share of the fastest link's, below which two links move parallel."""
+"""Difference of angular velocities, as a share of the fastest link's, below which two links only translate."""
 
 
 class InstantCenter(NamedTuple):
-    """Where the two links have a point in common; ``finite`` is False, and the point NaN, where they move parallel."""
+    """Instant centre of two links; ``finite`` is False, and the point NaN, where they only translate relatively."""
 
     point: Complex
     finite: NDArray[np.bool_]
 
 
 def instant_centers(mechanism: Mechanism, motion: MechanismMotion) -> dict[tuple[str, str], InstantCenter]:
-    """All n(n − 1)/2 instant centres of a mechanism in motion, by pairs of links in the mechanism's order.
+    """Find all n(n − 1)/2 instant centres of a mechanism in motion, by pairs of links in the mechanism's order.
 
     Parameters
     ----------
@@ -48,6 +48,7 @@ def instant_centers(mechanism: Mechanism, motion: MechanismMotion) -> dict[tuple
     """
     still = np.zeros_like(motion.input[1])
     spins: dict[str, Real] = {name: motion.angles[name][1] if name != GROUND else still for name in mechanism.links}
+    # Scale of the angular velocities, so that the test is relative.
     fastest = np.max(np.abs(np.stack(list(spins.values()))), axis=0)
     centers = {}
     for first, second in combinations(mechanism.links, 2):

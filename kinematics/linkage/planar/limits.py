@@ -1,4 +1,4 @@
-"""Circuits, branches, toggles and limit positions of any mechanism: the one door to them."""
+"""Circuits, branches, toggles and limit positions of any mechanism."""
 
 from __future__ import annotations
 
@@ -18,33 +18,34 @@ from kinematics.linkage.planar.roots import find_roots, sign_changes
 Real = NDArray[np.float64]
 
 GRID = 720
-"""Inputs along the branch at which limit positions are looked for."""
+"""Number of inputs along the branch at which limit positions are searched."""
 
 TOWARDS_END = 4.0 ** -np.arange(17.0, 5.0, -1.0)
-"""Distances from the ends of a branch at which it is looked at too, as parts of it, from 6e-11 on: at a toggle, where
-angles go with the root of the distance, rounding decides whether there is a position."""
+"""Additional sample distances from the ends of a branch, as shares of it, from 6e-11 on: at a toggle angles go with the
+root of the distance, and rounding decides whether a position exists."""
 
 SAME_TOGGLE = 1e-8
-"""Toggles closer than this (radians, or task units along a slide) are listed once."""
+"""Distance (radians, or task units along a slide) below which two toggles are the same."""
 
 
 def branches(mechanism: Mechanism) -> list[Branch]:
-    """All branches of one design, circuit by circuit, the reference's circuit first.
+    """Find all branches of one design, circuit by circuit, the reference's circuit first.
 
     Raises
     ------
     TopologyError
-        Where neither its input nor another pair of links closes the mechanism by dyads, or constraints are redundant.
+        If neither its input nor another pair of links closes the mechanism by dyads, or constraints are redundant.
     """
     if mechanism.redundant:
-        raise TopologyError("constraints are redundant; circuits are known of mechanisms that have just what they need")
+        raise TopologyError("the constraints are redundant; circuits are known only without redundant constraints")
     if decompose(mechanism).left or mechanism.driven_by_slide:
         return branches_by_other_driver(mechanism)
     return dyadic_branches(mechanism)
 
 
 def toggles(mechanism: Mechanism, branches: list[Branch]) -> list[float]:
-    """Inputs of all toggles, ascending, each once: radians in [0, cycle), or positions along the input slide."""
+    """List the inputs of all toggles, ascending, each once: radians in [0, cycle), or positions along the input
+    slide."""
     ends = [x for branch in branches if not branch.full for x in (branch.low, branch.high)]
     if not mechanism.driven_by_slide:
         ends = [float(np.mod(x, cycle(mechanism))) for x in ends]
@@ -53,15 +54,16 @@ def toggles(mechanism: Mechanism, branches: list[Branch]) -> list[float]:
 
 
 def holding_reference(mechanism: Mechanism, branches: list[Branch]) -> Branch | None:
-    """The branch that the reference configuration lies on; None where the reference is at a toggle of several.
+    """Find the branch of the reference configuration; None if the reference is at a toggle of several branches.
 
-    Of ``branches``, the reference's circuit comes first, as in :func:`branches`.
+    In ``branches`` the reference's circuit must come first, as in :func:`branches`.
     """
     at = float(mechanism.reference_input)
     steps = decompose(mechanism)
     period = np.inf if mechanism.driven_by_slide else cycle(mechanism)
     for branch in branches:
         length = branch.high - branch.low
+        # A slide's position does not repeat, an angle does.
         offset = at - branch.low if mechanism.driven_by_slide else float(np.mod(at - branch.low, period))
         if not -SAME_TOGGLE <= offset <= length + SAME_TOGGLE:
             continue
@@ -74,12 +76,12 @@ def holding_reference(mechanism: Mechanism, branches: list[Branch]) -> Branch | 
             if tuple(choice) == branch.signs:
                 return branch
         elif branch.full and not steps.left and not mechanism.driven_by_slide:
-            return branch  # nothing closes: the input alone says where every link is
+            return branch  # no closures: the input alone determines every link
         elif branch.full:
             if followed_to(mechanism, np.array([at - period, at + period])).all():
                 return branch
         else:
-            # More than a turn long, the branch has the reference's input more than once.
+            # A branch longer than a turn contains the reference's input more than once.
             again = np.arange(0.0, length + SAME_TOGGLE - offset, period)
             if any(_reaches_just(mechanism, low, low + length) for low in at - offset - again):
                 return branch
@@ -87,9 +89,10 @@ def holding_reference(mechanism: Mechanism, branches: list[Branch]) -> Branch | 
 
 
 def cycle_from_reference(mechanism: Mechanism) -> float:
-    """Input rotation after which a mechanism is back in its reference configuration; with a triad its branch says that.
+    """Find the input rotation after which a mechanism returns to its reference configuration.
 
-    Where the reference's branch is not known, or not full, that of :func:`~.branches.cycle`.
+    With a triad it depends on the branch; if the reference's branch is unknown or not full, the result is that of
+    :func:`~.branches.cycle`.
     """
     if mechanism.driven_by_slide or not decompose(mechanism).left:
         return cycle(mechanism)
@@ -101,7 +104,8 @@ def cycle_from_reference(mechanism: Mechanism) -> float:
 
 
 def _reaches_just(mechanism: Mechanism, low: float, high: float) -> bool:
-    """Whether the motion from the reference reaches nearly to both ends and not beyond."""
+    """Return whether the motion from the reference reaches both ends of a range and not beyond them."""
+    # Just inside and just outside both ends.
     hair = 1e-6 * (high - low)
     inputs = np.array([low - hair, low + hair, high - hair, high + hair])
     there = drive(mechanism, inputs, order=0).valid if mechanism.driven_by_slide else followed_to(mechanism, inputs)
@@ -111,25 +115,25 @@ def _reaches_just(mechanism: Mechanism, low: float, high: float) -> bool:
 def limit_positions(
     mechanism: Mechanism, branch: Branch, links: Sequence[str], slides: Sequence[str]
 ) -> tuple[list[tuple[float, float] | None], list[tuple[float, float] | None]]:
-    """Least and greatest angles of links, and positions of slides, on the reference's branch.
+    """Find the minimum and maximum angles of links, and positions of slides, on the reference's branch.
 
-    They stand at the ends of the branch, or where a rate vanishes, found as a root. At an end the value is that
-    of the nearest known position, at the distance d, and twice d times the rate there: with the root of the distance
-    from a toggle the value changes so but for a part in proportion to d, and where it is smooth that is so anyway.
+    They occur at the ends of the branch, or where a rate vanishes, found as a root. The value at an end is extrapolated
+    from the nearest known position, at the distance d, by 2 d × rate: exact for a value that changes with the root of
+    the distance from a toggle, up to terms proportional to d, which are negligible where the value is smooth.
 
     Parameters
     ----------
     mechanism : Mechanism
         One design.
     branch : Branch
-        The branch that holds its reference.
+        The branch that contains its reference.
     links, slides : names
         Links, and slides by their names.
 
     Returns
     -------
     of_links, of_slides : lists
-        Radians and lengths, in the order of the names; None for a link that turns through.
+        Radians and lengths, in the order of the names; None for a link that rotates fully.
     """
     at = float(mechanism.reference_input)
     low = branch.low
@@ -138,7 +142,7 @@ def limit_positions(
     high = low + branch.high - branch.low
 
     def quantities(inputs: Real, order: int) -> Real:
-        """Jets of all quantities, shape (order + 1, quantities, inputs)."""
+        """Evaluate the jets of all quantities, shape (order + 1, quantities, inputs)."""
         motion = drive_one(mechanism, inputs[None], signs, order)
         return np.stack([*(motion.angles[n] for n in links), *(motion.slides[n] for n in slides)], axis=1)[:, :, 0]
 
@@ -168,6 +172,7 @@ def limit_positions(
     spans: list[tuple[float, float] | None] = []
     for row, value in enumerate(values):
         if row < len(links):
+            # Angles are known modulo full turns only.
             value = np.unwrap(value)
             if branch.full and abs(value[-1] - value[0]) > np.pi:
                 spans.append(None)

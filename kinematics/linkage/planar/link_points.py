@@ -1,4 +1,4 @@
-"""Any point of any link: where a mechanism in motion carries it, and how fast.
+"""Motion of any point of any link of a mechanism.
 
 A point p fixed in a link, in the link's frame with the origin at the joint z from which its angle θ is measured and the
 real axis along it, moves as
@@ -17,7 +17,7 @@ from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 
 
 def link_point(mechanism: Mechanism, motion: MechanismMotion, link: str, place: complex) -> Jet:
-    """A point of a link and its rates.
+    """Compute the motion of a point of a link, with its rates.
 
     Parameters
     ----------
@@ -28,18 +28,18 @@ def link_point(mechanism: Mechanism, motion: MechanismMotion, link: str, place: 
     link : str
         A link in motion.
     place : complex
-        The point in the link's frame: origin at the link's first joint, real axis towards its second; of the input
-        link from its pivot towards the other of the two.
+        The point in the link's frame: origin at the link's first joint, real axis towards its second; for the input
+        link from its pivot towards the other one.
 
     Returns
     -------
     complex, shape (n,) + S + (N,)
-        In the mechanism's coordinates, and per s^n.
+        Position in the mechanism's coordinates, and rates per s^n.
 
     Raises
     ------
     DimensionError
-        For a link that does not exist, or the ground.
+        For an unknown link, or the ground.
     """
     if link == GROUND or link not in mechanism.links:
         raise DimensionError("link", "one that moves", link)

@@ -1,4 +1,4 @@
-"""A planar mechanism by its skeleton: where its joints are in a reference configuration, and what joins them.
+"""A planar mechanism by its skeleton: positions of its joints in a reference configuration, and their connections.
 
 Links are rigid and named; two links that list the same joint are pinned together there. A *slide* keeps a joint on a
 line fixed in a link. A *gear pair* makes one link turn a multiple of another. The input is a link that is pinned to the
@@ -26,15 +26,15 @@ GROUND = "ground"
 
 
 OFF_SLIDE = 1e-6
-"""Distance of a joint from its slide in the reference, as a share of the mechanism's size: inputs may be rounded."""
+"""Maximum distance of a joint from its slide in the reference, as a share of the size: input data may be rounded."""
 
 
 TOO_SHORT = 1e-13
-"""Length as a share of the mechanism's size below which two joints lie on each other: rounding is as large."""
+"""Length, as a share of the mechanism's size, below which two joints coincide: rounding is of that order."""
 
 
 class TopologyError(MechanismError, ValueError):
-    """Links, slides or gears that do not make one mechanism with a mobility of one."""
+    """Links, slides or gears that do not form one mechanism with a mobility of one."""
 
 
 class Slide(NamedTuple):
@@ -69,25 +69,25 @@ class Mechanism:
     input : str
         Name of a link that is pinned to the ground, or of the joint of a slide on the ground.
     turns : int
-        Full turns of the input link in the reference beyond the angle, from −π to π, at which its joints show it. With
-        gears of a ratio that is not whole the same input angle a turn on is another configuration.
+        Full turns of the input link in the reference, added to its angle in −π to π given by its joints. With gears of
+        a non-integer ratio the same input angle after a turn is another configuration.
 
     Attributes
     ----------
     shape : tuple of int
         S.
     redundant : int
-        How many constraints could be left out without a further freedom.
+        Number of redundant constraints.
 
     Raises
     ------
     TopologyError
-        For names that do not exist, a link without joints, or a mobility other than one. By counting it may be less
-        where dimensions agree so that constraints are redundant and the links move all the same.
+        For unknown names, a link without joints, or a mobility other than one. The count may give less if special
+        dimensions make constraints redundant, so that the links still move.
     DimensionError
-        For coordinates or gear ratios that are not finite, a joint that is not on its slide, or a link in motion whose
-        first two joints lie on each other: it has no angle, and a crank without length drives nothing. Fixed pivots may
-        lie on each other; the mechanism then turns about them as one body.
+        For coordinates or gear ratios that are not finite, a joint that is not on its slide, or a moving link whose
+        first two joints coincide: it has no angle, and a crank without length cannot drive. Fixed pivots may coincide;
+        the mechanism then turns about them as one body.
     ShapeError
         For coordinates that do not broadcast.
     """
@@ -143,12 +143,12 @@ class Mechanism:
 
     @property
     def mobility(self) -> int:
-        """Degrees of freedom: one, that of the input. :attr:`counted_mobility` is what a count makes of it."""
+        """Degrees of freedom: always one, that of the input; see :attr:`counted_mobility` for the count."""
         return 1
 
     @cached_property
     def counted_mobility(self) -> int:
-        """Degrees of freedom by counting: 3 a moving link, less 2 a pin, 1 a slide and 1 a gear pair (Norton 2.1).
+        """Degrees of freedom by counting: 3 per moving link, minus 2 per pin, 1 per slide and gear pair (Norton 2.1).
 
         A joint on k links counts as k − 1 pins. Parallel cranks, closed trains of gears and other overconstrained
         mechanisms move although their count is less than one.
@@ -158,7 +158,7 @@ class Mechanism:
 
     @property
     def frame(self) -> tuple[Complex, Real]:
-        """Origin and size of unit coordinates, shape S: the first ground joint, and how far joints are from it."""
+        """Origin and size of unit coordinates, shape S: the first ground joint, and the largest distance from it."""
         ground = self.links[GROUND]
         origin = self.joints[ground[0]] if ground else next(iter(self.joints.values()))
         size = np.stack([np.abs(z - origin) for z in self.joints.values()]).max(axis=0)
@@ -195,18 +195,18 @@ class Mechanism:
         found = constraints.mobility(constraints.reference)
         if found.size and int(found.min()) < 1:
             raise TopologyError(
-                f"expected a mobility of 1, got {counted}; look for a link or joint too many, or, where constraints "
+                f"expected a mobility of 1, got {counted}; look for a link or joint too many or, if constraints "
                 "are meant to be redundant, for dimensions that do not agree"
             )
         if found.size and int(found.max()) > 1:
             raise TopologyError(
                 f"expected a mobility of 1, got {int(found.max())} by the rank of the constraints; where the links "
-                "stand at a dead centre state another position of them"
+                "are at a dead centre, give another position"
             )
         if not constraints.moves():
             raise TopologyError(
-                "expected a mobility of 1, got 0: the constraints agree in this position and in none nearby that the "
-                "input leads to"
+                "expected a mobility of 1, got 0: the constraints agree in this position, but in no nearby position "
+                "that the input could reach"
             )
 
     def _links_at(self, joint: str) -> int:
@@ -222,7 +222,7 @@ class Mechanism:
             if len(set(listed)) != len(listed):
                 raise TopologyError(f"link {name!r} lists a joint twice")
             if name != GROUND and len(listed) < 2:
-                raise TopologyError(f"link {name!r} needs two joints or more")
+                raise TopologyError(f"link {name!r} needs at least two joints")
         loose = [joint for joint in self.joints if not self._links_at(joint)]
         if loose:
             raise TopologyError(f"the joint {loose[0]!r} is on no link")
@@ -261,7 +261,7 @@ class Mechanism:
 
     @property
     def slide_names(self) -> tuple[str, ...]:
-        """A name for each slide: its joint, with the slide's number where the joint has several."""
+        """Name of each slide: its joint, with the slide's number if the joint has several."""
         joints = [slide.joint for slide in self.slides]
         return tuple(f"{name}_{k}" if joints.count(name) > 1 else name for k, name in enumerate(joints))
 
@@ -272,7 +272,7 @@ class Mechanism:
 
     @property
     def input_pivot(self) -> str:
-        """The ground joint about which the input link turns."""
+        """Ground joint about which the input link turns."""
         return next(joint for joint in self.links[self.input] if joint in self.links[GROUND])
 
     @property
@@ -285,11 +285,11 @@ class Mechanism:
         return np.asarray(self.link_angle(self.input) + 2.0 * np.pi * self.turns)
 
     def link_line(self, link: str) -> tuple[str, str]:
-        """The joints from and to which the angle of a link is measured: the first two, the input's from its pivot."""
+        """Return the joints that define the angle of a link: the first two, for the input starting at its pivot."""
         first, second = self.links[link][:2]
         return (second, first) if link == self.input and second == self.input_pivot else (first, second)
 
     def link_angle(self, link: str) -> Real:
-        """Angle of a link along its line in the reference; radians, shape S."""
+        """Return the angle of a link in the reference; radians, shape S."""
         first, second = self.link_line(link)
         return np.asarray(np.angle(self.joints[second] - self.joints[first]))

@@ -1,9 +1,9 @@
-"""Branches of a mechanism whose input does not close it by dyads, found by driving it elsewhere.
+"""Branches of a mechanism whose input does not close it by dyads, found by driving it at another link.
 
-Which configurations a mechanism can reach does not depend on which link is called ground or input. Where the input
-leaves a class III group, or is a slide, another pair of links is taken for ground and input such that all closures are
-dyads. The configurations are then known as curves (:mod:`kinematics.linkage.planar.configuration_curves`), along which
-the true input is a smooth function; where it turns back is a toggle, and what lies between two such points is a branch.
+The configurations of a mechanism do not depend on the choice of ground and input. If the input leaves a class III
+group, or is a slide, another pair of links is chosen as ground and input such that all closures are dyads. The
+configurations are then known as curves (:mod:`kinematics.linkage.planar.configuration_curves`), along which the true
+input is a smooth function; its reversals are toggles, and the stretches between them are the branches.
 """
 
 from __future__ import annotations
@@ -36,19 +36,19 @@ Rows = NDArray[np.int64]
 FULL_TURN = 2.0 * np.pi
 
 DEAD = 1e-9
-"""Way of the true input along a curve, in units of the mechanism, below which it stands still."""
+"""Travel of the true input along a curve, in units of the mechanism, below which it does not move."""
 
 LEAP = 0.5
-"""Change of an angle between neighbouring samples, radians, above which they stand too far apart to be unwrapped."""
+"""Change of an angle between neighbouring samples, radians, above which they are too distant to be unwrapped."""
 
 
 def other_driver(mechanism: Mechanism) -> Mechanism:
-    """The same mechanism with another ground and input, closed by dyads; the names of the two grounds are exchanged.
+    """Find another ground and input that close the mechanism by dyads; the names of the two grounds are exchanged.
 
     Raises
     ------
     TopologyError
-        Where no pair of pinned links closes it by dyads, or where gears tie it to its ground.
+        If no pair of pinned links closes it by dyads, or gears couple it to its ground.
     """
     if mechanism.gears:
         raise TopologyError("a geared mechanism must close by dyads from its input; this one does not")
@@ -57,6 +57,7 @@ def other_driver(mechanism: Mechanism) -> Mechanism:
         links = {swapped.get(name, name): listed for name, listed in mechanism.links.items()}
         slides = tuple(slide._replace(link=swapped.get(slide.link, slide.link)) for slide in mechanism.slides)
         for driver, listed in links.items():
+            # Only links pinned to the new ground can drive.
             if driver == GROUND or not set(listed) & set(links[GROUND]):
                 continue
             if order_of_closures(links, driver, slides, ()).left:
@@ -65,26 +66,26 @@ def other_driver(mechanism: Mechanism) -> Mechanism:
                 redriven = Mechanism(dict(mechanism.joints), links, driver, slides)
                 program_of(redriven)
                 return redriven
-            except DimensionError:  # pivots on each other make no link that can drive or be driven
+            except DimensionError:  # a link with coincident pivots cannot drive or be driven
                 continue
     raise TopologyError("no pair of links closes this mechanism by dyads")
 
 
 def branches_by_other_driver(mechanism: Mechanism) -> list[Branch]:
-    """All branches of one design, circuit by circuit, the reference's first; ``signs`` and closures are left empty.
+    """Find all branches of one design, circuit by circuit, the reference's first; ``signs`` and closures stay empty.
 
     Raises
     ------
     TopologyError
-        Where no pair of links closes the mechanism by dyads, or a link swings freely while the other driver stands
-        still: such a motion is on none of its curves.
+        If no pair of links closes the mechanism by dyads, or a link swings freely while the other driver stands still:
+        such a motion lies on none of its curves.
     """
     other = other_driver(mechanism)
     decomposition = decompose(other)
     closures = Closures(other, decomposition)
     curves = configuration_curves(other, closures, FULL_TURN)
     if any(end.point.swings for curve in curves for end in curve.ends):
-        raise TopologyError("a link swings freely while the link that stands in for the input stands still")
+        raise TopologyError("a link swings freely while the substitute input link stands still")
     true_input = _TrueInput(mechanism, other, closures, curves)
     numbers = circuits(curves)
     signs = assembly_signs(other, decomposition.steps)
@@ -97,7 +98,7 @@ def branches_by_other_driver(mechanism: Mechanism) -> list[Branch]:
 
 
 def _passes(curve: Curve, theta: float, choice: Rows) -> bool:
-    """Whether a curve of the other driver passes an input of it on certain assemblies."""
+    """Return whether a curve of the other driver passes one of its inputs in given assemblies."""
     cuts = [turn.at for turn in curve.turns]
     cuts = [*cuts, cuts[0] + curve.high - curve.low] if curve.closed and cuts else [curve.low, *cuts, curve.high]
     for low, high in pairwise(cuts):
@@ -110,7 +111,7 @@ def _passes(curve: Curve, theta: float, choice: Rows) -> bool:
 
 
 class _TrueInput:
-    """The true input along the curves of the other driver."""
+    """True input along the curves of the other driver."""
 
     def __init__(self, mechanism: Mechanism, other: Mechanism, closures: Closures, curves: list[Curve]) -> None:
         self.mechanism, self.other, self.closures, self.curves = mechanism, other, closures, curves
@@ -129,7 +130,7 @@ class _TrueInput:
         ]
 
     def _jet(self, place: Place, order: int) -> Real:
-        """Jet of the true input by the other one; shape (order + 1, n)."""
+        """Evaluate the jet of the true input by the other one; shape (order + 1, n)."""
         signs = self.closures.signs(place.signs)
         motion = drive_one(self.other, place.theta[:, None], signs, order)
         if self.slide:
@@ -139,22 +140,20 @@ class _TrueInput:
         return turned
 
     def _rates(self, row: Rows, at: Real) -> tuple[Real, Real]:
-        """First two derivatives of the true input by the parameters of curves."""
+        """Evaluate the first two derivatives of the true input by the parameters of curves."""
         place = places(self.chains, row, at)
         jet = self._jet(place, 2)
         return jet[1] * place.rate, jet[2] * place.rate**2 + jet[1] * place.second
 
     def branches(self, n: int, circuit: int) -> list[Branch]:
-        """The branches along one curve."""
+        """Return the branches along one curve."""
         curve, turns = self.curves[n], self.turns[n]
         length = curve.high - curve.low
         if curve.closed:
             start = turns[0] if turns else curve.low + 0.1 * length
             cuts = [t for t in turns if t - start < length * (1.0 - 1e-12)] if turns else [start]
             if turns and len(cuts) % 2:
-                raise TopologyError(
-                    "two limits lie closer together than they can be told apart; circuits are not known"
-                )
+                raise TopologyError("two limits are too close to be separated; circuits are not known")
             cuts.append(cuts[0] + length)
         else:
             cuts = [curve.low, *turns, curve.high]
@@ -162,6 +161,7 @@ class _TrueInput:
         found = []
         for one, another in pairwise(values):
             low, high = min(one, another), max(one, another)
+            # The true input is at rest while the other driver moves.
             if high - low <= DEAD:
                 continue
             start = low if self.slide else float(np.mod(low, FULL_TURN))
@@ -169,8 +169,9 @@ class _TrueInput:
         return found
 
     def _along(self, curve: Curve, cuts: list[float]) -> list[float]:
-        """The true input at places on a curve, unwrapped."""
+        """Evaluate the true input at places on a curve, unwrapped."""
         length = curve.high - curve.low
+        # Shifted slightly, so that samples avoid folds at regular places.
         inner = np.linspace(cuts[0], cuts[-1], CELLS + 1)[1:-1] + 0.003 / CELLS * length
         known = np.unique(np.concatenate([cuts, inner]))
         if not curve.closed:
@@ -188,7 +189,7 @@ class _TrueInput:
         ends = np.clip(cuts, known[0], known[-1])
         inputs = smooth[np.searchsorted(known, ends)]
         if not curve.closed:
-            # Where curves cross the assembly may be lost to rounding; from a hair beside it the series leads there.
+            # At a crossing rounding may lose the assembly: extrapolate from a nearby point by the Taylor series.
             at = np.array([known[0], known[-1]])
             hair = np.array([cuts[0], cuts[-1]]) - at
             rate, second = self._rates(np.full(2, self.curves.index(curve)), at)
@@ -196,7 +197,7 @@ class _TrueInput:
         return [float(x) for x in inputs]
 
     def _value(self, curve: Curve, at: Real) -> Real:
-        """The true input, at folded places where rounding takes the assembly away from a hair beside them."""
+        """Evaluate the true input; where rounding loses the assembly at a fold, take a point next to it."""
         value: Real = self._jet(curve.place(at), 0)[0]
         lost = np.isnan(value)
         if lost.any():
@@ -205,7 +206,7 @@ class _TrueInput:
 
 
 def _rotation(mechanism: Mechanism, motion: MechanismMotion, link: str) -> Real:
-    """Jet of a link's rotation from the reference; shape (n, inputs)."""
+    """Evaluate the jet of a link's rotation from the reference; shape (n, inputs)."""
     if link == GROUND:
         return np.zeros(motion.input.shape[:2])
     rotation: Real = motion.angles[link][..., 0].copy()

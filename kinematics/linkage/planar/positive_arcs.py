@@ -1,10 +1,10 @@
-"""Where smooth functions of one variable are positive: all their zeros, those that lie close together too.
+"""Positive arcs of smooth functions of one variable: all their zeros, including close pairs.
 
-Each function has a domain, a circle or a segment, and comes with its rate. It is sampled ever finer until between
-neighbouring samples it is the cubic that values and rates there give, but for a small part of its change. Then no cell
-between two samples hides more than the cubic shows: a zero where the sign changes, an extreme where the rate turns
-towards zero. Such an extreme is found as a root of the rate, and tells whether the function has two zeros there, none,
-or touches zero. Many functions are treated at once, as rows, because one evaluation costs hardly less than a hundred.
+Each function has a domain, a circle or a segment, and is evaluated with its rate. Samples are refined until the
+function between neighbours agrees with the cubic through their values and rates, up to a small part of its change. Then
+no cell hides more than the cubic shows: a zero where the sign changes, an extreme where the rate points towards zero.
+Such an extreme is found as a root of the rate, and decides whether the function has two zeros there, none, or touches
+zero. Many functions are treated at once, as rows, because one evaluation costs hardly less than a hundred.
 """
 
 from __future__ import annotations
@@ -21,37 +21,37 @@ Real = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 CELL_ERROR = 0.01
-"""Part of its change in a cell (or of its distance from zero) by which a function may differ from the cubic."""
+"""Maximum deviation from the cubic, as a share of the function's change in a cell or of its distance from zero."""
 
 NARROW = 1e-7
-"""Cells narrower than this part of the domain are not divided: beside a fold the input differs by its square only."""
+"""Minimum width of a cell, as a share of the domain: next to a fold the input changes only by the square of it."""
 
 FIRST = 0.37
-"""Place of the first sample in the first cell: functions are often even about the ends, where rates may be infinite."""
+"""Position of the first sample in its cell: functions are often even about the ends, where rates may be infinite."""
 
 HAIR = 1e-6
-"""Distance of the outermost samples from the ends of a segment, as a part of it: the function may not exist there."""
+"""Distance of the outermost samples from the ends of a segment, as a share of it: the function may not exist there."""
 
 TOUCHES = 1e-12
-"""An extreme below this part of the function's greatest value touches zero: at a change point, to rounding."""
+"""Share of the function's maximum below which an extreme touches zero: a change point, to rounding."""
 
 VANISHES = 1e-13
-"""A function that stays below this at its first samples is zero all over; beside the ends, where roots of small
-differences are taken, rounding may be larger."""
+"""Value below which a function that stays so at its first samples is zero everywhere; close to the ends, where roots of
+small differences are taken, rounding may be larger."""
 
 NOISE = 1e-12
-"""Cells in which a function stays below this part of its greatest value are not divided: their shape is rounding."""
+"""Share of a function's maximum below which a cell is not divided: its shape is rounding."""
 
 CROWD = 4
-"""When this many times its first cells are still to be divided at once, a function is rounding, and left as it is: one
-that is smooth but for a few places has but a few such cells at a time."""
+"""Multiple of the initial number of cells that, when pending at once, marks a function as rounding noise and stops its
+refinement: a function that is smooth except in a few places has only a few such cells at a time."""
 
 Function = Callable[[Rows, Real], tuple[Real, Real]]
 """Value and rate of the functions ``rows`` at the places given, shape (n,) each; a rate may be NaN."""
 
 
 class Domain(NamedTuple):
-    """A segment, or a circle that is as long; and into how many cells it is divided at first."""
+    """A segment, or a circle of that length, and its initial number of cells."""
 
     low: float
     high: float
@@ -60,10 +60,10 @@ class Domain(NamedTuple):
 
 
 class Arc(NamedTuple):
-    """Where a function is positive: from ``low`` to ``high``, which on a circle may lie beyond its end.
+    """An arc on which a function is positive, from ``low`` to ``high``, which on a circle may exceed its end.
 
-    ``at_low`` and ``at_high`` say what is there: a ``zero`` where the sign changes, a place where the function only
-    ``touches`` zero, or the ``end`` of the domain; ``whole`` for a circle without either.
+    ``at_low`` and ``at_high`` name the kind of end: a ``zero`` where the sign changes, a place where the function only
+    ``touches`` zero, or the ``end`` of the domain; ``whole`` for a circle without ends.
     """
 
     low: float
@@ -73,7 +73,7 @@ class Arc(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """Rows, places, values and rates, sorted by row and place; on a circle the first one comes again at the end."""
+    """Rows, places, values and rates, sorted by row and place; on a circle the first sample is repeated at the end."""
 
     row: Rows
     at: Real
@@ -81,7 +81,7 @@ class Samples(NamedTuple):
     rate: Real
 
     def merged(self, *others: Samples) -> Samples:
-        """These and others, sorted."""
+        """Merge these samples with others, sorted."""
         every = [self, *others]
         row, at = np.concatenate([s.row for s in every]), np.concatenate([s.at for s in every])
         value, rate = np.concatenate([s.value for s in every]), np.concatenate([s.rate for s in every])
@@ -89,17 +89,17 @@ class Samples(NamedTuple):
         return Samples(row[order], at[order], value[order], rate[order])
 
     def part(self, index: NDArray[np.bool_] | Rows) -> Samples:
-        """Some of them."""
+        """Select some samples."""
         return Samples(self.row[index], self.at[index], self.value[index], self.rate[index])
 
     def cells(self) -> tuple[Samples, Samples]:
-        """Left and right ends of the cells."""
+        """Return the left and right ends of the cells."""
         left = np.flatnonzero(self.row[:-1] == self.row[1:])
         return self.part(left), self.part(left + 1)
 
 
 def positive_arcs(function: Function, domains: Sequence[Domain]) -> list[list[Arc]]:
-    """The arcs on which each of the functions is positive, by rows, ascending."""
+    """Find the arcs on which each of the functions is positive, by rows, ascending."""
     if not domains:
         return []
     samples, vanishes = _resolved(function, domains)
@@ -115,7 +115,7 @@ def positive_arcs(function: Function, domains: Sequence[Domain]) -> list[list[Ar
         if vanishes[row] or not len(sure):
             pending.append((row, [], False))
             continue
-        if domain.closed:  # once round from a place that is surely not zero
+        if domain.closed:  # start from a sample that is certainly not zero
             turn = int(sure[0])
             at = np.concatenate([at[turn:], at[1 : turn + 1] + (domain.high - domain.low)])
             value = np.concatenate([value[turn:], value[1 : turn + 1]])
@@ -124,6 +124,7 @@ def positive_arcs(function: Function, domains: Sequence[Domain]) -> list[list[Ar
         positive = value[sure] > 0.0
         for n in np.flatnonzero((positive[:-1] != positive[1:]) | (positive[:-1] & (np.diff(sure) > 1))):
             one, other = sure[n], sure[n + 1]
+            # Positive on both sides of a near-zero sample: the function touches zero.
             if positive[n] == positive[n + 1]:
                 least = one + 1 + int(np.argmin(np.abs(value[one + 1 : other])))
                 boundaries.append(_Boundary(float(at[least]), None, None))
@@ -143,7 +144,7 @@ def positive_arcs(function: Function, domains: Sequence[Domain]) -> list[list[Ar
 
 
 class _Boundary(NamedTuple):
-    """An end of arcs: its place, the number of its change of sign (none where it touches), and whether that rises."""
+    """An end of arcs: its place, the number of its sign change (None if it touches), and whether the sign rises."""
 
     at: float
     change: int | None
@@ -151,7 +152,7 @@ class _Boundary(NamedTuple):
 
 
 def _resolved(function: Function, domains: Sequence[Domain]) -> tuple[Samples, NDArray[np.bool_]]:
-    """Samples between which the functions are their cubics; and which functions are zero all over."""
+    """Resolve functions into samples between which they agree with cubics; also mark functions that vanish."""
     places = []
     for domain in domains:
         cell = (domain.high - domain.low) / domain.cells
@@ -185,6 +186,7 @@ def _resolved(function: Function, domains: Sequence[Domain]) -> tuple[Samples, N
         at = left.at + 0.5 * width
         middle = Samples(left.row, at, *_known(function, left.row, at))
         rounds.append(middle)
+        # Deviation of the midpoint's value and rate from those of the Hermite cubic.
         off = np.abs(middle.value - 0.5 * (left.value + right.value) - width * (left.rate - right.rate) / 8.0)
         slope = 1.5 * (right.value - left.value) - 0.25 * width * (left.rate + right.rate)
         off = np.maximum(off, 0.25 * np.abs(width * middle.rate - slope))
@@ -192,6 +194,7 @@ def _resolved(function: Function, domains: Sequence[Domain]) -> tuple[Samples, N
         change = np.maximum(np.abs(middle.value - left.value), np.abs(middle.value - right.value))
         change = np.maximum(change, width * np.abs([left.rate, middle.rate, right.rate]).max(axis=0))
         same = (left.value > 0.0) == (right.value > 0.0)
+        # Far from zero a larger deviation is harmless, since no zero can hide there.
         allowed = np.maximum(change, np.where(same, values.min(axis=0), 0.0))
         rough = ~(off <= CELL_ERROR * allowed) & (width > narrow[left.row]) & (values.max(axis=0) > noise[left.row])
         crowded = np.bincount(left.row[rough], minlength=len(domains)) > CROWD * first
@@ -202,13 +205,13 @@ def _resolved(function: Function, domains: Sequence[Domain]) -> tuple[Samples, N
 
 
 def _known(function: Function, row: Rows, at: Real) -> tuple[Real, Real]:
-    """Value and rate, the value zero where it is not known."""
+    """Evaluate value and rate; an unknown value becomes zero."""
     value, rate = function(row, at)
     return np.nan_to_num(value, nan=0.0), rate
 
 
 def _extremes(function: Function, samples: Samples) -> Samples:
-    """Minima above zero and maxima below it that may come near zero, between samples."""
+    """Find minima above zero and maxima below it, between samples, that may come close to zero."""
     left, right = samples.cells()
     width, side = right.at - left.at, np.sign(left.value)
     falls, rises = side * left.rate, side * right.rate
@@ -216,6 +219,7 @@ def _extremes(function: Function, samples: Samples) -> Samples:
         # Where the tangents at both ends meet: lower than the function, which is convex around a minimum.
         meet = left.value + left.rate * (right.value - left.value - right.rate * width) / (left.rate - right.rate)
         low = ~(side * meet > 0.5 * np.minimum(np.abs(left.value), np.abs(right.value)))
+    # The function falls towards zero at the left end and recedes from it at the right one.
     turns = (side == np.sign(right.value)) & (falls <= 0.0) & (rises >= 0.0) & (falls < rises) & low
     row = left.row[turns]
     if not len(row):
@@ -229,7 +233,7 @@ def _extremes(function: Function, samples: Samples) -> Samples:
 
 
 def _zeros(function: Function, changes: list[tuple[int, float, float, float, float]]) -> Real:
-    """Where functions change sign, each between two places; the last of them where it is not negative."""
+    """Find sign changes of functions, each between two places, at the last point that is not negative."""
     if not changes:
         return np.empty(0)
     row, low, high, at_low, at_high = (np.array(column) for column in zip(*changes, strict=True))
@@ -237,7 +241,7 @@ def _zeros(function: Function, changes: list[tuple[int, float, float, float, flo
 
 
 def _arcs(domain: Domain, boundaries: list[_Boundary], positive_first: bool) -> list[Arc]:
-    """The positive arcs between boundaries in their order."""
+    """Collect the positive arcs between boundaries in their order."""
     if not boundaries:
         kind: Literal["whole", "end"] = "whole" if domain.closed else "end"
         return [Arc(domain.low, domain.high, kind, kind)] if positive_first else []

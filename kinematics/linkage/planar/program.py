@@ -1,7 +1,7 @@
-"""A mechanism as the compiled sweep takes it: its closures as rows of numbers, its designs in unit coordinates.
+"""A mechanism in the layout of the compiled sweep: its closures as rows of numbers, its designs in unit coordinates.
 
 Unit coordinates have their origin at the reference position of the first ground joint and the size of the mechanism as
-unit, so that tolerances are relative and digits are not lost to a far origin.
+unit, so that tolerances are relative and a far origin does not cost digits.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ class Frame:
 
 
 class Program(NamedTuple):
-    """A mechanism's closures in order, the names of what the kernel numbers, and the ``code`` that it takes.
+    """A mechanism's closures in order, the names behind the kernel's numbers, and the kernel's ``code``.
 
-    ``links`` are in the kernel's order, the ground first. ``closing`` are the links that have two assemblies, ``signs``
-    the reference's assemblies by step, ``reference_input`` the inputs there, of shape (M,).
+    ``links`` are in the kernel's order, the ground first. ``closing`` are the links with two assemblies, ``signs`` the
+    reference's assemblies by step, ``reference_input`` the inputs there, shape (M,).
     """
 
     steps: tuple[Step, ...]
@@ -57,7 +57,7 @@ class Program(NamedTuple):
 
 @lru_cache(maxsize=RECENT)
 def unit_frame(mechanism: Mechanism) -> Frame:
-    """The mechanism's unit coordinates."""
+    """Compute the mechanism's unit coordinates."""
     origin, size = mechanism.frame
     joints = {name: np.asarray((z - origin) / size) for name, z in mechanism.joints.items()}
     lines = {k: np.asarray((s.point - origin) / size) for k, s in enumerate(mechanism.slides)}
@@ -65,7 +65,7 @@ def unit_frame(mechanism: Mechanism) -> Frame:
 
 
 def assembly_signs(mechanism: Mechanism, steps: tuple[Step, ...]) -> tuple[Signs, ...]:
-    """The reference's choice at every closure, shape S each: +1 or −1; +1 where the reference is at a limit."""
+    """Find the reference's assembly at every closure, shape S each: +1 or −1; +1 if the reference is at a limit."""
     frame = unit_frame(mechanism)
     signs = []
     for step in steps:
@@ -73,6 +73,7 @@ def assembly_signs(mechanism: Mechanism, steps: tuple[Step, ...]) -> tuple[Signs
             signs.append(np.ones(mechanism.shape, np.int64))
             continue
         k = _reference_k(frame, mechanism, step)
+        # Im k = 0 at a limit, where both assemblies agree.
         signs.append(np.where(k.imag < 0.0, -1, 1))
     return tuple(signs)
 
@@ -89,7 +90,7 @@ def _reference_k(frame: Frame, mechanism: Mechanism, step: Step) -> Complex:
 
 @lru_cache(maxsize=RECENT)
 def program_of(mechanism: Mechanism) -> Program:
-    """The program of a mechanism.
+    """Build the program of a mechanism.
 
     Raises
     ------
@@ -97,6 +98,7 @@ def program_of(mechanism: Mechanism) -> Program:
         For a link without length between the joints by which it closes.
     """
     decomposition, frame = decompose(mechanism), unit_frame(mechanism)
+    # A class III group is solved as a whole, so single closures are not used.
     steps = () if decomposition.left else decomposition.steps
     for step in steps:
         _check_arms(frame, step)
@@ -135,7 +137,7 @@ def program_of(mechanism: Mechanism) -> Program:
 
 
 class _Numbers:
-    """Links, joints and slides by number, and which joints become known by which link, in the order of the rows."""
+    """Numbers of links, joints and slides, and the joints determined by each link, in the order of the rows."""
 
     def __init__(self, mechanism: Mechanism, links: tuple[str, ...]) -> None:
         self.mechanism = mechanism
@@ -173,7 +175,7 @@ class _Numbers:
         return KINDS[step.kind], self.link[step.link], pin, joint, self.link.get(other, -1), other_pin, slide, closing
 
     def tree(self) -> list[tuple[int, ...]]:
-        """Rows of links whose rotations are given, each on a joint that is known by then."""
+        """Return rows of links with given rotations, each on a joint that is known by then."""
         rows: list[tuple[int, ...]] = []
         waiting = [link for link in self.links if link not in (GROUND, self.mechanism.input)]
         while waiting:
@@ -186,7 +188,7 @@ class _Numbers:
 
 
 def _check_arms(frame: Frame, step: Step) -> None:
-    """Refuse a link that has no length between the joints by which it closes: any rotation would do."""
+    """Reject a link without length between the joints by which it closes: any rotation would fit."""
     arms = {"RRR": [(step.link, step.pin), (step.other, step.other_pin)], "RRP": [(step.link, step.pin)]}
     arms["carried"] = arms["RRP"]
     for link, pin in arms.get(step.kind, []):

@@ -1,4 +1,4 @@
-"""Roots of many functions at once, each known to change sign in a bracket.
+"""Roots of many functions at once, each with a change of sign in a bracket.
 
 Chandrupatla's method (Adv. Eng. Software 28 (1997) 145, doi:10.1016/s0965-9978(96)00051-8): inverse quadratic
 interpolation through three points where it is safe, halving elsewhere; superlinear, and never worse than a few times
@@ -18,7 +18,7 @@ from kinematics.compiling import njit
 Real = NDArray[np.float64]
 
 STEPS = 100
-"""Evaluations at most; a dozen is usual."""
+"""Maximum number of evaluations; a dozen is usual."""
 
 EPSILON, LEAST = float(np.finfo(float).eps), float(np.finfo(float).tiny)
 
@@ -35,12 +35,12 @@ def find_roots(
     low, high : float, shape (n,)
         Ends of the brackets; the values there have opposite signs, or one of them is zero.
     at_low, at_high : float, shape (n,), optional
-        The values there, where they are known already.
+        Values there, if already known.
 
     Returns
     -------
     positive, negative : float, shape (n,)
-        The ends of the final brackets where the function is not negative, and where it is not positive.
+        Ends of the final brackets at which the function is nonnegative, and nonpositive.
     """
     x1, x2 = low.astype(np.float64), high.astype(np.float64)
     f1 = function(x1) if at_low is None else at_low.astype(np.float64)
@@ -58,9 +58,10 @@ def find_roots(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _advance(state: Real, values: Real, x: Real) -> bool:
-    """Take in the values at ``x``, and put the next places there; whether all brackets are closed.
+    """Process the values at ``x``, replace ``x`` by the next places, and return whether all brackets are closed.
 
-    ``state``, shape (6, n): the newest end of each bracket, its other end and the end before, a place and a value each.
+    ``state``, shape (6, n): the newest end of each bracket, its other end and the previous end, a place and a value
+    each.
     """
     done = True
     for n in range(len(x)):
@@ -78,6 +79,7 @@ def _advance(state: Real, values: Real, x: Real) -> bool:
             continue
         done, t = False, 0.5
         xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
+        # Chandrupatla's criterion: inverse quadratic interpolation is safe only if it is monotonic.
         if phi * phi < xi and (1.0 - phi) ** 2 < 1.0 - xi:
             t = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
         if not math.isfinite(t):
@@ -87,7 +89,7 @@ def _advance(state: Real, values: Real, x: Real) -> bool:
 
 
 def sign_changes(values: Real) -> NDArray[np.int64]:
-    """Indices n along a grid between which and n + 1 the values change sign; not across unknown (NaN) ones."""
+    """Find indices n along a grid with a change of sign between n and n + 1, not across unknown (NaN) values."""
     known = np.isfinite(values[:-1]) & np.isfinite(values[1:])
     with np.errstate(invalid="ignore"):
         return np.flatnonzero(known & ((values[:-1] > 0.0) != (values[1:] > 0.0)))

@@ -1,7 +1,7 @@
-"""Motion of a mechanism with redundant constraints: positions near by are settled to meet all of them.
+"""Motion of a mechanism with redundant constraints: nearby positions are corrected to satisfy all constraints.
 
-Where a parallelogram passes its change point its dyad alone would go either way; the third crank allows one of them
-only. So where the dyads close in the reference's assembly, but miss a constraint, the other assemblies are tried.
+At the change point of a parallelogram its dyad alone could continue either way; the third crank allows only one. So if
+the dyads close in the reference's assembly but violate a constraint, the other assemblies are tried.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from kinematics.linkage.planar.constraints import CONSISTENT, SINGULAR, Poses
 from kinematics.linkage.planar.mechanism import Complex, Mechanism, Real
 
 NEAR = 1e-2
-"""Misfit of the constraints, as a share of the size, up to which a position is near: a dyad of rounded dimensions is
-off by their root at its change point."""
+"""Misfit of the constraints, as a share of the size, up to which a position is a valid start: at a change point a dyad
+of rounded dimensions has an error of the root of the rounding."""
 
 EXACT = 1e-12
-"""Misfit of dimensions that agree to rounding: a position that has it needs no comparison with others."""
+"""Misfit of dimensions that agree to rounding: such a position needs no comparison with others."""
 
 OTHER = 1e-6
-"""Difference of two poses, as a share of the size or in radians, from which they are two."""
+"""Difference of two poses, as a share of the size or in radians, above which they are distinct."""
 
 CLEARLY = 1e-3
-"""Of two poses that both meet the constraints of rounded dimensions, as beside a change point, that with less than this
-share of the other's misfit is the true one. Otherwise it is not known which is."""
+"""Ratio of misfits below which the better of two poses is accepted as the true one, if both satisfy the constraints of
+rounded dimensions, as near a change point. Otherwise the position is undetermined."""
 
 Start = tuple[dict[str, Complex], dict[str, Real]]
 """Joints and angles by name, each of shape (1,) + S + (N,)."""
@@ -46,7 +46,7 @@ class Settled(NamedTuple):
 def settle(
     mechanism: Mechanism, own: NDArray[np.int64], inputs: Real, starts: Iterable[Start], reference: Real
 ) -> Settled:
-    """Positions and rates that meet all constraints.
+    """Solve for positions and rates that satisfy all constraints.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def settle(
     inputs : float, shape (n,) + S + (N,) with D rows of N
         Absolute inputs and their rates.
     starts : iterable of Start
-        Positions near by, those of the reference's assembly first; NaN where there are none.
+        Nearby positions, those of the reference's assembly first; NaN without a position.
     reference : float, shape (M,)
         The designs' inputs in the reference.
     """
@@ -82,6 +82,7 @@ def settle(
             np.stack([angles[link].ravel() - turned[link] for link in constraints.links])[None],
         )
         misfit = constraints.misfit(near, moved[:1])
+        # The reference's assembly decides whether a position exists at all.
         closed = np.isfinite(misfit) if closed is None else closed
         left = np.flatnonzero((best > EXACT) & closed & (misfit <= NEAR))
         if not len(left):
@@ -90,6 +91,7 @@ def settle(
         met = misfit <= CONSISTENT
         at, found, misfit, smallest = left[met], found.take(met), misfit[met], smallest[met]
         nearer = misfit < best[at]
+        # A distinct pose is a rival; the same pose again is not.
         other = poses.apart(at, found) > OTHER
         rival[at[other]] = np.minimum(rival[at], np.maximum(misfit, best[at]))[other]
         poses.put(at[nearer], found.take(nearer))
@@ -99,6 +101,7 @@ def settle(
     valid = (best <= CONSISTENT) & ((rival > CONSISTENT) | (best <= np.maximum(CLEARLY * rival, EXACT)))
     for jet in poses:
         jet[:, :, ~valid] = np.nan
+    # Rates are undefined where the input does not determine them.
     smooth = valid & (least > SINGULAR)
     for jet in poses:
         jet[1:, :, ~smooth] = np.nan

@@ -1,7 +1,7 @@
-"""The strokes of an output that goes to and fro while the input turns: its limit positions, as roots of its rate.
+"""Strokes of an output that reciprocates while the input turns: its limit positions, as roots of its rate.
 
-An output that reverses twice in a turn has two strokes. With the input at constant speed their times are as the input
-rotations α and β between the limit positions, α + β = 2π, and the *time ratio* is the longer over the shorter
+An output that reverses twice in a turn has two strokes. At constant input speed their times are proportional to the
+input rotations α and β between the limit positions, α + β = 2π, and the *time ratio* is the longer over the shorter
 (Norton, eq. 3.1, inverted so that it is at least 1).
 """
 
@@ -21,11 +21,11 @@ from kinematics.linkage.planar.roots import find_roots, sign_changes
 Real = NDArray[np.float64]
 
 GRID = 1440
-"""Inputs at which reversals are looked for, a quarter of a degree apart."""
+"""Number of inputs at which reversals are searched, spaced by a quarter of a degree."""
 
 
 EQUAL = 1e-10
-"""Radians by which rotations of strokes may differ and count as equal: what rounding leaves of equal ones."""
+"""Radians by which the rotations of equal strokes may differ: rounding."""
 
 
 class Reversals(NamedTuple):
@@ -38,7 +38,7 @@ class Reversals(NamedTuple):
     outputs : float, shape (n,)
         The output there: angle of a link, radians, or position along a slide.
     full : bool
-        Whether the mechanism can be assembled at every input that was looked at.
+        Whether the mechanism can be assembled at every sampled input.
     """
 
     inputs: Real
@@ -52,12 +52,12 @@ class Strokes(NamedTuple):
     Attributes
     ----------
     inputs, outputs : float, shape (2,)
-        Limit positions: the slow stroke goes from the first to the second while the input turns counter-clockwise;
+        Limit positions: the slow stroke leads from the first to the second while the input turns counter-clockwise;
         ``inputs`` ascend.
     slow, fast : float
         Input rotations of the strokes, radians; together a full turn.
     travel : float
-        Distance of the limits: the swing, radians, or the stroke's length.
+        Distance between the limits: swing, radians, or length of the stroke.
     """
 
     inputs: Real
@@ -73,7 +73,7 @@ class Strokes(NamedTuple):
 
 
 def reversals(mechanism: Mechanism, output: str) -> Reversals:
-    """Where an output reverses while the input link turns once, on the reference's assemblies.
+    """Find the reversals of an output while the input link turns once, in the reference's assemblies.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def reversals(mechanism: Mechanism, output: str) -> Reversals:
     Raises
     ------
     DimensionError
-        For a mechanism that is driven by a slide.
+        For a mechanism driven by a slide.
     """
     if mechanism.driven_by_slide:
         raise DimensionError("input", "a link that turns", mechanism.input)
@@ -101,7 +101,7 @@ def reversals(mechanism: Mechanism, output: str) -> Reversals:
     start = float(mechanism.reference_input)
     grid = start + np.linspace(0.0, 2.0 * np.pi, GRID + 1)
     outputs, rate = jets(grid, 1)
-    # The turn closes: what rounding makes of its end must not add or hide a reversal at the reference.
+    # The turn is closed: rounding at its end must not add or hide a reversal at the reference.
     rate[-1] = rate[0]
     full = bool(np.all(np.isfinite(rate)))
     left = sign_changes(rate)
@@ -110,13 +110,13 @@ def reversals(mechanism: Mechanism, output: str) -> Reversals:
         inputs = find_roots(lambda at: jets(at, 1)[1], grid[left], grid[left + 1], rate[left], rate[left + 1])[0]
     turned = jets(inputs, 0)[0] if len(left) else inputs
     if output in mechanism.links:
-        # Angles are known to full turns; along the grid they are followed.
+        # Angles are known modulo full turns; the unwrapped grid selects the turn.
         turned = turned + 2.0 * np.pi * np.round((np.unwrap(outputs)[left] - turned) / (2.0 * np.pi))
     return Reversals(inputs, turned, full)
 
 
 def strokes(mechanism: Mechanism, output: str) -> Strokes | None:
-    """The strokes of an output; None where it does not reverse exactly twice in a turn, or the input does not turn.
+    """Find the strokes of an output; None if it does not reverse exactly twice, or the input cannot rotate fully.
 
     Parameters and errors are those of :func:`reversals`.
     """
@@ -125,9 +125,10 @@ def strokes(mechanism: Mechanism, output: str) -> Strokes | None:
         return None
     between = float(inputs[1] - inputs[0])
     travel = float(abs(outputs[1] - outputs[0]))
+    # The slow stroke comes first.
     order = between >= np.pi
     if abs(between - np.pi) <= EQUAL:
-        # Equal strokes: the first is the one that begins nearer to the reference.
+        # Equal strokes: start with the one that begins nearer to the reference, so that rounding does not decide.
         near = np.abs(np.exp(1j * (inputs - float(mechanism.reference_input))) - 1.0)
         order = bool(near[0] <= near[1])
     if not order:

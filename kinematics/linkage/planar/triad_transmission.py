@@ -1,17 +1,17 @@
-"""The transmission angles of a triad: a link on three legs, each pinned to the input link or to the ground.
+"""Transmission angles of a triad: a link on three legs, each pinned to the input link or to the ground.
 
 The pin of a two-force member pushes along the leg; the transmission angle there is the angle between the leg and the
-normal of the path on which it pushes (Alt's definition; Norton, Sec. 4.10, for the fourbar). While the input stands
-still, the two other legs alone leave the carried link one freedom. In that motion the inner pin of the leg moves along
+normal of the path of the pushed point (Alt's definition; Norton, Sec. 4.10, for the fourbar). With the input fixed, the
+two other legs alone leave the carried link one freedom. In that motion the inner pin of the leg moves along
 v, and with the leg's direction e the sine is
 
     sin μ = e · v / |v|.
 
-The three sines vanish together, where the legs meet in one point or are parallel, which is a toggle. Near one they may
-differ much: where two legs meet at the third's pin, that pin is pushed well and hardly moves, and both others point at
-it. So each leg has its angle. The twist of the carried link, (v, ω) with v at the pin, is at right angles to both other
-legs' lines: e_i · v + (q_i × e_i) ω = 0, with q_i the inner pins from that one; so it is the vector product of the two
-rows, legs that are parallel included.
+The three sines vanish together, where the legs meet in one point or are parallel, which is a toggle. Near a toggle they
+may differ greatly: if two legs meet at the third's pin, that pin is pushed well but hardly moves, and both others point
+at it. So each leg has its own angle. The twist of the carried link, (v, ω) with v at the pin, is reciprocal to both
+other legs' lines: e_i · v + (q_i × e_i) ω = 0, with q_i the inner pins relative to that one. So it is the vector
+product of the two rows, including parallel legs.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ class Leg(NamedTuple):
 
 
 Triad = tuple[Leg, Leg, Leg]
-"""Two legs on one link, input or ground, and the third."""
+"""Two legs on one link (input or ground), and the third."""
 
 
 def triad_of(mechanism: Mechanism) -> Triad | None:
-    """The triad of a class III mechanism of four links beside input and ground; None where its links join otherwise."""
+    """Find the triad of a class III mechanism of four links besides input and ground; None for another structure."""
     moving = [name for name in mechanism.links if name not in (GROUND, mechanism.input)]
     if len(moving) != 4 or mechanism.slides or mechanism.gears:
         return None
@@ -54,6 +54,7 @@ def triad_of(mechanism: Mechanism) -> Triad | None:
                 outer = [joint for joint in mechanism.links[name] if joint in mechanism.links[end]]
                 if len(inner) == len(outer) == 1 and inner != outer:
                     listed.append(Leg(name, outer[0], inner[0]))
+        # Two legs on one end and one on the other make a triad.
         counts = sorted(len(listed) for listed in legs.values())
         if counts == [1, 2]:
             one, two = sorted(legs.values(), key=len)
@@ -62,9 +63,9 @@ def triad_of(mechanism: Mechanism) -> Triad | None:
 
 
 def triad_sines(triad: Triad, joints: dict[str, Complex]) -> dict[str, Real]:
-    """Sines of the transmission angles by the legs' links, all of one sign, each of the joints' shape.
+    """Compute the sines of the transmission angles by the legs' links, all of one sign, each of the joints' shape.
 
-    0 where a pin is held.
+    The sine is 0 where a pin cannot move.
     """
     return {leg.link: _sine(joints, leg, triad[n - 2], triad[n - 1]) for n, leg in enumerate(triad)}
 

@@ -1,22 +1,22 @@
 """Mechanisms that no sequence of dyads closes (class III), followed from the reference by certified continuation.
 
-With u_l = e^{iφ_l} for the links in motion and z = e^{i(θ − θ_ref)} for the input, every loop of pins is linear in
-them,
+With u_l = e^{iφ_l} for the moving links and z = e^{i(θ − θ_ref)} for the input, every loop of pins is linear in these,
 
     F(φ, θ) = C u + k z + c = 0,
 
-one complex row a loop, as many real equations as unknown rotations φ. A solution is followed in θ by steps that cannot
-leap to another: by the affine covariant Newton–Kantorovich theorem (Deuflhard and Heindl, SIAM J. Numer. Anal. 16
-(1979) 1), with J = ∂F/∂φ at the solution φ for θ, there is just one solution in a ball around φ for every θ' with
+one complex row per loop; the number of real equations equals that of the unknown rotations φ. A solution is followed in
+θ by steps that cannot jump to another one: by the affine covariant Newton–Kantorovich theorem (Deuflhard and Heindl,
+SIAM J. Numer. Anal. 16 (1979) 1), with J = ∂F/∂φ at the solution φ for θ, there is exactly one solution in a ball
+around φ for every θ' with
 
     η ω ≤ 1/2,    η ≥ ‖J⁻¹ k (z' − z)‖,    ω ≥ ‖J⁻¹ (J(φ₂) − J(φ₁))‖ / ‖φ₂ − φ₁‖ in the ball, of radius 2η;
 
-the ball is the same for all of them, so it is the continuation of φ. Near a toggle J⁻¹ grows along one direction, which
-the rates of the links, t, tend to. Hence the norm is ‖φ‖ = max |y| with φ = y₀ t + ε (y₁, …), the last on all links but
-the fastest: across t it may be as fine as makes the step longest. With A = J⁻¹ C u in these coordinates the second
-derivative is Re A, known at φ, and over the ball it changes by no more than |A| times the links' rotations; so
-ω = ω₀ + 2 η ω₁, and η may be as large as 1/(ω₀ + √(ω₀² + 4 ω₁)), for each row of A. So a toggle is approached by steps
-that are a good part of the distance to it.
+the ball is the same for all of them, so it is the continuation of φ. Near a toggle J⁻¹ grows along one direction, to
+which the rates of the links, t, converge. Hence the norm is ‖φ‖ = max |y| with φ = y₀ t + ε (y₁, …), the last on all
+links but the fastest: ε, the scale across t, is chosen to make the step as long as possible. With A = J⁻¹ C u in these
+coordinates the second derivative is Re A, known at φ, and over the ball it changes by no more than |A| times the links'
+rotations; so ω = ω₀ + 2 η ω₁, and η may be as large as 1/(ω₀ + √(ω₀² + 4 ω₁)), for each row of A. So a toggle is
+approached by steps that are a large part of the distance to it.
 """
 
 from __future__ import annotations
@@ -35,39 +35,40 @@ Complex = NDArray[np.complex128]
 Indices = NDArray[np.int64]
 
 STALLED = 1e-12
-"""A certified step below this, radians, means a toggle: its distance is up to a hundred times as large, 1e-10."""
+"""Certified step, radians, below which the position is a toggle: its distance is up to 100 times as large, 1e-10."""
 
 CONVERGED = 1e-14
-"""Newton's correction, radians, at which a position counts as solved."""
+"""Newton correction, radians, at which a position counts as solved."""
 
 
 MOST_NODES = 100_000
-"""Certified steps at most: links of very different lengths need more than can be waited for, and what lies beyond is
-then given as not reached."""
+"""Maximum number of certified steps: links of very different lengths would need too many, and positions beyond are then
+reported as not reached."""
 
 NODES_AT_ONCE = 256
-"""Steps between two looks at how far the track has come, at first; then as many as there are already."""
+"""Initial number of steps per batch; later batches double the number of nodes."""
 
 CERTAIN = 0.9
-"""Part of the certified step that is taken: at its end Newton's method would no longer converge quadratically."""
+"""Share of the certified step that is taken: at its end Newton's method would no longer converge quadratically."""
 
 LEAST_SHARE = 1e-9
-"""Least ε in the norm of the certificate; at a toggle's distance of 1e-10 the best is some 1e-5."""
+"""Minimum ε in the norm of the certificate; at a distance of 1e-10 from a toggle the optimum is about 1e-5."""
 
 LOST = 1e-12
-"""Reciprocal condition of the equations below which derivatives are undefined: no digits would be left."""
+"""Reciprocal condition of the equations below which derivatives are undefined: no correct digits would remain."""
 
 FULL_TURN = 2.0 * np.pi
 
 NEWTON_STEPS = 20
-"""Steps at most; from inside the ball three or four do."""
+"""Maximum number of Newton steps; from inside the ball three or four suffice."""
 
 FEW_STEPS = 3
-"""Steps after which one that is not half the one before is rounding: in the ball each is at most half the last."""
+"""Number of steps after which a correction that is not halved is rounding: in the ball each is at most half the
+last."""
 
 CLOSED = 1e-13
-"""Misfit of the loops, as a part of the size, that a position may have: where the equations are all but singular,
-rounding may keep Newton's method from where the theorem has it, and there is no position to give."""
+"""Maximum misfit of the loops, as a share of the size: where the equations are almost singular, rounding may keep
+Newton's method from the solution that the theorem guarantees, and no position is returned."""
 
 
 class Loops(NamedTuple):
@@ -80,7 +81,7 @@ class Loops(NamedTuple):
 
 
 def loop_equations(mechanism: Mechanism, joints: dict[str, complex]) -> Loops:
-    """Loops of a pin-jointed mechanism from a tree of its links; ``joints`` are one design's, in unit coordinates.
+    """Build the loops of a pin-jointed mechanism from a tree of its links; ``joints``: one design, unit coordinates.
 
     Raises
     ------
@@ -99,7 +100,7 @@ def loop_equations(mechanism: Mechanism, joints: dict[str, complex]) -> Loops:
         row[index] = joints[end] - joints[start]
         return row
 
-    # Where a joint is, as a row over (unknown links, input, ground), by each link that carries it.
+    # Position of each joint as a row over (unknown links, input, ground); reaching a joint twice closes a loop.
     place: dict[str, Complex] = {}
     reached = [GROUND]
     for joint in mechanism.links[GROUND]:
@@ -130,10 +131,10 @@ def loop_equations(mechanism: Mechanism, joints: dict[str, complex]) -> Loops:
 
 
 class Track:
-    """The solutions of one design's loops along its input, as far as they have been asked for.
+    """Solutions of one design's loops along its input, extended on demand.
 
-    Certified steps from the reference are kept: each *node* is an input rotation with its solution, and has the next
-    node at the end of its certified step. Whatever lies between is Newton's method away from a node.
+    Certified steps from the reference are stored: each *node* is an input rotation with its solution, and the next node
+    lies at the end of its certified step. Positions in between follow by Newton's method from a node.
     """
 
     def __init__(self, loops: Loops) -> None:
@@ -142,14 +143,14 @@ class Track:
 
     @property
     def first_step(self) -> float:
-        """The step that is certified at the reference, radians; below ``STALLED`` that is a toggle."""
+        """Certified step at the reference, radians; below ``STALLED`` the reference is a toggle."""
         return self._sides[1.0].first_step
 
     def at(self, rotation: Real) -> Real:
-        """Rotations of the unknown links for input rotations from the reference; NaN where no way leads there.
+        """Find rotations of the unknown links for input rotations from the reference; NaN if unreachable.
 
-        An input is reached by its own rotation, or, where a toggle lies before it, by the least rotation that differs
-        from that by full turns.
+        An input is reached by its own rotation or, if a toggle lies before it, by the smallest rotation that differs by
+        full turns.
 
         Parameters
         ----------
@@ -161,6 +162,7 @@ class Track:
         float, shape (links, N)
         """
         found = self.followed(rotation)
+        # Try the same input with other numbers of full turns.
         lost = np.flatnonzero(np.isnan(found[0]) & np.isfinite(rotation))
         least = np.mod(rotation + np.pi, FULL_TURN) - np.pi
         turns = 0
@@ -173,11 +175,11 @@ class Track:
 
     @property
     def given_up(self) -> bool:
-        """Whether a way was so long that it was left before its end: what is not reached may then exist."""
+        """Whether a continuation was abandoned before its end: unreached positions may then exist."""
         return any(side.given_up for side in self._sides.values())
 
     def followed(self, rotation: Real) -> Real:
-        """The same, each input by its own rotation only: NaN where a toggle lies before it."""
+        """Follow each input by its own rotation only; NaN if a toggle lies before it. See :meth:`at`."""
         found = np.full((len(self._loops.links), len(rotation)), np.nan)
         for sign, side in self._sides.items():
             chosen = np.flatnonzero(sign * rotation >= 0.0)
@@ -187,7 +189,7 @@ class Track:
 
 
 class _Side:
-    """The nodes of a track in one sense of rotation; the input is counted positive in it."""
+    """Nodes of a track in one sense of rotation, in which the input counts positive."""
 
     def __init__(self, loops: Loops, sign: float) -> None:
         self._equations = loops.coefficients, loops.by_input, loops.fixed
@@ -202,7 +204,7 @@ class _Side:
         return float(self._reach[0])
 
     def ended_before(self, rotation: float) -> bool:
-        """Whether a toggle lies within this rotation."""
+        """Return whether a toggle lies within this rotation."""
         self._extend(rotation)
         return self._ended and float(self._nodes[-1] + self._reach[-1]) < rotation
 
@@ -230,7 +232,7 @@ class _Side:
 
 
 def rates(loops: Loops, rotation: Real, angles: Real, input_rates: Real) -> Real:
-    """Time derivatives of the unknown rotations, shape (n, links, N); NaN at toggles.
+    """Compute time derivatives of the unknown rotations, shape (n, links, N); NaN at toggles.
 
     ``input_rates`` holds the input's speed, acceleration and jerk, or the first n of them, shape (n, N).
     """
@@ -241,7 +243,7 @@ def rates(loops: Loops, rotation: Real, angles: Real, input_rates: Real) -> Real
 
 @njit(cache=True, nogil=True)
 def _reach(c: Complex, k: Complex, fixed: Complex, at: float, phi: Real) -> float:
-    """The certified step at a solution; 0 where the equations are singular."""
+    """Compute the certified step at a solution; 0 where the equations are singular."""
     links = len(phi)
     value, inverse = np.empty(links), np.empty((links, links))
     evaluate(c, k, fixed, phi, at, value, inverse)
@@ -252,8 +254,10 @@ def _reach(c: Complex, k: Complex, fixed: Complex, at: float, phi: Real) -> floa
 def _march(
     c: Complex, k: Complex, fixed: Complex, sign: float, target: float, nodes: Real, reach: Real, angles: Real
 ) -> tuple[int, bool, bool]:
-    """Nodes until the target is passed, the first of them known: how many, whether they end there, at a toggle or lost,
-    and whether lost."""
+    """Add nodes after the known first one until the target is passed.
+
+    Returns the number of nodes, whether the track ends there (at a toggle or because Newton failed), and whether Newton
+    failed."""
     links = c.shape[1]
     phi, value = angles[0].copy(), np.empty(links)
     inverse, slope = np.empty((links, links)), np.empty(links)
@@ -266,10 +270,11 @@ def _march(
         if nodes[n - 1] + step >= target:
             return n, False, False
         at, to = sign * nodes[n - 1], sign * (nodes[n - 1] + step)
+        # The theorem guarantees a solution, but rounding may prevent convergence.
         if not _newton(c, k, fixed, phi, at, to, value, inverse, slope):
             return n, True, True
         nodes[n], angles[n] = nodes[n - 1] + step, phi
-        # Newton's last inverse is that of the solution but for a correction of rounding size.
+        # Newton's last inverse belongs to the solution, up to a correction of rounding size.
         reach[n] = _certified(c, k, phi, to, inverse) if np.isfinite(inverse).all() else 0.0
     return len(nodes), False, False
 
@@ -286,7 +291,7 @@ def _near(
     rotation: Real,
     found: Real,
 ) -> None:
-    """Solutions at rotations within the certified steps of their nodes; those beyond stay as they are."""
+    """Solve at rotations within the certified steps of their nodes; others stay unchanged."""
     links = c.shape[1]
     value, slope, inverse = np.empty(links), np.empty(links), np.empty((links, links))
     for n in range(len(rotation)):
@@ -306,11 +311,12 @@ def _near(
 def _newton(
     c: Complex, k: Complex, fixed: Complex, phi: Real, at: float, to: float, value: Real, inverse: Real, slope: Real
 ) -> bool:
-    """Move a solution at one input to another within its certified step; ``inverse`` is J⁻¹ before and after.
+    """Move a solution from one input to another within its certified step; ``inverse`` is J⁻¹ before and after.
 
     Returns whether the loops close there.
     """
     loops = len(k)
+    # Predictor along the tangent, then Newton corrections.
     turned = 1j * complex(math.cos(at), math.sin(at)) * (to - at)
     for row in range(loops):
         slope[row] = (k[row] * turned).real
@@ -334,7 +340,7 @@ def _newton(
 
 @njit(cache=True, nogil=True)
 def _rates(c: Complex, k: Complex, rotation: Real, angles: Real, given: Real, out: Real) -> None:
-    """Solve the differentiated loops, order by order: J φ⁽ⁿ⁾ = −(what the lower orders give)."""
+    """Solve the differentiated loops, order by order: J φ⁽ⁿ⁾ = −(terms of lower orders)."""
     loops, links = c.shape
     value, inverse, right = np.empty(links), np.empty((links, links)), np.empty(links)
     phi, solved = np.empty(links), np.empty((3, links))
@@ -384,7 +390,7 @@ def _rates(c: Complex, k: Complex, rotation: Real, angles: Real, given: Real, ou
 
 @njit(cache=True, nogil=True)
 def _certified(c: Complex, k: Complex, phi: Real, at: float, inverse: Real) -> float:
-    """The step within which the continuation is the only solution, less a tenth."""
+    """Certify a step: 90 % of the range within which the continuation is the only solution."""
     loops, links = c.shape
     z = complex(math.cos(at), math.sin(at))
     rate, bend = np.empty(links), np.empty(links)
@@ -396,6 +402,7 @@ def _certified(c: Complex, k: Complex, phi: Real, at: float, inverse: Real) -> f
         by_input *= z
         rate[row], bend[row] = by_input.imag, by_input.real
     fastest = np.argmax(np.abs(rate))
+    # Avoid a division by zero if the input moves no link.
     eta = max(abs(rate[fastest]), 1e-300)
     t = rate / (eta if rate[fastest] >= 0.0 else -eta)
     t[fastest] = 1.0
@@ -419,6 +426,7 @@ def _certified(c: Complex, k: Complex, phi: Real, at: float, inverse: Real) -> f
                 across[row] += 2.0 * abs(a[row, col].real * t[col])
                 beside[row] += abs(a[row, col].real)
     best, share = 0.0, 1.0
+    # Halve ε while the certified step grows.
     while share > LEAST_SHARE:
         ball = np.inf
         for row in range(links):
@@ -442,7 +450,7 @@ def _certified(c: Complex, k: Complex, phi: Real, at: float, inverse: Real) -> f
 
 @njit(cache=True, nogil=True)
 def evaluate(c: Complex, k: Complex, fixed: Complex, phi: Real, at: float, value: Real, jacobian: Real) -> None:
-    """F and ∂F/∂φ, real parts above imaginary ones: shapes (links,) and (links, links), filled."""
+    """Fill F and ∂F/∂φ, real parts above imaginary ones: shapes (links,) and (links, links)."""
     loops, links = c.shape
     z = complex(math.cos(at), math.sin(at))
     for row in range(loops):
@@ -458,7 +466,7 @@ def evaluate(c: Complex, k: Complex, fixed: Complex, phi: Real, at: float, value
 
 @njit(cache=True, nogil=True)
 def _subtract(phi: Real, matrix: Real, vector: Real) -> float:
-    """phi -= matrix · vector, in place; the largest change."""
+    """Subtract matrix · vector from phi, in place; return the largest change."""
     largest = 0.0
     for row in range(len(phi)):
         change = 0.0
@@ -471,9 +479,9 @@ def _subtract(phi: Real, matrix: Real, vector: Real) -> float:
 
 @njit(cache=True, nogil=True)
 def invert(matrix: Real) -> float:
-    """Invert in place by Gauss–Jordan elimination with row pivoting; the largest row sum of the inverse.
+    """Invert in place by Gauss–Jordan elimination with row pivoting; return the largest row sum of the inverse.
 
-    The matrices have a few rows, and are inverted at every step: a library call would cost more than the work.
+    The matrices are small and inverted at every step: a library call would cost more than the work itself.
     """
     n = len(matrix)
     order = np.arange(n)
@@ -482,6 +490,7 @@ def invert(matrix: Real) -> float:
         for row in range(col + 1, n):
             if abs(matrix[row, col]) > abs(matrix[pivot, col]):
                 pivot = row
+        # Exactly singular; nearly singular matrices are judged by the norm of the inverse.
         if matrix[pivot, col] == 0.0:
             return np.inf
         if pivot != col:

@@ -1,4 +1,4 @@
-"""The slider-crank in closed form: motion, limits, and what it does over a range of crank angles."""
+"""The slider-crank in closed form: motion, limits, and its behaviour over a range of crank angles."""
 
 from kinematics.linkage.slider_crank.closed_form import (
     CrankLimits,

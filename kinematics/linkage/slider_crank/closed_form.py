@@ -1,17 +1,17 @@
 """The slider-crank driven at its crank: position, velocity, acceleration and jerk in closed form.
 
 O2 is the fixed pivot of the crank, A the pin between crank and coupler, B the pin of the slider on the *slide*, a fixed
-line with a direction, P the coupler point. Lengths are Norton's a (crank), b (coupler) and c, the offset: how far the
-slide passes to the left of the pivot, looking along the slide.
+line with a direction, P the coupler point. Lengths are Norton's a (crank), b (coupler) and c, the offset: the distance
+by which the slide passes to the left of the pivot, looking along the slide.
 
 Position. In the frame of the slide, x along it, the crank is k = a e^{i(θ2 − φ)} and the coupler u = B − A reaches from
 height k_y to the slide (Norton 4.16 and 4.17 without their angles):
 
     u_y = c − k_y,        u_x = σ √((b − u_y)(b + u_y)),        σ = +1 open, −1 crossed
 
-Derivatives. B moves along the slide only, so that the part across of each derivative of k + u vanishes, which gives the
-coupler's rates, and the part along is the slider's (Norton 6.20 ff., 7.15 ff.). The divisor is u_x: at a toggle, where
-the coupler stands across the slide, the derivatives do not exist and are marked invalid.
+Derivatives. B moves only along the slide: the component of each derivative of k + u across the slide vanishes, which
+gives the coupler's rates, and the component along it is the slider's (Norton 6.20 ff., 7.15 ff.). The divisor is u_x:
+at a toggle, with the coupler normal to the slide, the derivatives do not exist and are marked invalid.
 """
 
 from __future__ import annotations
@@ -40,16 +40,16 @@ from kinematics.linkage.slider_crank import kernels
 
 @dataclass(frozen=True, eq=False)
 class SliderCrank(DesignBatch):
-    """A batch of slider-cranks; all fields are kept with one shape, the *designs*. One design has shape ``()``.
+    """A batch of slider-cranks; all fields have one shape, the *designs*. A single design has shape ``()``.
 
-    A value: the arrays are copies of what was given and cannot be written to. Two batches compare by identity.
+    A value: the arrays are read-only copies of the arguments. Two batches compare by identity.
 
     Parameters
     ----------
     pivot : complex
         Fixed pivot O2 of the crank.
     slide_point : complex
-        A point of the slide, from which the slider's travel is counted.
+        Point of the slide at which the slider's travel is zero.
     slide_angle : float
         Direction of the slide, radians.
     crank, coupler : float
@@ -94,7 +94,7 @@ class SliderCrank(DesignBatch):
     def from_lengths(
         cls, crank: ArrayLike, coupler: ArrayLike, offset: ArrayLike = 0.0, coupler_point: ArrayLike = 0.0
     ) -> SliderCrank:
-        """Slider-crank of Norton's a, b, c with O2 at the origin, the slide along +x, its travel counted from x = 0."""
+        """Build a slider-crank from Norton's a, b, c: O2 at the origin, slide along +x, travel counted from x = 0."""
         return cls(0.0, 1j * np.asarray(offset, np.float64), 0.0, crank, coupler, coupler_point)
 
     @cached_property
@@ -104,9 +104,9 @@ class SliderCrank(DesignBatch):
 
 
 class SliderPositions(NamedTuple):
-    """Configuration over designs × crank angles. Where ``valid`` is False the numbers are NaN.
+    """Configuration over designs × crank angles; NaN where ``valid`` is False.
 
-    ``coupler_angle`` (of A → B) is absolute, radians in (−π, π]; ``travel`` is how far B stands along the slide from
+    ``coupler_angle`` (of A → B) is absolute, radians in (−π, π]; ``travel`` is the position of B along the slide from
     the slide's point.
     """
 
@@ -139,7 +139,7 @@ class SliderMotion(NamedTuple):
 
 
 def positions(linkage: SliderCrank, crank_angle: ArrayLike, assembly: ArrayLike = OPEN) -> SliderPositions:
-    """Closed-form positions for every design at every crank angle (Norton 4.16, 4.17).
+    """Compute closed-form positions for every design at every crank angle (Norton 4.16, 4.17).
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ def positions(linkage: SliderCrank, crank_angle: ArrayLike, assembly: ArrayLike 
 
 
 def coupler_points(linkage: SliderCrank, crank_angle: ArrayLike, assembly: ArrayLike = OPEN) -> CouplerPoints:
-    """Coupler points alone, for large sweeps; parameters, shapes and errors as for :func:`positions`."""
+    """Compute only coupler points, for large sweeps; parameters, shapes and errors as for :func:`positions`."""
     return swept_coupler_points(kernels, linkage.blocks, crank_angle, assembly)
 
 
@@ -187,14 +187,14 @@ def motion(
     acceleration: ArrayLike = 0.0,
     jerk: ArrayLike = 0.0,
 ) -> SliderMotion:
-    """Positions and their first three time derivatives.
+    """Compute positions and their first three time derivatives.
 
     Parameters
     ----------
     linkage, crank_angle, assembly
         As for :func:`positions`.
     speed, acceleration, jerk : float
-        Crank θ2', θ2'', θ2''' in rad/s, rad/s², rad/s³, making one shape with the positions. With the defaults
+        Crank θ2', θ2'', θ2''' in rad/s, rad/s², rad/s³, broadcasting with the positions. With the defaults
         the results are derivatives with respect to the crank angle.
 
     Returns
@@ -212,10 +212,10 @@ def motion(
 
 
 class CrankLimits(NamedTuple):
-    """Where B can be on the slide: the heights k_y = a sin(θ2 − φ) of A from ``lower`` to ``upper``, shape designs.
+    """Range of the heights k_y = a sin(θ2 − φ) of A over the slide's direction, shape designs.
 
-    A stands between c − b and c + b across the slide. The masks say whether the crank meets that end, a toggle with the
-    coupler square to the slide; NaN where no position exists.
+    The coupler requires heights between c − b and c + b. The masks mark ends that the crank reaches, toggles with the
+    coupler normal to the slide; NaN without any position.
     """
 
     lower: Real
@@ -225,7 +225,7 @@ class CrankLimits(NamedTuple):
 
 
 def crank_limits(linkage: SliderCrank) -> CrankLimits:
-    """Heights between which A moves: those of the crank circle that the coupler can reach the slide from."""
+    """Find the range of heights of A: those of the crank circle from which the coupler reaches the slide."""
     a, b, c = linkage.crank, linkage.coupler, linkage.offset
     sound = np.abs(c) <= a + b
     lower, upper = np.maximum(c - b, -a), np.minimum(c + b, a)
@@ -235,17 +235,19 @@ def crank_limits(linkage: SliderCrank) -> CrankLimits:
 
 
 def full_rotation(linkage: SliderCrank) -> Mask:
-    """Whether the crank turns through without a toggle: a + |c| < b."""
+    """Return whether the crank rotates fully without a toggle: a + |c| < b."""
     return np.asarray(linkage.crank + np.abs(linkage.offset) < linkage.coupler)
 
 
 def toggle_angles(linkage: SliderCrank) -> Real:
-    """Absolute crank angles of all toggles of one design, radians in (−π, π], ascending; empty for a full crank.
+    """Find the absolute crank angles of all toggles of one design, radians in (−π, π], ascending; none for a full
+    crank.
 
-    The coupler is square to the slide there: a sin(θ2 − φ) = c ∓ b.
+    The coupler is normal to the slide there: a sin(θ2 − φ) = c ∓ b.
     """
     limits, a = crank_limits(linkage), float(linkage.crank)
     heights = [float(limits.lower)] * bool(limits.lower_toggle) + [float(limits.upper)] * bool(limits.upper_toggle)
+    # arcsin(y/a) without loss of digits near ±a.
     first = np.array([np.arctan2(y, np.sqrt((a - y) * (a + y))) for y in heights])
     angles = np.concatenate([first, np.pi - first]) + linkage.slide_angle
     wrapped = np.pi - np.mod(np.pi - angles, 2.0 * np.pi)

@@ -38,7 +38,7 @@ from kinematics.linkage.kernels import (
 
 @njit(**OPTIONS)
 def sound_dimensions(pivots: Complex, lengths: Real) -> bool:
-    """Whether crank and coupler are positive and finite, and all points and the slide's angle finite."""
+    """Return whether crank and coupler are positive and finite, and all points and the slide's angle finite."""
     for i in range(pivots.shape[1]):
         good = lengths[0, i] > 0.0 and lengths[1, i] > 0.0
         for row in range(3):
@@ -51,7 +51,7 @@ def sound_dimensions(pivots: Complex, lengths: Real) -> bool:
 
 @njit(**OPTIONS)
 def _coupler(y: float, b: float, sign: float, slack: float) -> tuple[bool, float]:
-    """Whether B reaches the slide, and u along it (NaN where not); ``y`` is u across it."""
+    """Close the loop: return whether B reaches the slide, and u along it (else NaN); ``y`` is u across it."""
     square = (b - y) * (b + y)
     valid = square >= -slack
     root = math.sqrt(square if square > 0.0 else 0.0)
@@ -60,13 +60,13 @@ def _coupler(y: float, b: float, sign: float, slack: float) -> tuple[bool, float
 
 @njit(**OPTIONS)
 def _slack(a: float, b: float, offset: float) -> float:
-    """By how much u_x² may be below zero at a toggle, where u_y comes out of the crank and the offset with rounding."""
+    """Compute by how much u_x² may be negative at a toggle, given the rounding of u_y from crank and offset."""
     return 2.0 * ON_TOGGLE * b * max(a, b, abs(offset))
 
 
 @njit(**OPTIONS)
 def coupler_points(pivots: Complex, lengths: Real, sign: Real, theta: Real, point: Complex, valid: Mask) -> None:
-    """P into ``point`` and ``valid``, shape (D, N)."""
+    """Fill P into ``point``, and ``valid``, shape (D, N)."""
     designs, n = valid.shape
     cosine, sine = np.empty(n), np.empty(n)
     for i in range(designs):
@@ -102,7 +102,7 @@ def _close(
     uy: Real,
     valid: Mask,
 ) -> None:
-    """Crank and coupler in the frame of the slide, NaN where B does not reach it, over a row of angles."""
+    """Fill crank and coupler in the slide's frame over a row of angles; NaN where B does not reach the slide."""
     slack = _slack(a, b, offset)
     for k in range(len(valid)):
         x, y = a * (cosine[k] * ex + sine[k] * ey), a * (sine[k] * ex - cosine[k] * ey)
@@ -127,7 +127,7 @@ def _place(
     angle: Real,
     travel: Real,
 ) -> None:
-    """A, and the absolute angle of the coupler; the slider's place on the slide."""
+    """Fill A, the absolute angle of the coupler, and the slider's position on the slide."""
     for k in range(len(travel)):
         ax[k], ay[k] = o2.real + (kx[k] * ex - ky[k] * ey), o2.imag + (kx[k] * ey + ky[k] * ex)
         angle[k] = direction(ux[k] * ex - uy[k] * ey, ux[k] * ey + uy[k] * ex)
@@ -138,7 +138,7 @@ def _place(
 def whole_positions(
     pivots: Complex, lengths: Real, sign: Real, theta: Real, points: Complex, angles: Real, valid: Mask
 ) -> None:
-    """A, B, P into ``points`` (3, D, N), coupler angle and travel into ``angles`` (2, D, N), ``valid`` (D, N)."""
+    """Fill A, B, P into ``points`` (3, D, N), coupler angle and travel into ``angles`` (2, D, N), ``valid`` (D, N)."""
     designs, n = valid.shape
     cosine, sine, work = np.empty(n), np.empty(n), np.empty((6, TILE))
     kx, ky, ux, uy, ax, ay = work[0], work[1], work[2], work[3], work[4], work[5]
@@ -176,9 +176,10 @@ def _solve(
     j3: Real,
     sound: Mask,
 ) -> None:
-    """ω3, α3, φ3 over a row of angles; ω2 becomes NaN where they do not exist."""
+    """Solve for ω3, α3, φ3 over a row of angles; ω2 becomes NaN where they do not exist."""
     for k in range(len(sound)):
         good = math.fabs(ux[k]) > least
+        # A single division serves all orders; NaN at a toggle.
         inverse = (1.0 if good else math.nan) / ux[k]
         w, n2 = speed[k], speed[k] * speed[k]
         x = -w * kx[k] * inverse
@@ -192,10 +193,10 @@ def _solve(
 def whole_motion(
     pivots: Complex, lengths: Real, sign: Real, theta: Real, rates: Real, points: Complex, angles: Real, valid: Mask
 ) -> None:
-    """Positions and three derivatives: A, B, P into ``points`` (4, 3, D, N), and into ``angles`` (4, 2, D, N).
+    """Fill positions and three derivatives: A, B, P into ``points`` (4, 3, D, N), and ``angles`` (4, 2, D, N).
 
-    ``angles`` holds coupler angle and travel; ``valid`` (2, D, N) tells where the position exists, and where its
-    derivatives do.
+    ``angles`` holds coupler angle and travel; ``valid`` (2, D, N) marks where the position exists, and where its
+    derivatives exist.
     """
     _, designs, n = valid.shape
     cosine, sine, work = np.empty(n), np.empty(n), np.empty((9, TILE))

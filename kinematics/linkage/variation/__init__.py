@@ -1,4 +1,4 @@
-"""Linkages as they are made: variants of one linkage, whose dimensions are a little off, driven to its targets."""
+"""Manufactured linkages: variants of one linkage with perturbed dimensions, driven to its targets."""
 
 from kinematics.linkage.variation.driven import Deviations, Task, deviations, shares, squares
 

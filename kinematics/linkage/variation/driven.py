@@ -23,37 +23,36 @@ _SORTS: dict[Sort, int] = {"poses": loops.POSES, "points": loops.POINTS, "output
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """What a fourbar or a slider-crank has to do, and how it is driven to each of its t targets.
+    """The t targets of a fourbar or a slider-crank, and how it is driven to each of them.
 
     Attributes
     ----------
     sort : {"poses", "points", "outputs"}
-        Positions of the coupler's body, places of P, or places of the output at stated inputs.
+        Poses of the coupler's body, positions of P, or positions of the output at given inputs.
     assemblies : int, shape (t,)
-        Signs as of :func:`kinematics.linkage.positions`.
+        Assembly signs as for :func:`kinematics.linkage.positions`.
     inputs : float, shape (t,)
-        Nominal inputs, radians, in one run.
+        Nominal inputs, radians, continuous.
     slide_angle : float or None
         Direction of a slider-crank's slide, radians; None for a fourbar.
     points : complex, shape (t,), or None
-        Demanded places of P, of poses and points.
+        Required positions of P, for poses and points.
     angles : float, shape (t,), or None
         Absolute angles, radians: of the line A → B for poses, of O4 → B for outputs of a fourbar.
     travels : float, shape (t,), or None
-        Outputs of a slider: its places along the slide, from ``origin``.
+        Outputs of a slider: its positions along the slide, from ``origin``.
     origin : complex
-        A point of the plane, from which travels are counted.
+        Point from which travels are counted.
     used : pair of float or None
-        The range of inputs over which the linkage is to stay on its branch; its ends move as the inputs at the targets
-        do. None where no such range is held.
+        Range of inputs over which the linkage must stay on its branch; its ends move with the inputs at the targets.
+        None without such a constraint.
     adjusted : bool
-        Whether the input of a variant is set to where it comes nearest to each target, from the nominal one. Outputs
-        are looked at with the nominal one always.
+        Whether the input of a variant is adjusted from the nominal one to come closest to each target. Outputs are
+        always evaluated at the nominal input.
     units : pair of float
-        What distance, and angle in radians, are measured in where nearness is compared; infinite: does not count.
+        Units of distance, and of angle in radians, for the comparison of misses; infinite: ignored.
     greatest : bool
-        Whether the nearest place is where the greater of distance and angle is least, or where the sum of their
-        squares is.
+        Whether the closest input minimizes the larger of distance and angle, or else the sum of their squares.
     """
 
     sort: Sort
@@ -78,7 +77,7 @@ class Task:
 
     @property
     def along(self) -> complex:
-        """Direction of the slide; 1 for a fourbar."""
+        """Unit vector along the slide; 1 for a fourbar."""
         angle = self.slide_angle or 0.0
         return complex(math.cos(angle), math.sin(angle))
 
@@ -89,12 +88,12 @@ class Task:
 
     @property
     def dimensions(self) -> int:
-        """How many dimensions a variant has."""
+        """Number of dimensions of a variant."""
         return (5 if self.slides else 7) + 2 * self.guides
 
     @cached_property
     def rows(self) -> Real:
-        """The targets as the kernels take them, shape (t, 7)."""
+        """Targets in the kernels' layout, shape (t, 7)."""
         count = len(self.inputs)
         rows = np.zeros((count, 7))
         rows[:, 0], rows[:, 1] = np.cos(self.inputs), np.sin(self.inputs)
@@ -109,14 +108,15 @@ class Task:
 
     @property
     def margins(self) -> Real:
-        """How far the range reaches beyond the least and the greatest input of a target; NaN where none is held."""
+        """Extension of the range beyond the smallest and largest input of a target; NaN without a range."""
         if self.used is None:
             return np.full(2, np.nan)
         low, high = sorted(self.used)
+        # A range inside the targets adds nothing beyond them.
         return np.maximum([self.inputs.min() - low, high - self.inputs.max()], 0.0)
 
     def variants(self, dimensions: ArrayLike) -> Real:
-        """Rows of dimensions as the kernels take them.
+        """Return rows of dimensions in the kernels' layout.
 
         Raises
         ------
@@ -130,7 +130,7 @@ class Task:
 
     @property
     def drive(self) -> loops.Drive:
-        """How the kernels are to drive variants."""
+        """Settings of the kernels that drive variants."""
         before, after = self.margins
         return loops.Drive(
             _SORTS[self.sort],
@@ -147,11 +147,11 @@ class Task:
 
     @property
     def _with_ground(self) -> Real:
-        """Settings, as the kernels take them, for one radian that the ground turns."""
+        """Settings in the kernels' layout per radian of rotation of the ground."""
         return np.array([1.0, -1.0]) * self.on_ground
 
     def towards(self, rows: Real, given: ArrayLike | None = None) -> Real:
-        """Settings of each variant as the kernels take them, shape (v, 2), or (0, 2) where nothing is set.
+        """Build the settings of each variant in the kernels' layout, shape (v, 2), or (0, 2) without settings.
 
         Raises
         ------
@@ -165,6 +165,7 @@ class Task:
             if np.shape(given) != settings.shape:
                 raise ShapeError(settings=np.shape(given), variants=rows.shape)
             settings += np.asarray(given, np.float64)
+            # A dial turned forward lowers the output that is read.
             settings[:, 1] *= 1.0 if self.guides else -1.0
         if not self.slides:
             ground = (rows[:, 2] - rows[:, 0]) + 1j * (rows[:, 3] - rows[:, 1])
@@ -173,14 +174,14 @@ class Task:
 
 
 class Deviations(NamedTuple):
-    """Variants at targets; NaN where a variant cannot be assembled, or all over where it leaves its branch.
+    """Variants at targets; NaN where a variant cannot be assembled, all NaN if it leaves its branch.
 
     Attributes
     ----------
     distances, angles : float, shape (v, t)
-        Lengths and radians, not below zero; zeros of what the task does not ask for.
+        Lengths and radians, at least zero; zero for quantities that the task does not have.
     offsets : float, shape (v, t, 3)
-        x, y and angle less what is demanded; of a slider's output its travel stands for x.
+        x, y and angle minus the target; for the output of a slider x is its travel.
     inputs : float, shape (v, t)
         Radians.
     """
@@ -192,7 +193,7 @@ class Deviations(NamedTuple):
 
 
 def deviations(task: Task, variants: ArrayLike, settings: ArrayLike | None = None) -> Deviations:
-    """Variants of a linkage driven to all of its targets.
+    """Measure variants of a linkage driven to all of its targets.
 
     Parameters
     ----------
@@ -200,11 +201,11 @@ def deviations(task: Task, variants: ArrayLike, settings: ArrayLike | None = Non
         The targets.
     variants : float, shape (v, n)
         Dimensions. Fourbar: O2 (x, y), O4 (x, y), input, coupler, output, and P along A → B and to its left.
-        Slider-crank: O2 (x, y), the offset (how far O2 lies to the left of the slide), crank, coupler, and P. A task of
+        Slider-crank: O2 (x, y), the offset (distance of O2 to the left of the slide), crank, coupler, and P. A task of
         outputs has no P.
     settings : float, shape (v, 2), optional
-        How much farther on the input stands than on paper, radians; and by how much more the body is turned on its
-        link, radians, or the output's dial on the output, radians or length units.
+        Error of the input's setting, radians; and additional rotation of the body on its link, radians, or shift of
+        the output's dial, radians or length units.
 
     Raises
     ------
@@ -219,15 +220,15 @@ def deviations(task: Task, variants: ArrayLike, settings: ArrayLike | None = Non
 
 
 def shares(task: Task, variants: ArrayLike, settings: ArrayLike | None = None) -> Real:
-    """The greatest share of its limit that each variant takes at a target: at most 1 where it keeps all of them.
+    """Measure the largest share of its limit that each variant uses at any target: at most 1 if it satisfies all.
 
-    The units of the task are the limits, and the place of the input is the one at which the greater share is least.
+    The units of the task are the limits, and the input minimizes the larger share.
 
     Returns
     -------
     float, shape (v,)
-        Infinite where a variant cannot be assembled or leaves its branch. Above 1 it is the first share that breaks a
-        limit, not the greatest.
+        Infinite where a variant cannot be assembled or leaves its branch. A value above 1 is the first violation, not
+        the largest.
     """
     rows = task.variants(variants)
     share = np.empty(len(rows))
@@ -236,16 +237,16 @@ def shares(task: Task, variants: ArrayLike, settings: ArrayLike | None = None) -
 
 
 def squares(task: Task, variants: ArrayLike, most: float = math.inf, settings: ArrayLike | None = None) -> Real:
-    """The sum over the targets of the squares of each variant's misses, in the units of the task.
+    """Measure the sum over the targets of the squared misses of each variant, in the units of the task.
 
     Parameters
     ----------
     task : Task
-        The targets; its ``greatest`` says what an adjusted input makes least.
+        The targets; its ``greatest`` selects the objective of an adjusted input.
     variants, settings
-        As of :func:`deviations`.
+        As for :func:`deviations`.
     most : float
-        Sums above it are not followed to their end.
+        Sums that exceed it are not completed.
 
     Returns
     -------

@@ -1,13 +1,13 @@
-"""Compiled motion of variants of one linkage: each driven to its targets, and held to its branch.
+"""Compiled motion of variants of one linkage: each driven to its targets, and checked to stay on its branch.
 
-*Nearest.* At an input near the nominal one the misses are e + v τ (distance) and ε + ω τ (angle), measured in their
-units: two parabolas in τ, of which the sum or the greater is least at a τ in closed form (:func:`step_to_least`).
-Steps are taken until they are small, and halved where they do not lessen what they should: Gauss and Newton's method
-in one unknown. The crank is turned by (1 + i τ/2)/(1 − i τ/2), which takes no trigonometry.
+*Closest input.* Near the nominal input the misses are e + v τ (distance) and ε + ω τ (angle), in their units. Their
+squares are two parabolas in τ, whose sum or maximum is minimal at a τ in closed form (:func:`step_to_least`). Steps are
+taken until they are small, and halved if the objective does not decrease: the Gauss-Newton method in one unknown. The
+crank is rotated by (1 + i τ/2)/(1 − i τ/2), which needs no trigonometric functions.
 
-Arguments of both kernels: ``variants`` (V, n) and ``targets`` (T, 7) as of :mod:`loops`; ``nominal`` (T,), the nominal
-inputs; ``settings`` (V, 2), or (0, 2) for none: how much farther on a variant's input starts, and how much less angle
-or travel is demanded of it.
+Arguments of the kernels: ``variants`` (V, n) and ``targets`` (T, 7) as in :mod:`loops`; ``nominal`` (T,), the nominal
+inputs; ``settings`` (V, 2), or (0, 2) for none: offset of a variant's input, and reduction of its target angle or
+travel.
 """
 
 from __future__ import annotations
@@ -21,30 +21,30 @@ from kinematics.linkage.kernels import OPTIONS, Real, direction
 from kinematics.linkage.variation.loops import OUTPUTS, Drive, closed, misses, on_branch, sound
 
 STEPS = 40
-"""Of Gauss and Newton's method, halvings counted; two or three do, except beside toggles."""
+"""Maximum number of Gauss-Newton steps, halvings included; two or three suffice, except near toggles."""
 
 LONGEST = 0.25
-"""Radians that one step turns the crank by at most."""
+"""Maximum rotation of the crank in one step, radians."""
 
 SMALL = 1e-5
-"""Radians: a step below this is taken along the tangent, and the last; what it misses is some 1e-10 of the crank."""
+"""Step, radians, below which it is taken along the tangent as the last one; the error is about 1e-10 of the crank."""
 
 SETTLED = 1e-12
-"""Share by which a step is to lessen what it should, at least: rounding."""
+"""Relative increase of the objective that a step may cause: rounding."""
 
 REACH = 0.4
-"""Radians: a variant that cannot be assembled at the nominal input is looked for so far to either side."""
+"""Range, radians, on either side of the nominal input in which a position of a variant is searched."""
 
 FIRST_REACH = 1e-6
-"""Radians at which it is looked for first; each further look is twice as far."""
+"""Initial distance of that search, radians; it doubles each time."""
 
 
 @njit(**OPTIONS)
 def step_to_least(greatest: bool, a1: float, b1: float, c1: float, a2: float, b2: float, c2: float) -> float:
-    """Where the sum of a1 τ² + 2 b1 τ + c1 and a2 τ² + 2 b2 τ + c2, or the greater of both, is least.
+    """Find τ that minimizes the sum, or the maximum, of a1 τ² + 2 b1 τ + c1 and a2 τ² + 2 b2 τ + c2.
 
-    Both are squares, so that neither is below zero. The greater is least at the least of one of them, where that one
-    is the greater, or else where they cross between their least places.
+    Both are squares, hence nonnegative. The maximum is minimal at the vertex of one parabola if that one is the larger
+    there, or else where both cross between their vertices.
     """
     if a1 + a2 == 0.0:
         return 0.0
@@ -56,6 +56,7 @@ def step_to_least(greatest: bool, a1: float, b1: float, c1: float, a2: float, b2
     if c2 + second * b2 >= c1 + second * (2.0 * b1 + a1 * second):
         return second
     a, b, c = a1 - a2, b1 - b2, c1 - c2
+    # Roots of the difference without cancellation; the one between the vertices is the solution.
     q = -(b + math.copysign(math.sqrt(max(b * b - a * c, 0.0)), b))
     low, high = min(first, second), max(first, second)
     root = c / q if q != 0.0 else 0.0
@@ -66,7 +67,7 @@ def step_to_least(greatest: bool, a1: float, b1: float, c1: float, a2: float, b2
 
 @njit(**OPTIONS)
 def _startable(drive: Drive, row: Real, target: Real) -> tuple[bool, float, float]:
-    """The input nearest to the nominal one at which a variant can be assembled: whether there is one, cosine, sine."""
+    """Find the input nearest to the nominal one at which a variant can be assembled: success, cosine, sine."""
     reach = FIRST_REACH
     while reach < REACH:
         for turn in (reach, -reach):
@@ -80,7 +81,7 @@ def _startable(drive: Drive, row: Real, target: Real) -> tuple[bool, float, floa
 
 @njit(**OPTIONS)
 def _nearest(drive: Drive, row: Real, target: Real) -> tuple[bool, float, float, float, float]:
-    """Whether a variant can be assembled at a target, its deviations there, and how far its input has turned."""
+    """Return whether a variant can be assembled at a target, its deviations there, and the adjustment of its input."""
     cosine, sine = target[0], target[1]
     valid, x, y, off, vx, vy, w = misses(drive, row, target, cosine, sine)
     if not drive.adjusted or drive.sort == OUTPUTS:
@@ -101,6 +102,7 @@ def _nearest(drive: Drive, row: Real, target: Real) -> tuple[bool, float, float,
             step = min(max(step, -LONGEST), LONGEST)
             if not math.isfinite(step):
                 break
+        # A tiny step is applied to first order, which saves an evaluation.
         if abs(step) < SMALL:
             last = step if fresh else 0.0
             break
@@ -123,7 +125,7 @@ def _nearest(drive: Drive, row: Real, target: Real) -> tuple[bool, float, float,
 
 @njit(**OPTIONS)
 def _set(drive: Drive, targets: Real, settings: Real, table: Real) -> None:
-    """The targets of one variant with its settings into ``table``."""
+    """Write the targets of one variant with its settings into ``table``."""
     c, s = math.cos(settings[0]), math.sin(settings[0])
     d, e = math.cos(settings[1]), -math.sin(settings[1])
     for k in range(len(targets)):
@@ -139,9 +141,9 @@ def _set(drive: Drive, targets: Real, settings: Real, table: Real) -> None:
 def deviations(
     drive: Drive, variants: Real, targets: Real, nominal: Real, settings: Real, offsets: Real, inputs: Real
 ) -> None:
-    """Deviations (x, y, angle) into ``offsets`` (V, T, 3), inputs into ``inputs`` (V, T).
+    """Fill deviations (x, y, angle) into ``offsets`` (V, T, 3), inputs into ``inputs`` (V, T).
 
-    NaN where a variant cannot be assembled, all over where it leaves its branch.
+    NaN where a variant cannot be assembled, all NaN if it leaves its branch.
     """
     table = targets.copy()
     for i in range(len(variants)):
@@ -150,6 +152,7 @@ def deviations(
             _set(drive, targets, settings[i], table)
             start = settings[i, 0]
         low, high, whole = np.inf, -np.inf, True
+        # A nonpositive length makes the whole variant invalid.
         standing = 1.0 if sound(drive, row) else np.nan
         for k in range(len(targets)):
             valid, x, y, off, turned = _nearest(drive, row, table[k])
@@ -164,9 +167,9 @@ def deviations(
 
 @njit(**OPTIONS)
 def shares(drive: Drive, variants: Real, targets: Real, nominal: Real, settings: Real, share: Real) -> None:
-    """The greatest share of a unit that a variant takes at a target into ``share`` (V,); infinite where it is none.
+    """Fill the largest share of a unit that a variant uses at a target into ``share`` (V,); infinite if invalid.
 
-    A variant that takes more than 1 at one target is not driven to the others.
+    A variant with more than 1 at one target is not driven to the others.
     """
     table = targets.copy()
     for i in range(len(variants)):
@@ -192,9 +195,9 @@ def shares(drive: Drive, variants: Real, targets: Real, nominal: Real, settings:
 def squares(
     drive: Drive, variants: Real, targets: Real, nominal: Real, settings: Real, most: float, square: Real
 ) -> None:
-    """The sum of the squares of the misses of each variant, in their units, into ``square`` (V,).
+    """Fill the sum of squared misses of each variant, in their units, into ``square`` (V,).
 
-    Infinite where a variant cannot be assembled, leaves its branch, or has more than ``most``.
+    Infinite if a variant cannot be assembled, leaves its branch, or exceeds ``most``.
     """
     table = targets.copy()
     for i in range(len(variants)):

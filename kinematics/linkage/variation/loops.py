@@ -1,13 +1,14 @@
-"""The loop of a fourbar or a slider-crank of any dimensions, compiled: closed, measured, held to its branch.
+"""The loop of a fourbar or a slider-crank of any dimensions, compiled: closure, misses, branch check.
 
-Both are one loop here, a crank k = a e^{iθ} from O2, a coupler u = B − A, and a *guide* of the pin B: the output's
-circle about O4, or the slide. With a normal n of the guide at B (B − O4, or the slide's own),
+Both are treated as one loop: a crank k = a e^{iθ} from O2, a coupler u = B − A, and a *guide* of the pin B: the
+output's circle about O4, or the slide. With a normal n of the guide at B (B − O4, or the slide's own),
 
     n · (i ω2 k + i ω3 u) = 0,        ω3 / ω2 = − n·ik / n·iu,        v / ω2 = i k + i (ω3/ω2) (P − A),
 
-so that only the closure knows which of both it is. A row of dimensions is O2 (x, y), O4 (x, y), a, b, c, P (along A →
-B, across it) of a fourbar; O2 (x, y), offset, a, b, P (along, across) of a slider-crank; there is no P where none is
-guided. A row of a target is cos θ, sin θ, P (x, y) or the travel, cos, sin of the angle, and the assembly sign.
+so that only the closure distinguishes both. A row of dimensions is O2 (x, y), O4 (x, y), a, b, c, P (along A →
+B, across it) of a fourbar; O2 (x, y), offset, a, b, P (along, across) of a slider-crank; P is omitted for tasks without
+a coupler point. A row of a target is cos θ, sin θ, P (x, y) or the travel, cos, sin of the angle, and the assembly
+sign.
 """
 
 from __future__ import annotations
@@ -19,26 +20,26 @@ from kinematics.compiling import njit
 from kinematics.linkage.kernels import ON_TOGGLE, OPTIONS, Real, direction
 
 POSES, POINTS, OUTPUTS = 0, 1, 2
-"""What targets are: positions of the coupler's body, places of P, or places of the output."""
+"""Sorts of targets: poses of the coupler's body, positions of P, or positions of the output."""
 
 
 class Drive(NamedTuple):
-    """How variants are driven.
+    """Settings for driving variants.
 
     Attributes
     ----------
     sort : int
-        What targets are.
+        Sort of the targets.
     slides : bool
         Whether the linkage is a slider-crank.
     ex, ey : float
         Direction of its slide.
     adjusted, greatest : bool
-        Whether the input is set anew at each target, and to where the greater miss, not the sum of squares, is least.
+        Whether the input is adjusted at each target, and whether to minimize the larger miss, not the sum of squares.
     per_length, per_angle : float
         Inverses of the units of distance and angle.
     before, after : float
-        What the range of the motion reaches beyond the least and the greatest input; NaN where no range is held.
+        Extension of the motion beyond the smallest and largest input; NaN without a range.
     """
 
     sort: int
@@ -57,12 +58,12 @@ class Drive(NamedTuple):
 def closed(
     drive: Drive, row: Real, sign: float, cosine: float, sine: float
 ) -> tuple[bool, float, float, float, float, float, float, float, float]:
-    """Whether the loop closes; k, u = B − A and the guide's normal n at B; and the length b."""
+    """Close the loop: return whether it closes; k, u = B − A and the guide's normal n at B; and the length b."""
     if drive.slides:
         ex, ey = drive.ex, drive.ey
         a, b = row[3], row[4]
         kx, ky = a * cosine, a * sine
-        # Along and across the slide: A stands k_y over the pivot's parallel of it, the slide ``offset`` below.
+        # Along and across the slide: A is k_y above the pivot's parallel to it, the slide ``offset`` below.
         across = -row[2] - (kx * -ey + ky * ex)
         square = (b - across) * (b + across)
         valid = square >= -2.0 * ON_TOGGLE * b * max(a, b, abs(row[2]))
@@ -86,7 +87,7 @@ def closed(
 def misses(
     drive: Drive, row: Real, target: Real, cosine: float, sine: float
 ) -> tuple[bool, float, float, float, float, float, float]:
-    """Whether the loop closes; deviations x, y and angle from a target; and their rates with the input."""
+    """Return whether the loop closes; deviations x, y and angle from a target; and their rates by the input."""
     valid, kx, ky, ux, uy, nx, ny, b, _ = closed(drive, row, target[6], cosine, sine)
     turn = -(ny * kx - nx * ky) / (ny * ux - nx * uy)
     if drive.sort == OUTPUTS:
@@ -108,24 +109,24 @@ def misses(
 
 @njit(**OPTIONS)
 def sound(drive: Drive, row: Real) -> bool:
-    """Whether all links have a length above zero."""
+    """Return whether all links have a positive length."""
     least = min(row[3], row[4]) if drive.slides else min(row[4], row[5], row[6])
     return bool(least > 0.0)
 
 
 @njit(**OPTIONS)
 def _between(low: float, high: float, place: float) -> bool:
-    """Whether a range of angles holds a place, or one some full turns from it."""
+    """Return whether a range of angles contains an angle modulo full turns."""
     return place + math.tau * math.ceil((low - place) / math.tau) <= high
 
 
 @njit(**OPTIONS)
 def on_branch(drive: Drive, row: Real, low: float, high: float) -> bool:
-    """Whether a variant turns from its least input at a target to its greatest, and beyond, without a toggle.
+    """Return whether a variant turns over all its targets, and the margins beyond them, without a toggle.
 
-    The distance of A from O4, or of A from the slide, is extreme with the crank along the ground or square to the
-    slide.
+    The distance of A from O4, or from the slide, is extreme with the crank along the ground or normal to the slide.
     """
+    # No range was requested.
     if math.isnan(drive.before):
         return True
     ends = drive.before > 0.0 or drive.after > 0.0
@@ -143,6 +144,7 @@ def on_branch(drive: Drive, row: Real, low: float, high: float) -> bool:
     a, b, c = row[4], row[5], row[6]
     gx, gy = row[2] - row[0], row[3] - row[1]
     d = math.sqrt(gx * gx + gy * gy)
+    # Whether a folded and an extended toggle exist at all.
     near, far = abs(d - a) <= abs(b - c), d + a >= b + c
     if not (near or far):
         return True

@@ -1,4 +1,4 @@
-"""Derivatives of what a linkage does to its dimensions, exact, through the closure of its loop.
+"""Exact derivatives of a linkage's deviations by its dimensions, through the closure of its loop.
 
 In the letters of :mod:`kernels`: the pin B of the coupler u = B − A is guided with the normal n, n·dB = r, where r =
 n·dO4 + c dc for the output of a fourbar, and n·dO2 − do for a slide at the offset o. From dB = dO2 + dk + û db + i u
@@ -6,15 +6,15 @@ dφ follow
 
     dφ = (r − n·(dO2 + dk + û db)) / n·iu,        dP = dO2 + dk + û dp + i (P − A) dφ,        dk = e^{iθ} da + i k dθ,
 
-so that the input θ is one dimension more. Differentiated once again, with ω = ∂φ/∂θ and v = ∂P/∂θ,
+so the input θ is treated as one more dimension. A further differentiation gives, with ω = ∂φ/∂θ and v = ∂P/∂θ,
 
     dω = −(dn·i(k + ω u) + n·i(dk + ω du)) / n·iu,        dv = i (dk + p dω + ω dp').
 
-An adjusted input is where the sum of the squares of distance and angle in their units is least, e·v/E² + ε ω/Ω² = 0,
-which gives dθ of every dimension. The place where the greater of both is least, by which variants are judged, has no
-derivative where a target is met exactly. Sources: Norton, Design of Machinery, Sec. 4.10 (transmission angle); Chase
-and Greenwood, Design issues in mechanical tolerance analysis, Manufacturing Review 1 (1988) 50, for closures as
-tolerance chains.
+An adjusted input minimizes the sum of the squares of distance and angle in their units, e·v/E² + ε ω/Ω² = 0, which
+gives dθ for every dimension. The input that minimizes the larger of both, used to judge variants, has no derivative
+where a target is met exactly. Sources: Norton, Design of Machinery, Sec. 4.10 (transmission angle); Chase and
+Greenwood, Design issues in mechanical tolerance analysis, Manufacturing Review 1 (1988) 50, for closures as tolerance
+chains.
 """
 
 from __future__ import annotations
@@ -28,28 +28,28 @@ import numpy as np
 from kinematics.linkage.variation.driven import Complex, Real, Task, Whole, deviations
 
 POLISHED = 2
-"""Steps of Newton's method by which nearest inputs are made exact; the kernels leave a millionth of a radian."""
+"""Newton steps that polish the closest inputs; the kernels leave an error of 1e-6 rad."""
 
 
 class Sensitivities(NamedTuple):
-    """How the deviations at targets follow n dimensions.
+    """Derivatives of the deviations at targets by n dimensions.
 
     Attributes
     ----------
     inputs : float, shape (t,)
-        Nearest inputs of the nominal linkage, radians.
+        Closest inputs of the nominal linkage, radians.
     offsets : float, shape (t, 3)
-        Its deviations x, y, angle there (as of :func:`deviations`).
+        Its deviations x, y, angle there (see :func:`deviations`).
     fixed : float, shape (t, 3, n)
         Their derivatives at these inputs.
     motion : float, shape (t, 3)
         Their derivatives to the input.
     rates : float, shape (t, 3, n)
-        Their derivatives where the input follows; the same as ``fixed`` where it does not.
+        Their derivatives if the input is adjusted; the same as ``fixed`` if not.
     least : float or None
-        Least transmission angle over the used range, radians; None where no range is held.
+        Minimum transmission angle over the used range, radians; None without a range.
     least_rates : float, shape (n,)
-        Its derivatives; zeros where there is none. Of two places where it is least, that of the first.
+        Its derivatives; zeros without a range. If the minimum occurs twice, those of the first.
     """
 
     inputs: Real
@@ -62,7 +62,7 @@ class Sensitivities(NamedTuple):
 
 
 class _Loop(NamedTuple):
-    """The loop at t inputs, and the derivatives of its parts to the n dimensions and, last, to the input.
+    """The loop at t inputs, and the derivatives of its parts by the n dimensions and, last, by the input.
 
     ``u``, ``normal`` and ``arm`` (P − A) have the shape (t,), all others (t, n + 1); ``turn`` is that of the coupler.
     """
@@ -86,13 +86,13 @@ def _dot(a: Complex, b: Complex | np.complex128) -> Real:
 
 
 def _loop(task: Task, row: Real, inputs: Real, assemblies: Whole) -> _Loop:
-    """The loop of the linkage with the dimensions ``row``, shape (n,)."""
+    """Differentiate the loop of the linkage with the dimensions ``row``, shape (n,)."""
     n = len(row)
     lengths = 3 if task.slides else 4
     a, b = row[lengths], row[lengths + 1]
     shape = len(inputs), n + 1
     crank = a * np.exp(1j * inputs)
-    # What each dimension moves by itself: O2, the length b, P on its link, and the guide of B.
+    # Direct effect of each dimension: O2, the length b, P on its link, and the guide of B.
     o2, dk, along, place = (np.zeros(shape, np.complex128) for _ in range(4))
     o2[:, 0], o2[:, 1] = 1.0, 1j
     dk[:, lengths], dk[:, n] = np.exp(1j * inputs), 1j * crank
@@ -135,19 +135,19 @@ def _loop(task: Task, row: Real, inputs: Real, assemblies: Whole) -> _Loop:
 
 
 def sensitivities(task: Task, nominal: Real) -> Sensitivities:
-    """Derivatives of a linkage's deviations, and of its least transmission angle, to its dimensions.
+    """Compute derivatives of a linkage's deviations, and of its minimum transmission angle, by its dimensions.
 
     Parameters
     ----------
     task : Task
-        The targets; its units are those in which nearness is measured.
+        The targets, with the units in which misses are compared.
     nominal : float, shape (n,)
-        Dimensions, as of :func:`deviations`. The linkage is to have a position at every target.
+        Dimensions, as for :func:`deviations`. The linkage must have a position at every target.
 
     Returns
     -------
     Sensitivities
-        Not finite where the linkage stands at a toggle.
+        Not finite if the linkage is at a toggle.
     """
     square = dataclasses.replace(task, greatest=False)
     driven = deviations(square, nominal[None])
@@ -161,7 +161,7 @@ def sensitivities(task: Task, nominal: Real) -> Sensitivities:
             every, speeds = _measured(task, _loop(task, nominal, inputs, task.assemblies))
             if not follows:
                 break
-            # The slope of half the sum of squares with the input, and its derivatives.
+            # Derivative of half the sum of squares by the input, and its derivatives.
             slope = np.einsum("c,tc,tc->t", weights, offsets, every[:, :, n])
             slopes = np.einsum("c,tcj,tc->tj", weights, every, every[:, :, n])
             slopes += np.einsum("c,tc,tcj->tj", weights, offsets, speeds)
@@ -177,7 +177,7 @@ def sensitivities(task: Task, nominal: Real) -> Sensitivities:
 
 
 def _measured(task: Task, at: _Loop) -> tuple[Real, Real]:
-    """Derivatives of x, y and the angle, shape (t, 3, n + 1), and those of their speeds with the input."""
+    """Differentiate x, y and the angle, shape (t, 3, n + 1), and their rates by the input."""
     zeros = np.zeros_like(at.turn)
     if task.sort == "outputs":
         if task.slides:
@@ -191,14 +191,15 @@ def _measured(task: Task, at: _Loop) -> tuple[Real, Real]:
 
 
 def _turning(vector: Complex, change: Complex) -> Real:
-    """Derivatives of a vector's angle, shape (t, n + 1)."""
+    """Compute the derivatives of a vector's angle, shape (t, n + 1)."""
     return np.asarray((np.conj(vector[:, None]) * change).imag / (np.abs(vector) ** 2)[:, None])
 
 
 def _transmission(task: Task, nominal: Real, inputs: Real, following: Real) -> tuple[float | None, Real]:
-    """The least transmission angle over the used range, and its derivatives: at an end, which follows, or inside.
+    """Find the minimum transmission angle over the used range, and its derivatives: at an adjusted end, or inside.
 
-    Inside it is least where the crank lies along the ground, or square to the slide; there the input does not matter.
+    An inner minimum occurs with the crank along the ground or normal to the slide, where the angle is stationary in the
+    input.
     """
     if task.used is None:
         return None, np.zeros(len(nominal))
@@ -218,6 +219,7 @@ def _transmission(task: Task, nominal: Real, inputs: Real, following: Real) -> t
         between = np.angle(at.normal / at.u)
         change = _turning(at.normal, at.dn) - _turning(at.u, at.du)
     # The acute angle between two lines.
+    # Lines have no direction, so angles count modulo π.
     folded = np.remainder(between, math.pi)
     acute = np.minimum(folded, math.pi - folded)
     k = int(np.where(np.isfinite(acute), acute, 0.0).argmin())
