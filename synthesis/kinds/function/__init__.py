@@ -29,7 +29,7 @@ def _warm_up() -> None:
 
 
 def _brief(problem: FunctionProblem) -> bool:
-    """Precision points are met exactly; errors over the whole range are made small by search, and sixbars are."""
+    """Return whether a job is short: precision points on fourbars are solved directly, everything else by search."""
     return problem.aim == "precision" and not problem.sixbars
 
 

@@ -1,9 +1,9 @@
-"""Function generators that follow a whole range with the least greatest or least mean square structural error.
+"""Function generators that approximate a whole range with the smallest maximum or mean square structural error.
 
-Starts are linkages that meet as many precision points as they can, spaced at random about Chebyshev's spacing: the best
-approximation is one of these for some spacing, as its error has a zero between any two of its extremes. Members of the
-families through fewer points are added. All are judged at once; the errors of the best are levelled
-(:mod:`synthesis.kinds.function.levelling`), and the best that differ are improved under all limits.
+Starts are linkages that meet the maximum number of precision points, spaced at random about Chebyshev spacing: the best
+approximation is one of these for some spacing, because its error has a zero between any two of its extremes. Members of
+the families through fewer points are added. All are evaluated at once; the errors of the best are levelled
+(:mod:`synthesis.kinds.function.levelling`), and the best distinct ones are optimised under all constraints.
 """
 
 from __future__ import annotations
@@ -26,23 +26,24 @@ from synthesis.model.kind import Progress
 Real = NDArray[np.float64]
 
 SETS = 300
-"""Sets of precision points for each number of them and each direction of the output."""
+"""Number of sets of precision points, for each number of points and each direction of the output."""
 
 JITTER = 0.8
-"""How far a precision point moves from Chebyshev's spacing, in steps of the angle that spaces them."""
+"""Maximum random shift of a precision point from Chebyshev spacing, in steps of the spacing angle."""
 
 SAME_START = 0.12
-"""Starts differ by this much in the logarithm of some length, or in some angle."""
+"""Minimum separation of starts, in the logarithm of some length or in some angle (radians)."""
 
 DRAWN, TURNING_KEPT, WIDEST = 40_000, 4000, 100.0
-"""Random lengths where a link must turn through, those kept of them, and their widest link ratio."""
+"""Random generators if a link must rotate fully: number sampled, maximum number kept, and maximum link ratio."""
 
 LEVELLED, ONWARD = 60, 2
-"""Starts whose errors are levelled, the best ones; and level ones from which a best that has not arrived goes on."""
+"""Number of best starts whose errors are levelled; and number of levelled linkages from which an optimum that has not
+converged continues."""
 
 
 class Effort(NamedTuple):
-    """How many starts are improved a little and how many of them to the end, and steps for both at most."""
+    """Number of starts in the first optimisation, its maximum steps, number of them continued, and maximum steps."""
 
     starts: int
     first_rounds: int
@@ -51,17 +52,17 @@ class Effort(NamedTuple):
 
 
 FEW, MANY = Effort(6, 4, 3, 12), Effort(14, 6, 6, 60)
-"""Where no limit is in the way of the best, and where one is."""
+"""Effort if no constraint is active at the best start, and otherwise."""
 
 SAME = 1e-3
-"""Optima whose numbers differ by less are one."""
+"""Relative difference of the parameters below which two optima are duplicates."""
 
 DENSE = 801
-"""Places at which an error is looked at for its extremes."""
+"""Number of inputs at which the extremes of an error are searched."""
 
 
 class Approximations(NamedTuple):
-    """Local optima, best first, and how many starts were judged and improved."""
+    """Local optima, best first, and the numbers of starts evaluated and optimised."""
 
     optima: list[Approximation]
     judged: int
@@ -71,7 +72,7 @@ class Approximations(NamedTuple):
 def approximations(
     task: FunctionTask, rng: np.random.Generator, progress: Progress, least: float | None = None
 ) -> Approximations:
-    """The best approximations that are reached from many starts; ``least`` as for :class:`GeneratorLimits`."""
+    """Find the best approximations from many starts; ``least`` as for :class:`GeneratorLimits`."""
     limits = GeneratorLimits(task, least)
     descent = GeneratorDescent(task, limits)
     pool, signs = _starts(task, limits, rng)
@@ -82,9 +83,9 @@ def approximations(
     level, theirs = levelled(task, pool[nearest], signs[nearest])
     judged = len(pool)
     pool, signs = limits.contained(np.concatenate([pool, level])), np.concatenate([signs, theirs])
-    # The best level error, if no limit touches it, is the answer already; the rest is for others beside it.
+    # The best levelled error is optimal if no constraint is active; further effort only finds alternatives.
     inside = len(level) > 0 and float(limits.values(level[descent.sizes(level, theirs).argmin()])[0].max()) < 0.0
-    # What is not levelled, or not among the inequalities, may have its best elsewhere.
+    # That argument fails if scales are open or if the Grashof class is not among the inequalities.
     inside &= not task.free[5:].any() and task.problem.constraints.grashof in ("any", "crank_rocker", "double_crank")
     effort = FEW if inside else MANY
     chosen = descent.best_apart(pool, signs, effort.starts)
@@ -102,7 +103,7 @@ def approximations(
             optima.append(refined)
     optima.sort(key=lambda optimum: optimum.error)
     if optima and not optima[0].arrived:
-        # The best is on its way still: on to the end, and from where its errors are level if that is better.
+        # The best has not converged: continue from it, and from its levelled variants.
         best = optima[0]
         level, theirs = levelled(task, best.generator[None, :STEPS], np.array([best.sign]))
         level = limits.contained(level)
@@ -114,14 +115,14 @@ def approximations(
 
 
 def _same(one: Approximation, other: Approximation) -> bool:
-    """Whether two optima are one; angles without full turns, which a slider's position is never near to."""
+    """Return whether two optima are duplicates; angles modulo full turns (a slider's position is never near 2π)."""
     gaps = one.generator[:STEPS] - other.generator[:STEPS]
     gaps[3:5] -= math.tau * np.round(gaps[3:5] / math.tau)
     return one.sign == other.sign and bool(np.all(np.abs(gaps) <= SAME * (1.0 + np.abs(other.generator[:STEPS]))))
 
 
 def _starts(task: FunctionTask, limits: GeneratorLimits, rng: np.random.Generator) -> tuple[Real, Real]:
-    """Generators that meet some places exactly, with their assemblies."""
+    """Find generators that meet some points exactly, with their assemblies."""
     most = 3 + sum(zero is None for zero in task.zeros)
     found = []
     for first in task.scales[0]:
@@ -135,7 +136,7 @@ def _starts(task: FunctionTask, limits: GeneratorLimits, rng: np.random.Generato
                 else:
                     found.append(_with_scales(family(task.closure, *pairs, task.zeros, rng), k, scale))
     if None not in task.zeros and task.problem.aim == "least_squares":
-        # Only who states zeros waits for the import.
+        # Import lazily: only problems with given zeros need the convex solver.
         from synthesis.kinds.function.design_equation import least_design_error
 
         for first in task.scales[0]:
@@ -144,18 +145,18 @@ def _starts(task: FunctionTask, limits: GeneratorLimits, rng: np.random.Generato
                 if best is not None:
                     found.append(best[None])
     pool = np.concatenate(found)
-    # The assembly that the sampled function lies in, by most of its places.
+    # Choose the assembly in which most samples lie.
     signs = np.where(task.samples().signs(pool).sum(axis=1) >= 0.0, 1.0, -1.0)
     if limits.shortest_link is None and not limits.turns_through:
         return pool, signs
-    # Linkages that turn through are rare among those that meet points.
+    # Fully rotating linkages are rare among those that meet points exactly, so sample some separately.
     turning = _turning(task, limits, rng)
     more = [_centred(task, turning, sign) for sign in (1.0, -1.0)]
     return np.concatenate([pool, *more]), np.concatenate([signs, np.ones(len(turning)), -np.ones(len(turning))])
 
 
 def _turning(task: FunctionTask, limits: GeneratorLimits, rng: np.random.Generator) -> Real:
-    """Random generators whose link turns through that is to."""
+    """Sample random generators whose required link rotates fully."""
     reach = 0.5 * math.log(min(limits.ratio, WIDEST))
     drawn = np.ones((DRAWN, STEPS))
     drawn[:, :3] = np.exp(rng.uniform(-reach, reach, (DRAWN, 3)))
@@ -170,7 +171,7 @@ def _turning(task: FunctionTask, limits: GeneratorLimits, rng: np.random.Generat
 
 
 def _centred(task: FunctionTask, generators: Real, sign: float) -> Real:
-    """Generators with the output's zero, where it is open, moved to where their mean error vanishes."""
+    """Shift an open zero of the output so that the mean error vanishes."""
     centred = generators.copy()
     if task.zeros[1] is None:
         errors = task.samples().errors(generators, np.full(len(generators), sign))
@@ -181,7 +182,7 @@ def _centred(task: FunctionTask, generators: Real, sign: float) -> Real:
 
 
 def _places(task: FunctionTask, count: int, rng: np.random.Generator) -> tuple[Real, Real]:
-    """Sets of places about Chebyshev's spacing, or sets of pairs; shape (sets, count)."""
+    """Sample sets of precision points about Chebyshev spacing, or sets of pairs; shape (sets, count)."""
     function = task.problem.function
     if function is None:
         order = np.argsort(rng.random((SETS, len(task.sample_inputs))), axis=1)[:, :count]
@@ -203,7 +204,7 @@ def _with_scales(found: Real, k: Real, scale: Real) -> Real:
 
 
 class GeneratorDescent(Descent):
-    """Judges and improves fourbars and slider-cranks."""
+    """Evaluation and local optimisation of fourbars and slider-cranks."""
 
     limits: GeneratorLimits
 
@@ -223,7 +224,7 @@ class GeneratorDescent(Descent):
         self.square = task.problem.aim == "least_squares"
 
     def merits(self, pool: Real, signs: Real) -> Real:
-        """The criterion's error and what the transmission angle lacks, of many generators; infinite beyond use."""
+        """Return error plus violation of the transmission angle of many generators; infinite for unusable ones."""
         size = self.sizes(pool, signs)
         if self.limits.cosine is not None:
             short = math.sqrt(max(1.0 - self.limits.cosine**2, 0.0)) - self.limits.transmission(pool)
@@ -231,16 +232,17 @@ class GeneratorDescent(Descent):
         return np.asarray(size)
 
     def best_apart(self, pool: Real, signs: Real, count: int) -> list[int]:
-        """Starts with the least errors that differ from one another.
+        """Select the distinct starts with the smallest errors.
 
-        Half of them are from within all limits, if there are such: a descent comes into them, but not from everywhere.
+        Half of them satisfy all constraints, if there are such: descents from infeasible starts do not always become
+        feasible.
         """
         merit, lacking = self.merits(pool, signs), self.limits.lacking(pool)
         inside = self.apart(pool, np.where(lacking > 0.0, np.inf, merit), count // 2)
         return self.apart(pool, merit, count, inside)
 
     def apart(self, pool: Real, merit: Real, count: int, chosen: Sequence[int] = ()) -> list[int]:
-        """The rows of a pool with the least merit that differ from one another and from those chosen before."""
+        """Select the rows of a pool with the lowest merit that differ from each other and from those already chosen."""
         features = np.column_stack([np.log(np.abs(pool[:, :3]) + 1e-12), pool[:, 3:5], np.log(np.abs(pool[:, 5:]))])
         found = list(chosen)
         for j in np.argsort(merit):
@@ -252,7 +254,7 @@ class GeneratorDescent(Descent):
         return found
 
     def sizes(self, pool: Real, signs: Real) -> Real:
-        """The criterion's error of many generators; infinite beyond use."""
+        """Return the criterion's error of many generators; infinite for unusable ones."""
         errors = np.abs(self.coarse.errors(pool, signs))
         errors = np.where(np.isfinite(errors), errors, np.inf)
         size = np.sqrt(np.mean(errors**2, axis=1)) if self.square else errors.max(axis=1)

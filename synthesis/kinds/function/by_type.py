@@ -1,9 +1,9 @@
-"""Which type of linkage generates the function: the simplest that does it well, sixbars where none of those does.
+"""Selection of the linkage type: the simplest type that is accurate enough, or sixbars if no simpler one is.
 
-A fourbar that meets all demands stands alone where it transmits as is demanded, or with
-:data:`~synthesis.outcome.simplest.SOUND` degrees where nothing is, and where its structural error is at most
-:data:`WELL` of the output's range. Otherwise sixbars are looked for; they are offered beside it where they have at most
-half of its error, and in its place where it is not sound.
+A fourbar that satisfies all constraints is sufficient if its minimum transmission angle reaches the client's limit (or
+:data:`~synthesis.outcome.simplest.SOUND` degrees without one) and its structural error is at most :data:`WELL` of the
+output's range. Otherwise sixbars are searched; they are listed after it if they have at most half its error, or replace
+it if it transmits badly.
 """
 
 from __future__ import annotations
@@ -40,27 +40,26 @@ from synthesis.outcome.simplest import (
 Solve = Callable[[FunctionProblem, Progress], FunctionResult]
 
 WELL = 2e-4
-"""Share of the output's range that the error of a fourbar may be for no sixbars to be looked for: a hundredth of a
-degree of 50."""
+"""Maximum error of a fourbar, as a share of the output's range, for which sixbars are not searched: 0.01° of 50°."""
 
 ATTEMPTS = 6
-"""Sixbars that are verified at most, for each design wanted."""
+"""Maximum number of verified sixbars per requested design."""
 
 REASONS = DEFECTS | LENGTHS | {"covers_range": "branch_defect", "dials": "reversed_link"}
-"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
+"""Rejection reason by failed check; other checks use their own name."""
 
 
 def solve_types(problem: FunctionProblem, simple: Solve, progress: Progress) -> FunctionResult:
-    """The answer of the types that a problem states.
+    """Solve for the types of linkage that a problem requests.
 
     Parameters
     ----------
     problem : FunctionProblem
-        With :attr:`FunctionProblem.mechanisms`.
+        A problem with :attr:`FunctionProblem.mechanisms`.
     simple : callable
-        Solves for fourbars and slider-cranks, as without that field.
+        Solver for fourbars and slider-cranks of a problem without that field.
     progress : callable
-        Told how far the work is.
+        Progress callback.
     """
     part = problem.of_simple
     answer: FunctionResult = simplest_first(
@@ -75,7 +74,7 @@ def solve_types(problem: FunctionProblem, simple: Solve, progress: Progress) -> 
 
 
 def _sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResult:
-    """The answer of the sixbars that can have what is demanded; which cannot is told."""
+    """Solve for the sixbars that support the given constraints; report the types that do not."""
     found, told = solve_sixbars(problem.of_sixbars, progress), _told_of_dropped(problem)
     return found.model_copy(update={"summary": f"{found.summary} {told}"}) if told else found
 
@@ -85,7 +84,7 @@ def _told_of_dropped(problem: FunctionProblem) -> str:
 
 
 def _well(problem: FunctionProblem, design: FunctionDesign) -> bool:
-    """Whether the error of a linkage is so small that no sixbar needs to be looked for."""
+    """Return whether a linkage is accurate enough that sixbars are not searched."""
     if problem.aim == "precision":
         return True
     error = design.structural_error.rms if problem.aim == "least_squares" else design.structural_error.max
@@ -93,7 +92,7 @@ def _well(problem: FunctionProblem, design: FunctionDesign) -> bool:
 
 
 def solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResult:
-    """Sixbars of the types that are listed, the best by the criterion first."""
+    """Solve for sixbars of the requested types, best by the criterion first."""
     if problem.determines_watts:
         return solve_nine_pairs(problem, REASONS, progress)
     task = function_task(problem)
@@ -111,7 +110,7 @@ def solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResul
         try:
             return verify_function(problem, *built(task, found[n]))
         except (ValueError, ZeroDivisionError, OverflowError):
-            return None  # it stands on a toggle, where no place is a number
+            return None  # at a toggle no position can be computed
 
     rows = range(min(len(found), ATTEMPTS * problem.max_designs))
     tried = sifting.sift(rows, verified, enough=problem.max_designs)
@@ -125,7 +124,7 @@ def solve_sixbars(problem: FunctionProblem, progress: Progress) -> FunctionResul
 
 
 def joined(problem: FunctionProblem, simple: FunctionResult, found: FunctionResult) -> FunctionResult:
-    """The answer of fourbars and that of sixbars as one."""
+    """Merge the results for fourbars and for sixbars."""
     order = partial(ordered, problem)
     plain, better = passing(simple.designs), passing(found.designs)
     sound = [design for design in plain if transmits(problem, design)]
@@ -146,33 +145,33 @@ def joined(problem: FunctionProblem, simple: FunctionResult, found: FunctionResu
 def _told(
     problem: FunctionProblem, sound: list[FunctionDesign], plain: list[FunctionDesign], better: list[FunctionDesign]
 ) -> str:
-    """What the types have to do with one another, in a sentence; open where there are linkages of both sorts."""
+    """Describe how the types compare; the sentence is continued by the caller if there are designs of both kinds."""
     if not plain:
-        return "No fourbar was found; sixbars were." if better else "Neither a fourbar nor a sixbar was found."
+        return "No fourbar was found, only sixbars." if better else "Neither a fourbar nor a sixbar was found."
     if not better:
         what = "error" if sound else "transmission angle"
-        return f"No sixbar that was found is clearly better than the best fourbar in its {what}."
+        return f"No sixbar found clearly improves on the best fourbar's {what}."
     if not sound:
         angle = max(design.metrics.min_transmission_angle for design in plain)
-        return f"The best fourbar transmits with {angle:.1f}° only; sixbars transmit better"
+        return f"The best fourbar has a minimum transmission angle of only {angle:.1f}°; sixbars exceed it"
     share = min(error_of(problem, one) for one in better) / min(error_of(problem, one) for one in sound)
-    return f"Sixbars have down to {100.0 * share:.2g} % of the best fourbar's error"
+    return f"Sixbars reduce the error to {100.0 * share:.2g} % of the best fourbar's"
 
 
 def _summary(problem: FunctionProblem, sifting: Sifting[FunctionDesign]) -> str:
-    weighed = f"{counted(sifting.candidates, 'sixbar was', 'sixbars were')} drawn and composed"
+    weighed = f"{counted(sifting.candidates, 'sixbar was', 'sixbars were')} sampled"
     if not sifting.passed:
         return (
-            f"{weighed}, and none was found that satisfies all demands.{sifting.reasons()} "
-            "That does not prove that none exists."
+            f"{weighed}; no design found satisfies all constraints.{sifting.reasons()} "
+            "This does not prove that none exists."
         )
     best = min(sifting.passed, key=lambda design: error_of(problem, design))
     error = best.structural_error
     if problem.aim == "precision":
         count = len(sifting.passed)
-        return f"{weighed}; {counted(count, 'meets', 'that differ meet')} all pairs."
+        return f"{weighed}; {counted(count, 'design meets', 'distinct designs meet')} all pairs."
     if problem.aim == "least_squares":
-        text = f"the least root mean square structural error found is {error.rms:.4g}° (at most {error.max:.4g}°)"
+        text = f"Smallest root-mean-square structural error found: {error.rms:.4g}° (maximum {error.max:.4g}°)"
     else:
-        text = f"the least greatest structural error found is {error.max:.4g}°"
-    return f"{weighed}; {text}, by a {IN_WORDS[best.mechanism.type]}; no proof that none is better."
+        text = f"Smallest maximum structural error found: {error.max:.4g}°"
+    return f"{weighed}. {text}, by a {IN_WORDS[best.mechanism.type]}. A better linkage may exist."

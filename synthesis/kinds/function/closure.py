@@ -1,23 +1,23 @@
-"""The closure of function generators as a cubic in projective space.
+"""Loop closure of function generators as a cubic in projective space.
 
 Fourbar, ground 1, input a at φ₀ + φ and output c at ψ₀ + ψ from the ground line, coupler b (Freudenstein 1955,
 doi:10.1115/1.4014485):
 
     K₁ cos(ψ₀ + ψ) − K₂ cos(φ₀ + φ) + K₃ = cos(φ₀ − ψ₀ + φ − ψ),   K₁ = 1/a, K₂ = 1/c, K₃ = (1 + a² + c² − b²)/2ac.
 
-With the angle sums expanded a pair (φ, ψ) is one linear equation for seven numbers v = (p, q, r, m), where p, q and m
-stand for two real ones each,
+With expanded angle sums, a pair (φ, ψ) is one linear equation in seven numbers v = (p, q, r, m), where p, q and m
+represent two real ones each,
 
     (cos ψ, sin ψ, cos φ, sin φ, 1, cos(φ − ψ), sin(φ − ψ)) · v = 0,
     p = K₁ e^{−iψ₀},  q = −K₂ e^{−iφ₀},  r = K₃,  m = −e^{−i(φ₀ − ψ₀)},
 
-all but a common factor. Seven such numbers belong to a linkage where m and q p̄ are parallel, Im(m q̄ p) = 0, and the
-linkage is then determined. Fourbars are the points of a cubic hypersurface of P⁶: five pairs cut it in three points,
-four in a cubic curve, and so on. A given zero is one linear equation more, Im(p e^{iψ₀}) = 0 or Im(q e^{iφ₀}) = 0; both
-make the cubic the linear equation Im(m e^{i(φ₀ − ψ₀)}) = 0.
+up to a common factor. Seven such numbers represent a linkage if m and q p̄ are parallel, Im(m q̄ p) = 0; they then
+determine it. Fourbars are the points of a cubic hypersurface of P⁶: five pairs intersect it in three points, four in a
+cubic curve, and so on. A given zero adds one linear equation, Im(p e^{iψ₀}) = 0 or Im(q e^{iφ₀}) = 0; both together
+turn the cubic into the linear equation Im(m e^{i(φ₀ − ψ₀)}) = 0.
 
-Slider-crank, crank a at θ₀ + φ from the slide's direction, coupler b, the slide a distance e to the left of the pivot,
-B at s₀ + σ along it:  b² = (s − a cos θ)² + (e − a sin θ)² is, in the same way,
+Slider-crank, crank a at θ₀ + φ from the slide's direction, coupler b, the slide at distance e to the left of the pivot,
+B at s₀ + σ along it:  b² = (s − a cos θ)² + (e − a sin θ)² becomes, in the same way,
 
     (σ cos φ, σ sin φ, cos φ, sin φ, 1, σ, σ²) · (u, w, r, t, z) = 0,
     u = 2a e^{−iθ₀},  w = 2a e^{−iθ₀} (s₀ + i e),  r = b² − a² − e² − s₀²,  t = −2 s₀,  z = −1,
@@ -38,23 +38,23 @@ Real = NDArray[np.float64]
 UNKNOWNS = 7
 
 NO_LENGTH = 1e-9
-"""Parts of a point of the cubic below this share of the whole stand for no link, or for one without end."""
+"""Minimum norm of a part of a cubic point, relative to the whole; below it a link has zero or infinite length."""
 
 
 class Closure(Protocol):
-    """One type of linkage."""
+    """Interface of a type of linkage."""
 
     def rows(self, inputs: Real, outputs: Real) -> Real:
-        """Equations of pairs, radians and radians or stroke units: shape (..., n) gives (..., n, 7)."""
+        """Return the equations of pairs, radians and radians or stroke units: shape (..., n) gives (..., n, 7)."""
 
     def zero_rows(self, zeros: tuple[float | None, float | None]) -> Real:
-        """Equations of the zeros that are given; three where both are, which then stand for the cubic too."""
+        """Return the equations of the given zeros: one each, and a third, replacing the cubic, if both are given."""
 
     def cubic(self, v: Real) -> Real:
-        """The cubic form at points of shape (..., 7)."""
+        """Return the cubic form at points of shape (..., 7)."""
 
     def dimensions(self, v: Real) -> Real:
-        """Five dimensions of each point on the cubic, shape (..., 5); NaN where a link has no or no finite length.
+        """Return the five dimensions of points on the cubic, shape (..., 5); NaN if a length is zero or infinite.
 
         Fourbar: a, b, c, φ₀, ψ₀ with ground 1. Slider-crank: a, b, e, θ₀, s₀.
         """
@@ -74,7 +74,7 @@ class FourbarClosure:
         return np.stack([*columns, np.cos(apart), np.sin(apart)], axis=-1)
 
     def zero_rows(self, zeros: tuple[float | None, float | None]) -> Real:
-        """See :class:`Closure`; Im(z e^{iα}) = y cos α + x sin α."""
+        """Return the rows of :class:`Closure`, with Im(z e^{iα}) = y cos α + x sin α."""
         phi, psi = zeros
         found = []
         if psi is not None:
@@ -92,7 +92,7 @@ class FourbarClosure:
     def dimensions(self, v: Real) -> Real:
         """See :class:`Closure`."""
         p, q, m = _complex(v, 0), _complex(v, 2), _complex(v, 5)
-        # A point of projective space has no sign: that one in which m = −e^{…} is meant.
+        # A projective point has no sign: choose the one for which m = −e^{…}.
         sign = np.where((m * (q * p.conj()).conj()).real >= 0.0, 1.0, -1.0)
         size = np.linalg.norm(v, axis=-1)
         sound = np.minimum(np.minimum(np.abs(p), np.abs(q)), np.abs(m)) > NO_LENGTH * size
@@ -114,7 +114,7 @@ class SliderClosure:
         return np.stack(columns, axis=-1)
 
     def zero_rows(self, zeros: tuple[float | None, float | None]) -> Real:
-        """See :class:`Closure`; both zeros give Re(w e^{iθ₀}) = s₀ Re(u e^{iθ₀}) too."""
+        """Return the rows of :class:`Closure`; both zeros also give Re(w e^{iθ₀}) = s₀ Re(u e^{iθ₀})."""
         theta, s = zeros
         found = []
         if theta is not None:
@@ -148,5 +148,5 @@ FOURBAR, SLIDER = FourbarClosure(), SliderClosure()
 
 
 def closure_of(slides: bool) -> Closure:
-    """The closure of a mechanism."""
+    """Return the closure of a fourbar or a slider-crank."""
     return SLIDER if slides else FOURBAR

@@ -1,15 +1,15 @@
-"""Improves a function generator step by step, under limits, from where it stands.
+"""Local optimisation of a function generator under constraints.
 
-Minimax: sequential linear programs. With the errors e and limits g linearized in a step δ of the generator,
+Minimax: sequential linear programs. With the errors e and limits g linearised in a step δ of the generator,
 
     minimize E + w t   over   |e_j + e_j′ δ| ≤ E,   g_i + g_i′ δ ≤ t,   |δ| ≤ trust region,
 
-at the extremes of the error and between them; the step is taken where E + w t has become less. Where n numbers are open
-and n + 1 extremes share the error, as Chebyshev's theorem has it, the steps become Newton's (Remez' exchange; Madsen,
-BIT 15 (1975) 295, doi:10.1007/BF01933675).
+at the extremes of the error and between them; a step is accepted if it decreases E + w t. If n parameters are open and
+n + 1 extremes share the error, as in Chebyshev's theorem, the steps become Newton steps (Remez exchange; Madsen, BIT 15
+(1975) 295, doi:10.1007/BF01933675).
 
-Least squares: sequential quadratic programs (SLSQP) on the mean square of the same errors, under the same limits. Where
-both zeros are given, the design equation's convex least squares in K gives a start.
+Least squares: sequential quadratic programs (SLSQP) on the mean square of the same errors, under the same limits. If
+both zeros are given, the convex least-squares problem of the design equation in K provides a start.
 """
 
 from __future__ import annotations
@@ -27,32 +27,32 @@ from synthesis.numerics.linear_program import least
 Real = NDArray[np.float64]
 
 TRUST = 0.3
-"""First bound on a step: a third in length, 17 degrees."""
+"""Initial trust radius: a factor of about 1.35 in length, or 17 degrees."""
 
 SETTLED = 1e-8
 """Relative improvement of the merit below which a descent has converged."""
 
 MIN_TRUST = 1e-11
-"""Bound on a step below which rounding decides whether it is an improvement: the descent has converged."""
+"""Minimum trust radius; below it rounding decides whether a step is an improvement, so the descent has converged."""
 
 UNREACHABLE_COST = 1e6
-"""Relative cost of a generator that does not reach all of the range; the start's is 1."""
+"""Relative cost of a generator that cannot be assembled over the whole range; that of the start is 1."""
 
 COST_TOLERANCE = 1e-13
-"""Relative change of the cost at which sequential quadratic programming has converged: nearly rounding."""
+"""Relative change of the cost at which sequential quadratic programming has converged; close to rounding."""
 
 LIMIT_TOLERANCE = 1e-9
-"""Violation of a limit with which a generator still counts as within all."""
+"""Tolerance for constraint violations of a feasible generator."""
 
 PENALTY = 10.0
-"""What breaking a limit costs, radians of error for a unit of it."""
+"""Penalty of a constraint violation, radians of error per unit of violation."""
 
 SCALES = (5, 6)
-"""Where a generator has its scales."""
+"""Columns of a generator's scales."""
 
 
 class Approximation(NamedTuple):
-    """A generator, its assembly, its error in the criterion's norm (radians or units), and how it was come by."""
+    """A generator, its assembly, its error in the criterion's norm (radians or units), and whether it converged."""
 
     generator: Real
     sign: float
@@ -61,50 +61,51 @@ class Approximation(NamedTuple):
 
 
 class Followers(Protocol):
-    """Generators of a type at common places of the input."""
+    """Interface of generators of one type, evaluated at common inputs."""
 
     inputs: Real
 
     def some(self, rows: NDArray[np.int64]) -> Self:
-        """The same at some of the places."""
+        """Return the generators at selected inputs."""
 
     def errors(self, dimensions: Real, signs: Real) -> Real:
-        """Structural errors of generators (k, n) in their assemblies (k,): shape (k, places), NaN where none is."""
+        """Return structural errors of generators (k, n) in assemblies (k,): shape (k, inputs), NaN if not assembled."""
 
     def derivatives(self, dimensions: Real, errors: Real, sign: float) -> Real:
-        """Of the errors of one generator by its steps: shape (places, n), or fewer columns than steps that it has."""
+        """Return derivatives of one generator's errors by its steps: shape (inputs, n), or fewer columns."""
 
     def stepped(self, dimensions: Real, step: Real) -> Real:
-        """A generator after a step."""
+        """Apply a step to a generator."""
 
 
 class Limits(Protocol):
-    """Inequalities g ≤ 0 of a generator."""
+    """Interface of the inequalities g ≤ 0 of a generator."""
 
     def values(self, generator: Real, *, derivatives: bool = False) -> tuple[Real, Real]:
-        """g and, where asked for, its derivatives by the steps: shapes (m,) and (m, n)."""
+        """Return g and, on request, its derivatives by the steps: shapes (m,) and (m, n)."""
 
     def put(self, generator: Real) -> Real:
-        """A generator with the place that fits it best, where there are regions to be kept; else as it is."""
+        """Append the best placement to a generator if there are pivot regions; otherwise return it unchanged."""
 
 
 class Descent:
-    """Improves one generator at a time.
+    """Local optimiser for one generator at a time.
 
     Parameters
     ----------
     task : FunctionTask
-        The task, with what the scales may be.
+        The task, with the permitted scales.
     dense : Followers
-        At the places at which the error is made small.
+        Generators at the inputs at which the error is minimised.
     limits : Limits
+        The constraints.
     free : bool, shape (n,)
-        Which of a generator's numbers are open.
+        Mask of a generator's open parameters.
     """
 
     def __init__(self, task: FunctionTask, dense: Followers, limits: Limits, free: NDArray[np.bool_]) -> None:
         self.task, self.dense, self.limits, self.free = task, dense, limits, free
-        # With the output's range open its errors are shares of it; else the least range would be the best.
+        # With an open output range, errors are relative to it; otherwise the smallest range would always win.
         self.relative = bool(free[6])
 
     def _errors(self, generators: Followers, at: Real, sign: float) -> Real:
@@ -116,10 +117,10 @@ class Descent:
         slopes = generators.derivatives(at, errors * unit, sign) / unit
         if self.relative:
             slopes[:, 6] -= errors
-        return np.pad(slopes, ((0, 0), (0, len(at) - slopes.shape[1])))  # wherever it stands
+        return np.pad(slopes, ((0, 0), (0, len(at) - slopes.shape[1])))  # the placement does not affect errors
 
     def _scale_rows(self, at: Real) -> tuple[Real, Real]:
-        """How far ln of each scale may still go down and up, shapes (2,)."""
+        """Scale limits: return the permitted decrease and increase of ln of each scale, shapes (n,)."""
         low, high = np.zeros(len(at)), np.zeros(len(at))
         for side, column in ((0, 5), (1, 6)):
             choice = [limits for limits in self.task.scales[side] if limits[0] * at[column] > 0.0]
@@ -128,7 +129,7 @@ class Descent:
         return low, high
 
     def minimax(self, at: Real, sign: float, rounds: int, enough: float = 0.0) -> Approximation:
-        """Sequential linear programs from one generator, until error and violation are ``enough`` or settled."""
+        """Minimize the maximum error by sequential linear programs, until the merit reaches ``enough`` or converges."""
         trust, at = TRUST, self.limits.put(at)
         errors = self._errors(self.dense, at, sign)
         greatest = float(np.abs(errors).max()) if np.isfinite(errors).all() else math.inf
@@ -147,6 +148,7 @@ class Descent:
             if np.isfinite(new).all():
                 reached = float(np.abs(new).max())
                 reached += PENALTY * max(float(self.limits.values(tried)[0].max(initial=0.0)), 0.0)
+            # Trust-region update by the ratio of actual to predicted decrease.
             share = (merit - reached) / (merit - promised)
             if share > 0.05:
                 at, errors, merit = tried, new, reached
@@ -160,16 +162,16 @@ class Descent:
         return Approximation(at, sign, merit, arrived)
 
     def dense_step(self, at: Real, step: Real) -> Real:
-        """The generator after a step."""
+        """Return the generator after a step."""
         return self.dense.stepped(at, step)
 
     def _program(self, at: Real, sign: float, errors: Real, trust: float) -> tuple[Real | None, float]:
-        """The step of one linear program, and the merit that it promises."""
+        """Solve one linear program: return its step and the predicted merit; None if it is infeasible."""
         rows = _telling(errors)
         slopes = self._slopes(self.dense.some(rows), at, sign, errors[rows])
         g, g_slopes = self.limits.values(at, derivatives=True)
         free = np.flatnonzero(self.free)
-        # Errors are far below 1, and the program's own tolerances are not relative.
+        # Scale errors to order 1: they are small, and the linear program's tolerances are absolute.
         unit = float(np.abs(errors).max()) or 1.0
         ones = np.ones((len(rows), 1))
         zero = np.zeros((len(rows), 1))
@@ -194,7 +196,7 @@ class Descent:
         return step, done.value * unit
 
     def least_squares(self, at: Real, sign: float, rounds: int) -> Approximation:
-        """Sequential quadratic programs from one generator."""
+        """Minimize the mean square error by sequential quadratic programs from one generator."""
         free, at = np.flatnonzero(self.free), self.limits.put(at)
         weights = self._weights()
 
@@ -236,20 +238,21 @@ class Descent:
         found = whole(done.x)
         errors = self._errors(self.dense, found, sign)
         broken = float(self.limits.values(found)[0].max(initial=0.0))
+        # SLSQP may end at a worse, infeasible point; keep the start then.
         if not np.isfinite(errors).all() or (done.fun > 1.0 and broken > LIMIT_TOLERANCE):
             found, errors, broken = at, begun, float(self.limits.values(at)[0].max(initial=0.0))
         error = math.sqrt(float(weights @ errors**2)) + PENALTY * max(broken, 0.0)
         return Approximation(found, sign, error, bool(done.success))
 
     def _weights(self) -> Real:
-        """Of the places, so that a mean over them is one over the range."""
+        """Return weights of the inputs, shape (m,), for which a weighted sum approximates the mean over the range."""
         if self.task.problem.function is None:
             return np.full(len(self.dense.inputs), 1.0 / len(self.dense.inputs))
         return np.asarray(np.gradient(self.dense.inputs) / np.gradient(self.dense.inputs).sum())
 
 
 def _telling(errors: Real) -> NDArray[np.int64]:
-    """Places that a linear program looks at: the ends, every extreme of the error, and some between them."""
+    """Select the points of a linear program: the ends, every extreme of the error, and some between them."""
     n = len(errors)
     if n <= 60:
         return np.arange(n)

@@ -1,4 +1,4 @@
-"""Answers to problems of function generation: the linkage, its dials, and its structural error as measured."""
+"""Results of function generation: the linkage, its dials, and its measured structural error."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ FunctionMechanism = Annotated[FourbarMechanism | SliderCrankMechanism | SixbarMe
 
 
 class InputDial(Answer):
-    """How a value is read off the input: where the link stands at one value, and how far it turns for a unit of it.
+    """Dial of the input: the link's angle at one value, and its rotation per unit of the value.
 
-    The link stands at ``place`` + ``scale`` · (value − ``at``), an absolute angle, degrees.
+    The link's absolute angle is ``place`` + ``scale`` · (value − ``at``), degrees.
     """
 
     at: float
@@ -38,9 +38,9 @@ class InputDial(Answer):
 
 
 class OutputDial(Answer):
-    """The same of the output: an absolute angle, degrees, or a slider's position.
+    """Dial of the output: an absolute angle, degrees, or a slider's position.
 
-    A slider's position is along its line, from the foot of the fixed pivot.
+    A slider's position is measured along its line, from the foot of the fixed pivot.
     """
 
     at: float
@@ -49,28 +49,28 @@ class OutputDial(Answer):
 
 
 class Dials(Answer):
-    """Dials of input and output. Their values are those of the pairs, or x and y of the function."""
+    """Dials of input and output. Their values are those of the pairs, or the function's x and y."""
 
     input: InputDial
     output: OutputDial
 
 
 class FunctionTarget(Answer):
-    """A pair, a precision point, or a place at which an approximation is shown, as the driven linkage meets it."""
+    """A pair, a precision point, or a sample of an approximation, as measured on the driven linkage."""
 
     index: int
-    input: float = Field(description="Value of the input: of the pair, or x.")
-    output: float = Field(description="The demanded value of the output: of the pair, or y.")
+    input: float = Field(description="Value of the input: that of the pair, or x.")
+    output: float = Field(description="Target value of the output: that of the pair, or y.")
     input_angle: Angle = Field(description="Absolute angle of the input link, degrees.")
     output_place: Output = Field(
-        description="Where the output stands: absolute angle, degrees, or the slider's position."
+        description="Position of the output: absolute angle, degrees, or the slider's position."
     )
     error: Output = Field(description="Structural error here: degrees, or length units.")
-    residual: float = Field(description="Its size in radians, or as a share of the slider's range.")
+    residual: float = Field(description="Absolute structural error in radians, or as a share of the slider's range.")
 
 
 class ErrorExtreme(Answer):
-    """A greatest or least structural error, or that at an end of the range."""
+    """A maximum or minimum of the structural error, or its value at an end of the range."""
 
     input: float
     input_angle: Angle
@@ -86,10 +86,10 @@ class ErrorCurve(Answer):
 
 
 class StructuralError(Answer):
-    """How far the output of the driven linkage is from the demanded one, over the whole range or at the pairs.
+    """Difference between the output of the driven linkage and the target, over the whole range or at the pairs.
 
-    ``alternations`` counts the extremes of changing sign that reach the greatest error to a thousandth of it. A least
-    greatest error with n free numbers has n + 1 of them, as a rule.
+    ``alternations`` counts the extremes of alternating sign that reach the maximum error to within 0.1 %. A minimax
+    error with n free parameters has n + 1 of them, as a rule.
     """
 
     unit: Literal["degrees", "length"]
@@ -105,11 +105,13 @@ class FunctionMetrics(LinkageMetrics):
 
     max_structural_error: Output
     rms_structural_error: Output
-    output_range: Output = Field(description="From the first value to the last: degrees, or length units.")
+    output_range: Output = Field(
+        description="Motion of the output from the first value to the last: degrees, or length units."
+    )
 
 
 class FunctionDesign(Answer):
-    """A linkage with the proof of what it does."""
+    """A function generator with its verification and measured structural error."""
 
     mechanism: FunctionMechanism
     dials: Dials

@@ -1,12 +1,12 @@
-"""Least squares in the design equation for given zeros: convex, and so solved to its only optimum.
+"""Least squares in the design equation for given zeros: a convex problem with a unique optimum.
 
-With both zeros given a pair is linear in three numbers K (:mod:`synthesis.kinds.function.closure`):
+With both zeros given, a pair is linear in three numbers K (:mod:`synthesis.kinds.function.closure`):
 
     fourbar       K₁ cos ψ − K₂ cos φ + K₃ = cos(φ − ψ)      a = 1/K₁, c = 1/K₂
     slider-crank  K₁ s cos θ + K₂ sin θ + K₃ = s²            a = K₁/2, e = K₂/K₁
 
-and positive lengths, limits on them and on the ratios of ground, input and output are linear inequalities. The length
-of the coupler and the transmission angle are not convex in K; the descent in the structural error sees to those.
+Positive lengths, length limits, and limits on the ratios of ground, input and output are linear inequalities. The
+length of the coupler and the transmission angle are not convex in K; the descent in the structural error handles them.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ Real = NDArray[np.float64]
 
 
 def least_design_error(task: FunctionTask, limits: GeneratorLimits, k: float, scale: float) -> Real | None:
-    """The generator of least mean square design error, shape (7,), for given zeros; None where there is none.
+    """Minimize the mean square design error for given zeros; return the generator, shape (7,), or None if infeasible.
 
     Parameters
     ----------
     task : FunctionTask
-        With both zeros given.
+        A task with both zeros given.
     limits : GeneratorLimits
-        Of lengths and ratios.
+        Limits of lengths and ratios.
     k, scale : float
         Scales of input and output.
     """
@@ -49,7 +49,7 @@ def least_design_error(task: FunctionTask, limits: GeneratorLimits, k: float, sc
     sizes = np.linalg.norm(matrix, axis=0)
     cp: Any = modeling()
     x = cp.Variable(3)
-    # In columns of unit size; K = x / sizes.
+    # Normalise the columns for the solver; K = x / sizes.
     first, second = x[0] / sizes[0], x[1] / sizes[1]
     least = max(limits.shortest, 1.0 / limits.longest, 1e-6)
     if task.problem.slides:

@@ -1,4 +1,4 @@
-"""Function generators as the analysis core drives them: fourbars, slider-cranks and sixbars in one shape."""
+"""Common interface for driving function generators in the analysis core: fourbars, slider-cranks and sixbars."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 AT_END = 1e-9
-"""Radians by which a range may go beyond the end of its branch: rounding."""
+"""Tolerance, radians, of a range at the end of its branch; it covers rounding."""
 
 
 class Driven(NamedTuple):
-    """The linkage at input angles (n,): whether it closes, the output's place (radians or lengths), and its moving
-    pivots (pivots, n)."""
+    """A linkage at input angles (n,): whether it is assembled, the output's position (radians or length), and its
+    moving pivots (pivots, n)."""
 
     valid: NDArray[np.bool_]
     place: Real
@@ -49,35 +49,35 @@ class Driven(NamedTuple):
 
 
 class Drive(ABC):
-    """A linkage that is driven at its input, by the analysis core."""
+    """A linkage driven at its input by the analysis core."""
 
     assembly: int
     pivots: list[complex]
     turns: float
-    """A turn of the output, radians; infinite for a slider."""
+    """Period of the output, radians; infinite for a slider."""
     frame: float
     """Direction of the ground line or of the slide, radians."""
     full: bool
-    """Whether the input turns through."""
+    """Whether the input rotates fully."""
     barker: BarkerClass | None = None
     dyads: tuple[str, ...] = ("coupler",)
-    """First links of the dyads that are driven, or legs of a triad."""
+    """First links of the driven dyads, or legs of a triad."""
 
     @abstractmethod
     def at(self, angles: Real, assembly: int) -> Driven:
-        """Positions at absolute input angles, radians."""
+        """Compute positions at absolute input angles, radians."""
 
     @abstractmethod
     def on_branch(self, start: float, end: float) -> bool:
-        """Whether the input turns from start to end without a toggle."""
+        """Return whether the input can turn from start to end without a toggle."""
 
     @abstractmethod
     def least_transmissions(self, start: float, end: float) -> dict[str, float]:
-        """Least transmission angles on the way, radians, by the links of :attr:`dyads`."""
+        """Return the minimum transmission angles over the range, radians, by the links of :attr:`dyads`."""
 
     @abstractmethod
     def one_circuit(self, angles: Real, assemblies: NDArray[np.int64]) -> bool:
-        """Whether the configurations lie on one circuit."""
+        """Return whether the configurations lie on one circuit."""
 
 
 class _Fourbar(Drive):
@@ -114,7 +114,7 @@ class _Slider(Drive):
         pivot, angle = to_complex(mechanism.fixed_pivot), math.radians(mechanism.slide.angle)
         along = complex(math.cos(angle), math.sin(angle))
         line = to_complex(mechanism.slide.point)
-        # Travel is counted from the foot of the pivot.
+        # Travel is measured from the foot of the pivot on the slide's line.
         foot = line + along * ((pivot - line) * along.conjugate()).real
         self.linkage = SliderCrank(pivot, foot, angle, mechanism.links.crank, mechanism.links.coupler)
         self.assembly = OPEN if mechanism.assembly == "open" else CROSSED
@@ -161,7 +161,7 @@ class _Sixbar(Drive):
         self.barker = barker_within(mechanism)
 
     def _near(self, angles: Real | float) -> Real:
-        """Input angles without the full turns between the first of them and the reference."""
+        """Remove the full turns between the first input angle and the reference."""
         first = np.ravel(angles)[0]
         return np.asarray(angles - math.tau * round((first - float(self.mechanism.reference_input)) / math.tau))
 
@@ -179,17 +179,17 @@ class _Sixbar(Drive):
         return least_angles(self.own.at, self._near(np.linspace(start, end, GRID)))
 
     def one_circuit(self, angles: Real, assemblies: NDArray[np.int64]) -> bool:
-        # The reference's assembly has no other branch beyond its ends that is known to be of the same circuit.
+        # Beyond the ends of the reference's branch no other branch is known to belong to the same circuit.
         return self.on_branch(float(angles.min()), float(angles.max()))
 
 
 def drive_of(mechanism: FourbarMechanism | SliderCrankMechanism | SixbarMechanism) -> Drive:
-    """A linkage to be driven.
+    """Make the drive of a linkage.
 
     Raises
     ------
     DimensionError
-        Where it cannot be assembled, or its circuits are not known.
+        If it cannot be assembled, or its circuits are unknown.
     """
     if isinstance(mechanism, FourbarMechanism):
         return _Fourbar(mechanism)

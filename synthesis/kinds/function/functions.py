@@ -1,4 +1,4 @@
-"""The functions that a client may name, and what they are over their interval. No expression is ever evaluated."""
+"""Named functions over an interval of x. Clients choose from a fixed list; no expression is ever evaluated."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from synthesis.model.statement import Contradiction, Interval, Number, PositiveN
 Real = NDArray[np.float64]
 
 NO_CHANGE = 1e-9
-"""A function whose values differ by less than this share of their size is constant to the digits that are left."""
+"""Relative variation of its values below which a function counts as constant."""
 
 AT_POLE = 1e-9
-"""An interval that ends this near to a pole, as a share of a period (or of its own size), reaches it."""
+"""Distance from a pole, as a share of a period (or of the interval's size), below which an interval reaches it."""
 
 SCANNED = 4001
-"""Places at which a function is looked at for its least and greatest value."""
+"""Number of samples for the minimum and maximum of a function."""
 
 
 class TablePoint(Statement):
@@ -32,33 +32,35 @@ class TablePoint(Statement):
 
 
 class FunctionStatement(Statement):
-    """A function by its name, over an interval of x.
+    """A named function over an interval of x.
 
     ``linear`` y = x, ``power`` y = x^exponent, ``exponential`` y = base^x, ``logarithm`` y = log x (its base changes
-    the scale of y only), ``sine``, ``cosine`` and ``tangent`` with x in degrees, ``reciprocal`` y = 1/x, ``table`` a
-    smooth curve through given points that rises and falls no more often than they do.
+    only the scale of y), ``sine``, ``cosine`` and ``tangent`` with x in degrees, ``reciprocal`` y = 1/x, ``table`` a
+    smooth, shape-preserving curve through given points (no additional extremes).
     """
 
     name: Literal[
         "linear", "power", "exponential", "logarithm", "sine", "cosine", "tangent", "reciprocal", "table"
     ]  # fmt: skip
-    x: Interval | None = Field(default=None, description="From the first value of x to the last; of a table the whole.")
-    exponent: Number | None = Field(default=None, description="Of `power`.")
-    base: PositiveNumber | None = Field(default=None, description="Of `exponential`, e where it is left out.")
+    x: Interval | None = Field(
+        default=None, description="First and last value of x. Omitted for a table: its whole range."
+    )
+    exponent: Number | None = Field(default=None, description="Exponent of `power`.")
+    base: PositiveNumber | None = Field(default=None, description="Base of `exponential`; omitted: e.")
     points: Annotated[list[TablePoint], Field(min_length=3, max_length=500)] | None = Field(
-        default=None, description="Of `table`, with rising x."
+        default=None, description="Points of `table`, with increasing x."
     )
 
     @property
     def interval(self) -> tuple[float, float]:
-        """The interval of x; of a table without one all that it covers."""
+        """The interval of x; for a table without one, its whole range."""
         if self.x is not None:
             return self.x
         assert self.points is not None
         return self.points[0].x, self.points[-1].x
 
     def values(self, x: Real) -> Real:
-        """y at x, NaN or infinite where there is none."""
+        """Return y at x; NaN or infinite where it is undefined."""
         with np.errstate(all="ignore"):
             if self.name == "linear":
                 return np.array(x, np.float64)
@@ -75,7 +77,7 @@ class FunctionStatement(Statement):
             return self._interpolated(x)
 
     def _interpolated(self, x: Real) -> Real:
-        # Only who states a table waits for the import.
+        # Import lazily: only problems with a table need SciPy here.
         from scipy.interpolate import PchipInterpolator
 
         assert self.points is not None
@@ -83,11 +85,12 @@ class FunctionStatement(Statement):
         return np.asarray(table(x), np.float64)
 
     def extent(self) -> tuple[float, float]:
-        """Least and greatest value over the interval."""
+        """Return the minimum and maximum over the interval."""
         x = np.linspace(*self.interval, SCANNED)
         if self.points is not None:
             low, high = self.interval
             x = np.concatenate([x, [point.x for point in self.points if low <= point.x <= high]])
+        # Add the exact extremes to the samples: table points, crests of waves, the vertex of even powers.
         elif self.name in ("sine", "cosine"):
             turns = 90.0 * np.arange(math.ceil(self.interval[0] / 90.0), math.floor(self.interval[1] / 90.0) + 1)
             x = np.concatenate([x, turns[:SCANNED]])
@@ -97,29 +100,29 @@ class FunctionStatement(Statement):
         return float(y.min()), float(y.max())
 
     def share(self, x: Real) -> Real:
-        """How far the output has gone at x, as a share of its range: 0 at the first x, first growing.
+        """Share the range of y: return the output's travel at x, 0 at the first x, initially increasing.
 
-        It ends at 1 where the function only rises or only falls; else the range is from its least to its greatest.
+        It ends at 1 for a monotonic function; otherwise the range is from the minimum to the maximum.
         """
         low, high = self.extent()
         first = float(self.values(np.array([self.interval[0]]))[0])
         return (self.values(x) - first) / (self.direction * (high - low))
 
     def share_along(self, shares: Real) -> Real:
-        """The same at places that are stated as shares of the interval of x."""
+        """Share the range of y at positions given as shares of the interval of x; see :meth:`share`."""
         low, high = self.interval
         return self.share(low + (high - low) * shares)
 
     @property
     def direction(self) -> float:
-        """1 where y first grows, −1 where it first falls."""
+        """1 if y initially rises, −1 if it initially falls."""
         y = self.values(np.linspace(*self.interval, SCANNED))
         moved = y - y[0]
         away = np.flatnonzero(np.abs(moved) > NO_CHANGE * np.abs(moved).max())
         return float(np.sign(moved[away[0]])) if len(away) else 1.0
 
     def faults(self) -> Iterator[Contradiction]:
-        """What makes the statement no function over an interval, with paths below it."""
+        """Yield errors that prevent a valid function over the interval, with paths relative to it."""
         yield from self._fields()
         if self.name == "table":
             if self.points is None:
@@ -133,7 +136,7 @@ class FunctionStatement(Statement):
                 yield Contradiction("/x", "the table does not cover this interval")
                 return
         elif self.x is None:
-            yield Contradiction("/x", "state the interval of x")
+            yield Contradiction("/x", "give the interval of x")
             return
         poles = list(self._poles())
         if poles or (self.name == "power" and self.exponent is None):
@@ -141,43 +144,43 @@ class FunctionStatement(Statement):
             return
         low, high = self.interval
         if high - low <= 1e-12 * max(abs(low), abs(high)):
-            yield Contradiction("/x", "the interval is too short for its size")
+            yield Contradiction("/x", "the interval is too short relative to its values")
             return
         with np.errstate(all="ignore"):
             least, greatest = self.extent()
         if not (math.isfinite(least) and math.isfinite(greatest)):
             yield Contradiction("/x", f"{self.name} is not finite over this interval")
         elif greatest - least <= NO_CHANGE * max(abs(least), abs(greatest)):
-            yield Contradiction("/x", f"{self.name} is constant over this interval, to the digits that are left")
+            yield Contradiction("/x", f"{self.name} is constant over this interval, to numerical precision")
 
     def _fields(self) -> Iterator[Contradiction]:
         for field, name in (("exponent", "power"), ("points", "table")):
             given = getattr(self, field) is not None
             if given != (self.name == name):
-                detail = f"belongs to {name}" if given else f"{name} needs it"
+                detail = f"applies only to {name}" if given else f"is required for {name}"
                 yield Contradiction(f"/{field}", detail)
         if self.base is not None and self.name not in ("exponential", "logarithm"):
-            yield Contradiction("/base", "belongs to exponential and logarithm")
+            yield Contradiction("/base", "applies only to exponential and logarithm")
         if self.base == 1.0:
             yield Contradiction("/base", "a base of 1 makes the function constant")
         if self.name == "power" and self.exponent == 0.0:
             yield Contradiction("/exponent", "an exponent of 0 makes the function constant")
 
     def _poles(self) -> Iterator[Contradiction]:
-        """Where the function is not defined, or has no bound."""
+        """Yield errors for points of the interval where the function is undefined or unbounded."""
         low, high = self.interval
         near = AT_POLE * max(abs(low), abs(high))
         touches_zero = low <= near and high >= -near
         if self.name == "logarithm" and low <= near:
             yield Contradiction("/x", "the logarithm needs an interval above 0")
         elif self.name == "reciprocal" and touches_zero:
-            yield Contradiction("/x", "1/x has no value at 0, which lies in the interval")
+            yield Contradiction("/x", "1/x is undefined at 0, which lies in the interval")
         elif self.name == "tangent":
             first = math.ceil((low - 90.0) / 180.0 - AT_POLE)
             if 90.0 + 180.0 * first <= high + 180.0 * AT_POLE:
-                yield Contradiction("/x", f"the tangent has no value at {90 + 180 * first}°, in the interval")
+                yield Contradiction("/x", f"the tangent is undefined at {90 + 180 * first}°, inside the interval")
         elif self.name == "power" and self.exponent is not None:
             if self.exponent < 0.0 and touches_zero:
-                yield Contradiction("/x", "a negative power has no value at 0, which lies in the interval")
+                yield Contradiction("/x", "a negative power is undefined at 0, which lies in the interval")
             elif low < 0.0 and self.exponent != round(self.exponent):
-                yield Contradiction("/x", "a power that is not whole needs an interval that is not below 0")
+                yield Contradiction("/x", "a non-integer exponent needs an interval without negative values")

@@ -1,4 +1,4 @@
-"""Its examples as a person looks for them, in their order."""
+"""Titles and captions of the function examples, in display order."""
 
 from __future__ import annotations
 
@@ -8,11 +8,9 @@ GALLERY = (
     Named(
         "Power law",
         "Make an output follow",
-        "The output turns by the power 1.5 of the input, with the least greatest error.",
+        "The output follows the power 1.5 of the input, with the smallest maximum error.",
     ),
     Named("Three settings", "Make an output follow", "Three pairs of angles, met exactly."),
     Named("Log scale on a slide", "Make an output follow", "A slider that moves as a logarithm."),
-    Named(
-        "Log scale by six bars", "Make an output follow", "A logarithm by Watt's six-bar, nearer than four bars can."
-    ),
+    Named("Log scale by six bars", "Make an output follow", "A logarithm by a Watt six-bar, closer than any four-bar."),
 )

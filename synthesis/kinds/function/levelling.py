@@ -1,12 +1,11 @@
-"""Precision points moved until the extremes of the error between them are level.
+"""Error levelling: move the precision points until the extremes of the error between them are equal.
 
-In terms of their dimensions the linkages that follow a function well lie in narrow curved valleys, where descents
-converge slowly. The precision points, where the error vanishes, are better unknowns: through n of them there are few
+In the space of dimensions, linkages that follow a function well lie in narrow curved valleys, in which descents
+converge slowly. The precision points, at which the error vanishes, are better unknowns: through n of them there are few
 linkages, all known in closed form (:mod:`synthesis.kinds.function.precision`), and each extreme of the error depends
-mostly on the two precision points beside it. With
-h_i the greatest errors in the n + 1 parts of the range, the n equations ln h_i = ln h_{i+1} are solved by Newton's
-method in the precision points, for many linkages at once. The error of the best linkage alternates,
-and so is level, where no limit is active.
+mainly on the two adjacent precision points. With h_i the maximum errors in the n + 1 parts of the range, the n
+equations ln h_i = ln h_{i+1} are solved by Newton's method in the precision points, for many linkages at once. The
+error of the best linkage alternates, and is therefore level, if no limit is active.
 """
 
 from __future__ import annotations
@@ -23,38 +22,38 @@ from synthesis.kinds.function.task import FunctionTask
 Real = NDArray[np.float64]
 
 ROUNDS = 10
-"""Number of Newton steps, at most."""
+"""Maximum number of Newton steps."""
 
 DIFFERENCE = 1e-3
-"""Of a place's angle t, u = (1 − cos t)/2, for a derivative."""
+"""Finite-difference step of a precision point's angle t, where u = (1 − cos t)/2."""
 
 FARTHEST = 0.3
-"""A place moves by this share of the way to its neighbours at most."""
+"""Maximum move of a precision point per step, as a share of the distance to its neighbours."""
 
 LEVEL = 1e-4
-"""Extremes that agree to this are level."""
+"""Tolerance for level extremes: maximum difference of their logarithms."""
 
 GRID = 241
-"""Places of the range at which errors are evaluated."""
+"""Number of inputs over the range at which errors are evaluated."""
 
 SPREADS, COPIES, FAMILIES = (0.3, 0.1, 0.03, 0.01), 15, 4
-"""Where scales are open: how far they are moved at a time (in logarithms), to how many values, and of how many."""
+"""Variation of open scales: successive spreads in their logarithm, number of values each, and number of linkages."""
 
 
 def levelled(task: FunctionTask, generators: Real, signs: Real) -> tuple[Real, Real]:
-    """Linkages with level extremes, each from one whose error vanishes at as many places as can be met.
+    """Level the errors of linkages whose error vanishes at as many points as can be met.
 
     Parameters
     ----------
     task : FunctionTask
-        Of a function.
+        A task with a function.
     generators, signs : float, shapes (k, 7) and (k,)
-        Where to begin.
+        Starting points.
 
     Returns
     -------
     generators, signs : float, shapes (m, 7) and (m,)
-        Those that were reached, the best that each start met on its way; m ≤ k.
+        The best iterate of each successful start; m ≤ k without open scales.
     """
     function = task.problem.function
     count = 3 + sum(zero is None for zero in task.zeros)
@@ -68,12 +67,12 @@ def levelled(task: FunctionTask, generators: Real, signs: Real) -> tuple[Real, R
     reached, theirs, places, least = _level(task, grid, angles, generators, signs, places)
     columns = np.flatnonzero(task.free[5:]) + 5
     for spread in SPREADS if len(columns) and len(reached) else ():
-        # The best with their scales moved, from the places that they meet.
+        # Restart from the best linkages with varied scales, at their current precision points.
         chosen = np.argsort(least / np.abs(reached[:, 6]) if task.free[6] else least)[:FAMILIES]
         copies, again = np.repeat(reached[chosen], COPIES, axis=0), np.repeat(places[chosen], COPIES, axis=0)
         factors = np.exp(spread * np.linspace(-1.0, 1.0, COPIES))
         for n, column in enumerate(columns):
-            # Of two open scales the second is moved in another order, so that both are moved apart from each other.
+            # Permute the factors of a second open scale, so that the two scales vary independently.
             order = np.roll(factors[::-1], n * (COPIES // 3)) if n else factors
             copies[:, column] = _allowed(task, int(column) - 5, copies[:, column] * np.tile(order, len(chosen)))
         more = _level(task, grid, angles, copies, np.repeat(theirs[chosen], COPIES), again)
@@ -83,7 +82,7 @@ def levelled(task: FunctionTask, generators: Real, signs: Real) -> tuple[Real, R
 
 
 def _allowed(task: FunctionTask, side: int, scales: Real) -> Real:
-    """Scales moved into their limits, each of its own sign's."""
+    """Clip scales to their limits, separately for each sign."""
     for low, high in task.scales[side]:
         same = scales * low > 0.0
         scales = np.where(same, np.clip(scales, low, high), scales)
@@ -93,7 +92,7 @@ def _allowed(task: FunctionTask, side: int, scales: Real) -> Real:
 def _level(
     task: FunctionTask, grid: Generators, angles: Real, generators: Real, signs: Real, places: Real
 ) -> tuple[Real, Real, Real, Real]:
-    """Generators and signs that were reached from places (k, count), with their places and greatest errors."""
+    """Level the extremes from precision points (k, count); return generators, signs, points and maximum errors."""
     function = task.problem.function
     assert function is not None
     count = places.shape[1]
@@ -125,7 +124,7 @@ def _level(
         ends = np.concatenate([-places[:, :1], places, 2.0 * math.pi - places[:, -1:]], axis=1)
         room = FARTHEST * np.minimum(np.diff(ends)[:, :-1], np.diff(ends)[:, 1:])
         with np.errstate(divide="ignore"):
-            # Places that have come together have no room; what rests needs none.
+            # Coinciding points leave no space to move; points at rest need none (hence 0 for a zero step).
             too_far = np.divide(np.abs(step), room, out=np.zeros_like(step), where=step != 0.0).max(axis=1)
         places = places + step / np.maximum(too_far, 1.0)[:, None]
         generators = np.where(on[:, None], found[:, 0], generators)
@@ -134,9 +133,9 @@ def _level(
 
 
 def _zeros(errors: Real, angles: Real, count: int) -> tuple[Real, NDArray[np.int64]]:
-    """Where errors vanish, as angles (m, count), of those that do so at that many places, and which those are.
+    """Find the zeros of errors, as angles (m, count), of generators with at least ``count`` zeros, and their indices.
 
-    One that vanishes at more places stands twice: with the first of them and with the last.
+    A generator with more zeros appears twice: with its first and with its last ones.
     """
     finite = np.asarray(np.isfinite(errors).all(axis=1))
     crossed = np.asarray(np.diff(np.sign(np.where(finite[:, None], errors, 1.0)), axis=1) != 0.0)
@@ -151,7 +150,7 @@ def _zeros(errors: Real, angles: Real, count: int) -> tuple[Real, NDArray[np.int
 
 
 def _nearest(task: FunctionTask, around: Real, inputs: Real, outputs: Real) -> Real:
-    """Of the linkages through sets of places the one nearest to a generator each; NaN where there is none."""
+    """Find the linkage through each set of points that is nearest to a given generator; NaN if there is none."""
     found = task.closure.dimensions(exact_points(task.closure, inputs, outputs, task.zeros))
     apart = found - around[:, None, :5]
     angles = [3] if task.problem.slides else [3, 4]
@@ -165,7 +164,7 @@ def _nearest(task: FunctionTask, around: Real, inputs: Real, outputs: Real) -> R
 
 
 def _heights(errors: Real, angles: Real, places: Real) -> Real:
-    """Greatest errors between the places, shape (k, places + 1); NaN where there are none."""
+    """Measure the maximum errors between the points, shape (k, points + 1); NaN if undefined."""
     errors = np.where(np.isfinite(errors), errors, np.inf)
     part = (angles[None, :, None] > places[:, None, :]).sum(axis=2)
     heights = np.stack([np.where(part == j, errors, 0.0).max(axis=1) for j in range(places.shape[1] + 1)], axis=1)

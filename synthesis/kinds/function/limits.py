@@ -1,7 +1,7 @@
-"""The client's limits on a function generator as inequalities, with derivatives by its steps.
+"""Constraints on a function generator as inequalities, with derivatives by its steps.
 
-In logarithms of the lengths a limit on a ratio of links is linear. The transmission angle and Grashof's condition are
-not; they are linearized where the generator stands.
+In logarithms of the lengths a limit on a link ratio is linear. The transmission angle and Grashof's condition are not;
+they are linearised at the current generator.
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ from synthesis.kinds.function.task import FunctionTask
 Real = NDArray[np.float64]
 
 WITHOUT_END = 1e5
-"""Link ratio, or a slider-crank's lengths in ranges of its slider, at which a search stops where no limit is given:
-errors then change in digits that nobody makes."""
+"""Maximum link ratio, or length of a slider-crank's link in slider ranges, if no limit is given; beyond it errors
+change only in digits that cannot be manufactured."""
 
 LOOKED_AT = 25
-"""Number of inputs over the range at which the transmission angle is limited."""
+"""Number of inputs over the range at which the transmission angle is constrained."""
 
 INSIDE = 1e-7
-"""Relative distance that is kept from every limit, so that rounding does not violate it."""
+"""Relative margin from every limit, so that rounding does not violate it."""
 
 PLACES_TRIED = 1000
-"""Generators whose regions are looked at, of many, those that lack least of all else."""
+"""Maximum number of generators whose placement is estimated: those with the smallest other violations."""
 
 TURNING = 1e-4
-"""Margin in Grashof's condition, in lengths of the shortest link: with none the linkage has a change point."""
+"""Margin in Grashof's condition, in lengths of the shortest link; without it the linkage could have a change point."""
 
 
 class GeneratorLimits:
@@ -40,9 +40,9 @@ class GeneratorLimits:
     Parameters
     ----------
     task : FunctionTask
-        Whose client states limits.
+        The task with its constraints.
     least : float, optional
-        Transmission angle, degrees, that is kept where the client states none.
+        Minimum transmission angle, degrees, if the client gives none.
     """
 
     def __init__(self, task: FunctionTask, least: float | None = None) -> None:
@@ -73,12 +73,13 @@ class GeneratorLimits:
         self.regions = Regions(task) if problem.fixed_pivots is None and zones != (None, None) else None
 
     def contained(self, generators: Real) -> Real:
-        """Generators (k, 7) with their lengths moved into the limits of ratio and size."""
+        """Clip the lengths of generators (k, 7) to the limits of ratio and size."""
         found = generators.copy()
         columns = [0, 1] if self.slides else [0, 1, 2]
         logs = np.log(found[:, columns])
         if not self.slides:
             logs = np.concatenate([np.zeros((len(logs), 1)), logs], axis=1)
+        # Clip symmetrically about the middle of the logarithms, which changes the linkage least.
         middle = 0.5 * (logs.max(axis=1, keepdims=True) + logs.min(axis=1, keepdims=True))
         half = 0.5 * math.log(self.ratio)
         logs = np.clip(logs, middle - half, middle + half)
@@ -90,7 +91,7 @@ class GeneratorLimits:
         return found
 
     def turning(self, generators: Real) -> NDArray[np.bool_]:
-        """Which of many generators have the link turning through that is to, with some room; shape (k,)."""
+        """Return a mask of the generators whose required link rotates fully, with a margin; shape (k,)."""
         a, b, c = generators[:, :3].T
         if self.slides:
             return np.asarray(a + np.abs(c) < b)
@@ -101,9 +102,9 @@ class GeneratorLimits:
         return np.asarray((excess < -TURNING * lengths.min(axis=0)) & np.isin(shortest, wanted))
 
     def values(self, generator: Real, *, derivatives: bool = False) -> tuple[Real, Real]:
-        """g and, where asked for, its derivatives by the steps: shapes (m,) and (m, n).
+        """Return g and, on request, its derivatives by the steps: shapes (m,) and (m, n).
 
-        n is 7, or 11 for a generator with its place, whose regions are then among the inequalities.
+        n is 7, or 11 for a placed generator, for which the pivot regions are included.
         """
         g, slopes = self._of_linkage(generator[:STEPS], derivatives=derivatives)
         if len(generator) == STEPS or self.regions is None:
@@ -113,13 +114,14 @@ class GeneratorLimits:
         return np.concatenate([g, placed + INSIDE]), np.concatenate([slopes, rows])
 
     def put(self, generator: Real) -> Real:
-        """A generator with the place that fits it best, where there are regions to be kept; else as it is."""
+        """Append the best placement to a generator if there are pivot regions; otherwise return it unchanged."""
         return generator if self.regions is None or len(generator) > STEPS else self.regions.put(generator)
 
     def lacking(self, generators: Real) -> Real:
-        """What many generators lack of the limits, the worst of each, coarsely: shape (k,).
+        """Estimate the maximum constraint violation of many generators: shape (k,).
 
-        Infinite where a linkage cannot be assembled, and where too many others lack less to look at its regions.
+        It is infinite if a linkage cannot be assembled, or if its regions are not evaluated because too many others
+        have smaller violations.
         """
         lengths = generators[:, :2] if self.slides else np.column_stack([np.ones(len(generators)), generators[:, :3]])
         least, most = lengths.min(axis=1), lengths.max(axis=1)
@@ -140,7 +142,7 @@ class GeneratorLimits:
         return placed
 
     def _lacking_class(self, lengths: Real) -> Real:
-        """What many linkages lack of the class that is demanded, by their lengths (k, 2 or 4): shape (k,)."""
+        """Measure the violation of the required Grashof class from lengths (k, 2 or 4): shape (k,)."""
         if self.slides or (self.shortest_link is None and not self.turns_through and not self.never_turns):
             return np.zeros(len(lengths))
         least = lengths.min(axis=1)
@@ -151,7 +153,7 @@ class GeneratorLimits:
         return np.asarray(np.maximum(excess + TURNING, np.log(lengths[:, wanted].min(axis=1) / least)))
 
     def _of_linkage(self, generator: Real, *, derivatives: bool = False) -> tuple[Real, Real]:
-        """The same of the linkage alone, wherever it stands."""
+        """Evaluate the inequalities that do not depend on the placement."""
         rows = [*self._ratios(generator), *self._grashof(generator)]
         g = np.array([value for value, _ in rows])
         slopes = np.array([slope for _, slope in rows]).reshape(-1, STEPS)
@@ -162,12 +164,12 @@ class GeneratorLimits:
         return g, np.concatenate([slopes, turned, -turned])
 
     def transmission(self, generators: Real) -> Real:
-        """Least |sine| of the transmission angle over the range, shape (k,)."""
+        """Return the minimum |sine| of the transmission angle over the range, shape (k,)."""
         cosines = self._cosines(*(generators[:, j, None] for j in range(6)))
         return np.asarray(np.sqrt(np.maximum(1.0 - np.abs(cosines).max(axis=1) ** 2, 0.0)))
 
     def _thetas(self, start: Real, k: Real) -> Real:
-        """Input angles at which the transmission angle is looked at: over the range, and where it is extreme within."""
+        """Return input angles for the transmission angle: samples of the range, and its interior extremes."""
         theta = np.asarray(start + k * self.places)
         first, last = theta[..., :1], theta[..., -1:]
         turned = 0.5 * math.pi if self.slides else 0.0
@@ -199,7 +201,7 @@ class GeneratorLimits:
         return cosines, slopes
 
     def _ratios(self, generator: Real) -> list[tuple[float, Real]]:
-        """Rows (value, slopes) of ratios and lengths."""
+        """Return rows (value, slopes) of link ratios and lengths."""
         names = [0, 1] if self.slides else [0, 1, 2]
         logs = [(math.log(generator[j]), _unit(j)) for j in names]
         rows = []
@@ -217,7 +219,7 @@ class GeneratorLimits:
         return rows
 
     def _grashof(self, generator: Real) -> list[tuple[float, Real]]:
-        """The shortest link and any other together are no longer than the other two: it turns through."""
+        """Return rows of Grashof's condition: the shortest link plus any other is shorter than the other two."""
         if self.slides:
             if not self.turns_through:
                 return []
@@ -234,7 +236,7 @@ class GeneratorLimits:
             short = 1 if lengths[1] < 1.0 else 0
         slopes = [np.zeros(STEPS), *(lengths[j + 1] * _unit(j) for j in range(3))]
         total, total_slope = sum(lengths), np.sum(slopes, axis=0)
-        # In units of the shortest link, which may be short beside the others.
+        # Measure in units of the shortest link, so that the margin is significant even if that link is very short.
         unit = lengths[short]
         rows = []
         for j in range(4):
@@ -245,7 +247,7 @@ class GeneratorLimits:
         return rows
 
     def _change_point(self, lengths: list[float]) -> tuple[float, Real]:
-        """Of a linkage without a link that turns: shortest and longest are together longer than the other two."""
+        """Return the row of a non-Grashof linkage: shortest and longest are together longer than the other two."""
         excess, slope, unit = 0.0, np.zeros(STEPS), min(lengths)
         for j, length in enumerate(lengths):
             side = -1.0 if length in (unit, max(lengths)) else 1.0

@@ -1,8 +1,8 @@
-"""Nine pairs, or nine precision points, and a Watt II sixbar: all that there are, each verified.
+"""Watt II sixbars for nine pairs or precision points: compute all of them and verify each.
 
-Of the real solutions (:mod:`synthesis.kinds.function.nine_pairs`) most cannot be had: their dyads close on another side
-at one pair than at another, so that no motion of one linkage comes from the one to the other. Those that stay on one
-side, at the pairs and between them, are driven by the analysis core.
+Most real solutions (:mod:`synthesis.kinds.function.nine_pairs`) have a branch defect: their dyads are assembled
+differently at different pairs, so no motion of the linkage connects these. The solutions that keep their assembly at
+the pairs and between them are driven by the analysis core.
 """
 
 from __future__ import annotations
@@ -35,42 +35,42 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 FOLLOWED = 0.9
-"""Share of the progress with which all paths are followed."""
+"""Share of the progress assigned to the continuation."""
 
 NO_LENGTH = 1e-9
-"""A link below this share of its ground is none."""
+"""Minimum length of a link, relative to its ground."""
 
 MET = 1e-6
-"""Error at a pair, radians, below which a solution meets it in the assembly in which it meets the first."""
+"""Maximum error at a pair, radians, of a solution that meets it in the assembly of the first pair."""
 
 DENSE = 181
-"""Places of the range at which linkages are looked at before they are driven."""
+"""Number of inputs over the range at which linkages are screened before they are driven."""
 
 MARGIN = 1e-3
-"""By which the cosine of a transmission angle at one of these places, or a link ratio, is too large for certain."""
+"""Excess of a transmission cosine, or relative excess of a link ratio, beyond which a limit is certainly violated."""
 
 PROVING = {"branch_defect", "circuit_defect", "order_defect", "transmission_angle"}
-"""Reasons against a linkage that was driven which no other place or size of its fourbars changes."""
+"""Rejection reasons of driven linkages that do not depend on the placement or size of the fourbars."""
 
 
 class _Judged(NamedTuple):
-    """What becomes of the solutions for one pair of scales: linkages to be driven, and reasons against the others."""
+    """Screening of the solutions for one pair of scales: linkages to be driven, and rejection reasons of the others."""
 
     kept: list[Found]
     reasons: list[str]
 
 
 def solve_nine_pairs(problem: FunctionProblem, reasons: dict[str, str], progress: Progress) -> FunctionResult:
-    """All Watt II sixbars through nine pairs.
+    """Solve for all Watt II sixbars through nine pairs.
 
     Parameters
     ----------
     problem : FunctionProblem
-        Its zeros are open, and its scales stated.
+        A problem with open zeros and given scales.
     reasons : dict
-        Of rejection, by the checks that designs break.
+        Rejection reasons by failed check.
     progress : callable
-        Told how far the work is.
+        Progress callback.
     """
     task = function_task(problem)
     rng = np.random.default_rng(problem.seed)
@@ -90,14 +90,14 @@ def solve_nine_pairs(problem: FunctionProblem, reasons: dict[str, str], progress
         judged = _judged(task, watts.real, k, l_)
         kept += judged.kept
         reasons_before += judged.reasons
-    # The best of what can be seen beforehand first, so that equals keep an order.
+    # Order by transmission at the pairs, so that the order of equal designs is reproducible.
     kept.sort(key=lambda one: _greatest_cosine(task, one))
 
     def verified(one: Found) -> FunctionDesign | None:
         try:
             return verify_function(problem, *built(task, one))
         except (ValueError, ZeroDivisionError, OverflowError):
-            return None  # it stands on a toggle, where no place is a number
+            return None  # at a toggle no position can be computed
 
     sifting.sift(reported(kept, progress, (FOLLOWED, 1.0), "verifying {next} of {all} sixbars"), verified)
     progress(1.0, "verified")
@@ -106,12 +106,12 @@ def solve_nine_pairs(problem: FunctionProblem, reasons: dict[str, str], progress
         sifting.reject(reason)
     counts = f"{grouped(computed)} of {grouped(SOLUTIONS * len(choices))}"
     text = (
-        f"{counts} Watt II sixbars through the nine pairs were computed, real and complex; {grouped(real)} "
+        f"{counts} Watt II solutions for the nine pairs were computed, real and complex; {grouped(real)} "
         f"{agreeing(real, 'is', 'are')} real, and {grouped(sifting.accepted)} of these "
-        f"{agreeing(sifting.accepted, 'satisfies', 'satisfy')} all demands.{sifting.reasons()}"
+        f"{agreeing(sifting.accepted, 'satisfies', 'satisfy')} all constraints.{sifting.reasons()}"
     )
     if not sifting.passed:
-        text += " There are no others, so no design of this type exists." if complete else " Others may exist."
+        text += " These are all, so no design of this type exists." if complete else " Others may exist."
     return FunctionResult(
         designs=sifting.designs(partial(ordered, problem)),
         search=sifting.search("nine_pair_continuation", complete=complete),
@@ -120,7 +120,7 @@ def solve_nine_pairs(problem: FunctionProblem, reasons: dict[str, str], progress
 
 
 def _judged(task: FunctionTask, real: Complex, k: float, l_: float) -> _Judged:
-    """Which solutions are linkages that keep their assembly, brought to rounding."""
+    """Select the solutions that keep their assembly and satisfy simple limits, and refine them to rounding."""
     constraints, places = task.problem.constraints, places_of(task)
     descents = Descents(places.points, 0.0, None)
     low, high = places.dense[0].min(), places.dense[0].max()
@@ -138,6 +138,7 @@ def _judged(task: FunctionTask, real: Complex, k: float, l_: float) -> _Judged:
             reasons.append("link_ratio")
             continue
         errors = followed(WATT_2, one.assembly, one.at, *places.dense).errors
+        # Written as "not <", so that NaN (not assembled at some pair) is rejected too.
         if not np.abs(errors).max() < MET:
             reasons.append("branch_defect")
             continue
@@ -153,11 +154,11 @@ def _judged(task: FunctionTask, real: Complex, k: float, l_: float) -> _Judged:
 
 
 def _link_ratio(one: Found) -> float:
-    """The longest link over the shortest within either fourbar: the sizes of both may be chosen, but not this."""
+    """Return the larger link ratio of the two fourbars, which does not depend on their free relative size."""
     fourbars = np.array([[1.0, *one.at[[A, B, C]]], [1.0, *one.at[[7, 8, 9]]]])
     return float((fourbars.max(axis=1) / fourbars.min(axis=1)).max())
 
 
 def _greatest_cosine(task: FunctionTask, one: Found) -> float:
-    """Of the transmission angles at the pairs."""
+    """Return the largest cosine of the transmission angles at the pairs."""
     return float(np.abs(followed(WATT_2, one.assembly, one.at, *places_of(task).dense).cosines).max())

@@ -1,7 +1,7 @@
-"""Watt II sixbars through nine of many pairs, each a start of a search for those that follow all of them.
+"""Watt II sixbars through nine of many pairs, as starting points of a fit to all of them.
 
-Pairs that some sixbar meets exactly are met by one of all sixbars through nine of them
-(:mod:`synthesis.kinds.function.nine_pairs`), which no search by descents is sure to find.
+If a sixbar meets all pairs exactly, it is among the complete set of sixbars through nine of them
+(:mod:`synthesis.kinds.function.nine_pairs`); a search by descents might miss it.
 """
 
 from __future__ import annotations
@@ -23,8 +23,10 @@ Complex = NDArray[np.complex128]
 
 
 class Through(NamedTuple):
-    """Sixbars through nine of the pairs that close at all of them, the nearest to all pairs first; their ``error`` is
-    the root mean square, radians. ``complete`` where all that there are were computed."""
+    """Sixbars through nine of the pairs that can be assembled at all of them, in ascending order of error.
+
+    ``error`` is the RMS over all pairs, radians; ``complete`` states whether all of them were computed.
+    """
 
     found: list[Found]
     complete: bool
@@ -33,18 +35,18 @@ class Through(NamedTuple):
 def through_nine(
     pairs: Real, k: float, l_: float, rng: np.random.Generator, progress: Callable[[float], None]
 ) -> Through:
-    """All Watt II sixbars through nine of some pairs that are spread evenly.
+    """Find all Watt II sixbars through nine evenly spread pairs.
 
     Parameters
     ----------
     pairs : float, shape (2, n)
-        Inputs and outputs, in the order of the inputs; nine at least.
+        Inputs and outputs, in order of the inputs; n ≥ 9.
     k, l_ : float
-        Radians of the input link for one of an input, and of the output link for one of an output.
+        Scales: rotation of the input (output) link, radians, per unit of the input (output).
     rng : Generator
-        Draws the ways of the continuation.
+        Source of the random parameter paths.
     progress : callable
-        Told the share of the work that is done.
+        Callback that receives the share of finished work.
     """
     nine = pairs[:, np.round(np.linspace(0, pairs.shape[1] - 1, PAIRS)).astype(int)]
     watts = all_watts(k * nine[0], l_ * nine[1], rng, progress, ways=1)
@@ -52,20 +54,23 @@ def through_nine(
     for vectors in watts.real:
         one = sixbar_of(vectors, k, l_, *(float(x) for x in nine[:, 0]))
         errors = followed(WATT_2, one.assembly, one.at, *pairs).errors
+        # NaN means that the sixbar cannot be assembled at some pair in the assembly of the first.
         if np.isfinite(errors).all():
             found.append(one._replace(error=float(np.sqrt(np.mean(errors**2)))))
     return Through(sorted(found, key=lambda one: one.error), watts.complete)
 
 
 def sixbar_of(vectors: Complex, k: float, l_: float, first_input: float, first_output: float) -> Found:
-    """A real solution, the vectors a, c, d, e of shape (4,), as a row of
-    :mod:`~synthesis.kinds.function.sixbar_kernels`; the input first, radians by its scale ``k``, and so the output."""
+    """Convert a real solution, vectors a, c, d, e of shape (4,), to a row of the sixbar kernels.
+
+    ``k`` and ``l_`` are the scales; ``first_input`` and ``first_output`` the values of the first pair.
+    """
     a, c, d, e = (complex(z) for z in vectors)
     at = np.zeros(NUMBERS)
     at[[A, B, C, 7, 8, 9]] = abs(a), abs(1.0 + c - a), abs(c), abs(d), abs(1.0 + e - d), abs(e)
     at[START], at[ZERO] = np.angle(a) - k * first_input, np.angle(e) - l_ * first_output
     at[K], at[L] = k, l_
     at[10] = np.angle(d) - np.angle(c)
-    # Whether the joint of each dyad is to the left of the way from its pin to its pivot.
+    # The assembly bits: whether each dyad's joint is to the left of the line from its pin to its pivot.
     sides = [((1.0 - pin).conjugate() * (1.0 + arm - pin)).imag > 0.0 for pin, arm in ((a, c), (d, e))]
     return Found("watt_2", int(sides[0]) | int(sides[1]) << 1, at, 0.0)

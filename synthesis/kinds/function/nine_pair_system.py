@@ -1,20 +1,20 @@
-"""Watt II sixbars that meet nine pairs of input and output: the polynomial system.
+"""Polynomial system of Watt II sixbars that meet nine pairs of input and output.
 
-A Watt II is two fourbars in series. Sizes and directions of their grounds change nothing of what the output does, so
-that both are 1. At the first pair the crank is a, the rocker c, both as vectors from their pivots; of the second
-fourbar the input link, which is keyed to that rocker, is d and the output e. From the first pair to the j-th the input
-has turned by 1 + sⱼ, the output by 1 + rⱼ and the link between them by 1 + t. The couplers keep their lengths where
+A Watt II consists of two fourbars in series. Sizes and directions of their grounds do not affect the output, so both
+are 1. At the first pair the crank is a and the rocker c, as vectors from their pivots; in the second fourbar the input
+link, which is rigidly connected to that rocker, is d and the output e. From the first pair to the j-th the input turns
+by 1 + sⱼ, the output by 1 + rⱼ and the link between them by 1 + t. The couplers keep their lengths if
 
     α₁ t + β₁ t̄ + f = 0,    α₁ = c (1 − ā (1 + s̄)),     β₁ = c̄ (1 − a (1 + s)),    f = −s a (1 + c̄) − s̄ ā (1 + c),
     α₂ t + β₂ t̄ + g = 0,    α₂ = −d (1 + ē (1 + r̄)),    β₂ = −d̄ (1 + e (1 + r)),    g = r e (1 − d̄) + r̄ ē (1 − d),
 
 with isotropic coordinates: a vector and its conjugate are two unknowns, s̄ = −s/(1 + s). Both are linear in t and t̄,
-and t + t̄ + t t̄ = 0 leaves one equation of each pair but the first:
+and t + t̄ + t t̄ = 0 leaves one equation for each pair except the first:
 
     T T̄ + X (T + T̄) = 0,    T = g β₁ − f β₂,    T̄ = f α₂ − g α₁,    X = α₁ β₂ − α₂ β₁.
 
-These are eight equations for eight unknowns, so that nine pairs have finitely many Watt II sixbars: for general turns
-:data:`SOLUTIONS`, counted by monodromy (``tools/watt_start.py``). Eight pairs leave one freedom.
+These are eight equations in eight unknowns, so nine pairs leave finitely many Watt II sixbars: :data:`SOLUTIONS` for
+generic rotations, counted by monodromy (``tools/watt_start.py``). Eight pairs leave one freedom.
 """
 
 from __future__ import annotations
@@ -30,34 +30,34 @@ from synthesis.numerics.elimination import reduce
 Complex = NDArray[np.complex128]
 
 Pair = tuple[complex, complex]
-"""A number of twice the precision."""
+"""A complex number in double-double precision, as (high, low)."""
 
 PAIRS = 9
 
 SOLUTIONS = 26_370
-"""Solutions for general turns, none of them singular."""
+"""Number of solutions for generic rotations, all nonsingular."""
 
 UNKNOWNS, PARAMETERS, SCRATCH = 8, 16, 88
-"""a, ā, c, c̄, d, d̄, e, ē; s₁…s₈, r₁…r₈; and what the system needs to work with."""
+"""Numbers of unknowns a, ā, c, c̄, d, d̄, e, ē, of parameters s₁…s₈, r₁…r₈, and of entries of the work array."""
 
 TURNS = 32
-"""Parameters where the turns' conjugates are stated too: s₁…s₈, s̄₁…s̄₈, r₁…r₈, r̄₁…r̄₈."""
+"""Number of parameters if the conjugates are given explicitly: s₁…s₈, s̄₁…s̄₈, r₁…r₈, r̄₁…r̄₈."""
 
 GROUPS = np.array([0, 0, 1, 1, 2, 2, 3, 3], np.int64)
-"""Each vector has a scale of its own."""
+"""Scaling group of each unknown: a vector and its conjugate share one scale."""
 
 APART = 1e-9
-"""Share of the size of c by which it differs from −d in a counted solution."""
+"""Minimum difference of c from −d in a counted solution, as a share of |c|."""
 
 LARGEST = 1e150
-"""An entry of the matrix beyond this is not finite enough to go on with."""
+"""Maximum magnitude of a matrix entry, to avoid overflow in the elimination."""
 
 
 @njit(cache=True, nogil=True)
 def _row(y: Complex, turns: Complex, moves: Complex, row: Complex) -> None:
-    """A pair's derivatives by the unknowns, less its equation, and less its derivative as the turns move.
+    """Write a pair's row: derivatives by the unknowns, minus its equation, and minus its derivative along the path.
 
-    ``turns``: s, s̄, r, r̄; ``moves``: how they move.
+    ``turns``: s, s̄, r, r̄; ``moves``: their rates along the path.
     """
     a, a_bar, c, c_bar = y[0], y[1], y[2], y[3]
     d, d_bar, e, e_bar = y[4], y[5], y[6], y[7]
@@ -95,7 +95,7 @@ def _row(y: Complex, turns: Complex, moves: Complex, row: Complex) -> None:
 
 @njit(cache=True, nogil=True)
 def _solved(matrix: Complex, newton: Complex, tangent: Complex) -> int:
-    """Both steps from the rows of all pairs, each scaled by its greatest derivative; 0 where they are singular."""
+    """Solve for the Newton and tangent steps from rows scaled by their largest derivative; return 0 if singular."""
     for row in matrix:
         largest = 0.0
         for k in range(8):
@@ -111,7 +111,7 @@ def _solved(matrix: Complex, newton: Complex, tangent: Complex) -> int:
 
 @njit(cache=True, nogil=True)
 def _spread(p: Complex, dp: Complex, j: int, turns: Complex, moves: Complex) -> None:
-    """s, s̄, r, r̄ of a pair, and how they move."""
+    """Write s, s̄, r, r̄ of a pair, and their rates."""
     for k, at in ((0, j), (2, 8 + j)):
         back = 1.0 / (1.0 + p[at])
         turns[k], turns[k + 1] = p[at], -p[at] * back
@@ -122,7 +122,7 @@ def _spread(p: Complex, dp: Complex, j: int, turns: Complex, moves: Complex) -> 
 def nine_pair_system(
     y: Complex, low: Complex, p: Complex, p_low: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
 ) -> int:
-    """The system, of the type that the continuation follows."""
+    """Evaluate the system in the form required by the continuation."""
     matrix, turns, moves = work[:80].reshape((8, 10)), work[80:84], work[84:88]
     for j in range(8):
         _spread(p, dp, j, turns, moves)
@@ -152,13 +152,13 @@ def _inverse(one: Pair) -> Pair:
 
 @njit(cache=True, nogil=True)
 def _equation(y: Complex, low: Complex, s: Pair, s_bar: Pair, r: Pair, r_bar: Pair) -> complex:
-    """T T̄ + X (T + T̄) of a pair, computed in twice the precision."""
+    """Evaluate T T̄ + X (T + T̄) of a pair in double-double precision."""
     one = (1.0 + 0j, 0j)
     a, a_bar, c, c_bar = (y[0], low[0]), (y[1], low[1]), (y[2], low[2]), (y[3], low[3])
     d, d_bar, e, e_bar = (y[4], low[4]), (y[5], low[5]), (y[6], low[6]), (y[7], low[7])
     alpha_1 = _product(c, _difference(one, _product(a_bar, _sum(one, s_bar))))
     beta_1 = _product(c_bar, _difference(one, _product(a, _sum(one, s))))
-    # With the other sign each: α₂, β₂ and f.
+    # α₂, β₂ and f are computed with opposite sign, which cancels in the result.
     alpha_2 = _product(d, _sum(one, _product(e_bar, _sum(one, r_bar))))
     beta_2 = _product(d_bar, _sum(one, _product(e, _sum(one, r))))
     f = _sum(_product(_product(s, a), _sum(one, c_bar)), _product(_product(s_bar, a_bar), _sum(one, c)))
@@ -174,11 +174,11 @@ def _equation(y: Complex, low: Complex, s: Pair, s_bar: Pair, r: Pair, r_bar: Pa
 def nine_pair_system_extended(
     y: Complex, low: Complex, p: Complex, p_low: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
 ) -> int:
-    """The system with its equations in twice the precision.
+    """Evaluate the system with its equations in double-double precision.
 
-    Newton's method converges to the digits of its equations; its matrix needs no more than some right ones. At end
-    points the parameters may be all :data:`TURNS`: the conjugates of real turns are exact then, so that what is real is
-    found so.
+    Newton's method converges to the accuracy of its equations; the matrix may be less accurate. At end points all
+    :data:`TURNS` parameters may be given: the conjugates of real rotations are then exact, so real solutions are found
+    as such.
     """
     matrix, turns, moves = work[:80].reshape((8, 10)), work[80:84], work[84:88]
     one = (1.0 + 0j, 0j)
@@ -197,17 +197,17 @@ def nine_pair_system_extended(
 
 
 def is_linkage(y: Complex) -> NDArray[np.bool_]:
-    """Whether a solution is one of the counted ones: shape (...), for y of shape (..., 8).
+    """Return a mask of the solutions that are counted: shape (...), for y of shape (..., 8).
 
-    Where d = −c the joints B and C and the pivots O2 and O6 fall together, and the system has whole curves of
-    solutions, to which paths come that have lost their way.
+    If d = −c, joints B and C and pivots O2 and O6 coincide, and the system has whole curves of degenerate solutions, at
+    which failed paths may end.
     """
     c, d = y[..., 2:4], y[..., 4:6]
     return np.asarray((np.abs(c + d) > APART * np.abs(c)).any(axis=-1))
 
 
 def residuals(y: Complex, p: Complex) -> NDArray[np.float64]:
-    """Largest |T T̄ + X (T + T̄)| of each solution beside its terms, shape (...), for y of shape (..., 8)."""
+    """Return the largest |T T̄ + X (T + T̄)| of each solution relative to its terms: (..., 8) gives shape (...)."""
     a, a_bar, c, c_bar, d, d_bar, e, e_bar = np.moveaxis(y, -1, 0)[..., None]
     s, r = p[:8], p[8:]
     v, z = 1.0 / (1.0 + s), 1.0 / (1.0 + r)

@@ -1,11 +1,11 @@
-"""All Watt II sixbars that meet nine pairs of input and output, real and complex.
+"""All Watt II sixbars that meet nine pairs of input and output, real and complex, by parameter homotopy.
 
-The solutions of the start are followed to the problem's turns (:mod:`synthesis.kinds.function.nine_pair_system`). What
-is reached is brought to its last digits with equations in twice the precision and checked as a whole: that no two paths
-ended in one solution (one of them has then jumped, and both are followed again), and that with every solution its
-complex conjugate is there, as real turns demand. The conjugates of solutions whose own path was lost are filled in by
-that; what is still missing is followed in smaller steps and in twice the precision, and along other ways, on which
-every path ends elsewhere. What cannot be found is said: nothing is complete without all of them.
+The solutions of a start system are followed to the problem's rotations
+(:mod:`synthesis.kinds.function.nine_pair_system`). The end points are refined with equations in double-double precision
+and checked as a set: no two paths may end in one solution (one of them has jumped, so both are followed again), and the
+conjugate of every solution must be present, because the rotations are real. Missing conjugates are added directly.
+Paths that are still missing are followed in smaller steps and higher precision, and along other parameter paths, on
+which every path ends elsewhere. The number of missing solutions is reported; the result is complete only without any.
 """
 
 from __future__ import annotations
@@ -36,57 +36,57 @@ Complex = NDArray[np.complex128]
 Mask = NDArray[np.bool_]
 
 SAME = 1e-10
-"""Solutions whose vectors agree to this share are one."""
+"""Relative difference of the vectors below which two solutions are duplicates."""
 
 NONE, NO_END = 1e-9, 1e9
-"""Vectors, in grounds, below which and beyond which there is no solution: paths come to these that lost their way."""
+"""Minimum and maximum length of a vector, in grounds, in a solution; paths that end outside have failed."""
 
 REAL = 1e-6
-"""A solution whose conjugate vectors differ by less than this share from conjugates may be real; Newton then decides
-with vectors that are."""
+"""Relative difference of conjugate unknowns from true conjugates below which a solution may be real; Newton's method
+with real vectors then decides."""
 
 BEND = 0.5
-"""Size of the random bend of the way."""
+"""Size of the random bend of a parameter path."""
 
 THREADS = 2
-"""Paths that are followed side by side."""
+"""Number of threads that follow paths in parallel."""
 
 WAYS = 4
-"""Whole runs at most; the first finds all or nearly all in general problems."""
+"""Maximum number of complete runs; for generic problems the first finds all solutions or almost all."""
 
 SPECIAL = 0.1
-"""Where more than this share of the paths does not end, the pairs are special and have fewer solutions; repeating the
-run would find the same."""
+"""Maximum share of failed paths for another run; above it the pairs are special and have fewer solutions, so another
+run would find no more."""
 
 FIRST_TOLERANCE, RETRY_TOLERANCES = 2e-3, (2e-4, 1e-5)
-"""Relative error of the prediction that a step may have: at first, and when lost paths are followed again."""
+"""Maximum relative prediction error of a step: in the first pass, and when failed paths are followed again."""
 
 PORTION, STEPS, RETRY_STEPS = 512, 5000, 20_000
-"""Paths between two reports of progress, and greatest number of steps of one, at first and when followed again."""
+"""Number of paths per batch, and maximum number of steps of a path, in the first pass and when followed again."""
 
 RETRIED = 0.9
-"""Share of the progress of a way with which the lost paths are followed again."""
+"""Share of a run's progress assigned to the first pass, before failed paths are followed again."""
 
 
 class Start(NamedTuple):
-    """Solutions, shape (26 370, 8), for the parameters, shape (16,)."""
+    """Start system: solutions, shape (26 370, 8), for parameters of shape (16,)."""
 
     y: Complex
     p: Complex
 
 
 class Watts(NamedTuple):
-    """What is known of the Watt II sixbars through nine pairs.
+    """The Watt II sixbars through nine pairs.
 
     Attributes
     ----------
     found, lost : int
-        Solutions that were computed, real and complex, and those missing from :data:`SOLUTIONS`.
+        Number of computed solutions, real and complex, and number missing from :data:`SOLUTIONS`.
     real : complex, shape (real, 4)
-        Of each real one crank and rocker of the first fourbar, input link and output of the second, in the first
-        position, with grounds of 1 along +x.
+        Real solutions: crank and rocker of the first fourbar, input link and output of the second, as vectors in the
+        first position, with grounds of 1 along +x.
     self_conjugate : bool
-        Whether the conjugate of every solution is among them.
+        Whether the set contains the conjugate of every solution.
     """
 
     found: int
@@ -96,13 +96,13 @@ class Watts(NamedTuple):
 
     @property
     def complete(self) -> bool:
-        """Whether these are all."""
+        """Whether all solutions were found."""
         return self.lost == 0 and self.self_conjugate
 
 
 @cache
 def nine_pair_start() -> Start:
-    """The stored solutions, which ``tools/watt_start.py`` makes anew, with all their digits."""
+    """Load the stored start system, generated by ``tools/watt_start.py``, and refine it to full precision."""
     with resources.files(__package__).joinpath("nine_pair_start.npz").open("rb") as opened, np.load(opened) as arrays:
         y, p = arrays["y"].astype(np.complex128), arrays["p"]
     return Start(refine(nine_pair_system, GROUPS, SCRATCH, y, np.zeros_like(y), p)[0], p)
@@ -117,29 +117,30 @@ def all_watts(
     threads: int = THREADS,
     ways: int = WAYS,
 ) -> Watts:
-    """All Watt II sixbars that meet nine pairs.
+    """Find all Watt II sixbars that meet nine pairs.
 
     Parameters
     ----------
     inputs, outputs : float, shape (9,)
-        How far input and output have turned, radians, from any place.
+        Rotations of input and output, radians, from any reference.
     rng : Generator
-        Draws the ways along which the parameters move.
+        Source of the random parameter paths.
     progress : callable
-        Told the share of the paths that are done.
+        Callback that receives the share of finished paths.
     threads : int
-        Paths followed side by side.
+        Number of paths followed in parallel.
     ways : int
-        Ways along which all paths are followed at most, while some are missing.
+        Maximum number of runs along different parameter paths while solutions are missing.
     """
     turned = np.concatenate([inputs[1:] - inputs[0], outputs[1:] - outputs[0]])
-    # exp(iθ) − 1 without cancellation.
+    # Compute exp(iθ) − 1 without cancellation at small rotations.
     p = np.asarray(2j * np.sin(0.5 * turned) * np.exp(0.5j * turned))
     solutions = _Solutions(p)
     for way in range(ways):
         known = len(solutions.y)
         bend = BEND * (rng.normal(size=(PARAMETERS, 2)) @ np.array([1.0, 1.0j]))
         _run(solutions, bend, threads, _part(progress, way))
+        # Stop if all are found, if the problem is special, or if a run adds nothing.
         if solutions.missing <= 0 or solutions.missing > SPECIAL * SOLUTIONS or len(solutions.y) == known:
             break
     progress(1.0)
@@ -156,12 +157,12 @@ def _part(progress: Callable[[float], None], way: int) -> Callable[[float], None
 
 
 def conjugate(y: Complex) -> Complex:
-    """The complex conjugates of solutions for real turns: the parts of each vector change places."""
+    """Return the complex conjugates of solutions for real rotations: conjugate and exchange each vector's two parts."""
     return np.asarray(y[..., [1, 0, 3, 2, 5, 4, 7, 6]].conj())
 
 
 class _Solutions:
-    """The solutions found so far, each once."""
+    """Set of distinct solutions found so far."""
 
     def __init__(self, p: Complex) -> None:
         self.p = p
@@ -178,7 +179,7 @@ class _Solutions:
         return bool(self._known.holds(_keys(conjugate(self.y))).all())
 
     def add(self, y: Complex, low: Complex) -> Complex:
-        """Add those ends of paths that are sound; the ends as they are told apart, NaN for the others."""
+        """Add the valid end points of paths; return the keys of the end points, NaN for invalid ones."""
         refined, sound = self.refined(y, low)
         self._join(refined[sound])
         keys = np.full((len(y), 2 * UNKNOWNS), np.nan, np.complex128)
@@ -186,7 +187,7 @@ class _Solutions:
         return keys
 
     def refined(self, y: Complex, low: Complex | None = None) -> tuple[Complex, Mask]:
-        """Ends with the digits of twice the precision's equations, and which of them are solutions."""
+        """Refine end points with equations in double-double precision; also return the mask of valid solutions."""
         low = np.zeros_like(y) if low is None else low
         y, _, moved = refine(nine_pair_system_extended, GROUPS, SCRATCH, y, low, self.turns)
         size = np.abs(y)
@@ -197,19 +198,19 @@ class _Solutions:
         self.y = np.concatenate([self.y, y[self._known.add(_keys(y))]])
 
     def add_conjugates(self) -> None:
-        """Add the conjugate of every solution where it is missing."""
+        """Add the missing conjugates of the known solutions."""
         mirrored = conjugate(self.y)
         y, sound = self.refined(mirrored[~self._known.holds(_keys(mirrored))])
         self._join(y[sound])
 
 
 def _keys(y: Complex) -> Complex:
-    """By what solutions are told apart: logarithm of the length and direction of every vector."""
+    """Make the keys that distinguish solutions: logarithm of the length, and direction, of every vector."""
     return np.concatenate([np.log(np.abs(y)).astype(np.complex128), y / np.abs(y)], axis=-1)
 
 
 def _run(solutions: _Solutions, bend: Complex, threads: int, progress: Callable[[float], None]) -> None:
-    """Follow all paths along one way and add what they reach, and then those again that were lost."""
+    """Follow all paths along one parameter path, add their end points, and follow failed paths again."""
     keys = np.full((SOLUTIONS, 2 * UNKNOWNS), np.nan, np.complex128)
     lost = 0
     for first in range(0, SOLUTIONS, PORTION):
@@ -217,6 +218,7 @@ def _run(solutions: _Solutions, bend: Complex, threads: int, progress: Callable[
         keys[some] = _follow(solutions, some, bend, FIRST_TOLERANCE, threads)
         lost += int(np.isnan(keys[some, 0]).sum())
         progress(RETRIED * (first + len(some)) / SOLUTIONS)
+        # Too many failures indicate special pairs: do not spend the time on the rest.
         if lost > PORTION + SPECIAL * SOLUTIONS:
             return
     solutions.add_conjugates()
@@ -233,7 +235,7 @@ def _run(solutions: _Solutions, bend: Complex, threads: int, progress: Callable[
 
 
 def _astray(keys: Complex) -> NDArray[np.int64]:
-    """Paths that have no end, and all of those that have one in common: one of them at most has come to its own."""
+    """Find the paths without an end point, and all paths that share one: at most one of these is correct."""
     ended = np.flatnonzero(~np.isnan(keys[:, 0]))
     astray = np.ones(len(keys), np.bool_)
     astray[ended] = crowded(keys[ended], SAME)
@@ -249,7 +251,7 @@ def _follow(
     *,
     again: bool = False,
 ) -> Complex:
-    """Follow some solutions of the start to the problem; returns their ends as they are told apart, NaN for none."""
+    """Follow some start solutions to the problem; return the keys of their end points, NaN for failed paths."""
     begun = nine_pair_start()
     ends = follow(
         nine_pair_system_extended if again else nine_pair_system,
@@ -271,7 +273,7 @@ def _follow(
 
 
 def _real(solutions: _Solutions) -> Complex:
-    """The vectors a, c, d, e of the real solutions, shape (real, 4)."""
+    """Select the real solutions and return their vectors a, c, d, e, shape (real, 4)."""
     y = solutions.y
     apart = np.abs(y[:, ::2] - y[:, 1::2].conj()).max(axis=-1, initial=0.0)
     near = y[apart <= REAL * np.abs(y).max(axis=-1, initial=0.0)].copy()

@@ -1,4 +1,4 @@
-"""How function generators are ordered: by the error of the criterion, and those on the pairs' own scales first."""
+"""Ranking of function generators: by the error of the criterion, with designs on the pairs' own scales first."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.outcome.ranking import ranked
 
 UNCHANGED = 1e-7
-"""Scales this near to 1 leave the pairs as they are."""
+"""Tolerance for a scale of 1, which leaves the pairs unchanged."""
 
 
 def error_of(problem: FunctionProblem, design: FunctionDesign) -> float:
-    """The error by the criterion of a problem; where the output's range is open, as a share of it."""
+    """Return the error by the problem's criterion, relative to the output's range if that is open."""
     error = design.structural_error.rms if problem.aim == "least_squares" else design.structural_error.max
     return error / abs(design.metrics.output_range) if problem.output_open else error
 
 
 def ordered(problem: FunctionProblem, designs: list[FunctionDesign]) -> list[FunctionDesign]:
-    """Designs in the order that a problem asks for; pairs as they were stated come before pairs on other scales."""
+    """Rank designs in the requested order; designs on the pairs' own scales come before rescaled ones."""
     approximates = problem.aim != "precision"
     error = partial(error_of, problem)
     own: dict[str, Callable[[FunctionDesign], float]] = {"accuracy": error}

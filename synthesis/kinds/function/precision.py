@@ -1,7 +1,7 @@
 """Linkages that meet pairs exactly: points of the closure's cubic that satisfy the equations of the pairs.
 
-Pairs and given zeros are r linear equations in P⁶. What they leave is a point, a line or more; on a line the cubic has
-three roots, real or not. Where more is left, random lines in it cut the cubic in random members of the family.
+Pairs and given zeros are r linear equations in P⁶. They leave a point, a line, or a larger space; on a line the cubic
+has three roots, real or complex. In a larger space, random lines intersect the cubic in random members of the family.
 """
 
 from __future__ import annotations
@@ -17,31 +17,31 @@ from synthesis.kinds.function.structural_error import STEPS, Generators
 Real = NDArray[np.float64]
 
 NEARLY_REAL = 1e-6
-"""Imaginary part, relative, below which a root counts as real until it has been refined: a double root of data with 16
-digits shows eight of them."""
+"""Maximum relative imaginary part of a root that counts as real before it is refined: a double root of data with 16
+digits is accurate to eight."""
 
 INDEPENDENT = 1e-11
-"""Singular value of the equations, relative to the largest, above which they count as independent."""
+"""Minimum singular value of the equations, relative to the largest, for them to count as independent."""
 
 APART = 1e-6
-"""Roots of the cubic that are nearer, as angles of their line's points, are not told apart with certainty."""
+"""Minimum separation of roots of the cubic, as angles of points on their line, to distinguish them with certainty."""
 
 POLISHES, LONGEST = 6, 0.5
-"""Steps of Newton's method on the structural errors themselves, which meet the pairs to the last digits, and the most
-that a step changes."""
+"""Newton's method on the structural errors, which meets the pairs to full precision: maximum number of steps, and
+maximum change per step."""
 
 
 class Exact(NamedTuple):
-    """All linkages of finitely many.
+    """All solutions of a problem with finitely many.
 
     Attributes
     ----------
     dimensions : float, shape (k, 5)
         Real linkages; see :class:`synthesis.kinds.function.closure.Closure`.
     degenerate : int
-        Real points of the cubic with a link of no or of infinite length.
+        Number of real points of the cubic with a link of zero or infinite length.
     proved : bool
-        The equations are independent and the roots are simple, so that there are no others.
+        Whether the set is proved complete: the equations are independent and the roots are simple.
     """
 
     dimensions: Real
@@ -50,7 +50,7 @@ class Exact(NamedTuple):
 
 
 def equations(closure: Closure, inputs: Real, outputs: Real, zeros: tuple[float | None, float | None]) -> Real:
-    """Unit rows of the given zeros and of pairs, shape (..., r, 7)."""
+    """Return unit rows of the given zeros and of the pairs, shape (..., r, 7)."""
     rows = closure.rows(inputs, outputs)
     given = closure.zero_rows(zeros)
     given = np.broadcast_to(given, (*rows.shape[:-2], *given.shape))
@@ -59,29 +59,29 @@ def equations(closure: Closure, inputs: Real, outputs: Real, zeros: tuple[float 
 
 
 def left_over(rows: Real) -> tuple[Real, Real]:
-    """Basis of what the equations leave, shape (..., 7 − r, 7), and how independent they are."""
+    """Return a basis of the null space of the equations, shape (..., 7 − r, 7), and a measure of their independence."""
     _, s, vh = np.linalg.svd(rows)
     return vh[..., rows.shape[-2] :, :], np.asarray(s[..., -1] / s[..., 0])
 
 
 def _left_at_least(rows: Real) -> Real:
-    """Basis of what every one of many sets of equations leaves, more where they are not independent."""
+    """Return bases of the null spaces of many sets of equations, all of the smallest dimension that occurs."""
     _, s, vh = np.linalg.svd(rows)
     rank = int((s > INDEPENDENT * s[..., :1]).sum(axis=-1).max())
     return np.asarray(vh[..., min(rank, UNKNOWNS - 1) :, :])
 
 
 def on_lines(closure: Closure, one: Real, other: Real) -> tuple[Real, NDArray[np.bool_]]:
-    """Points of the cubic on lines through two orthogonal unit vectors each.
+    """Intersect the cubic with lines, each through two orthogonal unit vectors.
 
     Returns
     -------
     points : float, shape (..., 3, 7)
-        NaN in place of complex ones.
+        NaN for complex points.
     simple : bool, shape (...,)
-        The three are apart from one another.
+        Whether the three points are distinct.
     """
-    # Of four ways to turn the basis that one is taken in which the cubic is most clearly of the third degree.
+    # Rotate the basis by the one of four angles that maximises the leading coefficient, to avoid a lower degree.
     turns = np.arange(4.0) * (np.pi / 4.0)
     turned = np.cos(turns)[:, None] * one[..., None, :] + np.sin(turns)[:, None] * other[..., None, :]
     best = np.abs(closure.cubic(turned)).argmax(axis=-1)
@@ -106,7 +106,7 @@ def on_lines(closure: Closure, one: Real, other: Real) -> tuple[Real, NDArray[np
 
 
 def exact(closure: Closure, inputs: Real, outputs: Real, zeros: tuple[float | None, float | None]) -> Exact:
-    """All linkages through as many pairs as leave nothing free: 3, and one more for each open zero.
+    """Find all linkages through as many pairs as there are freedoms: 3, and one more for each open zero.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def exact(closure: Closure, inputs: Real, outputs: Real, zeros: tuple[float | No
     inputs, outputs : float, shape (n,)
         Pairs, radians and radians or units of the slider's range.
     zeros : pair of float or None
-        Where the links stand at the value 0; None where that is open.
+        Positions of the links at the value 0; None for an open zero.
     """
     basis, independent = left_over(equations(closure, inputs, outputs, zeros))
     linear = None not in zeros
@@ -131,7 +131,7 @@ def exact(closure: Closure, inputs: Real, outputs: Real, zeros: tuple[float | No
 
 
 def many_exact(closure: Closure, inputs: Real, outputs: Real, zeros: tuple[float | None, float | None]) -> Real:
-    """Linkages through many sets of pairs, shape (m, n) each; all that are real together, with their set's index.
+    """Find all real linkages through many sets of pairs, shape (m, n), with the index of their set.
 
     Returns
     -------
@@ -145,7 +145,7 @@ def many_exact(closure: Closure, inputs: Real, outputs: Real, zeros: tuple[float
 
 
 def exact_points(closure: Closure, inputs: Real, outputs: Real, zeros: tuple[float | None, float | None]) -> Real:
-    """Points of the cubic through many sets of pairs, shape (m, n) each: shape (m, 3 or 1, 7), NaN where not real."""
+    """Find the cubic's points for many sets of pairs, shape (m, n): shape (m, 3 or 1, 7), NaN if complex."""
     basis, _ = left_over(equations(closure, inputs, outputs, zeros))
     return basis[:, :1] if None not in zeros else on_lines(closure, basis[:, 0], basis[:, 1])[0]
 
@@ -157,7 +157,7 @@ def family(
     zeros: tuple[float | None, float | None],
     rng: np.random.Generator,
 ) -> Real:
-    """Random linkages through sets of fewer pairs, shape (m, n) each: results as of :func:`many_exact`."""
+    """Sample random linkages through sets of fewer pairs, shape (m, n); results as for :func:`many_exact`."""
     basis = _left_at_least(equations(closure, inputs, outputs, zeros))
     count, left = basis.shape[:2]
     if None not in zeros:
@@ -174,16 +174,16 @@ def family(
 
 
 def polished(generators: Generators, dimensions: Real, free: NDArray[np.bool_]) -> Real:
-    """A generator moved by Newton's method, least steps first, to meet its places to the last digits.
+    """Refine a generator by Newton's method with minimum-norm steps until it meets its pairs to full precision.
 
     Parameters
     ----------
     generators : Generators
         The pairs.
     dimensions : float, shape (7,)
-        A generator that meets them nearly, each in the assembly that it keeps.
+        A generator that meets them approximately; it keeps its assembly at each pair.
     free : bool, shape (7,)
-        Which of its numbers may move.
+        Mask of the parameters that may change.
     """
     signs = generators.signs(dimensions[None])
     least, best = np.inf, dimensions
@@ -191,7 +191,7 @@ def polished(generators: Generators, dimensions: Real, free: NDArray[np.bool_]) 
         errors = generators.errors(dimensions[None], signs)[0]
         size = float(np.abs(errors).max()) if np.isfinite(errors).all() else np.inf
         if not size < least:
-            break
+            break  # rounding: the previous iterate was the best
         least, best = size, dimensions
         jacobian = generators.derivatives(dimensions, errors)[:, free]
         if not np.isfinite(jacobian).all():

@@ -32,40 +32,40 @@ from synthesis.model.statement import (
 FULL_TURN = 360.0
 
 MOST_TURNED = 359.0
-"""Degrees that an input or output turns at most: at a full turn the first value would meet the last."""
+"""Maximum range of an input or output, degrees: at a full turn the first value would coincide with the last."""
 
 LEAST_TURNED = 0.01
-"""Degrees below which a range is no motion."""
+"""Minimum range, degrees; below it there is no motion."""
 
 EQUAL_INPUTS = 1e-6
-"""Inputs that differ by less, degrees, are one: no linkage tells them apart."""
+"""Tolerance for equal inputs, degrees: no linkage distinguishes closer ones."""
 
 EXACT_PAIRS = 3
-"""Pairs that a linkage meets with everything but its three proportions given; each open zero or scale adds one."""
+"""Number of pairs that the three proportions alone can meet; each open zero or scale adds one."""
 
 MOST_EXACT = 7
 
 MOST_BY_SIXBARS = 8
-"""Pairs that sixbars are made to meet by search at most. Watt II has nine numbers of its own, the others eleven."""
+"""Maximum number of pairs that the sixbar search meets exactly. Watt II has nine parameters, the others eleven."""
 
 ALL_WATTS = 9
-"""Pairs that have finitely many Watt II sixbars, all of which are computed."""
+"""Number of pairs that leave finitely many Watt II sixbars, all of which are computed."""
 
 HELD_PLACES = 41
-"""Places of the range, ends included, at which a function that is approximated is held to as it is made."""
+"""Number of points of the range, including its ends, at which a manufactured approximation must match the function."""
 
 
 class Pair(Statement):
-    """A value of the input, degrees, and the value of the output that belongs to it: degrees, or length units."""
+    """A value of the input, degrees, and the corresponding value of the output, degrees or length units."""
 
     input: Degrees
     output: Annotated[Number, OUTPUT]
 
 
 class Zeros(Statement):
-    """Where the links stand at the value 0: angles from the line O2 → O4, or from the slide's direction, degrees.
+    """Zeros: link angles at the value 0, degrees from the line O2 → O4, or from the slide's direction.
 
-    Of a slider the position along its line, from the foot of the fixed pivot, in length units. Null leaves it open.
+    For a slider: its position along its line, from the foot of the fixed pivot, in length units. Null leaves it open.
     """
 
     input: Degrees | None = None
@@ -73,7 +73,7 @@ class Zeros(Statement):
 
 
 class Scales(Statement):
-    """How far the link turns (or the slider moves) for one unit of the value. Null leaves it open."""
+    """Scales: rotation of the link (or travel of the slider) per unit of the value. Null leaves a scale open."""
 
     input: Annotated[PositiveNumber, ANGLE] | None = None
     output: Annotated[PositiveNumber, OUTPUT] | None = None
@@ -87,22 +87,23 @@ class GroundPivots(Statement):
 
 
 class FunctionConstraints(Constraints):
-    """Constraints of a linkage; the link ratio is limited to 100 unless another limit is stated, or none.
+    """Constraints of a function generator; the default maximum link ratio is 100.
 
-    Many functions have no best linkage: the longer its links, the smaller the error. The limit is a part of the task.
+    For many functions the error decreases without bound as the links get longer, so the limit is part of the task.
     """
 
     max_link_ratio: Annotated[float, Field(strict=True, ge=1.0, le=ABSURD)] | None = Field(
         default=100.0,
-        description="Longest link over shortest link, at most: 100 where nothing is stated, no limit where it is open.",
+        description="Maximum ratio of the longest to the shortest link. Default 100; left open: no limit.",
     )
 
 
 @lru_cache(maxsize=64)
 def _onward(pairs: tuple[tuple[float, float], ...], slides: bool) -> Real:
-    """Asked for several times with every linkage that is measured, of the same pairs; read-only."""
+    """Unwrap the pairs' angles; cached and read-only, because every measured linkage needs them several times."""
     values = np.array(pairs)
     onward = np.unwrap(values[:, 0], period=FULL_TURN)
+    # Inputs given in order are kept as they are: unwrapping could break a range of more than half a turn.
     if not _one_way(values[:, 0]) and _one_way(onward):
         values[:, 0] = onward
     if not slides:
@@ -119,9 +120,9 @@ def _one_way(values: Real) -> bool:
 class FunctionProblem(LinkageProblem):
     """Function generation: the output of a fourbar, a slider-crank or a sixbar follows its input.
 
-    Pairs of input and output, or a function over an interval with the ranges through which input and output turn. A
-    linkage meets 2 to 5 pairs exactly, 6 or 7 where scales are open; or it follows them, or the whole function, with
-    the least mean square or the least greatest structural error, which is measured on the finished linkage.
+    The task is a list of input-output pairs, or a function over an interval with the ranges of input and output. A
+    linkage meets 2 to 5 pairs exactly, or 6 or 7 with open scales. Otherwise it approximates the pairs, or the whole
+    function, with the smallest mean square or maximum structural error, measured on the finished linkage.
     """
 
     model_config = ConfigDict(
@@ -171,59 +172,59 @@ class FunctionProblem(LinkageProblem):
     function: FunctionStatement | None = None
     input_range: Degrees | tuple[Degrees, Degrees] | None = Field(
         default=None,
-        description="Degrees through which the input turns while x runs over its interval, counter-clockwise positive; "
-        "or its values at both ends. It may be left open.",
+        description="Rotation of the input while x runs over its interval, degrees, counter-clockwise positive; or its "
+        "values at both ends. Null leaves it open.",
     )
     output_range: Annotated[Number | tuple[Number, Number] | None, OUTPUT] = Field(
         default=None,
-        description="The same for the output: degrees, or length units of a slider. It is positive where the output "
-        "begins to turn counter-clockwise, whether y grows or falls. Left open, its direction is open too.",
+        description="The same for the output: degrees, or length units for a slider. Positive if the output starts "
+        "counter-clockwise, whether y rises or falls. If left open, its direction is open too.",
     )
-    either_direction: Flag = Field(default=False, description="Also try the output going the other way.")
+    either_direction: Flag = Field(default=False, description="Also try the opposite direction of the output.")
     range_limits: Annotated[Interval, ANGLE] = Field(
-        default=(30.0, 150.0), description="Of ranges that are left open, degrees."
+        default=(30.0, 150.0), description="Limits of ranges that are left open, degrees."
     )
     scales: Scales | None = Field(
         default=None,
-        description="Of pairs; left out they are 1 where at most five pairs are met exactly, for six the output's is "
-        "open and for seven both are.",
+        description="Scales of pairs. Omitted: 1 for up to five exact pairs; for six pairs the output's scale is open, "
+        "for seven both are.",
     )
-    scale_limits: Interval = Field(default=(0.25, 4.0), description="Of scales that are left open.")
+    scale_limits: Interval = Field(default=(0.25, 4.0), description="Limits of scales that are left open.")
     zeros: Zeros | Literal["auto"] | None = Field(
         default="auto",
-        description="Both may be left open. `auto` reads two or three pairs as angles from the ground line, of a link "
-        "or its extension, and leaves the zeros open where no such linkage satisfies all demands; it leaves them open "
-        "for everything else.",
+        description="Zeros of input and output; both may be left open. `auto` reads two or three pairs as angles of a "
+        "link, or its extension, from the ground line, and opens the zeros if no such linkage satisfies all "
+        "constraints. In all other cases `auto` leaves them open.",
     )
     precision_points: Annotated[Count, Field(ge=2, le=ALL_WATTS)] | None = Field(
         default=None,
-        description="Points of the function that are met exactly; nine by watt_2 sixbars alone, of which all are "
-        "computed.",
+        description="Number of points at which the function is met exactly. Nine points are possible only for watt_2 "
+        "sixbars, all of which are computed.",
     )
-    spacing: Literal["chebyshev", "equal"] = Field(default="chebyshev", description="Of the precision points.")
+    spacing: Literal["chebyshev", "equal"] = Field(default="chebyshev", description="Spacing of the precision points.")
     mechanism: Literal["fourbar", "slider_crank"] = "fourbar"
     mechanisms: Mechanisms | None = Field(
         default=None,
-        description="The types of linkages that are looked for; auto: fourbars, and sixbars where none of these is "
-        "sound and precise. Left out: that of `mechanism`.",
+        description="Types of linkage to search. auto: fourbars, and sixbars if no fourbar is feasible and accurate. "
+        "Omitted: the type given by `mechanism`.",
     )
     criterion: Literal["precision", "least_squares", "minimax"] | None = Field(
         default=None,
-        description="Left out: `precision` where precision points are asked for, or there are no more pairs than can "
-        "be met, eight at most; else `minimax`. With `precision`, nine pairs and `watt_2` alone all sixbars are "
-        "computed that meet them.",
+        description="Approximation criterion. Omitted: `precision` if precision points are given, or if all pairs (at "
+        "most eight) can be met exactly; otherwise `minimax`. With `precision`, nine pairs and `watt_2` alone, all "
+        "sixbars that meet the pairs are computed.",
     )
     fixed_pivots: GroundPivots | None = Field(
         default=None,
-        description="Of a fourbar, and of a slider-crank with `output` a point towards which the slide points. Left "
-        "out: place, direction and size (of a slider-crank place and direction) are chosen so that pivots lie in "
-        "their regions and lengths within their limits; O2 at the origin and the ground line along +x where that fits.",
+        description="Fixed pivots of a fourbar; for a slider-crank `output` is a point towards which the slide points. "
+        "Omitted: position, direction and size (for a slider-crank position and direction) are chosen to satisfy "
+        "regions and length limits; O2 at the origin and the ground line along +x if that is possible.",
     )
     constraints: FunctionConstraints = FunctionConstraints()
 
     @property
     def aim(self) -> Literal["precision", "least_squares", "minimax"]:
-        """The criterion, also where it is left out."""
+        """The criterion, with its default if omitted."""
         if self.criterion is not None:
             return self.criterion
         if self.pairs is not None:
@@ -232,29 +233,28 @@ class FunctionProblem(LinkageProblem):
 
     @property
     def sixbars(self) -> tuple[Sixbar, ...]:
-        """The types of sixbars that are looked for."""
+        """The types of sixbar to search."""
         return without_unclassed(looked_for(self.mechanisms, SIXBARS, lacking(self)), no_class(self.constraints))
 
     @property
     def of_simple(self) -> FunctionProblem | None:
-        """The problem of the fourbars or slider-cranks among the types, as it is stated without types; None without
-        these."""
+        """The same problem restricted to the fourbars or slider-cranks in ``mechanisms``; None if there are none."""
         return None if self.sixbars_alone else self.model_copy(update={"mechanisms": None})
 
     @property
     def of_sixbars(self) -> FunctionProblem:
-        """The problem of the sixbars among the types alone: by the same criterion, with open zeros."""
+        """The same problem restricted to the requested sixbars, with the same criterion and open zeros."""
         alone = {"mechanisms": list(self.sixbars), "criterion": self.aim, "zeros": None}
         return self.model_copy(update=alone)
 
     @property
     def sixbars_alone(self) -> bool:
-        """Whether neither fourbars nor slider-cranks are looked for."""
+        """Whether only sixbars are requested."""
         return isinstance(self.mechanisms, list) and set(self.mechanisms) <= set(SIXBARS)
 
     @property
     def stated_zeros_alone(self) -> bool:
-        """Whether a zero is stated: they are counted from the ground line of a fourbar."""
+        """Whether a zero is given; zeros are measured from the ground line of a fourbar."""
         return isinstance(self.zeros, Zeros) and (self.zeros.input, self.zeros.output) != (None, None)
 
     @property
@@ -264,17 +264,17 @@ class FunctionProblem(LinkageProblem):
 
     @property
     def made(self) -> Made | str:
-        """Places of the output, at the inputs that its dial says."""
+        """Manufacturing analysis: the targets are output positions at given inputs of the dial."""
         count = len(self.precision_shares) if self.aim == "precision" else HELD_PLACES
         return Made(self.slides, not self.slides, False, count if self.pairs is None else len(self.pairs))
 
     @property
     def guides_a_point(self) -> bool:
-        """There is no P on the coupler of a function generator."""
+        """Whether the linkage guides a coupler point P; never for a function generator."""
         return False
 
     def held_to(self, design: Any) -> Held:
-        """Pairs and precision points, or places of the whole range, as they stand on the dials."""
+        """Return the pairs, precision points, or samples of the range that a manufactured design must keep."""
         values = self._held_values()
         if self.pairs is not None:
             outputs = self.values[:, 1]
@@ -300,7 +300,7 @@ class FunctionProblem(LinkageProblem):
         )
 
     def _held_values(self) -> Real:
-        """Values of the input at which linkages are held as they are made."""
+        """Return the input values at which a manufactured linkage must match its target."""
         if self.pairs is not None:
             return self.values[:, 0]
         assert self.function is not None
@@ -310,20 +310,20 @@ class FunctionProblem(LinkageProblem):
 
     @property
     def from_ground(self) -> bool:
-        """Whether pairs are at first read as angles from the ground line, of a link or its extension."""
+        """Whether pairs are first read as angles of a link, or its extension, from the ground line."""
         few = self.pairs is not None and len(self.pairs) <= EXACT_PAIRS
         return self.zeros == "auto" and few and not self.sixbars_alone
 
     @property
     def stated_zeros(self) -> tuple[float | None, float | None]:
-        """Zeros of input and output, None where they are open."""
+        """Zeros of input and output; None for an open one."""
         if self.from_ground:
             return 0.0, 0.0
         return (self.zeros.input, self.zeros.output) if isinstance(self.zeros, Zeros) else (None, None)
 
     @property
     def most_exact(self) -> int:
-        """Pairs that can be met at most: proportions, zeros and scales that are open."""
+        """Maximum number of pairs that can be met exactly: the number of open proportions, zeros and scales."""
         if self.sixbars_alone:
             return ALL_WATTS if self.sixbars == ("watt_2",) else MOST_BY_SIXBARS
         zeros = [self.zeros.input, self.zeros.output].count(None) if isinstance(self.zeros, Zeros) else 2
@@ -337,36 +337,36 @@ class FunctionProblem(LinkageProblem):
 
     @property
     def determines_watts(self) -> bool:
-        """Whether nine pairs are to be met by Watt II sixbars, of which there are finitely many."""
+        """Whether nine pairs must be met exactly by Watt II sixbars, of which there are finitely many."""
         count = self.precision_points if self.pairs is None else len(self.pairs)
         return self.watts_alone and self.aim == "precision" and count == ALL_WATTS
 
     @property
     def follows_watts(self) -> bool:
-        """Whether Watt II sixbars are to follow pairs, of which some nine have finitely many."""
+        """Whether Watt II sixbars approximate nine or more pairs, any nine of which leave finitely many sixbars."""
         many = self.pairs is not None and len(self.pairs) >= ALL_WATTS
         return self.watts_alone and self.aim != "precision" and many and None not in self.scale_choice
 
     @property
     def watts_alone(self) -> bool:
-        """Whether nothing but Watt II sixbars is looked for."""
+        """Whether only Watt II sixbars are requested."""
         return self.sixbars_alone and self.sixbars == ("watt_2",)
 
     def span(self, side: Literal["input", "output"]) -> float | None:
-        """The range of a side, degrees or length units, signed; None where it is open."""
+        """Return the signed range of a side, degrees or length units; None if it is open."""
         stated = self.input_range if side == "input" else self.output_range
         if isinstance(stated, tuple):
             return stated[1] - stated[0]
         return stated
 
     def first_value(self, side: Literal["input", "output"]) -> float:
-        """The value that a zero of the side is counted from at the beginning: 0 unless values of the ends are given."""
+        """Return the value of a side at the start of its range: 0 unless values at both ends are given."""
         stated = self.input_range if side == "input" else self.output_range
         return stated[0] if isinstance(stated, tuple) else 0.0
 
     @property
     def scale_choice(self) -> tuple[float | None, float | None]:
-        """Scales of pairs, None where they are open."""
+        """Scales of pairs; None for an open one."""
         if self.scales is not None:
             return self.scales.input, self.scales.output
         if self.aim != "precision" or self.pairs is None or self.sixbars_alone:
@@ -381,65 +381,68 @@ class FunctionProblem(LinkageProblem):
 
     @property
     def values(self) -> Real:
-        """The pairs as numbers, shape (n, 2), where angles go on from 360 with 0 without the jump.
+        """The pairs as an array, shape (n, 2), with unwrapped angles.
 
-        Inputs go the shorter way from pair to pair if that is one way round, and angles of the output in any case.
+        Inputs are unwrapped along the shorter way from pair to pair if that makes them monotonic; angles of the output
+        always are.
         """
         assert self.pairs is not None
         return _onward(tuple((pair.input, pair.output) for pair in self.pairs), self.slides)
 
     @property
     def output_open(self) -> bool:
-        """Whether the output's range, or the scale of its values, is for the search to choose."""
+        """Whether the search may choose the output's range, or the scale of its values."""
         if self.pairs is None:
             return self.span("output") is None and self.range_limits[0] < self.range_limits[1]
         low, high = self.open_scale(1)
         return self.scale_choice[1] is None and low < high
 
     def open_scale(self, side: int) -> tuple[float, float]:
-        """Limits of an open scale of the input (0) or the output (1) of pairs, with which no link turns through."""
+        """Open the scale of the input (0) or output (1): return its limits, with which no link makes a full turn."""
         low, high = self.scale_limits
         most = MOST_TURNED / float(np.ptp(self.values[:, side]))
         return low, max(min(high, most), low)
 
     @property
     def precision_shares(self) -> Real:
-        """Places of the precision points, as shares of the interval of x."""
+        """Positions of the precision points, as shares of the interval of x (Chebyshev or equal spacing)."""
         n = self.precision_points or EXACT_PAIRS + 2
         if self.spacing == "equal":
             return np.linspace(0.0, 1.0, n)
         return np.asarray(0.5 - 0.5 * np.cos((2.0 * np.arange(n) + 1.0) * math.pi / (2.0 * n)))
 
     def contradictions(self) -> list[Contradiction]:
-        """Faults of pairs, function and ranges, and demands that exclude one another."""
+        """Return errors of pairs, function and ranges, and contradictory constraints."""
         found = [*self._asked(), *self._zeros_and_scales(), *self.contradicting_demands(), *of_types(self)]
         if self.slides:
-            found += self.constraints.of_another_class((), "classifies fourbars; a slider-crank has no class")
+            found += self.constraints.of_another_class((), "applies only to fourbars; a slider-crank has no class")
         if self.fixed_pivots is not None and self.fixed_pivots.input == self.fixed_pivots.output:
-            found.append(Contradiction("/fixed_pivots/output", "equal to the input's pivot; no ground link is left"))
+            detail = "equals the input's pivot; the ground link would have length zero"
+            found.append(Contradiction("/fixed_pivots/output", detail))
         if self.range_limits[0] < LEAST_TURNED or self.range_limits[1] > MOST_TURNED:
             detail = f"must lie between {LEAST_TURNED} and {MOST_TURNED} degrees"
             found.append(Contradiction("/range_limits", detail))
         if self.scale_limits[0] <= 0.0:
-            found.append(Contradiction("/scale_limits", "a scale is positive"))
+            found.append(Contradiction("/scale_limits", "scales must be positive"))
         return found
 
     def _asked(self) -> Iterator[Contradiction]:
         if (self.pairs is None) == (self.function is None):
             where = "/pairs" if self.pairs is None else "/function"
-            yield Contradiction(where, "state either pairs or a function")
+            yield Contradiction(where, "give either pairs or a function")
             return
         if self.pairs is not None:
             for field in ("input_range", "output_range", "precision_points"):
                 if getattr(self, field) is not None:
-                    yield Contradiction(f"/{field}", "belongs to a function; pairs have their own")
+                    yield Contradiction(f"/{field}", "applies only to a function; pairs define their own")
             yield from self._faults_of_pairs(self.pairs)
             return
         assert self.function is not None
         if self.scales is not None:
-            yield Contradiction("/scales", "belongs to pairs; a function has ranges")
+            yield Contradiction("/scales", "applies only to pairs; a function has ranges")
         if self.criterion not in (None, "precision") and self.precision_points is not None:
-            yield Contradiction("/precision_points", f"{self.criterion} looks at the whole range and meets no points")
+            detail = f"{self.criterion} approximates the whole range and uses no precision points"
+            yield Contradiction("/precision_points", detail)
         faults = list(self.function.faults())
         yield from (Contradiction(f"/function{fault.path}", fault.detail) for fault in faults)
         if not faults:
@@ -450,7 +453,7 @@ class FunctionProblem(LinkageProblem):
         for k, later in enumerate(turned):
             for j, earlier in enumerate(turned[:k]):
                 if abs(math.remainder(later - earlier, FULL_TURN)) <= EQUAL_INPUTS:
-                    yield Contradiction(f"/pairs/{k}/input", f"equal to that of pair {j}; inputs must differ")
+                    yield Contradiction(f"/pairs/{k}/input", f"equals that of pair {j}; inputs must differ")
                     return
         if max(turned) - min(turned) > MOST_TURNED:
             yield Contradiction("/pairs", "the inputs cover a full turn or more")
@@ -458,7 +461,7 @@ class FunctionProblem(LinkageProblem):
         steps = np.sign(np.diff(turned))
         wrong = np.flatnonzero(steps != steps[0])
         if self.constraints.in_order and len(wrong):
-            detail = "inputs must rise, or fall, from pair to pair, or in_order be false"
+            detail = "inputs must rise, or fall, from pair to pair, unless in_order is false"
             yield Contradiction(f"/pairs/{wrong[0] + 1}/input", detail)
         moved = [float(value) for value in self.values[:, 1]]
         if not self.slides and max(moved) - min(moved) > MOST_TURNED:
@@ -466,8 +469,8 @@ class FunctionProblem(LinkageProblem):
         if max(moved) - min(moved) <= EQUAL_INPUTS * (max(map(abs, moved)) if self.slides else 1.0):
             yield Contradiction("/pairs", "the output does not move")
         if self.aim == "precision" and len(pairs) > self.most_exact:
-            more = "name watt_2 alone for nine" if self.sixbars_alone else "leave zeros or scales open"
-            detail = f"at most {self.most_exact} pairs can be met; {more}, or ask for another criterion"
+            more = "request only watt_2 for nine" if self.sixbars_alone else "leave zeros or scales open"
+            detail = f"at most {self.most_exact} pairs can be met exactly; {more}, or use another criterion"
             yield Contradiction("/pairs", detail)
 
     def _faults_of_ranges(self) -> Iterator[Contradiction]:
@@ -477,22 +480,22 @@ class FunctionProblem(LinkageProblem):
                 continue
             turns = side == "input" or not self.slides
             if turns and not LEAST_TURNED <= abs(span) <= MOST_TURNED:
-                detail = f"a range is between {LEAST_TURNED} and {MOST_TURNED} degrees"
+                detail = f"a range must lie between {LEAST_TURNED} and {MOST_TURNED} degrees"
                 yield Contradiction(f"/{side}_range", detail)
             elif span == 0.0:
                 yield Contradiction(f"/{side}_range", "the output does not move")
         if self.slides and self.output_range is None:
             yield Contradiction("/output_range", "a slider's range sets the size of the linkage and must be given")
         if self.aim == "precision" and (self.precision_points or 0) > self.most_exact:
-            more = "name watt_2 alone for nine" if self.sixbars_alone else "leave zeros or ranges open"
-            yield Contradiction("/precision_points", f"at most {self.most_exact} points can be met; {more}")
+            more = "request only watt_2 for nine" if self.sixbars_alone else "leave zeros or ranges open"
+            yield Contradiction("/precision_points", f"at most {self.most_exact} points can be exact; {more}")
 
     def _zeros_and_scales(self) -> Iterator[Contradiction]:
         if self.scales is not None and self.slides and self.scales.output is None:
-            yield Contradiction("/scales/output", "a slider's scale only changes the size of the linkage; state it")
+            yield Contradiction("/scales/output", "must be given: a slider's scale only changes the linkage's size")
         if not self.determines_watts:
             return
-        detail = "nine pairs have finitely many sixbars only where it is stated"
+        detail = "must be given, because nine pairs leave finitely many sixbars only then"
         for side in ("input", "output"):
             if self.scales is not None and getattr(self.scales, side) is None:
                 yield Contradiction(f"/scales/{side}", detail)

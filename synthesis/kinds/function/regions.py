@@ -1,8 +1,8 @@
-"""Regions of pivots as inequalities of a function generator and of its place, with derivatives by its steps.
+"""Pivot regions as inequalities of a function generator and its placement, with derivatives by the steps.
 
-A generator does the same in any place, direction and size, so that regions leave four numbers more to choose: with w
-the vector of the ground line (of a slider-crank the slide's, of given size) and o the place of O2, joint p stands at
-o + w p. Steps are those of the generator, then of ln |w|, arg w, and of o in units of the regions' extent.
+A generator works alike in any position, direction and size, so regions involve four more parameters: with w the vector
+of the ground line (for a slider-crank that of the slide, of given size) and o the position of O2, joint p is at
+o + w p. Steps are those of the generator, followed by ln |w|, arg w, and o in units of the regions' extent.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 DIRECTIONS, SIZES = 144, 5
-"""Directions and sizes in which many generators are tried: to two hundredths of their size."""
+"""Numbers of directions and sizes tried in the coarse placement, accurate to about 2 % of a linkage's size."""
 
 SMALLEST = 0.2
-"""Least share of the greatest size that is tried where no limit of length says how small a linkage may be."""
+"""Minimum size tried, as a share of the maximum, if no length limit gives a minimum."""
 
 
 class Regions:
-    """Regions that pivots must lie in, of a task that leaves the place open."""
+    """Regions that must contain the pivots, for a task with free placement."""
 
     def __init__(self, task: FunctionTask) -> None:
         self.task, self.constraints = task, task.problem.constraints
@@ -44,11 +44,11 @@ class Regions:
 
     @property
     def free(self) -> NDArray[np.bool_]:
-        """Which of the four numbers of the place are open."""
+        """Mask of the open parameters among the four of the placement."""
         return np.array([not self.slides, True, True, True])
 
     def joints(self, generators: Real) -> Complex:
-        """Pivots at the first target in the solver's frame, fixed ones first, of generators (k, 7): shape (k, n)."""
+        """Return pivots at the first target in the solver's frame, fixed ones first: (k, 7) gives shape (k, n)."""
         a, _, c, start, zero, k, scale = (generators[:, j] for j in range(STEPS))
         errors = self.first.errors(generators, self.first.signs(generators))[:, 0]
         errors = np.where(np.isfinite(errors), errors, 0.0)
@@ -63,7 +63,7 @@ class Regions:
         return np.stack([*fixed, pin, joint], axis=-1)
 
     def put(self, generator: Real) -> Real:
-        """A generator (7,) with the place that fits it best: shape (11,)."""
+        """Append the best placement to a generator (7,): shape (11,)."""
         joints = self.joints(generator[None])[0]
         moving, fixed = list(joints[-2:]), list(joints[:-2])
         lengths = None if self.slides else [1.0, *(float(x) for x in generator[:3])]
@@ -74,7 +74,7 @@ class Regions:
         return np.concatenate([generator, place])
 
     def outside(self, generators: Real) -> Real:
-        """How far many generators lie outside at least, in units of the regions' extent: shape (k,); coarse."""
+        """Estimate the minimum distance of many generators from the regions, in units of their extent: shape (k,)."""
         joints = self.joints(generators)
         if self.slides:
             sizes = np.full((len(joints), 1), self.task.unit)
@@ -87,14 +87,14 @@ class Regions:
         best = np.full(len(joints), np.inf)
         for turn in np.exp(1j * math.tau * np.arange(DIRECTIONS) / DIRECTIONS):
             moved = (sizes * turn)[..., None] * joints[:, None, :]
-            # Half of what the joints are farther apart than their boxes allow.
+            # The spread of the joints beyond what their boxes allow; centring them halves the distance.
             x = (self.boxes.left - moved.real).max(axis=-1) - (self.boxes.right - moved.real).min(axis=-1)
             y = (self.boxes.low - moved.imag).max(axis=-1) - (self.boxes.high - moved.imag).min(axis=-1)
             best = np.minimum(best, np.maximum(x, y).min(axis=1))
         return np.asarray(np.maximum(0.5 * best, 0.0) / self.extent)
 
     def values(self, at: Real) -> tuple[Real, Real]:
-        """Inequalities g ≤ 0 of a generator with its place (11,), and their derivatives: shapes (m,) and (m, 11)."""
+        """Return inequalities g ≤ 0 of a placed generator (11,), and their derivatives: shapes (m,) and (m, 11)."""
         generator, (log_size, turn, x, y) = at[:STEPS], at[STEPS:]
         along, origin = math.exp(log_size) * complex(math.cos(turn), math.sin(turn)), self.extent * complex(x, y)
         joints = self.joints(generator[None])[0]
@@ -121,7 +121,7 @@ class Regions:
         return g, rows
 
     def _turned(self, generator: Real) -> Complex:
-        """Derivatives of A and B at the first target in the solver's frame by the generator's steps: shape (2, 7)."""
+        """Return derivatives of A and B at the first target, in the solver's frame, by the steps: shape (2, 7)."""
         a, _, c, start, zero, k, scale = (float(x) for x in generator)
         place, wanted = float(self.first.inputs[0]), float(self.first.outputs[0])
         errors = self.first.errors(generator[None], self.first.signs(generator[None]))[0]

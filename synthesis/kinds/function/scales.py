@@ -1,10 +1,10 @@
-"""More pairs than proportions and zeros can meet: one or two scales are open.
+"""More pairs than proportions and zeros can meet: solve for one or two open scales.
 
-A scale stands inside of cosines, so that its equations are no polynomials. For given scales the first six equations
-leave one point v of P⁶ (:mod:`synthesis.kinds.function.closure`), an analytic function of the scales; what is left of
-the equations, and the cubic, must vanish there. For one scale this is a function of one number over an interval: it is
-interpolated by Chebyshev polynomials, whose roots are eigenvalues (Boyd, SIAM J. Numer. Anal. 40 (2002) 1666,
-doi:10.1137/S0036142901398325). For two scales the sign changes of both conditions on a grid are refined.
+A scale occurs inside cosines, so its equations are not polynomial. For given scales the first six equations leave one
+point v of P⁶ (:mod:`synthesis.kinds.function.closure`), an analytic function of the scales; the remaining equations and
+the cubic must vanish there. For one scale this is a function of one variable over an interval, which is interpolated by
+Chebyshev polynomials; their roots are eigenvalues (Boyd, SIAM J. Numer. Anal. 40 (2002) 1666,
+doi:10.1137/S0036142901398325). For two scales, sign changes of both conditions on a grid are refined.
 """
 
 from __future__ import annotations
@@ -26,21 +26,21 @@ Zeros = tuple[float | None, float | None]
 SIX = 6
 
 DEGREE, DEPTH = 32, 10
-"""Degree of the interpolation on a piece of the interval, and how often a piece is halved until that is enough."""
+"""Degree of the interpolation on a piece of the interval, and maximum number of times that a piece is halved."""
 
 RESOLVED, ROUNDING = 1e-9, 4e-15
-"""Last coefficients of the interpolation, relative to the largest, at which it has converged; and what rounding leaves
-of them, over the independence of the equations."""
+"""Convergence of the interpolation: tolerance of its last coefficients, relative to the largest; and their rounding
+error, to be divided by the independence of the equations."""
 
 UNCLEAR = 1e-3
-"""Roots this near to each other or to the real axis, in half-lengths of their piece, are not told apart with certainty:
-the root of the interpolation's error, with room."""
+"""Minimum distance of roots from each other and from the real axis, in half-lengths of their piece, to distinguish them
+with certainty: the square root of the interpolation's error, with a margin."""
 
 GRID = 120
-"""Scales a side, logarithmically spaced, where two are open."""
+"""Number of logarithmically spaced scales per side if two are open."""
 
 DIFFERENCE, NEWTON_STEPS, LONGEST_STEP = 1e-5, 8, 0.05
-"""Of the refinement of two scales: difference in the logarithm, steps, and their greatest length."""
+"""Refinement of two scales: finite-difference step in the logarithm, number of Newton steps, maximum step length."""
 
 
 class Scaled(NamedTuple):
@@ -51,9 +51,9 @@ class Scaled(NamedTuple):
     dimensions : float, shape (k, 7)
         Five dimensions and both scales.
     degenerate : int
-        Solutions with a link of no or of infinite length.
+        Number of solutions with a link of zero or infinite length.
     proved : bool
-        There are no others with scales between the limits.
+        Whether the set is proved complete for scales between the limits.
     """
 
     dimensions: Real
@@ -62,14 +62,15 @@ class Scaled(NamedTuple):
 
 
 class Scaling:
-    """Pairs whose scales are open.
+    """Conditions of pairs with open scales.
 
     Parameters
     ----------
     closure : Closure
         The type of linkage.
     inputs, outputs : float, shape (n,)
-        Pairs, to be multiplied by the scales; of a side with a given zero from the value 0, else from the first.
+        Pairs, to be multiplied by the scales; measured from the value 0 if the side's zero is given, else from the
+        first value.
     zeros : pair of float or None
         Given zeros, radians, or in units of the slider's range.
     """
@@ -78,11 +79,12 @@ class Scaling:
         self.closure, self.inputs, self.outputs, self.zeros = closure, inputs, outputs, zeros
 
     def conditions(self, k: Real, scale: Real) -> tuple[Real, Real, Real]:
-        """What must vanish, shape (..., conditions); the point v; how well it is determined."""
+        """Return the values that must vanish, shape (..., conditions), the point v, and the independence of its
+        equations."""
         rows = equations(self.closure, k[..., None] * self.inputs, scale[..., None] * self.outputs, self.zeros)
         basis, independent = left_over(rows[..., :SIX, :])
         v = basis[..., 0, :]
-        # The sign of v that makes it the generalized cross product of the rows, which is analytic.
+        # Choose the sign that makes v the generalized cross product of the rows, which is analytic in the scales.
         whole = np.concatenate([rows[..., :SIX, :], v[..., None, :]], axis=-2)
         v = v * np.where(np.linalg.det(whole) >= 0.0, 1.0, -1.0)[..., None]
         values = np.einsum("...rj,...j->...r", rows[..., SIX:, :], v)
@@ -92,14 +94,14 @@ class Scaling:
 
 
 def one_scale(pairs: Scaling, limits: tuple[float, float], side: int, other: float) -> Scaled:
-    """All linkages with the scale of one side open between limits, the other's given.
+    """Find all linkages with the scale of one side open between limits, and the other given.
 
     Parameters
     ----------
     pairs : Scaling
-        One pair more than is met with all scales given.
+        One pair more than can be met with given scales.
     limits : pair of float
-        Of the open scale, both of one sign.
+        Limits of the open scale, both of the same sign.
     side : 0 or 1
         Input or output.
     other : float
@@ -121,13 +123,13 @@ def one_scale(pairs: Scaling, limits: tuple[float, float], side: int, other: flo
 
 
 def _roots(function: Callable[[Real], tuple[Real, Real]], limits: tuple[float, float]) -> tuple[Real, bool]:
-    """All roots in an interval of a function that comes with the independence of its equations.
+    """Find all roots in an interval of a function, which also returns the independence of its equations.
 
     Returns
     -------
     roots : float, shape (k,)
     proved : bool
-        Every piece is resolved and no root is unclear.
+        Whether every piece is resolved and all roots are clearly separated.
     """
     nodes = chebyshev.chebpts1(DEGREE + 1)
     transform = 2.0 / len(nodes) * np.cos(np.outer(np.arange(len(nodes)), np.arccos(nodes)))
@@ -143,6 +145,7 @@ def _roots(function: Callable[[Real], tuple[Real, Real]], limits: tuple[float, f
         if not resolved and depth < DEPTH:
             pieces += [(low, middle, depth + 1), (middle, high, depth + 1)]
             continue
+        # Drop negligible trailing coefficients: they would put spurious roots near the ends.
         large = np.flatnonzero(np.abs(series) > 0.1 * allowed * np.abs(series).max())
         roots = chebyshev.chebroots(series[: max(int(large[-1]), 1) + 1]) if len(large) else np.empty(0)
         roots = roots[(np.abs(roots.real) <= 1.0 + UNCLEAR) & (np.abs(roots.imag) <= UNCLEAR)]
@@ -154,16 +157,16 @@ def _roots(function: Callable[[Real], tuple[Real, Real]], limits: tuple[float, f
 def two_scales(
     pairs: Scaling, input_limits: tuple[float, float], output_limits: tuple[float, float], extra: Real
 ) -> Real:
-    """Linkages near which both conditions vanish, with both scales open: to be refined; shape (k, 7).
+    """Find approximate linkages with both scales open, at which both conditions nearly vanish; shape (k, 7).
 
     Parameters
     ----------
     pairs : Scaling
-        Two pairs more than are met with all scales given.
+        Two pairs more than can be met with given scales.
     input_limits, output_limits : pair of float
-        Of the scales; both of one sign.
+        Limits of the scales, both of the same sign.
     extra : float, shape (m, 2)
-        Scales that are looked at too.
+        Additional scales to try.
     """
     k, scale = (
         math.copysign(1.0, low) * np.geomspace(abs(low), abs(high), GRID) for low, high in (input_limits, output_limits)
@@ -172,6 +175,7 @@ def two_scales(
     values, _, _ = pairs.conditions(at[..., 0], at[..., 1])
     positive = values > 0.0
     corners = np.stack([positive[:-1, :-1], positive[1:, :-1], positive[:-1, 1:], positive[1:, 1:]])
+    # A cell may contain a solution only if every condition changes its sign among the four corners.
     crossed = np.all(corners.any(axis=0) & ~corners.all(axis=0), axis=-1)
     i, j = np.nonzero(crossed)
     starts = np.sqrt(at[i, j] * at[i + 1, j + 1]) * np.sign(at[i, j])
@@ -181,7 +185,7 @@ def two_scales(
 
 
 def _refined(pairs: Scaling, scales: Real) -> Real:
-    """Newton's method in the logarithms of both scales, by differences, from many places at once; shape (k, 2)."""
+    """Refine many pairs of scales by Newton's method in their logarithms, with finite differences; shape (k, 2)."""
     ahead = np.exp(DIFFERENCE * np.eye(2))
     for _ in range(NEWTON_STEPS):
         moved = [scales * factor for factor in (ahead[0], 1.0 / ahead[0], ahead[1], 1.0 / ahead[1])]

@@ -1,8 +1,8 @@
-"""A sixbar of the search as a mechanism with its dials, put where it fits.
+"""Conversion of a candidate sixbar to a mechanism with dials, and its placement.
 
-A function generator does the same wherever it stands, so that place, direction and size are free; of Watt II also the
-size and the direction of its second fourbar beside the first. These are chosen so that links differ little in length,
-pivots lie in their regions, and over the whole motion in the box.
+A function generator works alike in any position, direction and size; for a Watt II also the size and direction of its
+second fourbar relative to the first are free. These are chosen to keep link lengths similar, pivots in their regions,
+and all joints in the box throughout the motion.
 """
 
 from __future__ import annotations
@@ -33,33 +33,34 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 LOOKED_AT = 49
-"""Places of the motion at which a sixbar is to be within the box."""
+"""Number of samples of the motion at which a sixbar must be within the box."""
 
 FINE = 6
-"""Steps from each of them to the next in which Stephenson II is followed."""
+"""Number of substeps between samples in which a Stephenson II is followed."""
 
 DIRECTIONS, SIZES = 24, (1.0, 0.6, 1.6)
-"""Directions and sizes of the second fourbar of a Watt II that are tried; the size is first that with which the longest
-and the shortest of both agree."""
+"""Number of directions, and size factors, tried for the second fourbar of a Watt II. With factor 1 the geometric means
+of longest and shortest link agree in both fourbars."""
 
 HULL = np.exp(1j * np.arange(48) * (math.tau / 48.0))
-"""Directions in which the outermost places of a motion are looked for."""
+"""Directions in which the extreme points of a motion are determined."""
 
 INSET = 2e-3
-"""Share of the box by which these places lie farther inside: between the directions they lie farther out."""
+"""Margin of the extreme points from the box, as a share of its size, because points between directions lie farther out.
+"""
 
 TURNS = np.exp(1j * np.arange(72) * (math.tau / 72.0))
-"""Directions in which a sixbar is tried."""
+"""Directions tried in the placement of a sixbar."""
 
 TRIED_SIZES, SMALLEST, LARGE, BEYOND = 10, 0.05, 0.6, 1.5
-"""Sizes in which it is tried, the least of them and those that are taken as shares of the greatest, and the greatest
-beside that with which it is as wide as the widest of its boxes."""
+"""Placement sizes: number tried; minimum tried and minimum preferred, as shares of the maximum; and maximum relative to
+the size that fills the widest box."""
 
 NO_LENGTH = 1e-12
-"""A length of none, grounds."""
+"""Minimum length, in ground lengths, in a ratio."""
 
 SIZE_WEIGHT = 0.1
-"""Of the logarithm of the size beside that of the link ratio."""
+"""Weight of the logarithm of the size relative to that of the link ratio."""
 
 LINKS = {
     name: {link: tuple(joint for joint in joints if joint != "P") for link, joints in SIXBAR_LINKS[name].items()}
@@ -69,14 +70,14 @@ LINKS = {
 
 
 class _Frame(NamedTuple):
-    """A sixbar over its motion: joints by name, shape (m,) each, and from which angle, degrees, the output counts."""
+    """A sixbar over its motion: joints by name, shape (m,) each, and the reference angle of the output, degrees."""
 
     joints: dict[str, Complex]
     output_frame: float
 
 
 def built(task: FunctionTask, found: Found) -> tuple[SixbarMechanism, Dials]:
-    """A sixbar of the search in the problem's coordinates, standing at the first target, with its dials."""
+    """Build a candidate sixbar in the problem's coordinates, at the first target, with its dials."""
     problem = task.problem
     frame, there = _fitting(problem, found, list(_frames(task, found)))
     joints = {name: there.origin + there.along * complex(places[0]) for name, places in frame.joints.items()}
@@ -86,7 +87,7 @@ def built(task: FunctionTask, found: Found) -> tuple[SixbarMechanism, Dials]:
 
 
 def _fitting(problem: FunctionProblem, found: Found, frames: list[_Frame]) -> tuple[_Frame, Placing]:
-    """The most even frame of a sixbar that fits where it is to be; the most even of all where none does."""
+    """Select the frame with the most even link lengths that can be placed; without one, the most even of all."""
     frames.sort(key=lambda frame: _unevenness(found, frame.joints))
     first: tuple[_Frame, Placing] | None = None
     for frame in frames:
@@ -99,9 +100,9 @@ def _fitting(problem: FunctionProblem, found: Found, frames: list[_Frame]) -> tu
 
 
 def _frames(task: FunctionTask, found: Found) -> Iterator[_Frame]:
-    """The sixbar in its own frame, O2 at 0 and O4 at 1, in all ways in which it can be put together.
+    """Yield the sixbar in its own frame, O2 at 0 and O4 at 1, in all relative placements of its fourbars.
 
-    The first of the places is that of the first target.
+    The first sample is the first target.
     """
     kind, at = KINDS[found.type], found.at
     first, last = float(task.inputs[0]), float(task.sample_inputs.max())
@@ -136,7 +137,7 @@ def _frames(task: FunctionTask, found: Found) -> Iterator[_Frame]:
 
 
 def _closed(q: Complex, o: Complex, d: float, e: float, *, left: bool) -> Complex:
-    """The joint of a dyad from pins q and pivots o, to the left of the way from q to o or to the right."""
+    """Return the joint of a dyad from pins q and pivots o, to the left or right of the line from q to o."""
     across = o - q
     r = np.abs(across)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -147,7 +148,7 @@ def _closed(q: Complex, o: Complex, d: float, e: float, *, left: bool) -> Comple
 
 
 def _second_stephenson(found: Found, first: float, ends: tuple[float, float]) -> dict[str, Complex]:
-    """Joints of a Stephenson II at the first target and on to both ends of its range; the kernel follows its τ."""
+    """Drive a Stephenson II from the first target to both ends of its range; the kernel follows τ in small steps."""
     at = found.at.copy()
     left = found.assembly & 1 == 1
     begun = followed(STEPHENSON_2, found.assembly, at, np.array([first]), np.zeros(1)).tau
@@ -168,7 +169,7 @@ def _second_stephenson(found: Found, first: float, ends: tuple[float, float]) ->
 
 
 def _unevenness(found: Found, joints: dict[str, Complex]) -> float:
-    """Logarithm of the ratio of all lengths, and a little of the size beside it."""
+    """Return the logarithm of the link ratio, plus a small weight of the logarithm of the size."""
     there = {name: complex(places[0]) for name, places in joints.items()}
     lengths = lengths_of(there, LINKS[found.type]).values()
     extent = np.ptp([z.real for z in there.values()]) + np.ptp([z.imag for z in there.values()])
@@ -176,7 +177,7 @@ def _unevenness(found: Found, joints: dict[str, Complex]) -> float:
 
 
 def _placed(problem: FunctionProblem, found: Found, frame: _Frame) -> Placing:
-    """The similarity that brings a sixbar from its own frame to where it fits."""
+    """Find the similarity that places a sixbar from its own frame into regions and box."""
     links, joints = LINKS[found.type], frame.joints
     still = links[GROUND]
     constraints, space = problem.constraints, problem.space
@@ -209,7 +210,7 @@ def _placed(problem: FunctionProblem, found: Found, frame: _Frame) -> Placing:
 
 
 def _within(places: Complex, limits: Boxes) -> bool:
-    """Whether places lie in their boxes, but for rounding."""
+    """Return whether points lie in their boxes, apart from rounding."""
     margin = ROUNDING * float(np.abs(places).max())
     x, y = places.real, places.imag
     inside = (limits.left - margin <= x) & (x <= limits.right + margin)
@@ -217,9 +218,9 @@ def _within(places: Complex, limits: Boxes) -> bool:
 
 
 def _tried(points: Complex, limits: Boxes, least: float, most: float, preferred: float) -> Placing:
-    """The similarity that brings points into boxes, of many directions and sizes; where none does, the nearest.
+    """Try many directions and sizes to place points in boxes; return the closest if none fits.
 
-    Of those that do the one with the most room, and a size not much below the greatest.
+    Among those that fit, select the one with the largest margin whose size is not much below the maximum.
     """
     sides = np.concatenate([limits.right - limits.left, limits.high - limits.low])
     extent = max(float(np.ptp(points.real)), float(np.ptp(points.imag)))
@@ -243,19 +244,19 @@ def _tried(points: Complex, limits: Boxes, least: float, most: float, preferred:
 
 
 def _between(low: Real, high: Real, n: int) -> float:
-    """The middle of a range, or the end that it has, or 0."""
+    """Return the middle of a range, its only finite end, or 0 if it is unbounded."""
     ends = [float(end) for end in (low[n], high[n]) if math.isfinite(end)]
     return sum(ends) / len(ends) if ends else 0.0
 
 
 def _preferred(joints: dict[str, Complex]) -> float:
-    """The size with which the longest ground line is the usual one."""
+    """Return the size at which the longest ground line has the default length."""
     still: Sequence[complex] = [complex(joints[name][0]) for name in ("O2", "O4", "O6") if name in joints]
     return USUAL_GROUND / max(abs(one - other) for one in still for other in still)
 
 
 def _sizes(problem: FunctionProblem, found: Found, joints: dict[str, Complex]) -> tuple[float, float]:
-    """Sizes with which all lengths keep their limits."""
+    """Return the minimum and maximum size at which all lengths satisfy their limits."""
     limits = problem.constraints.link_length
     if limits is None:
         return 0.0, math.inf

@@ -1,4 +1,4 @@
-"""Descents of sixbars towards the least squares of their errors under limits, and the best of what they arrive at."""
+"""Least-squares descents of sixbars under constraints, and selection of the best results."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ Real = NDArray[np.float64]
 KINDS: dict[Sixbar, int] = {"watt_2": WATT_2, "stephenson_3": STEPHENSON_3, "stephenson_2": STEPHENSON_2}
 
 APART = 0.05
-"""Sixbars differ by this much in the logarithm of a length, an angle or a coordinate."""
+"""Minimum separation of distinct sixbars, in the logarithm of a length, an angle or a coordinate."""
 
 NONE = np.zeros(1)
-"""Multipliers of a problem that has none."""
+"""Placeholder for the multipliers of a problem without any."""
 
 
 class Found(NamedTuple):
-    """A sixbar of the search: its type, assembly and numbers, and its error in the criterion's norm, radians."""
+    """A candidate sixbar: its type, assembly and numbers, and its error in the criterion's norm, radians."""
 
     type: Sixbar
     assembly: int
@@ -39,23 +39,23 @@ class Found(NamedTuple):
 
 
 class Descended(NamedTuple):
-    """What many starts have become, and half the sum of squares of each; infinite where a start is impossible."""
+    """Results of many starts, and half the sum of squares of each; infinite for an impossible start."""
 
     starts: Starts
     costs: Real
 
 
 class Descents:
-    """Descents of sixbars of one task at some places.
+    """Descents of sixbars of one task at given inputs.
 
     Parameters
     ----------
     points : float, shape (4, m)
-        As :func:`~synthesis.kinds.function.sixbar_rows.rows` takes them.
+        As for :func:`~synthesis.kinds.function.sixbar_rows.rows`.
     least : float
-        Transmission angle, degrees, that is aimed at.
+        Minimum transmission angle, degrees.
     ratio : float, optional
-        Greatest link ratio.
+        Maximum link ratio.
     """
 
     def __init__(self, points: Real, least: float, ratio: float | None) -> None:
@@ -64,23 +64,23 @@ class Descents:
         self._most = fit.most_rows(points.shape[1])
 
     def costs(self, name: Sixbar, starts: Starts) -> Real:
-        """Half the squares of each start's errors and of what its transmission lacks; infinite where it fails."""
+        """Return half the sum of squares of each start's errors and transmission violations; infinite on failure."""
         costs = np.empty(len(starts.at))
         fit.weigh(KINDS[name], starts.assemblies, starts.at, self.points, self.cosine, costs)
         return costs
 
     def descended(self, one: Found, weight: float, steps: int, tolerance: float) -> Found:
-        """The least squares from a start, by Levenberg and Marquardt's method, limits having a weight beside errors."""
+        """Minimize the least squares from a start by the Levenberg-Marquardt method; ``weight`` is that of limits."""
         x, setting, state = self._problem(one, weight)
         cost, _ = descend(fit.rows, x, self.points, setting, NONE, state, self._most, steps, tolerance)
         return _reached(one, x, setting, state, cost)
 
     def descended_each(self, name: Sixbar, starts: Starts, weight: float, steps: int, tolerance: float) -> Descended:
-        """The same from many starts of a type."""
+        """Minimize the least squares from many starts of a type."""
         kind = KINDS[name]
         x, states, costs = _unknowns(kind, starts.at), starts.at[:, -1:].copy(), np.full(len(starts.at), math.inf)
         at = starts.at.copy()
-        # What a setting depends on: the assembly, and the signs of both scales.
+        # A setting depends on the assembly and the signs of both scales: descend each such group together.
         groups = np.column_stack([starts.assemblies, np.sign(starts.at[:, [K, L]])])
         for group in np.unique(groups, axis=0):
             own = np.flatnonzero((groups == group).all(axis=1))
@@ -96,31 +96,31 @@ class Descents:
         return Descended(Starts(at, starts.assemblies), costs)
 
     def along(self, one: Found, weight: float, steps: int) -> Found:
-        """A sixbar farther along the valley that it is in."""
+        """Follow the valley that contains a sixbar."""
         return self._followed(one, *self._problem(one, weight), steps)
 
     def moved(
         self, one: Found, weight: float, steps: int, directions: int, farthest: float, rng: np.random.Generator
     ) -> Found | None:
-        """A sixbar moved by chance along the directions that change its residuals least, and followed from there.
+        """Perturb a sixbar along the directions that change its residuals least, and follow the valley from there.
 
         Parameters
         ----------
         one : Found
         weight : float
-            Of limits.
+            Weight of limits.
         steps : int
-            Along the valley.
+            Number of steps along the valley.
         directions : int
-            How many directions, the flattest ones, some of which are taken.
+            Number of flattest directions to choose from.
         farthest : float
-            Greatest change of an unknown before it is followed.
+            Maximum change of an unknown in the perturbation.
         rng : numpy.random.Generator
 
         Returns
         -------
         Found or None
-            Nothing where the sixbar cannot be moved.
+            None if the sixbar cannot be moved.
         """  # fmt: skip
         x, setting, state = self._problem(one, weight)
         residuals, jacobian = np.zeros(self._most), np.zeros((self._most, len(x)))
@@ -139,7 +139,7 @@ class Descents:
         return _reached(one, x, setting, state, cost)
 
     def _problem(self, one: Found, weight: float) -> tuple[Real, Real, Real]:
-        """The unknowns of a sixbar, the setting of its rows, and their state."""
+        """Return the unknowns of a sixbar, the setting of its rows, and their state."""
         kind = KINDS[one.type]
         setting = self._setting(kind, one.assembly, np.sign(one.at[[K, L]]), weight)
         return _unknowns(kind, one.at), setting, one.at[-1:].copy()
@@ -154,7 +154,7 @@ class Descents:
 
 
 def _unknowns(kind: int, at: Real) -> Real:
-    """The unknowns of one row, or of many."""
+    """Encode one row, or many, as unknowns."""
     x = at.copy()
     logs = LOGARITHMIC[kind]
     x[..., logs] = np.log(np.abs(x[..., logs]))
@@ -168,7 +168,7 @@ def _reached(one: Found, x: Real, setting: Real, state: Real, cost: float) -> Fo
 
 
 def best(found: Iterable[Found], most: int) -> list[Found]:
-    """The best of some that differ, of one type."""
+    """Select the best distinct sixbars of one type."""
     ordered = sorted((one for one in found if math.isfinite(one.error)), key=lambda one: one.error)
     if not ordered:
         return []
@@ -177,7 +177,7 @@ def best(found: Iterable[Found], most: int) -> list[Found]:
 
 
 def best_starts(name: Sixbar, starts: Starts, costs: Real, most: int) -> list[Found]:
-    """The best of many starts that differ, by their costs; those with infinite ones are none."""
+    """Select the best distinct starts by their costs; starts with infinite costs are dropped."""
     order = np.argsort(costs, kind="stable")
     order = order[np.isfinite(costs[order])]
     chosen = order[distinct(features(KINDS[name], starts.at[order]), most, APART)]
@@ -185,7 +185,7 @@ def best_starts(name: Sixbar, starts: Starts, costs: Real, most: int) -> list[Fo
 
 
 def features(kind: int, at: Real) -> NDArray[np.complex128]:
-    """What tells sixbars of a type apart, as :func:`~synthesis.outcome.ranking.distinct` takes it."""
+    """Return the coordinates that distinguish sixbars of a type, for :func:`~synthesis.outcome.ranking.distinct`."""
     logs = LOGARITHMIC[kind]
     table = at[:, :-1].copy()
     table[:, logs[:-1]] = np.log(np.abs(table[:, logs[:-1]]))

@@ -1,4 +1,4 @@
-"""A sixbar function generator and its limits as the descents of function generators take them."""
+"""Adapters that present sixbar function generators and their limits to the general descents."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from synthesis.kinds.function.task import FunctionTask
 Real = NDArray[np.float64]
 
 MARGIN = math.radians(0.02)
-"""By which a demanded transmission angle is exceeded at the places that are looked at: between them it is less."""
+"""Margin, radians, added to a required transmission angle at the samples, because it is smaller between them."""
 
 FELT = 0.25
-"""Cosines of a transmission angle that are less than the greatest allowed one by this are no rows of a program."""
+"""Distance of a transmission cosine below its limit from which it is left out of a linear program as inactive."""
 
 IMPOSSIBLE = 1e3
-"""What a sixbar lacks of its limits that cannot be assembled."""
+"""Constraint violation assigned to a sixbar that cannot be assembled."""
 
 
 class Followed(NamedTuple):
-    """What the kernel fills of one sixbar: see :func:`~synthesis.kinds.function.sixbar_kernels.follow`."""
+    """Kernel output for one sixbar; see :func:`~synthesis.kinds.function.sixbar_kernels.follow`."""
 
     tau: float
     errors: Real
@@ -38,32 +38,32 @@ class Followed(NamedTuple):
 
 
 def followed(kind: int, assembly: int, at: Real, inputs: Real, outputs: Real, felt: float = math.inf) -> Followed:
-    """A sixbar at places."""
+    """Follow a sixbar through inputs with the compiled kernel."""
     m = len(inputs)
     filled = np.empty(m), np.zeros((m, NUMBERS)), np.zeros((m, 2)), np.zeros((m, 2, NUMBERS))
     return Followed(kernels.follow(kind, assembly, at, inputs, outputs, felt, *filled), *filled)
 
 
 class SixbarFollower:
-    """Sixbars of one type in one assembly at common places of the input, in one direction from place to place."""
+    """Sixbars of one type in one assembly, evaluated at common, monotonic inputs."""
 
     def __init__(self, kind: int, assembly: int, inputs: Real, outputs: Real) -> None:
         self.kind, self.assembly, self.inputs, self.outputs = kind, assembly, inputs, outputs
 
     def some(self, rows: NDArray[np.int64]) -> SixbarFollower:
-        """The same at some of the places, the first among them."""
+        """Return the sixbars at selected inputs, including the first."""
         return SixbarFollower(self.kind, self.assembly, self.inputs[rows], self.outputs[rows])
 
     def errors(self, dimensions: Real, _signs: Real) -> Real:
-        """Errors of sixbars (k, NUMBERS): shape (k, places), NaN where none is."""
+        """Return errors of sixbars (k, NUMBERS): shape (k, inputs), NaN if not assembled."""
         return np.array([followed(self.kind, self.assembly, at, self.inputs, self.outputs).errors for at in dimensions])
 
     def derivatives(self, dimensions: Real, _errors: Real, _sign: float) -> Real:
-        """Of the errors of one sixbar by its steps: shape (places, NUMBERS)."""
+        """Return derivatives of one sixbar's errors by its steps: shape (inputs, NUMBERS)."""
         return followed(self.kind, self.assembly, dimensions, self.inputs, self.outputs).slopes
 
     def stepped(self, dimensions: Real, step: Real) -> Real:
-        """A sixbar after a step."""
+        """Apply a step to a sixbar, and update the τ of a Stephenson II."""
         found = dimensions.copy()
         logs = LOGARITHMIC[self.kind]
         found[logs] *= np.exp(step[logs])
@@ -83,11 +83,11 @@ class SixbarLimits:
         The task.
     kind, assembly : int
     inputs : float, shape (m,)
-        Where transmission angles are looked at, in one direction.
+        Monotonic inputs at which transmission angles are constrained.
     least : float
-        Transmission angle, degrees, that is kept.
+        Minimum transmission angle, degrees.
     every : bool
-        Whether transmission angles far from that are rows too, so that there are always as many.
+        Whether inactive transmission angles are rows too, which keeps the number of rows constant.
     """
 
     def __init__(
@@ -104,11 +104,11 @@ class SixbarLimits:
         self._rows = 1
 
     def put(self, generator: Real) -> Real:
-        """The sixbar as it is: its place is chosen when it is found."""
+        """Return the sixbar unchanged: its placement is chosen after the search."""
         return generator
 
     def values(self, generator: Real, *, derivatives: bool = False) -> tuple[Real, Real]:
-        """g and, where asked for, its derivatives by the steps: shapes (m,) and (m, NUMBERS)."""
+        """Return g and, on request, its derivatives by the steps: shapes (m,) and (m, NUMBERS)."""
         felt = self.felt if derivatives else math.inf
         there = followed(self.kind, self.assembly, generator, self.inputs, np.zeros_like(self.inputs), felt)
         if not math.isfinite(there.tau):
@@ -125,7 +125,7 @@ class SixbarLimits:
         return np.concatenate([g for g, _ in parts]), np.concatenate([slopes for _, slopes in parts])
 
     def _ratios(self, at: Real) -> tuple[Real, Real]:
-        """Ratios of the lengths, each to each other; of a Watt II those of the second fourbar."""
+        """Return the rows of all length ratios; for a Watt II those of the second fourbar only."""
         logs, by = np.empty(LENGTHS), np.empty((LENGTHS, NUMBERS))
         count = log_lengths(self.kind, at, logs, by)
         own = slice(count // 2 if self.kind == WATT_2 else 0, count)
@@ -135,5 +135,5 @@ class SixbarLimits:
 
 
 def greatest_cosine(least: float) -> float:
-    """The cosine of a transmission angle, degrees, that is kept with a margin."""
+    """Return the maximum cosine for a minimum transmission angle, degrees, including the margin."""
     return math.cos(math.radians(least) + MARGIN) - INSIDE

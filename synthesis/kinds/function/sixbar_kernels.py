@@ -1,26 +1,26 @@
-"""Sixbar function generators, compiled: the output's place, the transmission, and both by the dimensions.
+"""Compiled kernels for sixbar function generators: output angle, transmission angles, and their derivatives.
 
-A sixbar has a row of :data:`NUMBERS` numbers, of which the first seven are those of a fourbar O2 A B O4 with ground 1
-as :mod:`synthesis.kinds.function.structural_error` has them: a, b, c, φ₀, ψ₀, k and l. The input stands at φ₀ + k u,
-and the output should at ψ₀ + l v. What follows them is the type's:
+A sixbar has a row of :data:`NUMBERS` numbers, of which the first seven are those of a fourbar O2 A B O4 with ground 1,
+as in :mod:`synthesis.kinds.function.structural_error`: a, b, c, φ₀, ψ₀, k and l. The input angle is φ₀ + k u, and the
+target of the output angle ψ₀ + l v. The other numbers depend on the type:
 
-* Watt II: a₂, b₂, c₂ and α. The rocker O4 B C drives a second fourbar, O4 C D O6 with ground 1 in a frame of its own;
-  its crank stands at the rocker's angle + α. Its size and direction beside the first are free.
+* Watt II: a₂, b₂, c₂ and α. The rocker O4 B C drives a second fourbar, O4 C D O6 with ground 1 in its own frame; its
+  crank angle is the rocker's angle + α. The size and direction of the second fourbar relative to the first are free.
 * Stephenson III: x, y of C from A, along A → B and across; x, y of O6; lengths of the links C D and O6 D.
-* Stephenson II: x, y of C from O2 when A is on +x; lengths of B D and C D; x, y of E from B, along B → D and across. b
-  is the length of A B, and c that of the output O4 E. The angle τ of A B from the input is solved for.
+* Stephenson II: x, y of C from O2 with A on +x; lengths of B D and C D; x, y of E from B, along B → D and across. b is
+  the length of A B, and c that of the output O4 E. The angle τ of A B relative to the input is solved for.
 
-All but Stephenson II close by dyads. Of a pin Q and a pivot O, with d = |Q D|, e = |O D|, r = |Q O|, D − O = e e^{iψ}
-and v the unit vector from Q to D,
+All types except Stephenson II are closed by dyads. For a pin Q and a pivot O, with d = |Q D|, e = |O D|, r = |Q O|,
+D − O = e e^{iψ} and v the unit vector from Q to D,
 
     cos μ = (d² + e² − r²) / 2de,        δψ = (δd + (δQ − δO − δe e^{iψ}) · v) / (i e e^{iψ} · v),
 
-where the divisor is e times the sine of the transmission angle μ. Of Stephenson II, E has a place in the frame of the
-input for each τ, and |E − O4| = c tells τ; its transmission angle is the least at the three legs of link 4
+where the divisor is e times the sine of the transmission angle μ. In a Stephenson II, τ determines E in the frame of
+the input, and |E − O4| = c determines τ; its transmission angle is the minimum at the three legs of link 4
 (:mod:`synthesis.fit.triad_slant`).
 
-Assemblies are numbered: bit 0 is the first dyad's, bit 1 the second's; set where D is to the left of the way from Q to
-O. Stephenson II has its only dyad, C D B, in bit 0.
+Assemblies are numbered: bit 0 belongs to the first dyad, bit 1 to the second; it is set if D is to the left of the line
+from Q to O. The only dyad of Stephenson II, C D B, uses bit 0.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 WATT_2, STEPHENSON_3, STEPHENSON_2 = 0, 1, 2
-"""Numbers of the types."""
+"""Type numbers."""
 
 NUMBERS = 14
-"""Of a row; those that a type does not have are 0, and the last is Stephenson II's τ at the first place."""
+"""Length of a row; unused numbers of a type are 0, and the last is Stephenson II's τ at the first input."""
 
 A, B, C, START, ZERO, K, L = range(7)
-"""Where the numbers of the fourbar are."""
+"""Indices of the fourbar's numbers."""
 
 LOGARITHMIC = np.array(
     [
@@ -53,7 +53,7 @@ LOGARITHMIC = np.array(
     ],
     np.bool_,
 )
-"""Which numbers of each type are changed by their logarithms."""
+"""Mask of the numbers of each type whose steps are of logarithms."""
 
 OWN = np.array(
     [
@@ -63,19 +63,19 @@ OWN = np.array(
     ],
     np.bool_,
 )
-"""Which numbers each type has."""
+"""Mask of the numbers that each type uses."""
 
 NEWTON, SETTLED = 12, 1e-13
-"""Steps for τ at a place at most, and the last of them, radians."""
+"""Newton's method for τ: maximum number of steps, and convergence tolerance of the last step, radians."""
 
 NEARLY_SETTLED = 1e-9
-"""Last step with which τ counts as known where rounding leaves no less."""
+"""Last step, radians, up to which τ is accepted if rounding prevents a smaller one."""
 
 DIFFERENCE = 1e-6
-"""Step of the differences by which the transmission angle of Stephenson II is derived."""
+"""Finite-difference step for the derivatives of Stephenson II's transmission angle."""
 
 FARTHEST = 0.5
-"""Radians that τ changes at most in one step of Newton's method."""
+"""Maximum change of τ in one Newton step, radians."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -95,9 +95,9 @@ def _dyad(
     by_psi: Real,
     by_cosine: Real,
 ) -> tuple[float, float]:
-    """ψ of the link at the pivot and cos μ, with their derivatives; ψ is NaN where the dyad does not close.
+    """Close a dyad: return ψ of the link at the pivot and cos μ, and write their derivatives; ψ is NaN if it fails.
 
-    ``columns``: of the logarithms of both lengths.
+    ``columns``: columns of the logarithms of both lengths.
     """  # fmt: skip
     d, e = lengths
     across = q - o
@@ -110,7 +110,7 @@ def _dyad(
         return math.nan, cosine
     height = math.sqrt(height2)
     unit = across / r
-    # To the left of Q → O is to the right of O → Q.
+    # Left of Q → O means right of O → Q, hence the sign.
     arm = unit * complex(along, -height if left else height)
     v = (o + arm - q) / d
     turned = 1j * arm
@@ -129,9 +129,9 @@ def _dyad(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _relative_point(at: Real, left: bool, tau: float, by: Complex) -> tuple[complex, complex, complex, complex, bool]:
-    """Stephenson II: B, D and E from O2 in the frame of the input, A on +x, E's derivative by τ, and whether it closes.
+    """Compute B, D and E of a Stephenson II from O2 in the input's frame (A on +x), E's derivative by τ, and success.
 
-    ``by`` (NUMBERS,) gets the derivatives of E by the numbers, the last by τ.
+    ``by`` (NUMBERS,) receives the derivatives of E by the numbers, the last by τ.
     """
     a, b = at[A], at[B]
     c = complex(at[7], at[8])
@@ -142,7 +142,7 @@ def _relative_point(at: Real, left: bool, tau: float, by: Complex) -> tuple[comp
     by_pin[A], by_pin[B], by_pin[NUMBERS - 1] = a, link, 1j * link
     by_c[7], by_c[8] = 1.0, 1j
     turned, unused = np.zeros(NUMBERS), np.zeros(NUMBERS)
-    # The dyad C–D–B: D turns about B.
+    # Close the dyad C–D–B, whose link B D turns about B.
     angle, _ = _dyad(c, by_c, pin, by_pin, (cd, bd), (10, 9), left, turned, unused)
     if not math.isfinite(angle):
         return 0j, 0j, 0j, 0j, False
@@ -157,7 +157,7 @@ def _relative_point(at: Real, left: bool, tau: float, by: Complex) -> tuple[comp
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _settled(at: Real, left: bool, turn: complex, tau: float, by: Complex) -> float:
-    """The angle τ with which Stephenson II closes, from one near it; NaN where it is not met."""
+    """Solve for the angle τ with which a Stephenson II closes, by Newton's method from a nearby one; NaN on failure."""
     step = math.inf
     for _ in range(NEWTON):
         _, _, point, moves, found = _relative_point(at, left, tau, by)
@@ -177,9 +177,9 @@ def _settled(at: Real, left: bool, turn: complex, tau: float, by: Complex) -> fl
 def _triad(
     at: Real, left: bool, phi: float, tau: float, felt: float, by_psi: Real, by_cosine: Real
 ) -> tuple[float, float, float]:
-    """Stephenson II at an input: ψ, τ, and the cosine of the least angle; NaN where it does not close nearby.
+    """Close a Stephenson II at an input: return ψ, τ, and the cosine of the minimum transmission angle; NaN on failure.
 
-    The derivatives of the cosine are left alone where it is less than ``felt``.
+    The derivatives of the cosine are not computed if it is below ``felt``.
     """
     by, by_tau = np.zeros(NUMBERS, np.complex128), np.zeros(NUMBERS)
     turn = complex(math.cos(phi), math.sin(phi))
@@ -194,7 +194,7 @@ def _triad(
         moved = turn * by[n]
         if n == START:
             moved += 1j * turn * point
-        # Of c itself: |E − O4|² grows with it.
+        # A step of ln c changes the required |E − O4|² instead of E.
         lack = arm.real * moved.real + arm.imag * moved.imag - (square if n == C else 0.0)
         by_tau[n] = -lack / along
         moved += rate * by_tau[n]
@@ -220,10 +220,10 @@ def _triad(
 def _second_pin(
     kind: int, at: Real, angle: float, pin: complex, q: Complex, o: Complex, turned: Real
 ) -> tuple[complex, complex]:
-    """The pin and the pivot of the second dyad, from the first's output angle and the pin A.
+    """Compute pin and pivot of the second dyad, from the first's output angle and pin A.
 
-    ``q`` and ``o`` have the derivatives of A and of O4, and get those of the second dyad's; ``turned`` are those of the
-    angle.
+    On input ``q`` and ``o`` are the derivatives of A and O4, on output those of the second dyad's pin and pivot;
+    ``turned`` are those of the angle.
     """
     if kind == WATT_2:
         crank = at[7] * complex(math.cos(angle + at[10]), math.sin(angle + at[10]))
@@ -259,7 +259,7 @@ def _dyads(
     cosines: Real,
     by_cosine: Real,
 ) -> float:
-    """ψ of a sixbar that closes by dyads, with what :func:`follow` fills for a place; NaN where it does not close."""
+    """Close a sixbar with two dyads: return ψ and write the outputs of :func:`follow` for one input; NaN on failure."""
     first, second = assembly & 1 == 1, assembly & 2 == 2
     pin = at[A] * complex(math.cos(theta), math.sin(theta))
     q[:] = 0.0
@@ -288,26 +288,27 @@ def follow(
     cosines: Real,
     by_cosine: Real,
 ) -> float:
-    """Structural errors of a sixbar at places, their derivatives by its steps, and the cosines of transmission angles.
+    """Follow a sixbar through inputs: compute structural errors, cosines of transmission angles, and derivatives.
 
     Parameters
     ----------
     kind, assembly : int
     at : float, shape (NUMBERS,)
     inputs, outputs : float, shape (m,)
-        u and v, in one direction from place to place.
+        u and v, monotonic.
     felt : float
-        Cosines of Stephenson II that are less have no derivatives.
+        Cosines of a Stephenson II below this have no derivatives.
     errors : float, shape (m,)
-        Radians, wrapped; NaN from the first place on at which the sixbar cannot be assembled.
+        Output: radians, wrapped; NaN from the first input on at which the sixbar cannot be assembled.
     slopes : float, shape (m, NUMBERS)
+        Output: derivatives of the errors.
     cosines, by_cosine : float, shapes (m, 2) and (m, 2, NUMBERS)
-        Of both dyads; of Stephenson II the first are 0. What is not filled is left as it is.
+        Output: values of both dyads; for Stephenson II the first are 0. Other entries are unchanged.
 
     Returns
     -------
     float
-        Stephenson II's τ at the first place; NaN where the sixbar is not assembled at all places.
+        Stephenson II's τ at the first input; NaN if the sixbar is not assembled at all inputs.
     """
     q, o = np.zeros(NUMBERS, np.complex128), np.zeros(NUMBERS, np.complex128)
     tau = begun = float(at[NUMBERS - 1])

@@ -1,8 +1,8 @@
-"""Lengths of sixbar function generators, the distances between pins of a link, whose ratio is limited; compiled.
+"""Compiled lengths of sixbar function generators: the distances between pins of a link, whose ratio is limited.
 
-Each is a distance in the frame of a link, so that it follows from a row's numbers
-(:mod:`~synthesis.kinds.function.sixbar_kernels`) alone. A Watt II is two fourbars, each with a ground of 1: the size of
-the second beside the first is free, and what of its ternary links lies between both is chosen with it.
+Each is a distance in the frame of a link and follows from a row's numbers alone
+(:mod:`~synthesis.kinds.function.sixbar_kernels`). A Watt II consists of two fourbars, each with ground 1: the size of
+the second relative to the first is free, and determines the remaining lengths of its ternary links.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from synthesis.kinds.function.sixbar_kernels import STEPHENSON_3, WATT_2, A, B, 
 Real = NDArray[np.float64]
 
 LENGTHS = 10
-"""Lengths of a type at most."""
+"""Maximum number of lengths of a type."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _distance(at: Real, place: int, from_column: int, logs: Real, slopes: Real, n: int) -> int:
-    """The distance of a point from its frame's origin, or from the end of its frame's link, as the n-th; n + 1.
+    """Write a point's distance from its frame's origin, or from the end of the frame's link, as entry n; return n + 1.
 
     ``place``: column of the point's coordinates; ``from_column``: −2 for the origin, −1 for (1, 0), or the column of
     the link's length.
@@ -41,7 +41,7 @@ def _distance(at: Real, place: int, from_column: int, logs: Real, slopes: Real, 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def log_lengths(kind: int, at: Real, logs: Real, slopes: Real) -> int:
-    """Logarithms of all lengths of a sixbar, and their derivatives by its steps.
+    """Compute the logarithms of all lengths of a sixbar, and their derivatives by its steps.
 
     Parameters
     ----------
@@ -49,12 +49,12 @@ def log_lengths(kind: int, at: Real, logs: Real, slopes: Real) -> int:
     at : float, shape (NUMBERS,)
         The sixbar's row.
     logs, slopes : float, shapes (LENGTHS,), (LENGTHS, NUMBERS)
-        Filled: from the first on. Steps are of logarithms where :data:`sixbar_kernels.LOGARITHMIC` says so.
+        Output. Steps are of logarithms for the numbers in :data:`sixbar_kernels.LOGARITHMIC`.
 
     Returns
     -------
     int
-        How many they are; of a Watt II those of the second fourbar are the last half.
+        Number of lengths; for a Watt II the second half belongs to the second fourbar.
     """
     logs[:], slopes[:] = 0.0, 0.0
     n = 0
@@ -72,12 +72,12 @@ def log_lengths(kind: int, at: Real, logs: Real, slopes: Real) -> int:
     if kind == WATT_2:
         return n
     if kind == STEPHENSON_3:
-        # C on the coupler from A and from B, O6 from O2 and from O4.
+        # C on the coupler to A and B; O6 to O2 and O4.
         for place, other in ((7, B), (9, -1)):
             n = _distance(at, place, -2, logs, slopes, n)
             n = _distance(at, place, other, logs, slopes, n)
         return n
-    # C on the input from O2 and from A, E on the link B D from B and from D.
+    # C on the input to O2 and A; E on the link B D to B and D.
     for place, other in ((7, A), (11, 9)):
         n = _distance(at, place, -2, logs, slopes, n)
         n = _distance(at, place, other, logs, slopes, n)

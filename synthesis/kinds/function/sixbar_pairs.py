@@ -1,15 +1,15 @@
-"""Sixbars towards stated pairs: what may be met to rounding is not left at a nearby minimum.
+"""Sixbars that approximate given pairs: a search that meets pairs to rounding if that is possible.
 
-The least squares of pairs have many minima, and most of those that are nearly zero are not zero. What tells them apart
-is seen only where the descents have nearly ended, and few starts lead to the least. So many are followed, at few of the
-pairs as long as that is enough to choose:
+The least-squares function of pairs has many minima, and most minima close to zero are not zero. They can be
+distinguished only near the end of the descents, and few starts lead to the best minimum. Therefore many starts are
+followed, at a subset of the pairs as long as that suffices to select:
 
-1. All starts descend some steps at nine of the pairs.
-2. The best that differ are followed along their valleys (:mod:`synthesis.numerics.geodesic`) at fifteen pairs, and the
-   best of these farther.
-3. The last ones are followed to their end at all pairs and limits.
-4. Where none has arrived at rounding, the best are moved by chance along the directions in which the residuals change
-   least, and followed again, each beside what was known (basin hopping, Wales & Doye 1997, doi:10.1021/jp970984n).
+1. All starts descend a few steps at nine of the pairs.
+2. The best distinct ones are followed along their valleys (:mod:`synthesis.numerics.geodesic`) at fifteen pairs, and
+   the best of these farther.
+3. The remaining ones are followed until convergence at all pairs and limits.
+4. If none meets the pairs to rounding, the best are perturbed along the directions in which the residuals change least,
+   and followed again (basin hopping, Wales & Doye 1997, doi:10.1021/jp970984n).
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ Real = NDArray[np.float64]
 
 
 class Effort(NamedTuple):
-    """Of a type: how many sixbars are drawn; how many go along valleys at few pairs, and for how many steps, and so
-    again; how many are followed to the end, and for how many steps; and how many moves by chance there are."""
+    """Effort for one type: number of sampled sixbars; numbers of sixbars and steps along valleys at few pairs, in two
+    stages; numbers of sixbars and steps at all pairs; and number of random perturbations."""
 
     drawn: int
     followed: tuple[int, int]
@@ -46,25 +46,25 @@ EFFORTS: dict[Sixbar, Effort] = {
     "stephenson_3": MUCH,
     "stephenson_2": Effort(60_000, (400, 100), (60, 500), (12, 2000), 20),
 }
-"""A Stephenson II, whose place is a root, takes three times as long as the others."""
+"""Effort by type. A Stephenson II, whose configuration must be solved iteratively, takes three times as long."""
 
 FIRST_PLACES, PLACES = 9, 15
-"""Pairs of the first descents, and of the valleys by which it is chosen."""
+"""Numbers of pairs in the first descents, and in the first valleys."""
 
 FIRST_STEPS, FIRST_TOLERANCE, FIRST_WEIGHT, WEIGHT = 15, 1e-5, 0.1, 1.0
-"""Of the first descents: steps, the relative decrease at which one ends, and how much limits weigh; and later."""
+"""First descents: maximum steps, relative decrease at which one ends, and weight of limits; last the later weight."""
 
 LIKELY = 0.35
-"""Chance that the best of those that are known is moved, and if not, that the next one is, and so on."""
+"""Probability that the best known sixbar is perturbed; otherwise the next one with the same probability, and so on."""
 
 MOVED_STEPS, FLATTEST, FARTHEST = 400, 5, 0.6
-"""Of a move: steps along the valley after it, directions that are taken at most, and the greatest change."""
+"""Perturbation: steps along the valley after it, maximum number of directions, and maximum change of an unknown."""
 
 
 def few_of(points: Real, count: int) -> Real:
-    """So many of the places that are pairs, spread evenly, with limits there alone.
+    """Select ``count`` evenly spread pairs from the points, with limits only there.
 
-    ``points`` (4, m) as :func:`~synthesis.kinds.function.sixbar_rows.rows` takes them.
+    ``points`` (4, m) as for :func:`~synthesis.kinds.function.sixbar_rows.rows`.
     """
     pairs = np.flatnonzero(points[2] > 0.0)
     picked = pairs[np.unique(np.round(np.linspace(0, len(pairs) - 1, count)).astype(int))]
@@ -74,18 +74,18 @@ def few_of(points: Real, count: int) -> Real:
 
 
 class PairSearch:
-    """A search for sixbars that meet the pairs of one task.
+    """Search for sixbars that meet the pairs of one task.
 
     Parameters
     ----------
     points : float, shape (4, m)
-        As :func:`~synthesis.kinds.function.sixbar_rows.rows` takes them.
+        As for :func:`~synthesis.kinds.function.sixbar_rows.rows`.
     least : float
-        Transmission angle, degrees, that is aimed at.
+        Minimum transmission angle, degrees.
     ratio : float, optional
-        Greatest link ratio.
+        Maximum link ratio.
     met : float
-        Root mean square error, radians, that is rounding: nothing is left to improve.
+        RMS error, radians, that counts as rounding and ends the search.
     """
 
     def __init__(self, points: Real, least: float, ratio: float | None, met: float) -> None:
@@ -97,12 +97,12 @@ class PairSearch:
     def arrived(
         self, name: Sixbar, starts: Starts, most: int, rng: np.random.Generator, progress: Progress
     ) -> list[Found]:
-        """The best sixbars that starts of a type lead to, so many at most."""
+        """Find the best sixbars from starts of a type, at most ``most``."""
         effort = EFFORTS[name]
         begun = self._first.descended_each(name, starts, FIRST_WEIGHT, FIRST_STEPS, FIRST_TOLERANCE)
         progress(0.3, f"following the best of {len(starts.at)} sixbars of type {name}")
         found = best_starts(name, *begun, effort.followed[0])
-        # What is followed at few pairs and then again keeps its order better than what is followed at all at once.
+        # Two stages at few pairs preserve the ranking better than a direct step to all pairs.
         for descents, (_, steps), (kept, _) in (
             (self._few, effort.followed, effort.followed_farther),
             (self._few, effort.followed_farther, effort.followed_to_the_end),
@@ -113,7 +113,7 @@ class PairSearch:
         return self._moved(found, effort.moves, most, rng)
 
     def _moved(self, found: list[Found], moves: int, most: int, rng: np.random.Generator) -> list[Found]:
-        """Some, and what moves of them by chance have led to, until the pairs are met."""
+        """Improve sixbars by random perturbations until the pairs are met."""
         for _ in range(moves):
             if not found or found[0].error < self._met:
                 break

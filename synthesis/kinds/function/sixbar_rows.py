@@ -1,8 +1,8 @@
-"""Sixbar function generators as a problem of least squares under limits, for Levenberg and Marquardt's method.
+"""Sixbar function generators as a constrained least-squares problem for the Levenberg-Marquardt method.
 
-The unknowns are a row's numbers (:mod:`~synthesis.kinds.function.sixbar_kernels`), lengths and scales by their
-logarithms. Residuals are the structural errors, and what is lacking of the limits: of transmission angles by their
-cosines at each place, of the link ratio by logarithms.
+The unknowns are a row's numbers (:mod:`~synthesis.kinds.function.sixbar_kernels`), with logarithms of lengths and
+scales. Residuals are the structural errors and the constraint violations: cosines of transmission angles at each input,
+and the logarithm of the link ratio.
 """
 
 from __future__ import annotations
@@ -20,19 +20,18 @@ from synthesis.numerics.levenberg import ROWS
 Real = NDArray[np.float64]
 
 KIND, ASSEMBLY, SIGN_K, SIGN_L, COSINE, RATIO, STRICT, FREE = range(8)
-"""Where a setting holds its numbers: the type, the assembly, the signs of both scales, the greatest cosine of a
-transmission angle, the logarithm of the greatest link ratio, how much limits weigh, and from FREE on which numbers are
-open."""
+"""Indices into a setting: type, assembly, signs of both scales, maximum cosine of a transmission angle, logarithm of
+the maximum link ratio, weight of the limits, and from FREE on the mask of open numbers."""
 
 SETTING = FREE + NUMBERS
 
 WIDEST, INSIDE = 1e3, 1e-6
-"""Link ratio that is kept where no limit is given, and what is kept of the logarithm of a given one."""
+"""Default maximum link ratio, and margin in the logarithm of the limit."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def unlogged(kind: int, x: Real, setting: Real, state: Real, at: Real) -> None:
-    """The numbers of a row from the unknowns."""
+    """Decode the unknowns to the numbers of a row."""
     for n in range(NUMBERS):
         at[n] = math.exp(x[n]) if LOGARITHMIC[kind, n] else x[n]
     at[K] *= setting[SIGN_K]
@@ -42,7 +41,7 @@ def unlogged(kind: int, x: Real, setting: Real, state: Real, at: Real) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _ratio_row(logs: Real, slopes: Real, begin: int, end: int, most: float, weight: float, row: Real) -> float:
-    """What the longest and the shortest of some lengths are beyond a ratio, weighed, with its derivatives."""
+    """Return the weighted excess of the ratio of some lengths over its limit, and write its derivatives."""
     low, high = begin, begin
     for j in range(begin, end):
         if logs[j] < logs[low]:
@@ -60,8 +59,11 @@ def _ratio_row(logs: Real, slopes: Real, begin: int, end: int, most: float, weig
 
 @njit(ROWS, cache=True, nogil=True, error_model="numpy")
 def rows(x: Real, points: Real, setting: Real, _multipliers: Real, state: Real, residuals: Real, jacobian: Real) -> int:
-    """Errors and what is lacking; the rows of ``points`` (4, m) are the inputs, the outputs, and the weights of the
-    errors and of the limits there. ``state`` is Stephenson II's τ."""
+    """Evaluate errors and constraint violations with their Jacobian; return the number of rows, −1 on failure.
+
+    The rows of ``points`` (4, m) are inputs, outputs, weights of the errors, and weights of the limits. ``state`` is
+    Stephenson II's τ.
+    """
     kind, assembly = int(setting[KIND]), int(setting[ASSEMBLY])
     inputs, outputs, weights, limited = points
     m = inputs.size
@@ -88,7 +90,7 @@ def rows(x: Real, points: Real, setting: Real, _multipliers: Real, state: Real, 
             count += 1
     logs, by_step = np.empty(LENGTHS), np.empty((LENGTHS, NUMBERS))
     listed = log_lengths(kind, at, logs, by_step)
-    # The size of a Watt II's second fourbar beside the first is free.
+    # Limit the ratio within each fourbar of a Watt II, because their relative size is free.
     group = listed // 2 if kind == WATT_2 else listed
     for begin in range(0, listed, group):
         residuals[count] = _ratio_row(logs, by_step, begin, begin + group, setting[RATIO], strict, jacobian[count])
@@ -98,13 +100,13 @@ def rows(x: Real, points: Real, setting: Real, _multipliers: Real, state: Real, 
 
 
 def most_rows(places: int) -> int:
-    """Rows of so many places at most."""
+    """Return the maximum number of rows for a number of inputs."""
     return 3 * places + 2
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def weigh(kind: int, assemblies: NDArray[np.int64], at: Real, points: Real, cosine: float, costs: Real) -> None:
-    """Of many sixbars half the sum of squares of errors and of what transmission lacks; infinite where one fails.
+    """Write half the sum of squares of errors and transmission violations of many sixbars; infinite on failure.
 
     ``points`` as for :func:`rows`.
     """

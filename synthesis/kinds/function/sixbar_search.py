@@ -1,15 +1,15 @@
-"""A search for sixbars whose output follows a function or meets pairs.
+"""Search for sixbars whose output follows a function or meets pairs.
 
-1. Sixbars are drawn and composed (:mod:`~synthesis.kinds.function.sixbar_starts`), some thousand of each type.
-2. Those with the least errors that differ descend towards the least squares of errors under limits, by Levenberg and
-   Marquardt's method: a few milliseconds each. The best of them go on along the curved valleys in which the least
-   squares lie (:mod:`synthesis.numerics.geodesic`).
-3. The best of them are improved by the criterion under all limits, as fourbars are
+1. Several thousand sixbars of each type are sampled and composed (:mod:`~synthesis.kinds.function.sixbar_starts`).
+2. The best distinct ones are fitted by least squares under constraints with the Levenberg-Marquardt method, a few
+   milliseconds each. The best of these continue along the curved valleys that contain the minima
+   (:mod:`synthesis.numerics.geodesic`).
+3. The best results are optimised by the criterion under all constraints, as fourbars are
    (:mod:`~synthesis.kinds.function.descent`).
 
-Of stated pairs that are to be followed, more are drawn and chosen in more steps
-(:mod:`~synthesis.kinds.function.sixbar_pairs`). Where only Watt II sixbars are to follow nine pairs or more, and none
-has met them, all through nine of the pairs are computed besides
+For the approximation of given pairs more sixbars are sampled and selected in more stages
+(:mod:`~synthesis.kinds.function.sixbar_pairs`). If only Watt II sixbars are requested for nine or more pairs, and none
+met them, all sixbars through nine of the pairs are computed too
 (:mod:`~synthesis.kinds.function.nine_pair_sixbars`).
 """
 
@@ -39,12 +39,12 @@ from synthesis.outcome.simplest import SOUND
 Real = NDArray[np.float64]
 
 DRAWN: dict[Sixbar, int] = {"watt_2": 4000, "stephenson_3": 6000, "stephenson_2": 40_000}
-"""Sixbars that are drawn of each type."""
+"""Number of sampled sixbars by type."""
 
 
 class Effort(NamedTuple):
-    """Of a type: sixbars that descend by least squares, of a function and of pairs that are to be met exactly, and
-    those of them that go on along valleys."""
+    """Effort for one type: number of least-squares descents for a function, and for exact pairs; and number of those
+    that continue along valleys."""
 
     descended: int
     for_exact: int
@@ -54,58 +54,57 @@ class Effort(NamedTuple):
 MUCH = Effort(150, 400, 40)
 
 EFFORTS: dict[Sixbar, Effort] = {"watt_2": MUCH, "stephenson_3": MUCH, "stephenson_2": Effort(100, 120, 16)}
-"""A Stephenson II, whose place is a root, takes three times as long as the others."""
+"""Effort by type. A Stephenson II, whose configuration must be solved iteratively, takes three times as long."""
 
 IMPROVED, ALONG = 8, 150
-"""Sixbars that are improved to the end, and steps along a valley of those that go along one."""
+"""Number of sixbars that are optimised until convergence, and number of steps along a valley."""
 
 PLACES = 61
-"""Places of a function that least squares look at, closer together at the ends of the range."""
+"""Number of samples of a function in the least squares, denser towards the ends of the range."""
 
 DENSE, DENSE_OF_SQUARES = 401, 121
-"""Places at which the greatest error is made small, and its mean square."""
+"""Numbers of samples at which the maximum error, or the mean square error, is minimised."""
 
 BETWEEN = 49
-"""Places between pairs at which limits are kept, at least."""
+"""Minimum number of inputs over the range of pairs at which limits are checked."""
 
 WEIGHTS = (0.1, 1.0)
-"""Of limits beside errors, one descent after the other."""
+"""Weights of limits relative to errors in successive descents."""
 
 STEPS, TOLERANCE = 80, 1e-7
-"""Of a descent: steps at most, and the relative decrease at which it ends."""
+"""Descent: maximum number of steps, and relative decrease at which it ends."""
 
 EXACT_STEPS, EXACT_TOLERANCE = 200, 1e-13
-"""The same of the last descent to pairs that are to be met."""
+"""The same for the last descent to exact pairs."""
 
 ROUNDS, ROUNDS_OF_SQUARES = 60, 15
-"""Steps by the criterion at most: linear programs, and as many times three quadratic ones."""
+"""Maximum number of steps in the final optimisation: linear programs, and a third of the number of quadratic ones."""
 
 BEFORE_NINE = 0.3
-"""Share of the progress before all sixbars through nine pairs are computed."""
+"""Share of the progress assigned to the search before all sixbars through nine pairs are computed."""
 
 NEAR, NEARLY_MET = 0.1, 1e-6
-"""Root mean square errors at all pairs of a sixbar through nine, radians: below the first it is followed farther under
-all limits, below the second it is brought to rounding."""
+"""RMS errors at all pairs, radians, of a sixbar through nine of them: below the first it is optimised under all
+constraints, below the second it is refined to rounding."""
 
 MET_AS_STATED = math.radians(1e-6)
-"""Greatest error at a pair, radians, of what meets pairs as they are stated."""
+"""Maximum error at a pair, radians, of a sixbar that counts as meeting the given pairs."""
 
 FOLLOWED, FOLLOWED_STEPS = 16, 2000
-"""So many of these at most are followed, and for so many steps along their valley."""
+"""Maximum number of these that are followed along their valleys, and number of steps."""
 
 SEARCHES, NEARLY = 2, 1e-3
-"""Searches towards pairs at most, one after the other, and the root mean square error, radians, from which on there is
-no other."""
+"""Maximum number of consecutive searches for pairs, and RMS error, radians, above which no other search follows."""
 
 MET = 1e-10
-"""Greatest error, radians, that is rounding: nothing is left to improve."""
+"""Maximum error, radians, that counts as rounding: no further improvement is possible."""
 
 
 class Places(NamedTuple):
-    """Where sixbars are looked at, in the order of the input.
+    """Sample points of a task, in order of the input.
 
-    ``points`` (4, m) as :func:`~synthesis.kinds.function.sixbar_rows.rows` takes them; ``dense`` (2, n): inputs and
-    outputs at which the criterion measures the error.
+    ``points`` (4, m) as for :func:`~synthesis.kinds.function.sixbar_rows.rows`; ``dense`` (2, n): inputs and outputs at
+    which the criterion measures the error.
     """
 
     points: Real
@@ -113,7 +112,7 @@ class Places(NamedTuple):
 
 
 def places_of(task: FunctionTask) -> Places:
-    """The places of a task."""
+    """Make the sample points of a task."""
     function, exact = task.problem.function, task.problem.aim == "precision"
     if function is not None and not exact:
         u = 0.5 - 0.5 * np.cos(np.linspace(0.0, math.pi, PLACES))
@@ -138,14 +137,14 @@ def places_of(task: FunctionTask) -> Places:
 
 
 class SixbarSearch:
-    """A search of one task.
+    """Search for the sixbars of one task.
 
     Parameters
     ----------
     task : FunctionTask
-        Its zeros are open.
+        A task with open zeros.
     least : float
-        Transmission angle, degrees, that is aimed at.
+        Minimum transmission angle, degrees.
     """
 
     def __init__(self, task: FunctionTask, least: float | None = None) -> None:
@@ -158,10 +157,10 @@ class SixbarSearch:
         self._pairs = PairSearch(self.places.points, *limits, MET)
         self.weighed = 0
         self.told = ""
-        """What is known of all sixbars of a type, in a sentence."""
+        """Statement about all sixbars of a type, for the summary."""
 
     def of_type(self, name: Sixbar, rng: np.random.Generator, progress: Progress) -> list[Found]:
-        """The best sixbars of a type that were found, the best first."""
+        """Find the best sixbars of a type, best first."""
         if self.task.problem.function is None and not self.exact:
             reached = self._towards_pairs(name, rng, progress)
         else:
@@ -179,7 +178,7 @@ class SixbarSearch:
         return drawn
 
     def _towards_pairs(self, name: Sixbar, rng: np.random.Generator, progress: Progress) -> list[Found]:
-        """Sixbars towards pairs; where they nearly meet them, so that others might, others are drawn."""
+        """Search for sixbars that meet pairs; repeat with new samples if the pairs are almost met."""
         follows = self.task.problem.follows_watts
         searching = part_of(progress, 0.0, BEFORE_NINE) if follows else progress
         reached: list[Found] = []
@@ -194,7 +193,7 @@ class SixbarSearch:
         return reached
 
     def _through_nine(self, rng: np.random.Generator, progress: Progress) -> list[Found]:
-        """What the nearest of all Watt II sixbars through nine pairs lead to."""
+        """Fit the closest of all Watt II sixbars through nine of the pairs to all pairs."""
 
         def tell(share: float) -> None:
             done = f"{grouped(round(share * SOLUTIONS))} of {grouped(SOLUTIONS)} paths to nine of the pairs followed"
@@ -218,13 +217,13 @@ class SixbarSearch:
             at_least = "at least " if met == FOLLOWED else ""
             which = f"{at_least}{met} of them {agreeing(met, 'meets', 'meet')}" if met else "none of them meets"
             self.told = (
-                f" All {grouped(SOLUTIONS)} Watt II sixbars through {nine} were computed, real and complex; {which} "
-                "all pairs to a millionth of a degree, without a change of assembly."
+                f" All {grouped(SOLUTIONS)} Watt II solutions for {nine}, real and complex, were computed; {which} "
+                "all pairs to a millionth of a degree in one assembly."
             )
         return reached
 
     def _descended(self, name: Sixbar, drawn: Starts, progress: Progress) -> list[Found]:
-        """The least squares that starts lead to: of a function, or of pairs that are to be met exactly."""
+        """Fit starts by least squares to a function, or to exact pairs."""
         effort, descents = EFFORTS[name], self._descents
         begun = best_starts(
             name, drawn, descents.costs(name, drawn), effort.for_exact if self.exact else effort.descended
@@ -237,16 +236,16 @@ class SixbarSearch:
         reached = best(found, effort.valleys)
         progress(0.6, f"improving the best of {len(begun)} sixbars of type {name}")
         if self.exact:
-            # Those that have arrived are left as they are.
+            # With zero weight the valley is followed only by fits that have not met the pairs yet.
             return best([descents.along(one, 0.0, 2 * ALONG) for one in reached], effort.valleys)
         return best([descents.along(one, WEIGHTS[-1], ALONG) for one in reached], IMPROVED)
 
     def _greatest_error(self, one: Found) -> float:
-        """Of a sixbar at the places where the criterion measures, radians; NaN where it does not close at one."""
+        """Return a sixbar's maximum error, radians, at the dense samples; NaN if it cannot be assembled at one."""
         return float(np.abs(followed(KINDS[one.type], one.assembly, one.at, *self.places.dense).errors).max())
 
     def _improved(self, one: Found) -> Found:
-        """A sixbar improved by the criterion, under all limits."""
+        """Optimise a sixbar by the criterion under all constraints."""
         kind, greatest = KINDS[one.type], self._greatest_error(one)
         if self.exact or greatest < MET:
             return one._replace(error=greatest)

@@ -1,12 +1,12 @@
-"""Sixbars to begin with: compositions of generators that meet some places exactly.
+"""Starting sixbars, composed of generators that meet some points exactly.
 
-Watt II: the function is split into two steps. The first is a drawn fourbar; the second a fourbar through five places of
-what is left (:func:`~synthesis.kinds.function.precision.many_exact`). Stephenson III: of a drawn fourbar with a coupler
-point C and a drawn pivot O6 the dyad C–D–O6 is the one with the least squares of the equation
+Watt II: the function is split into two steps. The first is a random fourbar; the second is a fourbar through five
+points of the remaining function (:func:`~synthesis.kinds.function.precision.many_exact`). Stephenson III: for a random
+fourbar with coupler point C and a random pivot O6, the dyad C–D–O6 is the least-squares solution of the equation
 
     |C − O6|² = 2 Re((C − O6) w̄ e^{−iψ}) + const,        w = |O6 D| e^{iψ₀},
 
-which is linear in w and const. Stephenson II: drawn whole.
+which is linear in w and const. Stephenson II: all dimensions are random.
 """
 
 from __future__ import annotations
@@ -25,20 +25,21 @@ from synthesis.kinds.function.task import FunctionTask
 Real = NDArray[np.float64]
 
 WIDEST, WIDER, SELDOM = 1.3, 2.1, 0.3
-"""Logarithm of the drawn lengths, either way, in grounds; and of the share of them that are drawn wider, if asked."""
+"""Half-width of the sampled logarithms of lengths, in ground lengths; the wider value, and the share of samples that
+use it on request."""
 
 FROM_A, FROM_MIDDLE = (0.15, 3.0), (0.1, 4.0)
-"""How far C of a Stephenson III is drawn from A, and O6 from the middle of O2 O4, at least and at most, in sizes of the
-fourbar."""
+"""Ranges of sampled distances for a Stephenson III, in sizes of the fourbar: C from A, and O6 from the midpoint of
+O2 O4."""
 
 FROM_O2, FROM_B = (0.15, 3.0), (0.15, 3.0)
-"""The same of C of a Stephenson II from O2, and of E from B, in lengths of B D."""
+"""The same for a Stephenson II: C from O2, in sizes of the fourbar, and E from B, in lengths of B D."""
 
 LEAST_SWING, GREATEST_SWING = 0.15, math.radians(170.0)
-"""What the rocker of a Watt II, the first step, turns at least, as a share of the input, and at most."""
+"""Swing of a Watt II's rocker, the first step: minimum relative to the input's rotation, and maximum in radians."""
 
 PLACES = 5
-"""That the second fourbar meets exactly."""
+"""Number of points that the second fourbar of a Watt II meets exactly."""
 
 
 class Starts(NamedTuple):
@@ -58,10 +59,10 @@ def starts(
     *,
     wider: bool = False,
 ) -> Starts:
-    """Sixbars of a type to begin with, of so many drawn ones.
+    """Sample starting sixbars of a type, from ``count`` random ones.
 
-    ``inputs``, ``outputs`` (m,): places that they are to follow, in the order of the input; ``wider``: whether some
-    have a first fourbar with a short ground, or a long one.
+    ``inputs``, ``outputs`` (m,): target points in order of the input; ``wider``: whether some first fourbars have a
+    very short or very long ground.
     """
     at = np.zeros((count, kernels.NUMBERS))
     logs = rng.uniform(-WIDEST, WIDEST, (count, 3))
@@ -77,7 +78,7 @@ def starts(
     if kind == kernels.STEPHENSON_2:
         return _second_stephensons(at, rng)
     signs = rng.choice([-1.0, 1.0], count)
-    # The rocker's angle, as the error against an output that stands still.
+    # With zero output the structural error is the rocker's angle itself.
     still = np.concatenate([at[:, :4], np.zeros((count, 1)), at[:, 5:6], np.zeros((count, 1))], axis=1)
     angles = Generators(False, inputs, outputs).errors(still, signs)
     known = np.isfinite(angles).all(axis=1)
@@ -91,7 +92,7 @@ def starts(
 
 
 def _coded(first: Real, second: Real) -> NDArray[np.int64]:
-    """Numbers of assemblies by the signs of both dyads; the dyad A B O4 is open where its sign is +1."""
+    """Encode assemblies by the signs of both dyads; the dyad A B O4 is open if its sign is +1."""
     return np.asarray((first > 0.0) + 2 * (second > 0.0), np.int64)
 
 
@@ -129,10 +130,11 @@ def _third_stephensons(
     unit = (1.0 + at[:, 2:3] * np.exp(1j * angles) - pin) / at[:, 1:2]
     away = pin + (at[:, 7] + 1j * at[:, 8])[:, None] * unit - (at[:, 9] + 1j * at[:, 10])[:, None]
     seen = away * np.exp(-1j * at[:, kernels.L, None] * outputs)
-    # |away|² = 2 Re(seen w̄) + const, by least squares in Re w, Im w and const.
+    # Solve |away|² = 2 Re(seen w̄) + const by least squares in Re w, Im w and const.
     table = np.stack([2.0 * seen.real, 2.0 * seen.imag, np.ones_like(seen.real)], axis=2)
     normal = np.einsum("kmi,kmj->kij", table, table)
     right = np.einsum("kmi,km->ki", table, np.abs(away) ** 2)
+    # Drop starts whose least squares are numerically singular; their dyads would be arbitrary.
     sound = np.linalg.cond(normal) < 1e12
     at, signs, seen, normal, right = at[sound], signs[sound], seen[sound], normal[sound], right[sound]
     x = np.linalg.solve(normal, right[..., None])[..., 0]
@@ -140,7 +142,7 @@ def _third_stephensons(
     square = x[:, 2] + np.abs(w) ** 2
     at[:, kernels.ZERO] = np.angle(w)
     at[:, 11], at[:, 12] = np.sqrt(np.maximum(square, 0.0)), np.abs(w)
-    # To the left of the way from C to O6 is where D lies on the right of that from O6 to C.
+    # D is left of C → O6 exactly if it is right of O6 → C, hence the sign below.
     sides = np.sign((w[:, None] * seen.conj()).imag)
     closes = (square > 0.0) & (np.abs(w) > 0.0) & (np.abs(sides.sum(axis=1)) > 0.9 * seen.shape[1])
     return Starts(at[closes], _coded(signs[closes], -sides[closes].sum(axis=1)))
@@ -158,12 +160,12 @@ def _second_stephensons(at: Real, rng: np.random.Generator) -> Starts:
 
 
 def _sizes(at: Real) -> Real:
-    """Geometric means of the links of fourbars, with their grounds."""
+    """Return the geometric means of the links of fourbars, including the ground."""
     return np.asarray(np.exp(0.25 * np.log(at[:, :3]).sum(axis=1)))
 
 
 def _around(size: Real, ends: tuple[float, float], rng: np.random.Generator) -> Real:
-    """Places in any direction, by the logarithm as likely near as far, between shares of a size: (n, 2)."""
+    """Sample points in random directions at log-uniform distances, between shares of a size: (n, 2)."""
     away = size * np.exp(rng.uniform(math.log(ends[0]), math.log(ends[1]), len(size)))
     angle = rng.uniform(-math.pi, math.pi, len(size))
     return np.asarray((away * np.array([np.cos(angle), np.sin(angle)])).T)

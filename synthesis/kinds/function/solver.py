@@ -1,8 +1,8 @@
-"""Function generation: exact linkages where pairs or precision points are to be met, else the best approximations.
+"""Function generation: exact linkages for pairs or precision points, otherwise the best approximations.
 
-How many pairs there are against what is open decides the way: as many as proportions and open zeros (and one scale)
-have finitely many solutions, all of which are found; fewer have a family, which is searched; for two scales beyond that
-a grid of scales is searched. Every linkage is verified by driving it.
+The number of pairs relative to the open parameters decides the method. As many pairs as proportions and open zeros (and
+one scale) leave finitely many solutions, all of which are found; fewer leave a family, which is searched; if two scales
+are needed, a grid of scales is searched. Every linkage is verified by driving it.
 """
 
 from __future__ import annotations
@@ -32,61 +32,65 @@ from synthesis.outcome.sifting import OUTRANKED, Sifting
 Real = NDArray[np.float64]
 
 DRAWN = 4000
-"""Members drawn of a family."""
+"""Number of sampled members of a family."""
 
 SLICES = 40
-"""Values of one scale at which the other is solved for, where both are open and only one is needed."""
+"""Number of values of one scale at which the other is solved for, if both are open and only one is needed."""
 
 TRIED = 6
-"""Members of a family that are verified at most, for each design wanted."""
+"""Maximum number of verified family members per requested design."""
 
 AWAY = (30.0, 10.0, 2.0)
-"""Least transmission angles, degrees, that keep approximations from a toggle or change point, where the best without a
-limit stands in one and cannot be driven."""
+"""Minimum transmission angles, degrees, tried in turn if the best approximation without a limit is at a toggle or
+change point and cannot be driven."""
 
 COARSE = 0.02
-"""What a member may lack of the limits, as they are first judged, and still be verified."""
+"""Maximum constraint violation of a member, in the first estimate, for it to be verified."""
 
 STEERINGS, STEERED, STEERING_STEPS, ENOUGH_STEERED = 4, 24, 40, 3
-"""Where no member that was drawn lies within the limits: how often others are drawn and the nearest moved into them,
-how many at a time, steps of each, and how many are enough."""
+"""Constrained fits if no sampled member satisfies the limits: maximum number of rounds with new samples, number of fits
+per round, steps of each, and number of designs that ends them."""
 
 MET, NEARLY_MET = 1e-12, 1e-7
-"""Error and what lacks of the limits below which a member has arrived, and with which it is polished and verified."""
+"""Error including constraint violation: convergence tolerance of a fit, and maximum for a member to be refined and
+verified."""
 
 HOPELESS = 0.2
-"""Error, with what lacks of the limits as the descents weigh it, above which no others are drawn: a fiftieth."""
+"""Smallest weighted error of a round above which no further round follows; it corresponds to a violation of a
+fiftieth."""
 
 APART = 0.1
-"""Members of a family differ by this much in the logarithm of a length or in an angle."""
+"""Minimum difference of verified family members, in the logarithm of a length or in an angle (radians)."""
 
 SAME = 1e-7
-"""Solutions whose numbers agree to this, relative, are one."""
+"""Relative difference of the parameters below which two solutions are duplicates."""
 
 USABLE = math.sin(math.radians(30.0))
-"""Sine of the transmission angle below which a member of a family is offered only where none reaches it."""
+"""Sine of the transmission angle below which a family member is returned only if none reaches it."""
 
 HELD_SHARE = 0.5
-"""Share of the progress that pairs as angles from the ground line count for, before their zeros are left open."""
+"""Share of the progress assigned to the first search, with pairs as angles from the ground line, before the zeros are
+opened."""
 
 _NUMERICAL = {"residual", "cannot_be_driven"}
-"""Reasons that say what could not be shown, not what cannot be."""
+"""Rejection reasons that reflect numerical limits and prove nothing."""
 
 _PLACES = {"fixed_pivot_zones", "moving_pivot_zones", "box", "obstacles"}
-"""Reasons that say that no place was found in a room, where the place is free."""
+"""Rejection reasons that mean that no placement in the workspace was found, if the placement is free."""
 
 
 def solve_function(problem: FunctionProblem, progress: Progress) -> FunctionResult:
-    """Solve a problem of function generation, each type of linkage by its own search."""
+    """Solve a function-generation problem, each type of linkage by its own search."""
     if problem.mechanisms is not None:
         return solve_types(problem, _of_simple, progress)
     return _of_simple(problem, progress)
 
 
 def _of_simple(problem: FunctionProblem, progress: Progress) -> FunctionResult:
-    """Fourbars, or slider-cranks."""
+    """Solve for fourbars or slider-cranks."""
     if not problem.from_ground:
         return _with_zeros(problem, progress)
+    # "auto" zeros: first read few pairs as angles from the ground line, and open the zeros only if that fails.
     held = _with_zeros(problem, part_of(progress, 0.0, HELD_SHARE), steered=False)
     if any(design.verification.passed for design in held.designs):
         progress(1.0, "verified")
@@ -108,9 +112,9 @@ def _of_simple(problem: FunctionProblem, progress: Progress) -> FunctionResult:
 
 
 def _with_zeros(problem: FunctionProblem, progress: Progress, *, steered: bool = True) -> FunctionResult:
-    """The answer with the zeros that the problem has, stated or held; ``steered`` as for :func:`_family`."""
+    """Solve with the problem's zeros, given or open; ``steered`` as for :func:`_family`."""
     task = function_task(problem)
-    progress(0.0, "stated")
+    progress(0.0, "reading the problem")
     rng = np.random.default_rng(problem.seed)
     harvest = _Harvest(task)
     if problem.aim != "precision":
@@ -120,10 +124,12 @@ def _with_zeros(problem: FunctionProblem, progress: Progress, *, steered: bool =
             judged, improved = judged + found.judged, improved + found.improved
             for one in found.optima:
                 harvest.verify(one.generator, one.sign)
+            # The next, stricter angle is needed only if the optimum is undrivable.
             if harvest.passed:
                 break
         progress(1.0, "verified")
         return harvest.approximated(judged, improved)
+    # Degrees of freedom: three proportions and the open zeros, less one per pair; scales supply the difference.
     missing = 3 + sum(zero is None for zero in task.zeros) - len(task.inputs)
     open_scales = int(task.free[5]) + int(task.free[6])
     if missing == -2 or (missing == -1 and open_scales == 2):
@@ -136,20 +142,20 @@ def _with_zeros(problem: FunctionProblem, progress: Progress, *, steered: bool =
         proved = _determined(task, harvest)
         if harvest.passed or proved:
             return harvest.determined(proved, "exact")
-        # Pairs of a linkage that moves as others do, a parallelogram's for example, do not determine it.
+        # Pairs of a linkage with equivalents, for example a parallelogram, do not determine it: search the family.
     _family(task, harvest, rng, progress, steered=steered)
     return harvest.searched("family")
 
 
-_HELD = " The zeros were held: the values are angles from the ground line. They may be left open instead."
+_HELD = " The values were read as angles from the ground line; the zeros may be left open instead."
 
 _OPENED = (
-    "No linkage that has the values as angles from the ground line satisfies all demands; with the zeros left open:"
+    "No linkage with the values as angles from the ground line satisfies all constraints. With the zeros left open:"
 )
 
 
 def warm_up() -> None:
-    """Load what the solver and its verification need."""
+    """Load and compile everything that the solver and its verification need."""
     for spec in (_WARM_FOURBAR, _WARM_SLIDER, _WARM_ROOM):
         solve_function(FunctionProblem.model_validate(spec), lambda fraction, message: None)
 
@@ -159,7 +165,7 @@ def _choices(task: FunctionTask) -> list[tuple[tuple[float, float], tuple[float,
 
 
 def _determined(task: FunctionTask, harvest: _Harvest) -> bool:
-    """All linkages where nothing is open; returns whether it is proved that there are no others."""
+    """Verify all linkages if nothing is open; return whether these are proved to be all."""
     proved = True
     for (k, _), (scale, _) in _choices(task):
         found = exact(task.closure, k * task.inputs, scale * task.outputs, task.zeros)
@@ -171,7 +177,7 @@ def _determined(task: FunctionTask, harvest: _Harvest) -> bool:
 
 
 def _with_one_scale(task: FunctionTask, harvest: _Harvest) -> bool:
-    """All linkages where one scale must be found, and only one is open."""
+    """Verify all linkages if exactly one scale is open and must be found; return whether these are proved to be all."""
     side = 0 if task.free[5] else 1
     pairs = Scaling(task.closure, task.inputs, task.outputs, task.zeros)
     proved = True
@@ -185,12 +191,12 @@ def _with_one_scale(task: FunctionTask, harvest: _Harvest) -> bool:
 
 
 def _with_two_scales(task: FunctionTask, harvest: _Harvest, missing: int, progress: Progress) -> None:
-    """Linkages where both scales are open: both must be found, or one for each value of the other."""
+    """Verify linkages if both scales are open: solve for both, or for one at each of many values of the other."""
     pairs = Scaling(task.closure, task.inputs, task.outputs, task.zeros)
     as_stated = np.ones((1 if task.problem.pairs is not None else 0, 2))
     choices = _choices(task)
     for n, (first, second) in enumerate(choices):
-        progress(n / len(choices), "scales")
+        progress(n / len(choices), "solving for scales")
         if missing == -2:
             for generator in two_scales(pairs, first, second, as_stated):
                 harvest.polish_and_verify(generator)
@@ -203,9 +209,9 @@ def _with_two_scales(task: FunctionTask, harvest: _Harvest, missing: int, progre
 def _family(
     task: FunctionTask, harvest: _Harvest, rng: np.random.Generator, progress: Progress, *, steered: bool
 ) -> None:
-    """The best members of a family that differ from one another.
+    """Verify the best distinct members of a family.
 
-    Where none that was drawn satisfies the demands, others are moved until they do, if that is wanted (``steered``).
+    If no sampled member satisfies the constraints and ``steered`` is set, others are fitted to the constraints.
     """
     members = _members(task, rng)
     limits = GeneratorLimits(task)
@@ -225,6 +231,7 @@ def _family(
     chosen: list[int] = []
     tried = 0
     most = TRIED * task.problem.max_designs
+    # Go down the ranking, skipping members too similar to one already verified.
     for j in order[:2000]:
         if tried == most or len(harvest.passed) >= task.problem.max_designs:
             break
@@ -242,11 +249,11 @@ def _family(
 def _into_limits(
     task: FunctionTask, limits: GeneratorLimits, harvest: _Harvest, rng: np.random.Generator, progress: Progress
 ) -> None:
-    """Members of a family that lack least are moved within it, until they satisfy the demands."""
+    """Fit the family members with the smallest violations to the constraints, within the family."""
     descent = GeneratorDescent(task, limits)
     enough = min(ENOUGH_STEERED, task.problem.max_designs)
     for n in range(STEERINGS):
-        progress(0.7 + 0.3 * n / STEERINGS, "moving members into the limits")
+        progress(0.7 + 0.3 * n / STEERINGS, "moving family members into the limits")
         generators, signs = _in_one_assembly(task, _members(task, rng))
         nearest = math.inf
         for j in descent.apart(generators, limits.lacking(generators), STEERED):
@@ -258,19 +265,20 @@ def _into_limits(
             harvest.polish_and_verify(moved.generator[:STEPS], scales_given=True)
             if len(harvest.passed) >= enough:
                 return
+        # If even the closest fit stays far from feasible, new samples will not help.
         if harvest.passed or nearest > HOPELESS:
             return
 
 
 def _in_one_assembly(task: FunctionTask, generators: Real) -> tuple[Real, Real]:
-    """The members that meet all places in one assembly, and that."""
+    """Return the members that meet all points in one assembly, and that assembly's sign."""
     signs = task.points().signs(generators)
     same = np.abs(signs.sum(axis=1)) > signs.shape[1] - 0.5
     return generators[same], signs[same, 0]
 
 
 def _members(task: FunctionTask, rng: np.random.Generator) -> Real:
-    """Random members of a family, shape (k, 7)."""
+    """Sample random members of a family, shape (k, 7): five dimensions and both scales."""
     most = 3 + sum(zero is None for zero in task.zeros)
     found = []
     choices = _choices(task)
@@ -293,7 +301,7 @@ def _drawn(limits: tuple[float, float], count: int, rng: np.random.Generator) ->
 
 
 def _worth(task: FunctionTask, generators: Real, signs: Real, sine: Real) -> Real:
-    """What members are ordered by, least first: the structural error of a function, else quality; infinite unfit."""
+    """Return the ranking values of members, lowest first: structural error or negative quality; infinite if unfit."""
     problem, demanded = task.problem, task.problem.constraints
     lengths = generators[:, :2] if problem.slides else np.column_stack([np.ones(len(generators)), generators[:, :3]])
     ratio = lengths.max(axis=1) / lengths.min(axis=1)
@@ -302,6 +310,7 @@ def _worth(task: FunctionTask, generators: Real, signs: Real, sine: Real) -> Rea
         if task.free[6]:
             errors = errors / np.abs(generators[:, 6])
         if demanded.min_transmission_angle is None:
+            # Without a limit, accuracy should not outrank a usable transmission angle: penalise the error tenfold.
             errors = errors * np.where(sine < USABLE, 10.0, 1.0)
         worth = errors
     else:
@@ -311,12 +320,12 @@ def _worth(task: FunctionTask, generators: Real, signs: Real, sine: Real) -> Rea
 
 
 def _within(scale: float, choices: list[tuple[float, float]]) -> bool:
-    """Whether a scale is one of those allowed, to rounding."""
+    """Return whether a scale lies in one of the permitted intervals, to rounding."""
     return any(low - 1e-9 * abs(low) <= scale <= high + 1e-9 * abs(high) for low, high in choices)
 
 
 class _Harvest(Sifting[FunctionDesign]):
-    """Linkages, verified, and what became of them."""
+    """Record of verified linkages and rejections."""
 
     def __init__(self, task: FunctionTask) -> None:
         super().__init__(task.problem, REASONS)
@@ -325,7 +334,7 @@ class _Harvest(Sifting[FunctionDesign]):
         self._seen: list[Real] = []
 
     def polish_and_verify(self, generator: Real, *, scales_given: bool = False) -> None:
-        """Bring a nearly exact generator to the last digits, and put it where it belongs; the same twice is one."""
+        """Refine an almost exact generator to full precision, and verify it unless it is a duplicate."""
         free = self.task.free.copy()
         if scales_given:
             free[5:] = False
@@ -338,7 +347,7 @@ class _Harvest(Sifting[FunctionDesign]):
         self.verify(found, float(self.points.signs(found[None])[0, 0]))
 
     def verify(self, generator: Real, sign: float) -> None:
-        """Drive a linkage, and put it where it belongs."""
+        """Drive and verify a linkage, and record the result."""
         try:
             mechanism, dials = built(self.task, generator, sign)
             design = verify_function(self.problem, mechanism, dials)
@@ -347,37 +356,37 @@ class _Harvest(Sifting[FunctionDesign]):
         self.add(design)
 
     def approximated(self, judged: int, improved: int) -> FunctionResult:
-        """The answer of an approximation."""
+        """Build the result of an approximation."""
         if self.passed:
             best = min(self.passed, key=partial(error_of, self.problem))
             error = best.structural_error
             unit = "°" if error.unit == "degrees" else f" {self.problem.length_unit}"
             if self.problem.aim == "minimax":
-                text = f"The least greatest structural error found is {error.max:.4g}{unit}"
+                text = f"Smallest maximum structural error found: {error.max:.4g}{unit}"
                 text += f" ({error.alternations} alternating extremes)"
             else:
-                text = f"The least root mean square structural error found is {error.rms:.4g}{unit}"
-                text += f" (at most {error.max:.4g}{unit})"
-            text += f", from {grouped(improved)} of {counted(judged, 'start')}; no proof that none is better."
+                text = f"Smallest root-mean-square structural error found: {error.rms:.4g}{unit}"
+                text += f" (maximum {error.max:.4g}{unit})"
+            text += f". {grouped(improved)} of {counted(judged, 'start')} were optimised; a better linkage may exist."
         else:
-            text = f"None of {grouped(improved)} of {counted(judged, 'start')} came to a linkage that satisfies all "
-            text += f"demands.{self.reasons()}"
+            text = f"No design found: {grouped(improved)} of {counted(judged, 'start')} were optimised, but none "
+            text += f"satisfies all constraints.{self.reasons()}"
         return self._result(self.problem.aim, False, text)
 
     def determined(self, proved: bool, method: str) -> FunctionResult:
-        """The answer where all linkages were computed."""
+        """Build the result if all linkages were computed."""
         unknown = _NUMERICAL | (_PLACES if self.problem.fixed_pivots is None else set())
         complete = proved and not unknown & self.rejected.keys()
         passed, of = len(self.passed), counted(self.candidates, "real linkage")
-        text = f"{grouped(passed)} of {of} {agreeing(passed, 'satisfies', 'satisfy')} all demands.{self.reasons()}"
+        text = f"{grouped(passed)} of {of} {agreeing(passed, 'satisfies', 'satisfy')} all constraints.{self.reasons()}"
         if not self.passed:
-            text += " There are no others, so no design exists." if complete else " Others may exist."
+            text += " These are all, so no design exists." if complete else " Others may exist."
         return self._result(method, complete, text)
 
     def searched(self, method: str) -> FunctionResult:
-        """The answer where linkages were searched for."""
+        """Build the result of a search."""
         among = counted(self.candidates, "candidate")
-        text = f"{counted(len(self.passed), 'linkage')} found among {among}.{self.reasons()}"
+        text = f"{counted(len(self.passed), 'design')} found among {among}.{self.reasons()}"
         return self._result(method, False, text)
 
     def _result(self, method: str, complete: bool, summary: str) -> FunctionResult:

@@ -1,8 +1,8 @@
-"""The structural error of many function generators at once, and its derivatives, for the solver's own use.
+"""Structural error of many function generators at once, and its derivatives, for use in solvers.
 
-Dimensions are those of :mod:`synthesis.kinds.function.closure`, followed by the scales: (a, b, c, φ₀, ψ₀, k, l) of a
-fourbar with ground 1, (a, b, e, θ₀, s₀, k, l) of a slider-crank, where the input turns by k φ and the output should by
-l ψ. They are changed by steps of (ln a, ln b, ln c or e, zeros, ln k, ln l), in which a limit on a ratio is linear.
+Dimensions are those of :mod:`synthesis.kinds.function.closure`, followed by the scales: (a, b, c, φ₀, ψ₀, k, l) for a
+fourbar with ground 1, (a, b, e, θ₀, s₀, k, l) for a slider-crank. The input turns by k φ, and the output should turn by
+l ψ. Steps change (ln a, ln b, ln c or e, zeros, ln k, ln l); a limit on a ratio is linear in these.
 """
 
 from __future__ import annotations
@@ -13,36 +13,36 @@ from numpy.typing import NDArray
 Real = NDArray[np.float64]
 
 STEPS = 7
-"""Numbers that a linkage and its scales have."""
+"""Number of parameters of a linkage and its scales."""
 
 PLACED = STEPS + 4
-"""The same with size, direction and place: see :mod:`synthesis.kinds.function.regions`."""
+"""Number of parameters including size, direction and position: see :mod:`synthesis.kinds.function.regions`."""
 
 ERROR = 1.0
-"""Structural errors are wrapped into half a turn; beyond this many radians (or ranges of a slider) an approximation is
-none."""
+"""Maximum structural error of an approximation, radians (or slider ranges). Angular errors are wrapped to half a turn,
+so larger ones are ambiguous."""
 
 
 class Generators:
-    """Fourbars or slider-cranks as function generators at common places of the input.
+    """Fourbars or slider-cranks as function generators, evaluated at common inputs.
 
     Parameters
     ----------
     slides : bool
-        Slider-cranks.
+        Whether they are slider-cranks.
     inputs, outputs : float, shape (n,) or (k, n)
-        φ and ψ, radians, from the first place; of a slider outputs in units of its range.
+        φ and ψ, radians, from the first input; outputs of a slider in units of its range.
     """
 
     def __init__(self, slides: bool, inputs: Real, outputs: Real) -> None:
         self.slides, self.inputs, self.outputs = slides, inputs, outputs
 
     def some(self, rows: NDArray[np.int64]) -> Generators:
-        """The same at some of the places."""
+        """Return the generators at selected inputs."""
         return Generators(self.slides, self.inputs[rows], self.outputs[rows])
 
     def errors(self, dimensions: Real, signs: Real) -> Real:
-        """Errors of generators of shape (k, 7) with assembly signs (k,) or (k, n): shape (k, n), NaN where none is."""
+        """Return errors of generators (k, 7) with assembly signs (k,) or (k, n): shape (k, n), NaN if not assembled."""
         signs = signs if signs.ndim == dimensions.ndim else signs[..., None]
         a, b, c, start, zero, k, scale = (dimensions[..., j, None] for j in range(STEPS))
         theta = start + k * self.inputs
@@ -51,6 +51,7 @@ class Generators:
                 y = c - a * np.sin(theta)
                 s = a * np.cos(theta) + signs * np.sqrt(b * b - y * y)
                 return np.asarray(s - zero - scale * self.outputs)
+            # B from the triangle A B O4 over the diagonal f, on the side given by the sign.
             pin = a * np.exp(1j * theta)
             f = np.abs(1.0 - pin)
             x = (f * f + (b - c) * (b + c)) / (2.0 * f)
@@ -58,7 +59,7 @@ class Generators:
             return np.asarray(np.angle((joint - 1.0) * np.exp(-1j * (zero + scale * self.outputs))))
 
     def signs(self, dimensions: Real) -> Real:
-        """Assembly signs at places that are met exactly, shape (k, n)."""
+        """Return the assembly signs at inputs whose outputs are met exactly, shape (k, n)."""
         a, _, c, start, zero, k, scale = (dimensions[..., j, None] for j in range(STEPS))
         pin = a * np.exp(1j * (start + k * self.inputs))
         if self.slides:
@@ -67,7 +68,7 @@ class Generators:
         return np.asarray(np.sign(((1.0 - pin).conj() * (joint - pin)).imag))
 
     def derivatives(self, dimensions: Real, errors: Real, _sign: float = 0.0) -> Real:
-        """Of the errors of one generator by the steps, which tell its assembly: shape (n, 7)."""
+        """Return derivatives of one generator's errors by the steps, shape (n, 7); the errors imply the assembly."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return self._derivatives(dimensions, errors)
 
@@ -90,7 +91,7 @@ class Generators:
             pin = a * np.exp(1j * theta)
             coupler = 1.0 + c * np.exp(1j * output) - pin
             along = coupler / np.abs(coupler)
-            # Of the loop a e^{iθ} + b e^{iγ} = 1 + c e^{iψ} the part along the coupler.
+            # Differentiate the component of the loop a e^{iθ} + b e^{iγ} = 1 + c e^{iψ} along the coupler.
             divisor = (1j * c * np.exp(1j * output) * along.conj()).real
             columns = [
                 (pin * along.conj()).real / divisor,
@@ -103,7 +104,7 @@ class Generators:
         return np.stack([*columns, turned * k * self.inputs, -scale * self.outputs], axis=-1)
 
     def stepped(self, dimensions: Real, step: Real) -> Real:
-        """A generator after a step."""
+        """Apply a step to a generator: multiply lengths and scales by exponentials, add to the rest."""
         found = dimensions.copy()
         logs = [0, 1, 5, 6] if self.slides else [0, 1, 2, 5, 6]
         adds = [2, 3, 4] if self.slides else [3, 4]

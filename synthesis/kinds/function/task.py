@@ -1,7 +1,7 @@
-"""A problem of function generation in numbers, and a linkage of the solver's as a mechanism with its dials.
+"""Numerical form of a function-generation problem, and conversion of a solver's linkage to a mechanism with dials.
 
 Solvers work with ground 1 (slider-cranks: with the slider's range as unit) and radians. Inputs and outputs are φ and ψ
-for scale 1: the rotations of pairs, or shares of a function's range, which the scales multiply.
+for scale 1: rotations of pairs, or shares of a function's range; the scales multiply them.
 """
 
 from __future__ import annotations
@@ -28,27 +28,27 @@ Real = NDArray[np.float64]
 ScaleRange = tuple[float, float]
 
 USUAL_GROUND = 100.0
-"""Length of the ground link where it fits, length units."""
+"""Default length of the ground link, length units."""
 
 SAMPLES = 121
-"""Places of the range at which an approximation is fitted, closer together at its ends."""
+"""Number of inputs at which an approximation is fitted, denser towards the ends of the range."""
 
 
 class FunctionTask(NamedTuple):
-    """The problem in numbers.
+    """Numerical form of a problem.
 
     Attributes
     ----------
     inputs, outputs : float, shape (n,)
         Pairs or precision points.
     sample_inputs, sample_outputs : float, shape (m,)
-        Places that an approximation follows: the whole range, or the pairs.
+        Samples that an approximation follows: the whole range, or the pairs.
     zeros : pair of float or None
-        Where the links stand at input 0 and output 0.
+        Positions of the links at input 0 and output 0; None for an open zero.
     scales : pair of list of (low, high)
-        What each scale may be; of equal numbers where it is given.
+        Permitted intervals of each scale; both ends are equal for a given scale.
     unit : float
-        Of the slider's positions, length units; of a fourbar 1.
+        Unit of the slider's positions, length units; 1 for a fourbar.
     """
 
     problem: FunctionProblem
@@ -63,28 +63,28 @@ class FunctionTask(NamedTuple):
 
     @property
     def free(self) -> NDArray[np.bool_]:
-        """Which of a generator's seven numbers are open."""
+        """Mask of the open parameters among a generator's seven."""
         zeros = [zero is None for zero in self.zeros]
         scales = [any(low < high for low, high in choice) for choice in self.scales]
         return np.array([True, True, True, *zeros, *scales])
 
     def points(self) -> Generators:
-        """Errors at the pairs or precision points."""
+        """Return the generators at the pairs or precision points."""
         return Generators(self.problem.slides, self.inputs, self.outputs)
 
     def samples(self) -> Generators:
-        """Errors at the places that an approximation follows."""
+        """Return the generators at the samples that an approximation follows."""
         return Generators(self.problem.slides, self.sample_inputs, self.sample_outputs)
 
 
 def function_task(problem: FunctionProblem) -> FunctionTask:
-    """The problem's numbers."""
+    """Convert a problem to its numerical form."""
     zeros = problem.stated_zeros
     radians = math.pi / 180.0
     if problem.pairs is not None:
         given = problem.values
         unit = float(np.ptp(given[:, 1])) if problem.slides else 1.0
-        # Of an open zero only differences count, and small numbers are kept exact.
+        # With an open zero only differences matter; subtracting the first value keeps small numbers exact.
         given = given - np.where([zero is None for zero in zeros], given[0], 0.0)
         inputs, outputs = given[:, 0] * radians, given[:, 1] * (1.0 / unit if problem.slides else radians)
         choices = tuple(
@@ -111,7 +111,7 @@ def function_task(problem: FunctionProblem) -> FunctionTask:
 
 
 def _ranges(problem: FunctionProblem, side: str) -> list[ScaleRange]:
-    """Ranges of a side in radians or units: given, the other direction too, or between limits."""
+    """List the permitted ranges of a side, radians or slider units: given, both directions, or between limits."""
     span = problem.span("input" if side == "input" else "output")
     both = side == "output" and (span is None or problem.either_direction)
     if span is None:
@@ -122,18 +122,19 @@ def _ranges(problem: FunctionProblem, side: str) -> list[ScaleRange]:
 
 
 def built(task: FunctionTask, generator: Real, sign: float) -> tuple[FourbarMechanism | SliderCrankMechanism, Dials]:
-    """A generator of the solver's as a mechanism, standing at the first target, with its dials.
+    """Build the mechanism of a solver's generator, at the first target, and its dials.
 
     Parameters
     ----------
     task : FunctionTask
         The task.
     generator : float, shape (7,) or (11,)
-        With a place or without, which is chosen anew. See :mod:`synthesis.kinds.function.structural_error`.
+        With or without a placement, which is chosen anew. See :mod:`synthesis.kinds.function.structural_error`.
     sign : float
         Its assembly.
     """
     problem = task.problem
+    # The square roots are clipped at 0: at a dead centre rounding may make them slightly negative.
     a, b, c, start, _, k, _ = (float(x) for x in generator[:STEPS])
     place = float(task.inputs[0])
     theta = start + k * place
@@ -155,9 +156,9 @@ def built(task: FunctionTask, generator: Real, sign: float) -> tuple[FourbarMech
 
 
 def dials_of(task: FunctionTask, generator: Real, frame: float, turned: float) -> Dials:
-    """The dials of a generator whose input and output are counted from lines at these angles, degrees.
+    """Make the dials of a generator whose input and output are measured from lines at the given angles, degrees.
 
-    ``generator`` begins with the seven numbers of a fourbar or a slider-crank.
+    ``generator`` starts with the seven parameters of a fourbar or a slider-crank.
     """
     problem = task.problem
     start, zero, k, scale = (float(x) for x in generator[3:STEPS])
@@ -188,9 +189,9 @@ def dials_of(task: FunctionTask, generator: Real, frame: float, turned: float) -
 
 
 def _placed(task: FunctionTask, linkage: Moving, pin: complex, joint: complex) -> tuple[complex, complex]:
-    """O2, and the vector that the solver's unit along the ground line or the slide becomes.
+    """Place a linkage: return O2, and the image of the solver's unit vector along the ground line or the slide.
 
-    A and B stand at ``pin`` and ``joint``, in the solver's frame.
+    ``pin`` and ``joint`` are A and B in the solver's frame.
     """
     problem = task.problem
     if problem.fixed_pivots is not None:

@@ -1,9 +1,9 @@
-"""Verification of function generators: the linkage is driven over its range, and its output read off the dials.
+"""Verification of function generators: drive the linkage over its range and read its output off the dials.
 
-From the dimensions and the dials alone: the input link is put where its dial has each value, and the output's place is
-compared with what its dial should show. At the pairs and precision points both assemblies are looked at, so that a
-branch defect is seen as one; over the range the linkage stays in the assembly of its first target, and the structural
-error is measured at two thousand places, with its extremes looked for more and more closely.
+Only the dimensions and the dials are used: the input link is set to each value of its dial, and the output's position
+is compared with the value that its dial should show. At the pairs and precision points both assemblies are examined, so
+that a branch defect is recognised as such. Over the range the linkage stays in the assembly of its first target, and
+the structural error is measured at two thousand inputs; its extremes are refined.
 """
 
 from __future__ import annotations
@@ -41,26 +41,26 @@ from synthesis.proof.measures import link_lengths, measured
 
 Real = NDArray[np.float64]
 DRIVEN = 2001
-"""Places of the range at which the structural error is measured at first."""
+"""Number of inputs over the range at which the structural error is measured."""
 
 SHOWN = 201
-"""Places of the error curve that are returned."""
+"""Number of returned points of the error curve."""
 
 SHOWN_TARGETS = 9
-"""Places, ends included, at which an approximation is listed as targets."""
+"""Number of inputs, including the ends, listed as targets of an approximation."""
 
 LEVEL = 1e-3
-"""Extremes within this share of the greatest error have reached it."""
+"""Relative tolerance for extremes that reach the maximum error."""
 
 CLEARLY_NEARER = 1e-3
-"""Share of the own assembly's error at a target below which the opposite assembly is the one that was meant there."""
+"""Error of the opposite assembly at a target, relative to that of the own one, below which the opposite one is used."""
 
 DIAL_KEPT = 1e-9
-"""Deviation of a dial from what was stated, radians or shares of the range: what rounding leaves."""
+"""Tolerance of a dial relative to its given values, radians or shares of the range; it covers rounding."""
 
 
 class _Wanted(NamedTuple):
-    """What the dials ask for: input angles (radians) and places of the output (radians or lengths)."""
+    """Targets according to the dials: input angles (radians) and positions of the output (radians or length)."""
 
     values: Real
     outputs: Real
@@ -74,16 +74,16 @@ def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dial
     Parameters
     ----------
     problem : FunctionProblem
-        What was asked.
+        The problem.
     mechanism : FunctionMechanism
-        Its dimensions; of a sixbar these are its skeleton.
+        The dimensions; for a sixbar these are its skeleton.
     dials : Dials
-        How the values are read off the links.
+        Relation between the values and the positions of the links.
 
     Returns
     -------
     FunctionDesign or None
-        None where the dimensions make no linkage, or it cannot be assembled at a target or somewhere in the range.
+        None if the dimensions make no linkage, or if it cannot be assembled at a target or in the whole range.
     """
     try:
         drive = drive_of(mechanism)
@@ -112,7 +112,7 @@ def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dial
     measures = measured(
         lengths,
         max(lengths),
-        unit if problem.slides else math.inf,  # angles have no size
+        unit if problem.slides else math.inf,  # with angular outputs the size of the linkage is free
         least,
         joints,
         barker=drive.barker,
@@ -164,9 +164,9 @@ def verify_function(problem: FunctionProblem, mechanism: FunctionMechanism, dial
 def verify_nearly(
     problem: FunctionProblem, design: FunctionDesign, mechanism: FunctionMechanism
 ) -> FunctionDesign | None:
-    """Drive another linkage by the dials of a design, whose targets it meets as nearly as it can: one on a grid.
+    """Verify a linkage with dimensions rounded to a grid, by the dials of the exact design.
 
-    Dials with a stated zero are counted from the ground line, and turn with it.
+    Targets need not be met exactly. Dials with a given zero are measured from the ground line and turn with it.
     """
     dials = design.dials
     if isinstance(mechanism, FourbarMechanism) and isinstance(design.mechanism, FourbarMechanism):
@@ -192,7 +192,7 @@ def _turned(dial: Dial, degrees: float) -> Dial:
 
 
 def _target_values(problem: FunctionProblem) -> Real:
-    """Values of the input at the targets."""
+    """Return the values of the input at the targets."""
     if problem.pairs is not None:
         return problem.values[:, 0]
     assert problem.function is not None
@@ -202,7 +202,7 @@ def _target_values(problem: FunctionProblem) -> Real:
 
 
 def _wanted(problem: FunctionProblem, dials: Dials, values: Real, drive: Drive) -> _Wanted:
-    """What the dials ask for at values of the input: pairs, or x of the function."""
+    """Return the targets of the dials at values of the input: those of the pairs, or x of the function."""
     if problem.pairs is not None:
         outputs = problem.values[:, 1]
     else:
@@ -219,24 +219,25 @@ def _place(dial: InputDial | OutputDial, values: Real) -> Real:
 
 
 def _off(place: Real, wanted: Real, turn: float) -> Real:
-    """Error of a place; angles without full turns."""
+    """Return the error of a position; angles modulo full turns."""
     off = place - wanted
     return np.asarray(off - turn * np.round(off / turn) if math.isfinite(turn) else off)
 
 
 def _met(drive: Drive, targets: _Wanted) -> tuple[Driven, NDArray[np.int64]]:
-    """The linkage at the targets, in its own assembly unless the other one is clearly meant; NaN where in none."""
+    """Drive the linkage to its targets, in its own assembly unless the other one is clearly closer; NaN if neither
+    closes."""
     both = [drive.at(targets.angles, sign) for sign in (drive.assembly, -drive.assembly)]
     off = [np.where(d.valid, np.abs(_off(d.place, targets.places, drive.turns)), np.inf) for d in both]
     opposite = (off[0] > TARGET_REACHED) & (off[1] < CLEARLY_NEARER * off[0])
-    # The reference is the first target's configuration: it is met there, or not at all.
+    # The reference is the first target's configuration, so the first target must be met in its assembly.
     opposite[0] = False
     place, moving = (np.where(opposite, getattr(both[1], part), getattr(both[0], part)) for part in ("place", "moving"))
     return Driven(both[0].valid, place, moving), np.where(opposite, -drive.assembly, drive.assembly)
 
 
 def _range(problem: FunctionProblem, dials: Dials, targets: _Wanted) -> tuple[float, float]:
-    """The input's range, radians: over all of x, or from the first pair to the last."""
+    """Return the input's range, radians: over the whole interval of x, or from the first pair to the last."""
     if problem.function is None:
         angles = targets.angles
         onward = angles[-1] >= angles[0]
@@ -246,7 +247,7 @@ def _range(problem: FunctionProblem, dials: Dials, targets: _Wanted) -> tuple[fl
 
 
 def _output_range(problem: FunctionProblem, dials: Dials) -> float:
-    """What the output dial turns, or moves, from the first value to the last: of all of x, or of the pairs."""
+    """Return the motion of the output dial from the first value to the last, of the interval of x or of the pairs."""
     if problem.function is None:
         values = problem.values[[0, -1], 1]
     else:
@@ -258,7 +259,7 @@ def _output_range(problem: FunctionProblem, dials: Dials) -> float:
 def _structural_error(
     problem: FunctionProblem, dials: Dials, drive: Drive, targets: _Wanted, at_targets: Real
 ) -> tuple[StructuralError, bool] | None:
-    """The error over the range or at the pairs, and whether the linkage goes through all of it; None where nowhere."""
+    """Measure the error over the range or at the pairs, and whether the linkage covers it; None if not assembled."""
     if problem.function is None:
         curve = _Curve(targets.values, targets.angles, at_targets)
         return _stated(problem, curve, curve, math.sqrt(float(np.mean(at_targets**2)))), True
@@ -281,7 +282,7 @@ def _structural_error(
 
 
 def _mean(values: Real, places: Real) -> float:
-    """The mean over a range, by Simpson's rule; where places of an even grid are left out, by trapezoids."""
+    """Return the mean over a range, by Simpson's rule, or by the trapezoidal rule if points of the grid are missing."""
     if len(places) < 2:
         return 0.0
     rule = simpson if len(places) == DRIVEN else np.trapezoid
@@ -289,7 +290,7 @@ def _mean(values: Real, places: Real) -> float:
 
 
 class _Curve(NamedTuple):
-    """Structural error at places of the range: values of the input, input angles (radians), errors."""
+    """Structural error over the range: values of the input, input angles (radians), errors."""
 
     values: Real
     angles: Real
@@ -297,7 +298,7 @@ class _Curve(NamedTuple):
 
 
 def _extremes(errors: Callable[[Real], Real], curve: _Curve) -> Real:
-    """Values of the input at the ends of a curve and at its extremes, which are looked for more and more closely."""
+    """Return the values of the input at the ends of a curve and at its refined extremes."""
     x, e = curve.values, curve.errors
     steps = np.diff(e)
     turns = np.flatnonzero(steps[:-1] * steps[1:] < 0.0) + 1
@@ -311,7 +312,7 @@ def _extremes(errors: Callable[[Real], Real], curve: _Curve) -> Real:
 
 
 def _stated(problem: FunctionProblem, extremes: _Curve, curve: _Curve, rms: float) -> StructuralError:
-    """The error in degrees or length units."""
+    """Convert the error to degrees or length units, and count its alternations."""
     unit = 1.0 if problem.slides else 180.0 / math.pi
     greatest = float(np.abs(extremes.errors).max())
     reached = np.sign(extremes.errors[np.abs(extremes.errors) >= (1.0 - LEVEL) * greatest])
@@ -333,7 +334,7 @@ def _stated(problem: FunctionProblem, extremes: _Curve, curve: _Curve, rms: floa
 
 
 def _unit(problem: FunctionProblem) -> float:
-    """The range of the output that is asked for, length units of a slider."""
+    """Return the required range of the output, length units for a slider."""
     if problem.pairs is not None:
         moved = [pair.output for pair in problem.pairs]
         return max(moved) - min(moved)
@@ -341,7 +342,7 @@ def _unit(problem: FunctionProblem) -> float:
 
 
 def _dials_off(problem: FunctionProblem, dials: Dials, drive: Drive) -> float:
-    """How far the dials are from what was stated: radians, and shares of a range."""
+    """Return the largest deviation of the dials from their given values: radians, and shares of a range."""
     off = [0.0]
     radians = math.pi / 180.0
     sides: tuple[Literal["input", "output"], ...] = ("input", "output")
@@ -378,12 +379,13 @@ def _dials_off(problem: FunctionProblem, dials: Dials, drive: Drive) -> float:
         if slides:
             off.append(abs(stands - stated - begins) / _unit(problem))
         else:
+            # With "auto" zeros an angle may be that of the link's extension, hence modulo half a turn.
             turn = 180.0 if problem.from_ground else 360.0
             off.append(abs(math.remainder(stands - math.degrees(drive.frame) - stated - begins, turn)) * radians)
     return max(off)
 
 
 def _outside(value: float, limits: tuple[float, float]) -> float:
-    """How far a value lies outside of limits, as a share of them."""
+    """Return the distance of a value from its limits, as a share of these; 0 inside."""
     low, high = limits
     return max(low - value, value - high, 0.0) / max(abs(low), abs(high))

@@ -32,13 +32,13 @@ def _nearly(problem: MotionProblem, _design: LinkageDesign, mechanism: LinkageMe
 
 
 def _warm_up() -> None:
-    """Load the kernels of exact positions by the first examples: those jobs are short and waited for."""
+    """Compile the kernels of the exact methods by solving the first examples: users wait for these short jobs."""
     for example in KIND.examples[:4]:
         _solve(MotionProblem.model_validate(example), lambda fraction, message: None)
 
 
 def _brief(problem: MotionProblem) -> bool:
-    """Positions that are met exactly, by fourbars and without a driver, are not searched for by fits."""
+    """Return whether a job is short: exact positions, fourbars only, no driver dyad, hence no iterative fit."""
     fitted = problem.approximate or problem.driver is not None or problem.slider is not None
     return not (fitted or problem.sixbars)
 

@@ -1,4 +1,4 @@
-"""Where the pivots of one side may lie: the client's region for all pivots, and the zones of the side itself."""
+"""Permitted areas for the pivots of each side: the region common to both sides, and the side's own zones."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from synthesis.model.zones import AnyOf, Area, Zone
 
 
 class SideAreas(NamedTuple):
-    """Areas in all of which the fixed and the moving pivot of a side lie; none where they may lie anywhere.
+    """Areas whose intersection must contain the fixed and the moving pivot of a side; empty if unrestricted.
 
-    The most special comes last: pivots are drawn there.
+    The most specific area comes last: pivots are sampled there.
     """
 
     fixed: tuple[Area, ...]
@@ -24,7 +24,7 @@ class SideAreas(NamedTuple):
 
 
 def side_areas(problem: MotionProblem) -> tuple[SideAreas, SideAreas]:
-    """The areas of the input's side and of the output's."""
+    """Return the areas of the input side and of the output side."""
     constraints, space = problem.constraints, problem.space
     sides = []
     for side in ("input", "output"):
@@ -43,12 +43,12 @@ def side_areas(problem: MotionProblem) -> tuple[SideAreas, SideAreas]:
 
 
 def within(task: MotionTask, areas: tuple[Area, ...], points: Complex) -> NDArray[np.bool_]:
-    """Which points, in task coordinates, lie in all areas."""
+    """Return a mask of the points, in task coordinates, that lie in all areas."""
     return np.asarray(outside(task, areas, points) == 0.0)
 
 
 def outside(task: MotionTask, areas: tuple[Area, ...], points: Complex) -> Real:
-    """How far points, in task coordinates, lie outside the area from which they are farthest, in task sizes."""
+    """Return the distance of points, in task coordinates, from the farthest of the areas, in task sizes; 0 inside."""
     places = task.origin + points * task.size
     away = np.zeros(points.shape)
     for area in areas:
@@ -57,12 +57,12 @@ def outside(task: MotionTask, areas: tuple[Area, ...], points: Complex) -> Real:
 
 
 def drawn(task: MotionTask, areas: tuple[Area, ...], rng: np.random.Generator, count: int) -> Complex | None:
-    """Random points of the last area, in task coordinates, shape (count,); None where there is none."""
+    """Sample random points of the last area, in task coordinates, shape (count,); None without areas."""
     return np.asarray((areas[-1].sampled(rng, count) - task.origin) / task.size) if areas else None
 
 
 def box_of(task: MotionTask, region: Region | None) -> Real:
-    """A region (x from, to, y from, to) in task coordinates; infinite where there is none."""
+    """Return a region as (x min, x max, y min, y max) in task coordinates; infinite bounds without a region."""
     if region is None:
         return np.array([-np.inf, np.inf, -np.inf, np.inf])
     (left, right), (low, high) = region.x, region.y

@@ -1,9 +1,8 @@
-"""Sixbars that come nearest to more positions than they can meet, from the pool of descents that hold their branch.
+"""Least-squares fit of sixbars to more positions than they can meet, from the pool of branch-preserving descents.
 
-A sixbar has as many numbers as eight positions state. Where more are fitted, or fewer under demands that leave none,
-the linkages that miss least (:class:`branch_walk.Pool`) are descended to the end of their least squares, with the
-first pose among the unknowns. Positions that are to be met exactly weigh more there, and are then met by the shortest
-steps on to them.
+Eight positions determine a sixbar. If more are fitted, or if the constraints exclude exact solutions, the linkages with
+the lowest cost (:class:`branch_walk.Pool`) are descended until their least squares converge, with the first pose among
+the unknowns. Exact positions have a larger weight there and are finally met by minimum-norm steps.
 """
 
 from __future__ import annotations
@@ -41,30 +40,32 @@ from synthesis.kinds.motion.sixbar_makes import Found
 Real = NDArray[np.float64]
 
 OF_FIT, OF_HELD = 0.1, 10.0
-"""Weights of a pose beside limits, so that these are kept: one that is fitted, and how much more one that is held."""
+"""Weights relative to the limits, small so that these take precedence: of a fitted pose, and the additional factor of
+an exact pose."""
 
 WORTH, TIMES, MOST_STEPS = 0.99, 4, 500
-"""Share of a cost that ten steps have to leave at most; descents at most, one after another; steps of one at most."""
+"""Maximum share of the cost left after ten steps; maximum number of consecutive descents; maximum number of steps of
+each."""
 
 NEARLY_ARRIVED = 1e-14
-"""Sum of squares at which a fit counts as one that meets all positions."""
+"""Sum of squares below which a fit counts as meeting all positions."""
 
 NO_MATTER = 1e6
-"""A tolerance of what is not looked at."""
+"""Tolerance that disables a coordinate."""
 
 BY_MISS = 100.0
-"""How fast a fit loses value by its error: of two that differ by a hundredth of the task's size at about 1 to 2."""
+"""Penalty of the error in a fit's value: an error of a hundredth of the task's size halves the bonus for accuracy."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def value_of_fit(error: float) -> float:
-    """The value of a sound fit: from 2 for one that meets all positions towards 1."""
+    """Return the value of a feasible fit: 2 if it meets all positions, decreasing towards 1 with the error."""
     return 1.0 + 1.0 / (1.0 + BY_MISS * error)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _error(x: Real, points: Real, setting: Real, free: int) -> float:
-    """The root mean square over the positions of P's distance, in task sizes, and the body's angle together."""
+    """Return the RMS over the positions of P's distance, in task sizes, and the body's angle, radians, together."""
     z, at, turns = np.empty(7, np.complex128), np.empty(6, np.complex128), np.empty(4, np.complex128)
     lengths, inverses = np.empty(4), np.empty(4, np.complex128)
     for j in range(7):
@@ -84,7 +85,7 @@ def _error(x: Real, points: Real, setting: Real, free: int) -> float:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _met(x: Real, points: Real, setting: Real, held: NDArray[np.bool_], room: Room) -> bool:
-    """Takes a linkage on to the positions that are held, whatever its limits; whether that goes."""
+    """Move a linkage onto the exact positions, ignoring its limits; return whether that succeeds."""
     only, free = points.copy(), setting.copy()
     for k in range(len(points)):
         only[k, 6], only[k, 7] = 1.0, 1.0
@@ -99,7 +100,7 @@ def _met(x: Real, points: Real, setting: Real, held: NDArray[np.bool_], room: Ro
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _ended(x: Real, points: Real, setting: Real, room: Room) -> float:
-    """Descends to the end of the least squares, in place; the sum of squares there."""
+    """Minimize the least squares in place until convergence; return the sum of squares."""
     counts, before = np.zeros(3, np.int64), np.inf
     cost = before
     for _ in range(TIMES):
@@ -112,9 +113,9 @@ def _ended(x: Real, points: Real, setting: Real, room: Room) -> float:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _at_bare_limits(x: Real, points: Real, setting: Real, bare: Real, poses: Poses, room: Room) -> None:
-    """Goes on, in place, to positions that only the aims hold off, where they are met within the limits themselves."""
+    """Retry, in place, without the margins, in case the positions can be met within the limits themselves."""
     if setting[COSINE] > bare[COSINE]:
-        return  # These aims are wider than the limits.
+        return  # a relaxed start has wider aims than the limits already
     further, limits, joints = x.copy(), setting.copy(), np.empty(7, np.complex128)
     for k in range(COSINE, FIRST_X):
         limits[k] = bare[k]
@@ -126,25 +127,25 @@ def _at_bare_limits(x: Real, points: Real, setting: Real, bare: Real, poses: Pos
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def fitted(poses: Poses, held: NDArray[np.bool_], pool: Pool, bare: Real, found: Found) -> int:
-    """Descends from all of a pool to the end.
+    """Fit all linkages of a pool until convergence.
 
     Parameters
     ----------
     poses : Poses
-        What is demanded.
+        Target poses.
     held : bool, shape (n,)
-        Which positions are to be met exactly.
+        Mask of the exact positions.
     pool : Pool
-        Starts.
+        Starting points.
     bare : float, shape (SETTINGS,)
-        The limits, which the aims of the starts keep aside of.
+        The limits without the margins of the starts' aims.
     found : Found
-        Filled.
+        Output.
 
     Returns
     -------
     int
-        How many there are.
+        Number of linkages written.
     """
     later = len(poses.later)
     unknowns = JOINTS + later + (0 if held[0] else FREE)
@@ -169,6 +170,7 @@ def fitted(poses: Poses, held: NDArray[np.bool_], pool: Pool, bare: Real, found:
             x[free], x[free + 1], x[free + 2] = setting[FIRST_X], setting[FIRST_Y], 0.0
         if _ended(x, points, setting, room) > NEARLY_ARRIVED:
             _at_bare_limits(x, points, setting, bare, poses, room)
+        # A weight alone leaves a small error at exact positions; these steps remove it.
         if held.any() and not _met(x, points, setting, held, room):
             continue
         if free > 0:

@@ -1,22 +1,22 @@
-"""A sixbar that carries a body through poses on one branch, in order: residuals of its dimensions and of its input.
+"""Residuals of a sixbar that carries a body through poses on one branch, in order.
 
 The unknowns x are the seven joints in the first position (:data:`chain_kernels.O2` …) and, from each position to the
-next, the logarithm of the input's turn, so that the input never turns back. Three more, where they are there, are the
-body's first pose, which is fitted then as the later ones are. The linkage is driven by its closures, each on the side
-on which it stands first. What does not close at one of :data:`SAMPLES` inputs on the way is impossible, so that a
-descent never leaves the branch. There remain as residuals, each 0 where it holds:
+next, the logarithm of the input's rotation, so that the input never reverses. Three optional unknowns are the body's
+first pose, which is then fitted like the later ones. The linkage is driven by closing its dyads, each in its initial
+assembly. A linkage that does not close at one of :data:`SAMPLES` inputs in between is rejected, so a descent never
+leaves the branch. The residuals, each 0 if satisfied, are:
 
-* P's distance and the body's angle from each later position, or what either has beyond its tolerance;
-* |cos μ| beyond that of the least transmission angle, of both dyads, or of the triad, at the samples;
-* distances of two joints of a link beyond the reach and the longest link, and short of the shortest; the link ratio;
-* what joints have beyond their boxes: pivots in the first position, all joints on the way.
+* P's distance and the body's angle from each later position, or their excess over the tolerance;
+* the excess of |cos μ| over that of the minimum transmission angle, for both dyads, or for the triad, at the samples;
+* distances of two joints of a link above the reach and the maximum length, and below the minimum; the link ratio;
+* distances of joints from their boxes: pivots in the first position, all joints along the motion.
 
-With five positions there are twelve of the first sort and eighteen unknowns: six freedoms, along which the others find
-room. Derivatives are exact, by the closures |j − p| = const, |j − q| = const differentiated (a column for each unknown
-coordinate, and one for the input).
+With five positions there are twelve residuals of the first kind and eighteen unknowns: six freedoms to satisfy the
+others. Derivatives are exact, from the differentiated closures |j − p| = const, |j − q| = const (a column for each
+unknown coordinate, and one for the input).
 
-A Stephenson II is driven by a link that turns relative to its input, and seen from the ground then
-(:mod:`synthesis.kinds.motion.inversion`): "the input" is that link here.
+A Stephenson II is driven by a link that turns relative to its input, and is then transformed to the ground frame
+(:mod:`synthesis.kinds.motion.inversion`): here "the input" is that link.
 """
 
 from __future__ import annotations
@@ -52,44 +52,44 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 JOINTS = 14
-"""Unknowns that are coordinates of joints."""
+"""Number of unknowns that are coordinates of joints."""
 
 SAMPLES = 24
-"""Steps of the drive from the first position to the last, beside the positions themselves."""
+"""Number of drive steps from the first position to the last, in addition to the positions themselves."""
 
 MAKE, WAY, FIRST_SIDE, SECOND_SIDE, COSINE, REACH, SHORTEST, LONGEST, RATIO, FIRST_X, FIRST_Y = range(11)
 FIXED_BOX, MOVING_BOX, ROOM, WANTED_X, WANTED_Y, SETTINGS = 11, 15, 19, 23, 24, 25
-"""Places in a setting: the number of the make; ±1, the sense in which the input turns; the sides of both dyads; the
-cosine of the least transmission angle; limits of sizes as those of :data:`chain_kernels.MOST_REACH`; P in the first
-position; boxes (x from, to, y from, to) as there; where P is wanted in the first position, if that is fitted. Task
+"""Indices into a setting: topology number; direction of the input (±1); assemblies of both dyads (±1); cosine of the
+minimum transmission angle; size limits as for :data:`chain_kernels.MOST_REACH`; P in the first position; boxes
+(x min, x max, y min, y max) as there; target of P in the first position, if that is fitted; number of entries. Task
 coordinates."""
 
 OF_POSE = 8
-"""Numbers of a later position, a row of ``points``: x, y, the body's turn from the first, how far each may be off, and
-the weights of a distance of P and of an angle."""
+"""Length of a row of ``points``, one later position: x, y, the body's rotation from the first, their three tolerances,
+and the weights of P's distance and of the angle."""
 
 FREE = 3
-"""Unknowns of a first pose that is fitted: P, and how far the body is turned from where it is wanted."""
+"""Number of unknowns of a fitted first pose: P, and the body's rotation from its target angle."""
 
 ALONE, TO_P = 6, 7
-"""How many of the links are bars for themselves in a list of pairs; P in such a list."""
+"""Number of binary links at the start of a list of pairs, and the index that denotes P in such a list."""
 
 BY_ANGLE, BY_COSINE, BY_SIZE, BY_BOX = 0.7, 0.5, 0.3, 1.0
-"""Weights of residuals beside distances of P in task sizes: radians (where a pose does not say it), cosines, lengths,
-distances from boxes."""
+"""Weights of residuals relative to distances of P in task sizes: radians (unless the pose has its own weight), cosines,
+lengths, distances from boxes."""
 
 BARRIER = math.cos(math.radians(3.0))
-"""Cosine at which a dyad counts as one that does not close."""
+"""Cosine of the transmission angle above which a dyad counts as not closing."""
 
 MOST_TURN = 6.2
-"""Radians that the input turns at most: less than once round."""
+"""Maximum rotation of the input, radians: just under a full turn."""
 
 UNITS = np.array([[(1.0, 1j)[m % 2] if m // 2 == j else 0.0 for j in range(7)] for m in range(JOINTS)] + [[0.0j] * 7])
-"""Rates of the joints: a row for each unknown coordinate, and one of zeros, for the input."""
+"""Derivatives of the joints by each unknown coordinate, one row each, and a last row of zeros for the input."""
 
 
 def _pairs() -> NDArray[np.int64]:
-    """Pairs of joints of one link for each make, (makes, 16, 2), −1 where there are no more; the last ones with P."""
+    """List the pairs of joints on one link by topology, (makes, 16, 2), padded with −1; pairs with P come last."""
     listed = np.full((len(MAKES), 16, 2), -1)
     for make, (first, second) in enumerate(MAKES):
         pairs = [(O2, A), (A, B), (O4, B), (O2, O4), (Q1, J), (Q2, J)]
@@ -104,7 +104,7 @@ PAIRS = _pairs()
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def most_rows(positions: int) -> int:
-    """Greatest number of residuals."""
+    """Return the maximum number of residuals."""
     return 3 * positions + (2 + 12) * (SAMPLES + positions) + 16 + 1 + 14 + FREE
 
 
@@ -115,7 +115,7 @@ def _dot(u: complex, v: complex) -> float:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _rate_of_meeting(u: complex, v: complex, p_rate: complex, q_rate: complex, first: float, second: float) -> complex:
-    """Rate of the joint of two links u and v from pins p and q, by half the rates of their squares."""
+    """Return the rate of the joint of links u and v from pins p and q, by half the rates of their squared lengths."""
     along, across = first + _dot(u, p_rate), second + _dot(v, q_rate)
     scale = 1.0 / (u.real * v.imag - u.imag * v.real)
     return complex((along * v.imag - across * u.imag) * scale, (u.real * across - v.real * along) * scale)
@@ -123,7 +123,7 @@ def _rate_of_meeting(u: complex, v: complex, p_rate: complex, q_rate: complex, f
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def dimensions(z: Complex, lengths: Real, inverses: Complex) -> None:
-    """Lengths (4,) and reciprocals (4,) of A–B, O₄–B, Q₁–J and Q₂–J in the first position."""
+    """Write lengths (4,) and reciprocals (4,) of A–B, O₄–B, Q₁–J and Q₂–J in the first position."""
     inverses[0], inverses[1], inverses[2], inverses[3] = z[B] - z[A], z[B] - z[O4], z[J] - z[Q1], z[J] - z[Q2]
     for n in range(4):
         lengths[n] = abs(inverses[n])
@@ -134,7 +134,7 @@ def dimensions(z: Complex, lengths: Real, inverses: Complex) -> None:
 def assembled(
     z: Complex, lengths: Real, inverses: Complex, setting: Real, angle: float, at: Complex, turns: Complex
 ) -> tuple[float, float]:
-    """The linkage with its input turned by ``angle`` from the first position, closed by its dyads.
+    """Assemble the linkage with its input turned by ``angle`` from the first position.
 
     Parameters
     ----------
@@ -145,14 +145,14 @@ def assembled(
     angle : float
         Radians.
     at : complex, shape (6,)
-        Filled: A, B, Q₁, Q₂, J and P.
+        Output: A, B, Q₁, Q₂, J and P.
     turns : complex, shape (4,)
-        Filled: how the input, the coupler, the output and the body are turned.
+        Output: rotations e^{iα} of input, coupler, output and body.
 
     Returns
     -------
     tuple of float
-        Cosines of the angles at both dyads; what is filled has no meaning where either is beyond ±1.
+        Cosines of the angles at both dyads; the outputs are invalid if either is outside ±1.
     """
     first, second = MAKES[int(setting[MAKE]), 0], MAKES[int(setting[MAKE]), 1]
     turns[0] = complex(math.cos(angle), math.sin(angle))
@@ -173,7 +173,7 @@ def assembled(
 def driven(
     z: Complex, lengths: Real, inverses: Complex, setting: Real, angle: float, at: Complex, turns: Complex
 ) -> tuple[float, float]:
-    """The same as the ground sees it, with the cosines of transmission angles: of a Stephenson II one, and 0."""
+    """Assemble the linkage in the ground frame; return cosines of transmission angles (one and 0 for Stephenson II)."""
     cosine, other = assembled(z, lengths, inverses, setting, angle, at, turns)
     if int(setting[MAKE]) == STEPHENSON_2 and abs(cosine) < 1.0 and abs(other) < 1.0:
         return on_ground(z, complex(setting[FIRST_X], setting[FIRST_Y]), at, turns), 0.0
@@ -184,7 +184,7 @@ def driven(
 def _rate_on(
     link: int, point: complex, own: complex, z: Complex, unit: Complex, at: Complex, turns: Complex, rates: Complex
 ) -> complex:
-    """Rate of a point of a link of the fourbar; ``rates``: of A, the input's, the coupler's and the output's turn."""
+    """Return the rate of a point on a link of the fourbar; ``rates`` are those of A and of the links' rotations."""
     rate = own
     if link == INPUT:
         rate = unit[O2] + turns[0] * (own - unit[O2]) + rates[1] * (point - z[O2])
@@ -209,9 +209,9 @@ def _rates(
     through: Real,
     bending: Real,
 ) -> None:
-    """Rates by each row of :data:`UNITS`, 15 of them: of ``at`` (6, 15), of angles, and of both cosines (2, 15).
+    """Write the derivatives by each of the 15 rows of :data:`UNITS`: of ``at`` (6, 15) and of both cosines (2, 15).
 
-    The angles are the body's and the coupler's.
+    ``turning`` and ``through`` (15,) are those of the body's and the coupler's angle.
     """
     make = int(setting[MAKE])
     first, second = MAKES[make, 0], MAKES[make, 1]
@@ -245,19 +245,19 @@ def _rates(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _beyond(off: float, tolerance: float) -> float:
-    """What a deviation has beyond its tolerance."""
+    """Return the excess of a deviation over its tolerance, with the deviation's sign."""
     return math.copysign(max(abs(off) - tolerance, 0.0), off)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _outside(at: float, low: float, high: float) -> float:
-    """How far a coordinate lies beyond an interval, negative below it."""
+    """Return the distance of a coordinate from an interval: 0 inside, negative below it."""
     return at - high if at > high else min(at - low, 0.0)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _sizes(z: Complex, setting: Real, residuals: Real, jacobian: Real, m: int, free: int) -> int:
-    """Adds residuals of links and of pivots in the first position; the number of rows, −1 where a link vanishes."""
+    """Append residuals of links and of pivots in the first position; return the row count, or −1 for a zero length."""
     make, derived = int(setting[MAKE]), len(jacobian) > 0
     start = complex(setting[FIRST_X], setting[FIRST_Y])
     least, most = np.inf, 0.0
@@ -282,6 +282,7 @@ def _sizes(z: Complex, setting: Real, residuals: Real, jacobian: Real, m: int, f
                 jacobian[m] = 0.0
                 _along(i, k, free, BY_SIZE * way / length, jacobian[m])
             m += 1
+    # The logarithm of the ratio involves only the longest and the shortest link.
     if most > setting[RATIO] * least:
         residuals[m] = BY_SIZE * math.log(most / (setting[RATIO] * least))
         if derived:
@@ -307,7 +308,7 @@ def _sizes(z: Complex, setting: Real, residuals: Real, jacobian: Real, m: int, f
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _along(i: int, k: int, free: int, way: complex, row: Real) -> None:
-    """Adds to a row the rate of a function of z_i − z_k whose gradient is ``way``; P is unknown from ``free`` on."""
+    """Add to a row the derivatives of a function of z_i − z_k with gradient ``way``; ``free`` is P's first column."""
     row[2 * i] += way.real
     row[2 * i + 1] += way.imag
     if k != TO_P:
@@ -320,7 +321,7 @@ def _along(i: int, k: int, free: int, way: complex, row: Real) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _row(rates: Real, weight: float, by_turn: Real, row: Real) -> None:
-    """A row by rates of the joints and of the input, and those of the input by its unknowns."""
+    """Write a Jacobian row from derivatives by joints and input, and the input's derivatives by its unknowns."""
     for m in range(JOINTS):
         row[m] = weight * rates[m]
     for m in range(by_turn.size):
@@ -331,14 +332,14 @@ def _row(rates: Real, weight: float, by_turn: Real, row: Real) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _of_body(turn: complex, axis: int, weight: float, row: Real) -> None:
-    """The entries of P's place on the body in the row of a coordinate of P."""
+    """Write the entries of P's position on the body into the row of a coordinate of P."""
     row[0] = weight * (turn.imag if axis else turn.real)
     row[1] = weight * (turn.real if axis else -turn.imag)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def branch_rows(x: Real, points: Real, setting: Real, residuals: Real, jacobian: Real) -> int:
-    """The residuals of a sixbar.
+    """Evaluate the residuals of a sixbar and their Jacobian.
 
     Parameters
     ----------
@@ -347,14 +348,14 @@ def branch_rows(x: Real, points: Real, setting: Real, residuals: Real, jacobian:
     points : float, shape (positions − 1, 8)
         See :data:`OF_POSE`.
     setting : float
-        See :data:`MAKE`; P of a first pose that is fitted is put into it.
+        See :data:`MAKE`; P of a fitted first pose is written into it.
     residuals, jacobian : float, shape (most_rows, ), (most_rows, unknowns)
-        Filled; the second may have no rows, and is left as it is then.
+        Output; a Jacobian without rows is not computed.
 
     Returns
     -------
     int
-        The number of rows; −1 where the linkage does not close.
+        The number of rows; −1 if the linkage does not close.
     """
     intervals, derived = len(points), len(jacobian) > 0
     free, stands = JOINTS + intervals if x.size > JOINTS + intervals else -1, 0.0
@@ -369,6 +370,7 @@ def branch_rows(x: Real, points: Real, setting: Real, residuals: Real, jacobian:
     for k in range(intervals):
         parts[k] = math.exp(x[JOINTS + k])
         total += parts[k]
+    # A dyad that changed its assembly in the first position has left its branch.
     if not total < MOST_TURN or setting[FIRST_SIDE] * signed_sine(z[A], z[O4], z[B]) <= 0.0:
         return -1
     if setting[SECOND_SIDE] * signed_sine(z[Q1], z[Q2], z[J]) <= 0.0:
@@ -387,6 +389,7 @@ def branch_rows(x: Real, points: Real, setting: Real, residuals: Real, jacobian:
                 jacobian[m] = 0.0
                 jacobian[m, free + axis] = weight
             m += 1
+    # First SAMPLES evenly spaced inputs between the end positions, then the later positions themselves.
     for n in range(SAMPLES + intervals):
         target = n - SAMPLES
         angle = total * n / SAMPLES if target < 0 else parts[target] + (angle if target > 0 else 0.0)
@@ -395,7 +398,7 @@ def branch_rows(x: Real, points: Real, setting: Real, residuals: Real, jacobian:
             return -1
         plain = everywhere and not inverted and max(abs(cosines[0]), abs(cosines[1])) <= setting[COSINE]
         if target < 0 and plain:
-            continue
+            continue  # no residual is active at this sample, so its rates are not needed
         if derived:
             for k in range(intervals):
                 by_turn[k] = setting[WAY] * parts[k] * (n / SAMPLES if target < 0 else (1.0 if k <= target else 0.0))

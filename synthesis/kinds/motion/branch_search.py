@@ -1,4 +1,4 @@
-"""Sixbars from descents that hold their branch (:mod:`branch_walk`): rounds of them for one problem."""
+"""Sixbars from descents that stay on their branch (:mod:`branch_walk`): rounds of descents for one problem."""
 
 from __future__ import annotations
 
@@ -22,35 +22,36 @@ from synthesis.kinds.motion.stated_positions import MOST_HELD
 from synthesis.kinds.motion.task import MotionTask
 
 DESCENTS = 1500
-"""Descents of a round, about a third of a second, of up to five positions; of more as many fewer as there are more."""
+"""Number of descents per round for up to five positions, about a third of a second; with more positions the number is
+reduced in proportion."""
 
 KEPT = 400
-"""Linkages that are kept of a round."""
+"""Maximum number of linkages kept per round."""
 
 DRAWN = 4, 4, 3, 1, 1, 1, 1, 2
-"""How often each make is drawn: most often those that carry a body through most positions."""
+"""Sampling weight of each topology: largest for those that carry a body through most positions."""
 
 FIRST_POSES = 64
-"""Places of the body in a first position that has a tolerance, every other one as demanded."""
+"""Number of sampled first poses if the first position has a tolerance; every other one is the target itself."""
 
 REPEATED = 1e-9
-"""Least singular value of the conditions on a crank beside the greatest, below which they repeat one another."""
+"""Smallest singular value of the conditions on a crank, relative to the largest, below which they are dependent."""
 
 WITHIN = 0.98
-"""Share of a tolerance that is used."""
+"""Share of a tolerance that is used; the rest covers rounding and the steps of the drive."""
 
 
 class Aside(NamedTuple):
-    """How far a descent keeps aside of its limits, so that these hold between the steps of its drive too.
+    """Margins of a descent from its limits, so that these also hold between the steps of its drive.
 
     Attributes
     ----------
     angle : float
-        Radians that it transmits with beyond the least angle.
+        Radians added to the minimum transmission angle.
     size : float
-        Share of limits of size that is used.
+        Share of the size limits that is used.
     shortest : float
-        Factor of the shortest link that any sixbar has.
+        Factor of the minimum link length of any sixbar.
     """
 
     angle: float
@@ -59,10 +60,10 @@ class Aside(NamedTuple):
 
 
 AIM, BARE = Aside(math.radians(2.0), 0.96, 1.5), Aside(math.radians(0.02), 0.9999, 1.0)
-"""What descents aim at, and the limits themselves, but for what lies between the places that are looked at."""
+"""Margins that descents aim at, and minimal ones: the limits themselves, apart from the motion between samples."""
 
 RELAXED_ANGLE, RELAXED_SIZE = math.radians(7.0), 3.0
-"""Where nobody states them: the transmission angle of relaxed descents, and how much greater their sizes may be."""
+"""Relaxed defaults: the transmission angle, radians, and the factor of the size limits, if the client gives none."""
 
 
 class BranchSearch:
@@ -71,7 +72,7 @@ class BranchSearch:
     Attributes
     ----------
     descents : int
-        How many there were so far.
+        Number of descents so far.
     """
 
     def __init__(
@@ -81,6 +82,7 @@ class BranchSearch:
         exactly = exactly and not _many_cranks(task)
         self.cranks = _cranks(task) if exactly else np.empty((0, 2), np.complex128)
         drawn = np.where(wanted, DRAWN, 0)
+        # A Stephenson II contains a crank between body and ground: without a crank through five poses none exists.
         if exactly and not len(self.cranks):
             drawn[kernels.STEPHENSON_2] = 0
         self.makes = np.repeat(np.arange(len(wanted)), drawn)
@@ -94,7 +96,7 @@ class BranchSearch:
         self.descents = 0
 
     def round(self, rng: np.random.Generator, *, relaxed: bool) -> Found:
-        """Goes on with what was found before; ``relaxed`` without limits that nobody stated."""
+        """Run another round on the current pool; ``relaxed`` drops the default limits."""
         if not len(self.makes):
             return Found.none()
         joints, makes = np.empty((KEPT, 7), np.complex128), np.empty(KEPT, np.int64)
@@ -110,11 +112,11 @@ class BranchSearch:
 
     @property
     def misses(self) -> float:
-        """The least sum of squares of those that miss the positions, without what nobody stated and with."""
+        """The minimum sum of squares in both pools, with and without the default limits."""
         return min(float(pool.costs[0]) for pool in self.pools)
 
     def fitted(self) -> Found:
-        """Those that miss least, taken to the end of their least squares; what follows begins anew."""
+        """Fit the linkages of the pools by least squares until convergence, then empty the pools."""
         found = Found.none()
         poses = Poses(self.first, self.later, self.needed, self.limits, self.cranks)
         for pool in self.pools:
@@ -126,11 +128,10 @@ class BranchSearch:
 
 
 def _many_cranks(task: MotionTask) -> bool:
-    """Whether conditions on a crank repeat one another, as of a body that turns about one point.
+    """Return whether the conditions on a crank are dependent, as for a body that turns about one point.
 
-    :func:`dyads` tells none then.
-
-    With O on the ground and A on the body in the first position, |r A + c − O|² = |A − O|² is linear in A, O and A Ō.
+    There is a family of cranks then, which :func:`dyads` does not return. With O on the ground and A on the body in the
+    first position, |r A + c − O|² = |A − O|² is linear in A, O and A Ō.
     """
     r = task.turns[1:]
     c = task.points[1:] - r * task.points[0]
@@ -140,7 +141,10 @@ def _many_cranks(task: MotionTask) -> bool:
 
 
 def _cranks(task: MotionTask) -> NDArray[np.complex128]:
-    """The cranks between body and ground, (n, 2), on the body and on the ground: a Stephenson II has one of them."""
+    """Find the cranks between body and ground: pins on the body and on the ground, shape (n, 2).
+
+    A Stephenson II contains one of them.
+    """
     still, upright = np.zeros(kernels.POSITIONS, np.complex128), np.ones(kernels.POSITIONS, np.complex128)
     shift, spin = np.empty_like(still), np.empty_like(still)
     fixed, moving = np.empty(MOST, np.complex128), np.empty(MOST, np.complex128)
@@ -151,7 +155,7 @@ def _cranks(task: MotionTask) -> NDArray[np.complex128]:
 
 
 def _poses(problem: MotionProblem, task: MotionTask, target: Demanded, rng: np.random.Generator) -> tuple[Real, Real]:
-    """First and later poses as :class:`branch_walk.Poses` has them."""
+    """Sample first poses and pack later poses in the form of :class:`branch_walk.Poses`."""
     unit = np.array([target.size, target.size, 1.0])
     first = (
         rng.uniform(-1.0, 1.0, (FIRST_POSES, 3)) * WITHIN * np.where(np.isfinite(target.limits[0]), target.limits[0], 0)
@@ -166,7 +170,7 @@ def _poses(problem: MotionProblem, task: MotionTask, target: Demanded, rng: np.r
 
 
 def _aims(problem: MotionProblem, limits: Real, aside: Aside, *, relaxed: bool) -> Real:
-    """What descents aim at: places from :data:`branch_rows.COSINE` on."""
+    """Pack the limits that descents aim at into a setting, from :data:`branch_rows.COSINE` on."""
     aims = np.zeros(rows.SETTINGS)
     angle = math.asin(limits[kernels.LEAST_SINE]) + aside.angle
     reach, ratio = limits[[kernels.MOST_REACH, kernels.MOST_RATIO]]

@@ -1,4 +1,4 @@
-"""The value of a sixbar that meets its positions by a descent, compiled: how sound it is, and how good."""
+"""Compiled evaluation of a sixbar from a descent: feasibility and quality in one number."""
 
 from __future__ import annotations
 
@@ -47,20 +47,20 @@ Complex = NDArray[np.complex128]
 
 
 class Poses(NamedTuple):
-    """What is demanded of the body, with first poses of it that are within their tolerance.
+    """Target poses of the body, with sampled first poses within the first tolerance.
 
     Attributes
     ----------
     first : float, shape (n, 3)
-        P and the angle of the body in the first position, one of which each linkage takes.
+        P and the body's angle in the first position; each linkage uses one row.
     later : float, shape (k, 8)
-        Later positions as :data:`branch_rows.OF_POSE` has them, but with the angle from the first demanded one.
+        Later positions in the form of :data:`branch_rows.OF_POSE`, with angles from the first target position.
     needed : float, shape (2,)
-        Way and turn that the body needs.
+        Path length and rotation that the body needs at least.
     limits : float, shape (19,)
         See :data:`synthesis.kinds.motion.chain_kernels.LEAST_SINE`.
     cranks : complex, shape (m, 2)
-        Of five positions that are met exactly the pins in the first one of all cranks between body and ground.
+        For five exact positions: the pins, in the first one, of all cranks between body and ground.
     """
 
     first: Real
@@ -72,7 +72,7 @@ class Poses(NamedTuple):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def value_of(x: Real, points: Real, setting: Real, poses: Poses, joints: Complex) -> float:
-    """The value of a linkage that meets the positions, and its joints in the first one."""
+    """Return the value of a linkage that meets the positions; write its joints in the first one."""
     at, turns = np.empty(6, np.complex128), np.ones(4, np.complex128)
     places = len(points) + 1
     into, out = np.ones(places, np.complex128), np.ones(places, np.complex128)
@@ -98,7 +98,10 @@ def value_of(x: Real, points: Real, setting: Real, poses: Poses, joints: Complex
 def _of_stephenson_2(
     joints: Complex, lengths: Real, inverses: Complex, setting: Real, angle: float, poses: Poses
 ) -> float:
-    """The same of a Stephenson II, which has no fourbar for a class and whose full turns are not looked at."""
+    """Return the value of a Stephenson II, which has no fourbar with a Grashof class; full rotations are not checked.
+
+    Negative values are degenerate (−3), not closing (−1) or turning more than once (−2); 1 and more is feasible.
+    """
     limits, start = poses.limits, complex(setting[FIRST_X], setting[FIRST_Y])
     shortest, longest, reach = np.inf, 0.0, 0.0
     for i, k in PAIRS[STEPHENSON_2]:
@@ -133,6 +136,7 @@ def _of_stephenson_2(
         box = limits[FIXED_BOX:MOVING_BOX] if k in (Q2, J) else limits[MOVING_BOX:ROOM]
         beyond = max(beyond, outside_of(joints[k], box))
     over = max(over, 1.0) + beyond
+    # Below 1 the value grows towards feasibility, which guides the search.
     if not (flattest >= limits[LEAST_SINE] and over <= 1.0):
         return float(min(flattest, 0.999) / over)
     excess = max(

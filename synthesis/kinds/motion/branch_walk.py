@@ -1,10 +1,10 @@
-"""A search for sixbars that carry a body on one branch, compiled: random linkages, descents, and hops of the best.
+"""Compiled basin-hopping search for sixbars that carry a body on one branch.
 
-A random linkage that closes over a random turn of its input is taken to the positions by a descent
-(:mod:`synthesis.kinds.motion.branch_rows`), which holds its branch and its order. Most descents end in a minimum that
-misses the positions. Those that miss least make a pool, and are hopped from: changed at random and descended again, and
-replaced where that ends lower (basin hopping, Wales & Doye, J. Phys. Chem. A 101 (1997) 5111,
-doi:10.1021/jp970984n). What arrives is moved along the freedoms that the positions leave to a better quality.
+A random linkage that closes over a random rotation of its input is fitted to the positions by a descent
+(:mod:`synthesis.kinds.motion.branch_rows`), which preserves its branch and order. Most descents end in a minimum that
+misses the positions. The best of these form a pool for basin hopping: a member is perturbed at random, descended again,
+and replaced if the new minimum is lower (Wales & Doye, J. Phys. Chem. A 101 (1997) 5111, doi:10.1021/jp970984n).
+Linkages that meet the positions are moved along their remaining freedoms to improve their quality.
 """
 
 from __future__ import annotations
@@ -40,56 +40,58 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 POOL = 30
-"""Linkages that are hopped from."""
+"""Number of linkages in the pool."""
 
 FRESH = 0.2
-"""Share of descents from new linkages."""
+"""Share of descents that start from new random linkages."""
 
 PICK, TRIES = 3, 2000
-"""Of so many random linkages that close the one that is nearest is descended from; so many are drawn at most."""
+"""Number of random linkages that close, of which the one with the lowest cost is descended; and the maximum number of
+samples for it."""
 
 LEAST_SPREAD, MOST_SPREAD = 0.35, 1.35
-"""Spread of random joints around the positions, task sizes."""
+"""Range of the standard deviation of random joints around the positions, task sizes."""
 
 LEAST_TURN, MOST_DRAWN = math.radians(30.0), math.radians(300.0)
-"""Turn of the input in random linkages."""
+"""Range of the input's rotation in random linkages, radians."""
 
 LEAST_HOP, MOST_HOP = 0.03, 0.6
-"""Spread of a hop: task sizes, and natural logarithms of turns."""
+"""Range of the standard deviation of a hop: task sizes, and natural logarithms of input rotations."""
 
 STEPS, BLOCK, WORTH = 60, 10, 0.5
-"""Steps of a descent at most, and after how many of them it has to have come below this share of its cost: descents of
-the search."""
+"""Descents of the search: maximum number of steps, block length, and the share of the cost below which each block of
+steps must bring it for the descent to continue."""
 
 DAMPING, LEAST_DAMPING, MOST_DAMPING = 0.03, 1e-10, 1e4
-"""At first, at least, and that above which a descent has stalled."""
+"""Levenberg damping: initial and minimum value, and the value above which a descent has stalled."""
 
 EASIER, PARTLY_EASIER, HARDER, LONGEST = 0.15, 0.6, 5.0, 0.6
-"""Factors of the damping after a whole step, after one that was cut to the greatest change of an unknown, and after a
-refused one; that change."""
+"""Factors of the damping after a full step, after one that was cut to the maximum change of an unknown, and after a
+rejected step; last that maximum change."""
 
 ARRIVED = 1e-22
-"""Sum of squares at which a linkage meets its positions."""
+"""Sum of squares below which a linkage meets its positions."""
 
 REFUSED = 8
-"""Hops that do not close before another is taken."""
+"""Maximum number of hops that do not close before another member of the pool is chosen."""
 
 BETTER, BETTER_HOP, BETTER_SHARE = 14, 0.12, 0.85
-"""Attempts to make a linkage better, their spread, and the share of its size and of its link ratio aimed at."""
+"""Improvement of a converged linkage: number of attempts, initial standard deviation of the hops, and target share of
+its size and link ratio."""
 
 
 class Pool(NamedTuple):
-    """Linkages that miss the positions, those that miss least first.
+    """Linkages that miss the positions, in ascending order of cost.
 
     Attributes
     ----------
     x : float, shape (POOL, unknowns)
-        Of :mod:`synthesis.kinds.motion.branch_rows`.
+        Unknowns of :mod:`synthesis.kinds.motion.branch_rows`.
     costs : float, shape (POOL,)
-        Infinite where there is none.
+        Sums of squares; infinite for an empty place.
     settings : float, shape (POOL, SETTINGS)
     starts : int, shape (POOL,)
-        The number of the first pose of each.
+        Index of each linkage's first pose.
     """
 
     x: Real
@@ -99,15 +101,15 @@ class Pool(NamedTuple):
 
 
 class Arrived(NamedTuple):
-    """Linkages that meet the positions.
+    """Output arrays for linkages that meet the positions.
 
     Attributes
     ----------
     joints, makes, values, starts
-        Their joints in the first position, their makes, their values (:func:`chain_kernels.weighed`) and the numbers of
-        their first poses: (most, 7), (most,), (most,), (most,).
+        Joints in the first position, topology numbers, values (:func:`chain_kernels.weighed`) and indices of the first
+        poses: shapes (most, 7), (most,), (most,), (most,).
     counts : int, shape (3,)
-        How many there are; descents; steps of descents.
+        Number of linkages; of descents; of steps in descents.
     """
 
     joints: Complex
@@ -119,14 +121,14 @@ class Arrived(NamedTuple):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _copied(from_row: Real, row: Real) -> None:
-    """Copies a row; assigned at a time it takes the compiler seconds."""
+    """Copy a row element by element; a slice assignment would take the compiler seconds."""
     for k in range(row.size):
         row[k] = from_row[k]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _sides(x: Real, setting: Real) -> None:
-    """Notes on which sides the dyads of a linkage stand."""
+    """Store the current assemblies of both dyads in the setting."""
     z = np.empty(7, np.complex128)
     for j in range(7):
         z[j] = complex(x[2 * j], x[2 * j + 1])
@@ -135,7 +137,7 @@ def _sides(x: Real, setting: Real) -> None:
 
 
 class Room(NamedTuple):
-    """Where descents work: residuals, their Jacobian, those of a trial, and the system of a step."""
+    """Work arrays of a descent: residuals, those of a trial, Jacobian, and the linear system of a step."""
 
     residuals: Real
     trial: Real
@@ -146,7 +148,7 @@ class Room(NamedTuple):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _cost(x: Real, points: Real, setting: Real, room: Room) -> float:
-    """The sum of squares; infinite where the linkage does not close."""
+    """Return the sum of squared residuals; infinite if the linkage does not close."""
     m = branch_rows(x, points, setting, room.trial, room.jacobian[:0])
     cost = 0.0
     for k in range(m):
@@ -156,7 +158,7 @@ def _cost(x: Real, points: Real, setting: Real, room: Room) -> float:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _step_of_many(m: int, damping: float, room: Room, step: Real) -> bool:
-    """The damped step of more rows than unknowns."""
+    """Compute the damped step −(JᵀJ + μ)⁻¹ Jᵀr for more rows than unknowns; return False if it is singular."""
     n, jacobian = step.size, room.jacobian
     matrix = room.matrix[:n, :n]
     for i in range(n):
@@ -175,8 +177,9 @@ def _step_of_many(m: int, damping: float, room: Room, step: Real) -> bool:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _step(m: int, damping: float, room: Room, step: Real) -> bool:
-    """The shortest damped step −Jᵀ(JJᵀ + μ)⁻¹ r of m rows; of more rows than unknowns as −(JᵀJ + μ)⁻¹ Jᵀr."""
+    """Compute the damped minimum-norm step −Jᵀ(JJᵀ + μ)⁻¹ r of m rows; return False if it is singular."""
     matrix, right, jacobian = room.matrix[:m, :m], room.right[:m], room.jacobian
+    # Solve the smaller of the two equivalent systems.
     if m > step.size:
         return _step_of_many(m, damping, room, step)
     for i in range(m):
@@ -200,12 +203,12 @@ def _step(m: int, damping: float, room: Room, step: Real) -> bool:
 def descended(
     x: Real, points: Real, setting: Real, room: Room, counts: NDArray[np.int64], worth: float, steps: int = STEPS
 ) -> float:  # fmt: skip
-    """Descends in place by so many steps at most, as long as ten leave less than ``worth`` of the cost.
+    """Descend in place by at most ``steps`` steps, while each block of ten lowers the cost below ``worth`` times it.
 
     Returns
     -------
     float
-        The sum of squares at the end.
+        The final sum of squares.
     """
     step, trial = np.empty(x.size), np.empty(x.size)
     cost = _cost(x, points, setting, room)
@@ -224,6 +227,7 @@ def descended(
             longest = 0.0
             for k in range(x.size):
                 longest = max(longest, abs(step[k]))
+            # Cut long steps: beyond the maximum change the linearisation of the closures is not valid.
             share = min(1.0, LONGEST / longest)
             for k in range(x.size):
                 trial[k] = x[k] + share * step[k]
@@ -234,13 +238,14 @@ def descended(
             damping = max(damping * (EASIER if share == 1.0 else PARTLY_EASIER), LEAST_DAMPING)
             m = branch_rows(x, points, setting, room.residuals, room.jacobian)
         else:
+            # Reject the step and shorten the next one.
             damping *= HARDER
     return cost
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def of_first(poses: Poses, start: int, setting: Real, points: Real) -> None:
-    """The later positions as a linkage sees them whose first one is given."""
+    """Select a first pose, and write the later positions with their angles relative to it."""
     setting[FIRST_X], setting[FIRST_Y] = poses.first[start, 0], poses.first[start, 1]
     for k in range(len(poses.later)):
         for i in range(OF_POSE):
@@ -250,7 +255,7 @@ def of_first(poses: Poses, start: int, setting: Real, points: Real) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _drawn(rng: np.random.Generator, x: Real, points: Real, setting: Real, cranks: Complex, room: Room) -> float:
-    """A random linkage that closes, the nearest of a few; its cost."""
+    """Sample a few random linkages that close and keep the one with the lowest cost; return that cost."""
     trial, best, found = np.empty(x.size), np.inf, 0
     centre = complex(setting[FIRST_X], setting[FIRST_Y])
     intervals = x.size - JOINTS
@@ -264,6 +269,7 @@ def _drawn(rng: np.random.Generator, x: Real, points: Real, setting: Real, crank
         for j in range(JOINTS):
             trial[j] = (centre.imag if j % 2 else centre.real) + spread * rng.normal()
         if int(setting[MAKE]) == STEPHENSON_2 and len(cranks) > 0:
+            # Exact positions admit only a few cranks between body and ground: start from one of them.
             row = int(rng.random() * len(cranks))
             trial[2 * Q1], trial[2 * Q1 + 1] = cranks[row, 0].real, cranks[row, 0].imag
             trial[2 * J], trial[2 * J + 1] = cranks[row, 1].real, cranks[row, 1].imag
@@ -289,7 +295,7 @@ def _drawn(rng: np.random.Generator, x: Real, points: Real, setting: Real, crank
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _hopped(rng: np.random.Generator, x: Real, spread: float, setting: Real, poses: Poses, to: Real) -> None:
-    """Changes a linkage at random, but for the crank of a Stephenson II to which there is no other."""
+    """Perturb a linkage at random, except for a Stephenson II's crank between body and ground, which is isolated."""
     for k in range(x.size):
         to[k] = x[k] + spread * rng.normal()
     if int(setting[MAKE]) == STEPHENSON_2 and len(poses.cranks) > 0:
@@ -309,14 +315,14 @@ def _improved(
     room: Room,
     counts: NDArray[np.int64],
 ) -> float:
-    """Moves a linkage to a better value by hops that stay on the positions; its value then."""
+    """Improve a linkage's value by hops that return to the positions; return the new value."""
     trial, other, aims = np.empty(x.size), np.empty(7, np.complex128), np.empty(SETTINGS)
     spread = BETTER_HOP
     angle = math.acos(setting[COSINE])
     reach, ratio = setting[REACH], setting[RATIO]
     for n in range(BETTER):
         _copied(setting, aims)
-        # Now and then without another aim, so that the turn of the input and the body's way may count.
+        # Every third attempt keeps the aims, so that the input's rotation and the body's path may improve instead.
         if n % 3:
             aims[COSINE] = math.cos(min(angle + 0.1, 1.4))
             aims[REACH], aims[RATIO] = BETTER_SHARE * reach, BETTER_SHARE * ratio
@@ -339,7 +345,7 @@ def _improved(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _placed(pool: Pool, n: int, x: Real, cost: float, setting: Real, start: int) -> None:
-    """Puts a linkage in the place of the n-th, and moves it up to where its cost belongs."""
+    """Replace the n-th linkage of the pool and move the new one up to its rank by cost."""
     while n > 0 and pool.costs[n - 1] > cost:
         _copied(pool.x[n - 1], pool.x[n])
         _copied(pool.settings[n - 1], pool.settings[n])
@@ -360,19 +366,19 @@ def walked(
     pool: Pool,
     arrived: Arrived,
 ) -> None:
-    """Descents from new linkages and from hops of the pool.
+    """Run descents from new random linkages and from hops of the pool.
 
     Parameters
     ----------
     rng : Generator
     descents : int
-        How many.
+        Number of descents.
     makes : int, shape (n,)
-        Those that are drawn from, some more often than others.
+        Topology numbers to sample from, repeated by weight.
     plain : float, shape (SETTINGS,)
-        The limits; what belongs to a linkage is filled in.
+        The limits; entries that belong to a linkage are filled in.
     poses, pool, arrived
-        What is demanded; what is gone on with, and changed; what is filled.
+        Target poses; pool, updated in place; output.
     """
     unknowns = JOINTS + len(poses.later)
     x, setting, points = np.empty(unknowns), np.empty(SETTINGS), np.empty((len(poses.later), OF_POSE))
@@ -393,6 +399,7 @@ def walked(
             of_first(poses, start, setting, points)
             cost = _drawn(rng, x, points, setting, poses.cranks, room)
         else:
+            # Squaring the random number prefers the better members.
             parent = int(POOL * rng.random() ** 2)
             start = int(pool.starts[parent])
             _copied(pool.settings[parent], setting)

@@ -1,8 +1,8 @@
-"""Burmester's curves of four positions: all dyads, one parameter of them, sampled evenly on every branch.
+"""Burmester's curves of four positions: the one-parameter family of all dyads, sampled evenly on every branch.
 
-Three conditions leave a space of three dimensions for the points x of :mod:`synthesis.kinds.motion.sections`, in which
-the variety's quadrics meet in a curve of degree four; O/p and A/p along it are the centre-point and the circle-point
-curve, circular cubics both. Every combination of the quadrics with |A_k − O|² = |A_j − O|² is ruled by the lines
+Three conditions leave a three-dimensional space for the points x of :mod:`synthesis.kinds.motion.sections`, in which
+the variety's quadrics meet in a curve of degree four; O/p and A/p along it are the centre-point curve and the
+circle-point curve, both circular cubics. The combination of the quadrics |A_k − O|² = |A_j − O|² is ruled by the lines
 
     A_k − O = e^{iβ} (A_j − O),        β the rotation of the link from position j to position k.
 
@@ -12,20 +12,20 @@ coefficients are trigonometric polynomials of degree one in β:
 
     a ρ₁² + 2b ρ₁ρ₂ + c ρ₂² = 0,       Δ(β) = b² − ac.
 
-So the curve covers the circle of β twice where Δ > 0. Δ has at most four zeros: between two of them the sheets of the
-root join to one closed loop, and where there is none both sheets are loops. That is every real branch, and nothing has
-to be traced. With β = middle − half · cos t each loop is smooth in t, the sheet being the sign of sin t.
+So the curve covers the circle of β twice where Δ > 0. Δ has at most four zeros: between two of them the two sheets of
+the root join to one closed loop; without zeros each sheet is a loop. This gives every real branch without tracing.
+With β = middle − half · cos t each loop is smooth in t, and the sheet is the sign of sin t.
 
-Where the body takes two directions only (parallel positions), the point p = A = O = 0 is a vertex of the ruled quadric,
-X and Y fulfil a linear equation n·(X, Y) = 0, and each line from the vertex meets the curve once more: one loop,
+If the body has only two orientations (parallel positions), the point p = A = O = 0 is a vertex of the ruled quadric,
+X and Y satisfy a linear equation n·(X, Y) = 0, and each line from the vertex meets the curve once more: one loop,
 
     ρ = i (ū n₁ + u n₂),        x = 2B(x₀, v) x₀ − B(x₀, x₀) v,
 
 with x₀ any point of the line, v the vertex and B the other quadric.
 
-A loop passes through p = 0 where a cubic runs to infinity along its asymptote; branches are cut there, or where the
-client's interest ends. Where the curve is reducible, whole lines of the ruling may belong to it (a body point that has
-the same place in three positions is a circle point for every centre on a line); they are sampled apart.
+A loop passes through p = 0 where a cubic runs to infinity along its asymptote; branches are cut there, and at the edge
+of the window of interest. If the curve is reducible, whole lines of the ruling may belong to it (a body point that has
+the same location in three positions is a circle point for every centre on a line); they are sampled separately.
 """
 
 from __future__ import annotations
@@ -41,51 +41,54 @@ from synthesis.kinds.motion.sections import VARIETY, condition_rows, null_space,
 from synthesis.kinds.motion.task import Complex, MotionTask, Real
 
 COARSE = 512
-"""Samples of a loop before they are spread evenly."""
+"""Number of samples of a loop before they are spread evenly."""
 
 SPREADINGS = 3
-"""Times that samples are spread anew from where they stand: each time the arc length between them is known better."""
+"""Number of passes that redistribute the samples; each pass knows the arc length between them better."""
 
 UNIT_CIRCLE = 1e-6
-"""Distance from the unit circle within which a zero of Δ counts as real; a false one splits a loop where it is thin."""
+"""Distance from the unit circle up to which a zero of Δ counts as real; a false one only splits a loop where it is
+thin."""
 
 RULED = 1e-7
-"""Size of a quadratic form, relative to the largest on the curve, below which the line of the ruling belongs to it."""
+"""Norm of the quadratic form on a line of the ruling, relative to the largest on the curve, below which the whole line
+belongs to the curve."""
 
 SKEW = 1e-9
-"""Reciprocal condition of (X, Y) as coordinates below which they are none: half of the digits are lost."""
+"""Minimum reciprocal condition number of (X, Y) as coordinates; below it half of the digits are lost."""
 
 EVEN_SHARE = 0.2
-"""Share of the samples that are spread evenly in the parameter until the arc length is known everywhere."""
+"""Weight of an even spread in the parameter, relative to arc length, while the arc length is not yet known."""
 
 LONGEST_STEP = 0.3
-"""Step between samples, relative to the unit of arc length, beyond which it counts no more: a part of a branch that is
-seen too coarsely must not draw all samples to itself."""
+"""Maximum arc length counted for one step between samples, relative to the unit of arc length: a coarsely sampled part
+of a branch must not attract all samples."""
 
 LONGEST_GAP = 3.0
-"""Distance of neighbouring samples, in steps of arc length, beyond which the branch between them is outside."""
+"""Maximum distance of neighbouring samples, in steps of arc length; beyond it the branch left the window between
+them."""
 
 LEAST_SAMPLES = 8
-"""Samples of a branch at least, however short it is."""
+"""Minimum number of samples of a branch."""
 
 AT_INFINITY = 1e-9
-"""p of a unit point x below which a pivot counts as infinitely far away."""
+"""Absolute value of p in a unit point x below which a pivot counts as infinitely far away."""
 
 ON_CURVE = 1e-9
-"""Misfit of the quadrics, relative to p, up to which a sample is a dyad; the ends of
-very thin loops miss it, and designs are refined before they are verified."""
+"""Maximum misfit of the quadrics, relative to p, for a sample to be a dyad. The ends of very thin loops exceed it;
+candidates are refined before they are verified."""
 
 
 class Loop(NamedTuple):
-    """A closed loop of the curve: β = middle − half · cos t on both sheets, or a whole turn of β on one (half = π)."""
+    """A closed loop of the curve: β = middle − half · cos t on both sheets, or a full turn of β on one (half = π)."""
 
     middle: float
     half: float
-    sheet: int  # ±1 of a loop that is one sheet, 0 of one that is both
+    sheet: int  # ±1: the loop is one sheet; 0: it consists of both
 
 
 class Branch(NamedTuple):
-    """A connected piece of both curves, in order; task coordinates, shape (k,) each."""
+    """A connected branch of both curves, in order; task coordinates, shape (k,) each."""
 
     dyads: Dyads
     closed: bool
@@ -99,7 +102,7 @@ class Cone(NamedTuple):
     quadric: Real
 
     def points(self, back: Real, beta: Real) -> Real:
-        """The point of the curve on the line of each β: unit vectors (len(beta), 7)."""
+        """Return the point of the curve on the line of each β: unit vectors (len(beta), 7)."""
         u = np.exp(0.5j * beta)
         start = _on_line(back, beta, 1j * (np.conj(u) * self.normal[0] + u * self.normal[1]))
         own = np.einsum("ki,ij,kj->k", start, self.quadric, start)
@@ -107,12 +110,12 @@ class Cone(NamedTuple):
 
 
 class BurmesterCurve(NamedTuple):
-    """The curve of a space of three dimensions.
+    """Burmester's curve in a three-dimensional solution space.
 
     Attributes
     ----------
     back : float64, shape (7, 4)
-        From (Re X, Im X, Re Y, Im Y) to x.
+        Linear map from (Re X, Im X, Re Y, Im Y) to x.
     coefficients : float64, shape (3, 3)
         a, b, c (rows) as combinations of 1, cos β, sin β.
     loops : tuple of Loop
@@ -120,7 +123,7 @@ class BurmesterCurve(NamedTuple):
     lines : tuple of float
         β of lines of the ruling that belong to the curve.
     cone : Cone or None
-        For positions in two directions only.
+        Only for positions with two orientations.
     """
 
     back: Real
@@ -130,13 +133,13 @@ class BurmesterCurve(NamedTuple):
     cone: Cone | None = None
 
     def points(self, loop: Loop, t: Real) -> Real:
-        """Unit points x (len(t), 7) of a loop at parameters t in [0, 2π), continuous but for the sign."""
+        """Return unit points x (len(t), 7) of a loop at parameters t in [0, 2π), continuous up to sign."""
         if self.cone is not None:
             return self.cone.points(self.back, t)
         beta = loop.middle - loop.half * np.cos(t) if loop.sheet == 0 else loop.middle + t
         a, b, c = self.coefficients @ np.stack([np.ones_like(beta), np.cos(beta), np.sin(beta)])
         root = np.sqrt(np.maximum(b * b - a * c, 0.0)) * (np.sign(np.sin(t)) if loop.sheet == 0 else loop.sheet)
-        # Of the two forms of each root of the quadratic, the one that does not cancel.
+        # Use the form of each root of the quadratic that does not suffer cancellation.
         adding = b * root > 0.0
         first = np.where(adding, -b - root, c)
         second = np.where(adding, a, -b + root)
@@ -145,18 +148,19 @@ class BurmesterCurve(NamedTuple):
         return _unit(_on_line(self.back, beta, rho))
 
     def line_points(self, beta: float, t: Real) -> Real:
-        """Unit points x (len(t), 7) of a line that belongs to the curve, t in [0, π)."""
+        """Return unit points x (len(t), 7) of a line that belongs to the curve, t in [0, π)."""
         return _unit(_on_line(self.back, np.full_like(t, beta), np.exp(1j * t)))
 
 
 def burmester_curve(task: MotionTask, conditions: DyadConditions) -> BurmesterCurve | None:
-    """The curve of all dyads of four positions, or of fewer with linear conditions that leave one freedom.
+    """Find the curve of all dyads of four positions, or of fewer with linear conditions that leave one freedom.
 
-    None where the conditions leave another freedom, or a family of dyads for every β.
+    Return None if the conditions leave another number of freedoms, or a family of dyads for every β.
     """
     basis = null_space(np.concatenate([pose_rows(task), condition_rows(task, conditions)]))
     if basis.shape[1] != 4:
         return None
+    # Rank 3 occurs only for two orientations of the body; it is tried if no pair gives four coordinates.
     for rank in (4, 3):
         ruling = _ruling(task, basis, rank)
         if ruling is not None:
@@ -164,7 +168,7 @@ def burmester_curve(task: MotionTask, conditions: DyadConditions) -> BurmesterCu
     else:
         return None
     back = basis @ ruling.back
-    # The real part of turn · quadrics is what the ruling lies on; the imaginary part cuts it.
+    # The lines lie on the real part of turn · quadrics; its imaginary part intersects them.
     quadric = np.tensordot([ruling.turn.imag, ruling.turn.real], VARIETY, 1)
     coefficients = _quadratic(back.T @ quadric @ back)
     if rank == 3:
@@ -174,17 +178,17 @@ def burmester_curve(task: MotionTask, conditions: DyadConditions) -> BurmesterCu
 
 
 class Window(NamedTuple):
-    """Which dyads of a curve matter, and how their distances count, in task coordinates.
+    """Region of interest of a curve and its measure of arc length, in task coordinates.
 
     Attributes
     ----------
     centres : complex, shape (2,)
-        Middles of what is of interest for the fixed and the moving pivot.
+        Centres of the regions of the fixed and the moving pivot.
     reach : float
-        Farthest distance from them.
+        Radius of the regions.
     near : float
-        Arc length is measured relative to the distance from the middle, or to this where that is less; infinite for
-        plain arc length.
+        Arc length is measured relative to the distance from the centre, or to this value if that is smaller; infinite
+        for plain arc length.
     """
 
     centres: tuple[complex, complex]
@@ -192,12 +196,12 @@ class Window(NamedTuple):
     near: float
 
     def holds(self, dyads: Dyads) -> np.ndarray:
-        """Which dyads have both pivots within reach."""
+        """Return a mask of the dyads with both pivots within reach."""
         fixed, moving = self.centres
         return np.asarray(np.maximum(np.abs(dyads.fixed - fixed), np.abs(dyads.moving - moving)) <= self.reach)
 
     def distances(self, dyads: Dyads) -> Real:
-        """Distance of each dyad from the one before, both pivots together."""
+        """Return the distance of each dyad from the previous one, over both pivots together."""
         squares = np.zeros(len(dyads.fixed) - 1)
         for pivots, centre in zip(dyads, self.centres, strict=True):
             step = np.abs(np.diff(pivots))
@@ -209,7 +213,7 @@ class Window(NamedTuple):
 
 
 class _Strand(NamedTuple):
-    """One loop or line with parameters t along it, over one round, and the arc length from the first to each."""
+    """One loop or line with parameters t over one period, and the arc length from the first parameter to each."""
 
     loop: Loop | float
     t: Real
@@ -217,7 +221,7 @@ class _Strand(NamedTuple):
 
 
 def cloud(curve: BurmesterCurve, window: Window, count: int, phase: float = 0.5) -> Dyads:
-    """About ``count`` dyads, evenly along all branches; ``phase``, 0 to 1, shifts them."""
+    """Sample about ``count`` dyads, evenly along all branches; ``phase``, 0 to 1, shifts the samples."""
     strands = _strands(curve, window)
     total = sum(strand.arc[-1] for strand in strands)
     fixed, moving = [], []
@@ -234,7 +238,7 @@ def cloud(curve: BurmesterCurve, window: Window, count: int, phase: float = 0.5)
 
 
 def branches(curve: BurmesterCurve, window: Window, count: int) -> list[Branch]:
-    """All branches inside a window, with about ``count`` samples at equal arc length."""
+    """Sample all branches inside a window, with about ``count`` samples at equal arc length."""
     strands = _strands(curve, window)
     total = sum(strand.arc[-1] for strand in strands)
     found = []
@@ -247,13 +251,13 @@ def branches(curve: BurmesterCurve, window: Window, count: int) -> list[Branch]:
 
 
 def _pieces(curve: BurmesterCurve, window: Window, loop: Loop | float, t: Real, gap: float) -> list[Branch]:
-    """A loop cut where it leaves the window or passes infinity, which shows in a gap between samples."""
+    """Cut a loop where it leaves the window or passes through infinity, which shows as a gap between samples."""
     dyads, finite, through = _dyads(curve, loop, np.append(t, t[0] + _round(loop)))
     inside = finite & window.holds(dyads)
     joined = inside[1:] & inside[:-1] & ~through & (window.distances(dyads) <= gap)
     if joined.all():
         return [Branch(Dyads(dyads.fixed[:-1], dyads.moving[:-1]), closed=True)]
-    # From a gap onward, each run of joined samples is one piece.
+    # Start after a gap, so that no branch is split at the first sample; each run of joined samples is one branch.
     start = int(np.flatnonzero(~joined)[0]) + 1
     order = (np.arange(len(t)) + start) % len(t)
     pieces, run = [], [] if not inside[order[0]] else [order[0]]
@@ -273,7 +277,7 @@ def _strands(curve: BurmesterCurve, window: Window) -> list[_Strand]:
 
 
 def _spread(curve: BurmesterCurve, window: Window, loop: Loop | float) -> _Strand:
-    """Parameters of a loop, dense where its arc length inside the window is."""
+    """Choose parameters of a loop at roughly equal steps of its arc length inside the window."""
     t = np.linspace(0.0, _round(loop), COARSE + 1)
     arc = np.zeros_like(t)
     for k in range(SPREADINGS + 1):
@@ -286,34 +290,35 @@ def _spread(curve: BurmesterCurve, window: Window, loop: Loop | float) -> _Stran
         arc = np.concatenate([[0.0], np.cumsum(steps)])
         if k == SPREADINGS or arc[-1] == 0.0:
             break
-        # A part of the samples stays where it is, so that what was overlooked can still be found.
+        # Keep a share of the samples even in the parameter, so that missed parts can still be found.
         even = arc / arc[-1] + EVEN_SHARE * t / t[-1]
         t = np.interp(np.linspace(0.0, even[-1], COARSE + 1), even, t)
     return _Strand(loop, t, arc)
 
 
 def _round(loop: Loop | float) -> float:
-    """The parameter's range: a full turn for a loop, half a turn for a line."""
+    """Return the parameter's period: a full turn for a loop, half a turn for a line."""
     return 2.0 * math.pi if isinstance(loop, Loop) else math.pi
 
 
 def _dyads(curve: BurmesterCurve, loop: Loop | float, t: Real) -> tuple[Dyads, np.ndarray, np.ndarray]:
-    """Dyads at parameters t, whether each is finite and true, and whether infinity lies before the next."""
+    """Return dyads at parameters t, a mask of the finite and exact ones, and whether infinity lies before the next."""
     points = curve.points(loop, t) if isinstance(loop, Loop) else curve.line_points(loop, t)
     misfit = np.abs(np.einsum("ki,qij,kj->kq", points, VARIETY, points)).max(axis=1)
     p = points[:, 0]
     finite = (np.abs(p) > AT_INFINITY) & (misfit <= ON_CURVE * np.minimum(np.abs(p), 1.0))
     divisor = np.where(np.abs(p) > AT_INFINITY, p, 1.0).astype(np.complex128)
     dyads = Dyads((points[:, 3] + 1j * points[:, 4]) / divisor, (points[:, 1] + 1j * points[:, 2]) / divisor)
+    # x is continuous up to sign: p changes sign relative to x only where the curve passes through infinity.
     same_sign = (points[1:] * points[:-1]).sum(axis=1) > 0.0
     through = (p[1:] * p[:-1] > 0.0) != same_sign
     return dyads, finite, through
 
 
 class _Ruling(NamedTuple):
-    """Of a pair of positions: from (X, Y) to coordinates of the space (4, 4), and the turn between the two.
+    """Ruling of a pair of positions: the map from (X, Y) to coordinates of the space (4, 4), and the turn between them.
 
-    Where the rank is three: coordinates of the vertex, and the equation of X and Y, shape (4,) each.
+    For rank three also the coordinates of the vertex, and the equation of X and Y, shape (4,) each.
     """
 
     back: Real
@@ -323,7 +328,7 @@ class _Ruling(NamedTuple):
 
 
 def _ruling(task: MotionTask, basis: Real, rank: int) -> _Ruling | None:
-    """The pair of positions for which X and Y, of that rank, are the best coordinates; None where they are none."""
+    """Find the pair of positions whose X and Y, of the given rank, are the best-conditioned coordinates, if any."""
     best: _Ruling | None = None
     condition = SKEW
     for j, k in combinations(range(len(task.points)), 2):
@@ -337,7 +342,7 @@ def _ruling(task: MotionTask, basis: Real, rank: int) -> _Ruling | None:
 
 
 def _on_line(back: Real, beta: Real, rho: Complex) -> Real:
-    """x of X = uρ, Y = conj(u)ρ with u = e^{iβ/2}: shape (len(beta), 7)."""
+    """Return x of X = uρ, Y = conj(u)ρ with u = e^{iβ/2}: shape (len(beta), 7)."""
     u = np.exp(0.5j * beta)
     x, y = u * rho, np.conj(u) * rho
     points: Real = np.stack([x.real, x.imag, y.real, y.imag], axis=1) @ back.T
@@ -351,7 +356,7 @@ def _unit(points: Real) -> Real:
 
 
 def _link_forms(task: MotionTask, k: int) -> Real:
-    """A_k − O = p c + r A − O, its real and imaginary part as forms in x: (2, 7)."""
+    """Return A_k − O = p c + r A − O, real and imaginary part, as linear forms in x: (2, 7)."""
     r = complex(task.turns[k])
     c = complex(task.points[k]) - r * complex(task.points[0])
     return np.array(
@@ -363,8 +368,9 @@ def _link_forms(task: MotionTask, k: int) -> Real:
 
 
 def _quadratic(form: Real) -> Real:
-    """Coefficients a, b, c (rows; combinations of 1, cos β, sin β) of a form in (X, Y) on the lines of the ruling."""
+    """Return a, b, c (rows; combinations of 1, cos β, sin β) of a form in (X, Y) on the lines of the ruling."""
     values = []
+    # Three values determine a trigonometric polynomial of degree one.
     for beta in (0.0, math.pi / 2.0, math.pi):
         cos, sin = math.cos(beta / 2.0), math.sin(beta / 2.0)
         line = np.array([[cos, -sin], [sin, cos], [cos, sin], [-sin, cos]])
@@ -376,7 +382,7 @@ def _quadratic(form: Real) -> Real:
 
 
 def _loops(coefficients: Real) -> tuple[Loop, ...]:
-    """Every interval of β in which Δ is positive."""
+    """Find all intervals of β in which Δ is positive."""
     a, b, c = coefficients
 
     def discriminant(beta: float) -> float:
@@ -392,7 +398,7 @@ def _loops(coefficients: Real) -> tuple[Loop, ...]:
 
 
 def _ruled_lines(coefficients: Real) -> tuple[float, ...]:
-    """β at which a, b and c vanish together: zeros of a² + 2b² + c² that are minima, hence zeros of its derivative."""
+    """Find β at which a, b and c vanish together: double zeros of a² + 2b² + c², hence zeros of its derivative."""
     a, b, c = coefficients
     squares = _product(a, a) + 2.0 * _product(b, b) + _product(c, c)
     kept: list[float] = []
@@ -404,14 +410,14 @@ def _ruled_lines(coefficients: Real) -> tuple[float, ...]:
 
 
 def _product(f: Real, g: Real) -> Complex:
-    """Fourier coefficients, degrees −2 to 2, of the product of two combinations of 1, cos β, sin β."""
+    """Return the Fourier coefficients, degrees −2 to 2, of the product of two combinations of 1, cos β, sin β."""
     one, other = (np.array([(h[1] + 1j * h[2]) / 2.0, h[0], (h[1] - 1j * h[2]) / 2.0]) for h in (f, g))
     product: Complex = np.convolve(one, other)
     return product
 
 
 def _zeros(fourier: Complex) -> Real:
-    """Real zeros, ascending in [−π, π], of a real trigonometric polynomial with coefficients of degrees −2 to 2."""
+    """Find the real zeros, ascending in [−π, π], of a real trigonometric polynomial with degrees −2 to 2."""
     size = np.abs(fourier).max()
     if size == 0.0:
         return np.empty(0)

@@ -1,8 +1,8 @@
-"""Which type of linkage carries the body: the simplest that is sound, sixbars where none of those is.
+"""Selection of the linkage type: the simplest feasible type, or sixbars if no simpler one is good enough.
 
-A fourbar or slider-crank that meets all demands stands alone where its least transmission angle is what the client
-demands or, where nothing is demanded, :data:`~synthesis.outcome.simplest.SOUND` degrees. Otherwise sixbars are
-looked for, and those that transmit better are offered beside it.
+A fourbar or slider-crank that satisfies all constraints is sufficient if its minimum transmission angle reaches the
+client's limit or, without a limit, :data:`~synthesis.outcome.simplest.SOUND` degrees. Otherwise sixbars are searched,
+and those with a larger transmission angle are listed after it.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from synthesis.outcome.simplest import HALF, as_one, offered_beside, passing, si
 Solve = Callable[[MotionProblem, Progress], MotionResult]
 
 NEAR = 1e-3
-"""Error of a fit, as a share of the task's size, at which no better linkage is looked for."""
+"""Error of a fit, as a share of the task's size, below which sixbars are not searched."""
 
 
 def solve_types(problem: MotionProblem, two_dyads: Solve, progress: Progress) -> MotionResult:
-    """The answer of the types that a problem states.
+    """Solve for the types of linkage that a problem requests.
 
     Parameters
     ----------
     problem : MotionProblem
-        With :attr:`MotionProblem.mechanisms`.
+        A problem with :attr:`MotionProblem.mechanisms`.
     two_dyads : callable
-        Solves for fourbars and slider-cranks, as without that field.
+        Solver for fourbars and slider-cranks of a problem without that field.
     progress : callable
-        Told how far the work is.
+        Progress callback.
     """
     part = problem.of_two_dyads
     answer: MotionResult = simplest_first(
@@ -52,7 +52,7 @@ def solve_types(problem: MotionProblem, two_dyads: Solve, progress: Progress) ->
 
 
 def _sixbars(problem: MotionProblem, progress: Progress) -> MotionResult:
-    """The answer of the sixbars that can have what is demanded; which cannot is told."""
+    """Solve for the sixbars that support the given constraints; report the types that do not."""
     found = solve_sixbars(problem, problem.sixbars, progress)
     told = _told_of_unclassed(problem)
     return found.model_copy(update={"summary": f"{found.summary} {told}"}) if told else found
@@ -63,26 +63,27 @@ def _told_of_unclassed(problem: MotionProblem) -> str:
 
 
 def _stands_alone(problem: MotionProblem, design: LinkageDesign) -> bool:
-    """Whether a linkage that keeps all demands is sound, and near enough where positions are fitted."""
+    """Return whether a linkage transmits well enough and, if positions are fitted, is accurate enough."""
     return transmits(problem, design) and (not problem.fitted or error_of(design) <= NEAR)
 
 
 def _nearer(problem: MotionProblem, simple: MotionResult, found: MotionResult) -> MotionResult:
-    """Both answers as one where positions are fitted: sixbars have half of the error, or are sound alone."""
+    """Merge both results if positions are fitted: keep sixbars with half the error, or if only they transmit well."""
     plain, better = passing(simple.designs), passing(found.designs)
     sound = [design for design in plain if transmits(problem, design)]
     alone = [design for design in better if transmits(problem, design)]
     if not plain:
         told = (
-            f"No linkage of two dyads was found that keeps all demands; {'sixbars do' if better else 'nor a sixbar'}."
+            "No fourbar or slider-crank found satisfies all constraints; "
+            f"{'sixbars do' if better else 'neither does a sixbar'}."
         )
     elif not sound and alone:
-        better, told = alone, "No linkage of two dyads that was found is sound; sixbars are"
+        better, told = alone, "No fourbar or slider-crank found transmits well enough; sixbars do"
     else:
         least = min(map(error_of, sound or plain))
         better = [design for design in better if error_of(design) <= HALF * least]
-        told = f"The best linkage of two dyads has a root-mean-square residual of {100.0 * least:.3g} %"
-        told += "; sixbars have at most half of it" if better else ", and no sixbar that was found has half of it."
+        told = f"The best fourbar or slider-crank has a root-mean-square residual of {100.0 * least:.3g} %"
+        told += "; sixbars have at most half of that" if better else ", and no sixbar found has half of that."
     kept = (sound or plain) if better else plain
     offered = offered_beside(problem.max_designs, kept, better, order_of(problem))
     sixbars = [design for design in offered if any(design is one for one in better)]
@@ -92,10 +93,10 @@ def _nearer(problem: MotionProblem, simple: MotionResult, found: MotionResult) -
 
 
 def joined(problem: MotionProblem, simple: MotionResult, found: MotionResult) -> MotionResult:
-    """The answer of linkages of two dyads that are not sound, if there are any, and that of sixbars, as one.
+    """Merge the result for fourbars and slider-cranks that transmit badly, if any, with that for sixbars.
 
-    Sixbars stand beside those linkages only where they transmit better than the best of them. What passed and is not
-    offered counts as outranked.
+    Sixbars are added only if their transmission angle exceeds that of the best simpler linkage. Designs that passed but
+    are not returned count as outranked.
     """
     plain, better = passing(simple.designs), passing(found.designs)
     best = max((design.metrics.min_transmission_angle for design in plain), default=0.0)
@@ -108,22 +109,22 @@ def joined(problem: MotionProblem, simple: MotionResult, found: MotionResult) ->
     if not plain:
         told = _without_simple(problem, simple, better)
     else:
-        told = f"The best linkage of two dyads has a least transmission angle of {best:.1f}°"
+        told = f"The best fourbar or slider-crank has a minimum transmission angle of {best:.1f}°"
         if not better:
-            told += ", and no sixbar that was found has more."
+            told += ", and no sixbar found exceeds it."
         else:
-            told += f"; sixbars have more{told_of_offered(problem, len(offered), len(sixbars))}"
+            told += f"; sixbars exceed it{told_of_offered(problem, len(offered), len(sixbars))}"
     return as_one(problem.max_designs, (simple, found), offered, len(sixbars), told, order)
 
 
 def _without_simple(problem: MotionProblem, simple: MotionResult, sixbars: list[LinkageDesign]) -> str:
-    """What is said where no linkage of two dyads passed: that none exists, only where that is proven of all of them."""
+    """Describe a result without a fourbar or slider-crank; claim that none exists only if that is proved."""
     every = problem.mechanisms == "auto"  # no list has inverted slider-cranks
-    # Five positions that are met exactly leave a few dyads, sliders among them. With fewer, sliders are drawn.
+    # Five exact positions leave a few dyads, including sliders, all enumerated. With fewer, sliders are only sampled.
     exact = len(problem.positions) == MOST_HELD and all(limits == (0.0, 0.0, 0.0) for limits in problem.limits)
     if every and exact and simple.search.complete:
-        return f"No linkage of two dyads does it{'; sixbars do' if sixbars else ', and no sixbar was found'}."
+        return f"No fourbar or slider-crank solves this{'; sixbars do' if sixbars else ', and no sixbar was found'}."
     if problem.mechanisms == "auto":
-        none = "Neither a linkage of two dyads nor a sixbar was found."
-        return "No linkage of two dyads was found; sixbars were." if sixbars else none
-    return f"None of the types named was found{' but sixbars' if sixbars else ''}."
+        none = "No fourbar, slider-crank or sixbar was found."
+        return "No fourbar or slider-crank was found, only sixbars." if sixbars else none
+    return f"No linkage of the requested types was found{' except sixbars' if sixbars else ''}."

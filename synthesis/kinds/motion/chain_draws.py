@@ -1,4 +1,4 @@
-"""Chains that are drawn for a task, and poses of the body beside the demanded ones: what the search begins from."""
+"""Starting points of the chain search: sampled chains, and sampled poses of the body between the target positions."""
 
 from __future__ import annotations
 
@@ -15,29 +15,29 @@ from synthesis.model.linkage_statement import Region
 from synthesis.model.statement import PartialPoint
 
 AROUND_BODY = np.array([0.3, 0.6, 1.2])
-"""Spreads of H₂ around P, in task sizes."""
+"""Standard deviations of H₂ around P, in task sizes; one is chosen at random."""
 
 AROUND_TASK = 1.0
-"""Spread of G around the positions."""
+"""Standard deviation of G around the positions, in task sizes."""
 
 LONGER = 0.5
-"""Mean of what the links are longer than the farthest reach, as a share of it; they are longer by 2 % at least."""
+"""Mean excess of the links' total length over the maximum reach, relative to it; the excess is at least 2 %."""
 
 EVEN = 0.98
-"""Share of the nearest reach by which the links may differ in length."""
+"""Maximum difference of the links' lengths, relative to the minimum reach."""
 
 TRIES, SHORT = 24, 0.05
-"""Ground pivots that are tried where a length is stated, and the least of an open length, in task sizes."""
+"""Number of ground pivots tried if a length is given, and minimum of an open length, in task sizes."""
 
 ASTRAY = 0.15
-"""Spread of a drawn pose beside the way between two demanded ones, in task sizes and radians."""
+"""Standard deviation of a sampled pose from the straight path between two targets, in task sizes and radians."""
 
 
 class Poses(NamedTuple):
-    """Five poses of the body for each of n chains, task coordinates: those that are demanded, and drawn ones.
+    """Five poses of the body for each of n chains, task coordinates: target poses and sampled ones.
 
-    ``points``, ``turns`` (n, 5), complex, the turns from the first of these poses; ``demanded`` (5,); ``stands`` (n,),
-    how far the first is turned from the demanded one, radians.
+    ``points``, ``turns`` (n, 5), complex, with rotations from the first of these poses; ``demanded`` (5,), mask of the
+    targets; ``stands`` (n,), rotation of the first pose from its target, radians.
     """
 
     points: Complex
@@ -47,9 +47,10 @@ class Poses(NamedTuple):
 
 
 def drawn_poses(task: MotionTask, target: Demanded, rng: np.random.Generator, count: int) -> Poses:
-    """Poses within the tolerances, every other set as demanded; up to five by poses on the way between them."""
+    """Sample poses within the tolerances (every other set exactly), and add poses between them up to five."""
     n = len(task.points)
     deviations = rng.uniform(-1.0, 1.0, (count, n, 3)) * np.where(np.isfinite(target.limits), target.limits, 0.0)
+    # Every other set meets the targets exactly, so that tolerances never make a solvable problem harder.
     deviations[::2] = 0.0
     points = task.points + (deviations[..., 0] + 1j * deviations[..., 1]) / target.size
     angles = np.angle(task.turns) + deviations[..., 2]
@@ -65,16 +66,16 @@ def drawn_poses(task: MotionTask, target: Demanded, rng: np.random.Generator, co
         step = np.angle(np.exp(1j * (angles[:, after] - angles[:, before])))
         points = points[:, before] + share * (points[:, after] - points[:, before]) + off[0] + 1j * off[1]
         angles = angles[:, before] + share * step + off[2]
-    # The body as it stands first is the reference of all other poses.
+    # All rotations are measured from the sampled first pose.
     return Poses(points, np.exp(1j * (angles - angles[:, :1])), demanded, angles[:, 0])
 
 
 def drawn_chains(
     task: MotionTask, poses: Poses, stated: Chain, region: Region | None, rng: np.random.Generator
 ) -> tuple[Real, Real]:
-    """Chains that reach all poses, as rows (n, 7) of :func:`synthesis.kinds.motion.chain_kernels.searched`.
+    """Sample chains that reach all poses, as rows (n, 7) of :func:`synthesis.kinds.motion.chain_kernels.searched`.
 
-    With them what may be varied of them: (6,), 1 and 0.
+    The second value has shape (6,): 1 for coordinates and lengths that may vary, 0 for given ones.
     """
     count = len(poses.points)
     free = np.ones(6)
@@ -82,7 +83,7 @@ def drawn_chains(
     pin = poses.points[:, 0] + rng.choice(AROUND_BODY, count) * _spread(rng, count)
     pin = _stated(task, stated.moving_pivot, pin, free[2:4])
     end = poses.points + poses.turns * (pin - poses.points[:, 0])[:, None]
-    # Several pivots for a chain, of which one is taken that a stated length reaches from.
+    # Sample several pivots per chain, and take the first from which links of given lengths reach all poses.
     tries = 1 if one is None and two is None else TRIES
     pivots = poses.points.mean() + AROUND_TASK * _spread(rng, tries * count)
     if region is not None:
@@ -110,7 +111,7 @@ def drawn_chains(
 
 
 def _reached(near: Real, far: Real, one: float | None, two: float | None) -> NDArray[np.bool_]:
-    """Whether links of stated lengths reach all places between the nearest and the farthest."""
+    """Return whether links of given lengths reach all distances between the minimum and the maximum."""
     if one is None and two is None:
         return np.ones(near.shape, np.bool_)
     if one is None or two is None:
@@ -123,7 +124,7 @@ def _spread(rng: np.random.Generator, count: int) -> Complex:
 
 
 def _stated(task: MotionTask, stated: PartialPoint | None, drawn: Complex, free: Real) -> Complex:
-    """Points with the coordinates that are stated; ``free`` is 0 for these."""
+    """Replace coordinates of sampled points by given ones, for which ``free`` is set to 0."""
     if stated is None:
         return drawn
     x, y = (None if at is None else (at - o) / task.size for at, o in zip(stated, _pair(task.origin), strict=True))
@@ -136,6 +137,6 @@ def _pair(z: complex) -> tuple[float, float]:
 
 
 def needed(task: MotionTask) -> Real:
-    """Way of P and turn of the body that the demanded positions need: task sizes, radians."""
+    """Return P's path length (task sizes) and the body's rotation (radians) that the target positions need."""
     turns = task.turns[1:] / task.turns[:-1]
     return np.array([np.abs(np.diff(task.points)).sum(), np.abs(np.angle(turns)).sum()])

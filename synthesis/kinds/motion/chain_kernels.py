@@ -1,20 +1,20 @@
-"""Sixbars from planar 3R chains, compiled: the two cranks that constrain a chain, and a drive through the positions.
+"""Compiled kernels for sixbars from planar 3R chains: the two constraining cranks, and the drive through the positions.
 
-A chain G–H₁–H₂ carries the body M at H₂; its links 1 and 2 stand, for each of five positions, where the elbow bends to
-the stated side. Two more cranks leave it one freedom (Soh & McCarthy, Mech. Mach. Theory 43 (2008) 160,
-doi:10.1016/j.mechmachtheory.2006.11.004). Each is a dyad between two bodies whose poses are known, and is itself a body
-with known poses as soon as it is found:
+A chain G–H₁–H₂ carries the body M at H₂; for each of five positions the given side of the elbow determines its links 1
+and 2. Two more cranks leave it one freedom (Soh & McCarthy, Mech. Mach. Theory 43 (2008) 160,
+doi:10.1016/j.mechmachtheory.2006.11.004). Each crank is a dyad between two bodies with known poses, and itself becomes
+a body with known poses:
 
     ground–2, then 1–M             Watt I
     ground–2, then its crank–M     Watt I
     ground–2, then ground–M        Stephenson III
     ground–M, then its crank–1     Stephenson I
 
-Between bodies that the chain joins by one link there
-is that link's own dyad among the four, so that at least one other is real: a Watt I for each chain.
+Between bodies that one link of the chain joins, that link itself is one of the four dyads, so at least one other is
+real: every chain gives a Watt I.
 
-All of these are a fourbar O₂ A B O₄, driven by one of its ground links, and a dyad Q₁ J Q₂ on two of its links, the
-body on the first link of the dyad. Which links Q₁ and Q₂ are on is a *make*.
+All of these consist of a fourbar O₂ A B O₄, driven by one of its ground links, and a dyad Q₁ J Q₂ on two of its links,
+with the body on the first link of the dyad. The links that carry Q₁ and Q₂ define the topology (*make*).
 """
 
 from __future__ import annotations
@@ -37,48 +37,50 @@ Numbers = NDArray[np.int64]
 POSITIONS = 5
 
 O2, A, B, O4, Q1, Q2, J = range(7)
-"""Joints of a candidate, in the first position."""
+"""Indices of a candidate's joints, in the first position."""
 
 GROUND, INPUT, COUPLER, OUTPUT = range(4)
-"""Links that Q₁ and Q₂ may be on."""
+"""Links that may carry Q₁ and Q₂."""
 
 MAKES = np.array(
     [[COUPLER, INPUT], [COUPLER, OUTPUT], [COUPLER, GROUND], [INPUT, OUTPUT], [OUTPUT, INPUT], [INPUT, COUPLER],
      [OUTPUT, COUPLER], [COUPLER, GROUND]]
 )  # fmt: skip
-"""By the number of a make: the link of Q₁ and that of Q₂. Only :mod:`synthesis.kinds.motion.branch_walk` has the last
-three: two that are no 3R chains, the body being two pins from the ground on all ways but one; and the Stephenson II,
-which is seen from its input link (:mod:`synthesis.kinds.motion.inversion`)."""
+"""Links of Q₁ and of Q₂, by topology number. Only :mod:`synthesis.kinds.motion.branch_walk` uses the last three: two
+that contain no 3R chain in the sense above, and the Stephenson II, which is described relative to its input link
+(:mod:`synthesis.kinds.motion.inversion`)."""
 
 WATT_1_IN, WATT_1_OUT, STEPHENSON_3, STEPHENSON_1_IN, STEPHENSON_1_OUT, WATT_1_BESIDE_IN, WATT_1_BESIDE_OUT = range(7)
 STEPHENSON_2 = 7
 
 OF_LINK = np.array([[O2, O4], [O2, A], [A, B], [O4, B]])
-"""The pins of each link of the fourbar."""
+"""Pins of each link of the fourbar."""
 
 LEAST_SINE, MOST_REACH, MOST_RATIO, SHORTEST_LINK, LONGEST_LINK, CLASS, FULL_TURN = range(7)
 FIXED_BOX, MOVING_BOX, ROOM = 7, 11, 15
-"""Limits: the least sine of a transmission angle; the greatest distance of two joints of a link; longest link over
-shortest; both of these; the class of the fourbar; 1 where the input turns through; boxes (x from, to, y from, to) of
-the fixed pivots, of the moving ones in the first position, and of all joints on the way. Task coordinates."""
+"""Indices of limits: minimum sine of a transmission angle; maximum distance of two joints of a link; maximum link
+ratio; minimum and maximum link length; Grashof class of the fourbar; 1 if the input must rotate fully; boxes (x min,
+x max, y min, y max) of the fixed pivots, of the moving ones in the first position, and of all joints during the motion.
+Task coordinates."""
 
 ANY, CRANK_ROCKER, DOUBLE_CRANK, DOUBLE_ROCKER, NON_GRASHOF = range(5)
-"""Classes that are demanded; a crank-rocker is driven by its crank."""
+"""Required Grashof classes; a crank-rocker is driven by its crank."""
 
 STEPS = 60
-"""Steps of the drive from the first position to the last."""
+"""Number of drive steps from the first position to the last."""
 
 SHORTEST = 0.02
-"""Length below which a link is of no use, in task sizes."""
+"""Minimum length of a usable link, in task sizes."""
 
 FIRST_STEP, LONGEST_STEP, LAST_STEP = 0.3, 0.6, 0.003
-"""Spread of a random step at first and at most, and that below which no more are made; task sizes, or shares."""
+"""Standard deviation of a random step: initial, maximum, and the value at which the climb ends; task sizes, or shares
+of a length."""
 
 STRIDE = 61
-"""Chains take the same steps from different ones on."""
+"""Offset between the steps of successive chains, which share one table of random numbers."""
 
 LITTLE_TURN = math.radians(15.0)
-"""As in :mod:`synthesis.proof.carried`."""
+"""Minimum body rotation, radians, in the denominator of the excess rotation, as in :mod:`synthesis.proof.carried`."""
 
 
 @njit(**OPTIONS)
@@ -98,7 +100,7 @@ def _crank(
     place: Complex,
     turn: Complex,
 ) -> None:
-    """Poses of a link that is pinned to two bodies."""
+    """Compute the poses of a link that is pinned to two bodies."""
     for k in range(POSITIONS):
         place[k] = _carry(fixed, one, one_turn, k)
         turn[k] = _carry(moving, other, other_turn, k) - place[k]
@@ -119,9 +121,9 @@ def chain_poses(
     place: Complex,
     turn: Complex,
 ) -> bool:
-    """Poses (3, 5) of the chain's links 1 and 2 and of the body; False where it does not reach.
+    """Compute the poses (3, 5) of the chain's links 1 and 2 and of the body; return False if it does not reach.
 
-    ``elbow`` is +1 where H₁ lies to the left of the way from G to H₂.
+    ``elbow`` is +1 if H₁ lies to the left of the line from G to H₂.
     """
     for k in range(POSITIONS):
         place[2, k], turn[2, k] = points[k], turns[k]
@@ -146,7 +148,7 @@ def chain_poses(
 def on_link(
     link: int, point: complex, joints: Complex, a: complex, into: complex, through: complex, out: complex
 ) -> complex:
-    """A point of a link of the fourbar, the links turned from the first position by ``into``, ``through``, ``out``."""
+    """Return a point of a link of the fourbar after the rotations ``into``, ``through``, ``out`` of its links."""
     place = point
     if link == INPUT:
         place = joints[O2] + into * (point - joints[O2])
@@ -159,9 +161,9 @@ def on_link(
 
 @njit(**OPTIONS)
 def closed(pin: complex, other: complex, first: float, second: float, side: float) -> tuple[complex, float]:
-    """Where two links on two pins meet, ``side`` +1 to the left of the way from the one to the other.
+    """Close a dyad: return the joint of two links on two pins; ``side`` is +1 to the left of the line between these.
 
-    With it the cosine of the angle between them; where they do not meet that is beyond ±1.
+    The second value is the cosine of the angle between the links; it is outside ±1 if they do not meet.
     """
     base = other - pin
     square = base.real * base.real + base.imag * base.imag
@@ -174,25 +176,25 @@ def closed(pin: complex, other: complex, first: float, second: float, side: floa
 
 @njit(**OPTIONS)
 def _sine(cosine: float) -> float:
-    """The sine of the angle between two links; where they do not meet, less than 0 by how far they are from it."""
+    """Return the sine of the angle between two links, or a negative measure of the gap if they do not meet."""
     return math.sqrt((1.0 - cosine) * (1.0 + cosine)) if abs(cosine) < 1.0 else 1.0 - abs(cosine)
 
 
 @njit(**OPTIONS)
 def signed_sine(pin: complex, other: complex, joint: complex) -> float:
-    """Sine of the angle between two links where they meet, negative where that is to the right of the pins' line."""
+    """Return the sine of the angle between two links, negative if their joint is to the right of the pins' line."""
     one, two = joint - pin, joint - other
     return (one.conjugate() * two).imag / (abs(one) * abs(two))
 
 
 @njit(**OPTIONS)
 def run(input_turns: Complex, demanded: NDArray[np.bool_], inputs: Real) -> float:
-    """Input rotations at the positions in one run that takes the demanded ones in order.
+    """Write the input rotations at the positions in one continuous run that meets the target positions in order.
 
     Returns
     -------
     float
-        0 where there is such a run; else less, to −1, by the angle that the input turns back.
+        0 if there is such a run; otherwise a value down to −1, decreasing with the angle that the input reverses.
     """
     best, shorter = -1.0, 2.0 * math.pi
     for way in (1.0, -1.0):
@@ -217,21 +219,24 @@ def run(input_turns: Complex, demanded: NDArray[np.bool_], inputs: Real) -> floa
 
 @njit(**OPTIONS)
 def angle_to(before: complex, after: complex) -> float:
-    """The angle from one direction to another, −π to π."""
+    """Return the angle from one direction to another, radians, −π to π."""
     step = after * before.conjugate()
     return math.atan2(step.imag, step.real)
 
 
 @njit(**OPTIONS)
 def outside_of(point: complex, box: Real) -> float:
-    """How far a point lies outside a box."""
+    """Return the distance of a point from a box; 0 inside."""
     across = max(box[0] - point.real, point.real - box[1], 0.0)
     return math.hypot(across, max(box[2] - point.imag, point.imag - box[3], 0.0))
 
 
 @njit(**OPTIONS)
 def _off_class(lengths: Real, wanted: float) -> float:
-    """How far a fourbar (input, coupler, output, ground) is from a class, as a share of all its links; 0 within it."""
+    """Return a fourbar's distance from a Grashof class, as a share of the sum of its links; 0 within the class.
+
+    ``lengths`` are input, coupler, output, ground.
+    """
     total, shortest, longest = lengths.sum(), lengths.min(), lengths.max()
     over = 2.0 * (shortest + longest) / total - 1.0
     if wanted == NON_GRASHOF:
@@ -242,7 +247,7 @@ def _off_class(lengths: Real, wanted: float) -> float:
 
 @njit(**OPTIONS)
 def _turns_through(joints: Complex, c1: int, c2: int, lengths: Real, first_side: float, second_side: float) -> float:
-    """0 where the input turns through, else less, by the shares of a turn in which the dyads do not close."""
+    """Return 0 if the input rotates fully, otherwise a negative measure of the gaps over a full turn."""
     missing = 0.0
     for n in range(STEPS):
         angle = 2.0 * math.pi * n / STEPS
@@ -272,14 +277,14 @@ def weighed(
     needed: Real,
     limits: Real,
 ) -> float:
-    """How sound a candidate is.
+    """Evaluate a candidate's feasibility and quality.
 
     Returns
     -------
     float
-        From 1 on: sound, with the quality added. From 0 on: it moves through all positions, with the sine of the least
-        transmission angle, or what is left of it beside a size beyond the limits. From −1: there is a toggle on the
-        way. From −2: not all positions are on one assembly. From −3: the input turns back.
+        From 1 on: feasible, with the quality added. From 0 on: it moves through all positions; the value is the sine of
+        the minimum transmission angle, reduced by violated size limits. From −1: it passes a toggle. From −2: not all
+        positions belong to one assembly. From −3: the input reverses, or a link is too short.
     """
     c1, c2 = MAKES[make, 0], MAKES[make, 1]
     lengths = np.empty(6)
@@ -300,7 +305,7 @@ def weighed(
     back: float = run(input_turns, demanded, inputs)
     if back < 0.0:
         return -2.0 + back
-    # The sine between two links where they meet is positive just where that is to the left of the pins' line.
+    # The signed sine between two links is positive exactly if their joint is to the left of the pins' line.
     first_sine = signed_sine(joints[A], joints[O4], joints[B])
     second_sine = signed_sine(joints[Q1], joints[Q2], joints[J])
     first_side, second_side = math.copysign(1.0, first_sine), math.copysign(1.0, second_sine)
@@ -354,6 +359,7 @@ def weighed(
         turned += abs(angle_to(turn_before, body))
         place_before, turn_before = p, body
     if flattest <= 0.0:
+        # Map the accumulated gap to (−1, 0): smaller gaps guide the climb towards a motion without toggles.
         beyond /= STEPS
         return beyond / (1.0 - beyond)
     ratio = longest / shortest
@@ -386,7 +392,10 @@ def _tried(
     found: Real,
     owners: Numbers,
 ) -> None:
-    """Notes a candidate: the best value of the chain, and what moves through all positions in the next free row."""
+    """Record a candidate: update the chain's best value, and store it if it moves through all positions.
+
+    Infeasible candidates may use only half of the rows, so that feasible ones always find space.
+    """
     if value > found[0]:
         found[0] = value
     n = int(found[1])
@@ -397,18 +406,18 @@ def _tried(
 
 
 class Given(NamedTuple):
-    """What is demanded.
+    """Constraints of a chain search.
 
     Attributes
     ----------
     points, turns : complex, shape (n, 5)
         Poses of the body for each chain.
     demanded : bool, shape (5,)
-        Which positions are demanded; the others only help to find dyads.
+        Mask of the target positions; the others only help to find dyads.
     needed : float, shape (2,)
-        Way and turn that the body needs.
+        Path length and rotation that the body needs at least.
     wanted : bool, shape (8,)
-        The makes that are wanted.
+        Mask of the requested topologies.
     limits : float, shape (19,)
         See :data:`LEAST_SINE`.
     """
@@ -422,15 +431,15 @@ class Given(NamedTuple):
 
 
 class Results(NamedTuple):
-    """What is filled.
+    """Output arrays of a chain search.
 
     Attributes
     ----------
     joints, makes, scores
-        Those that move through all positions, with their values: (most, 7), (most,), (most,). Unsound ones fill no more
-        than half of the rows.
+        Candidates that move through all positions, with their values: shapes (most, 7), (most,), (most,). Infeasible
+        ones fill at most half of the rows.
     found : float, shape (4,)
-        The best value of the last chain; how many rows are filled; candidates in all; the number of the chain.
+        Best value of the last chain; number of filled rows; total number of candidates; number of the chain.
     owners : int, shape (most,)
         The chain of each row.
     """
@@ -444,16 +453,16 @@ class Results(NamedTuple):
 
 @njit(**OPTIONS)
 def constrained(chain: Real, n: int, given: Given, results: Results) -> float:
-    """All sixbars of one chain: the value of the best (:func:`weighed`).
+    """Evaluate all sixbars of one chain; return the value of the best (:func:`weighed`).
 
     Parameters
     ----------
     chain : float, shape (7,)
         Ground pivot G and H₂ in the first position, x and y; lengths of the two links; elbow.
     n : int
-        Its number.
+        Number of the chain.
     given, results
-        What is demanded, and what is filled.
+        Constraints and output.
     """
     every_points, every_turns, demanded, needed, wanted, limits = given
     joints, makes, scores, found, owners = results
@@ -487,7 +496,7 @@ def constrained(chain: Real, n: int, given: Given, results: Results) -> float:
                     count = dyads(shift, spin, moving[2, i], pin, fixed[3], moving[3]) if wanted[WATT_1_IN] else 0
                 for second in range(count):
                     row = 0 if sort == 0 else (1 if sort == 1 else 3)
-                    # Driven by the chain's link 1, or by the crank.
+                    # Try both inputs: the chain's link 1, or the crank.
                     for driver in range(2):
                         bar[B], bar[O2], bar[O4] = moving[2, i], pivot, fixed[2, i]
                         bar[A], bar[Q1], bar[Q2], bar[J] = knee, pin, fixed[row, second], moving[row, second]
@@ -523,20 +532,20 @@ def constrained(chain: Real, n: int, given: Given, results: Results) -> float:
 
 @njit(**OPTIONS)
 def searched(chains: Real, noise: Real, climbing: int, given: Given, results: Results, values: Real) -> None:
-    """Weighs chains as they are, and takes the best of them in random steps towards better sixbars.
+    """Evaluate chains, and improve the best of them by random steps (a stochastic hill climb).
 
     Parameters
     ----------
     chains : float, shape (n, 7)
-        Replaced where a step is better.
+        Replaced in place by better ones.
     noise : float, shape (steps, 6)
-        The steps, 0 in what is stated; shorter after failures, longer after successes.
+        Random steps, 0 for given values; scaled down after failures and up after successes.
     climbing : int
-        How many chains take steps.
+        Number of chains that are improved.
     given, results
-        What is demanded, and what is filled.
+        Constraints and output.
     values : float, shape (n,)
-        Filled: that of each chain.
+        Output: value of each chain.
     """
     tried, order = np.empty(7), np.zeros(len(chains), np.bool_)
     for n in range(len(chains)):

@@ -1,7 +1,7 @@
-"""Sixbars from 3R chains that are constrained by two more cranks (:mod:`chain_kernels`): chains drawn, and moved.
+"""Sixbars from 3R chains with two constraining cranks (:mod:`chain_kernels`): sample chains and improve the best.
 
-All sixbars of each chain that is drawn are weighed, and the best chains are moved in random steps towards sounder ones.
-Two to four positions are completed by drawn poses on the way, so that there are five.
+All sixbars of each sampled chain are evaluated, and the best chains are improved by random steps. Two to four positions
+are completed to five by sampled poses between them.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from synthesis.kinds.motion.stated_mechanisms import Chain
 from synthesis.kinds.motion.task import MotionTask
 
 CHAINS, CLIMBING, STEPS = 1500, 40, 200
-"""Chains that are drawn at a time, those of them that are moved, and steps of each at most."""
+"""Number of chains sampled per round, number of those that are improved, and maximum number of steps of each."""
 
 KEPT = 4000
-"""Candidates that are kept of a round."""
+"""Maximum number of candidates kept per round."""
 
 
 class ChainSearch:
@@ -30,7 +30,7 @@ class ChainSearch:
     Attributes
     ----------
     weighed : int
-        Sixbars that were weighed so far.
+        Number of sixbars evaluated so far.
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class ChainSearch:
         self.weighed = 0
 
     def round(self, rng: np.random.Generator) -> Found:
-        """Draws chains once, and moves the best of them."""
+        """Sample one set of chains and improve the best of them."""
         poses = drawn_poses(self.task, self.target, rng, CHAINS)
         chains, free = drawn_chains(self.task, poses, self.chain, self.problem.constraints.fixed_pivot_region, rng)
         given = kernels.Given(poses.points, poses.turns, poses.demanded, needed(self.task), self.wanted, self.limits)

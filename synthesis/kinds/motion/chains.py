@@ -1,4 +1,4 @@
-"""Chains of three links that lead from the ground to the body in a finished linkage, held against a stated one."""
+"""Comparison of a given three-link chain with the chains from ground to body in a finished linkage."""
 
 from __future__ import annotations
 
@@ -15,30 +15,30 @@ Links = Mapping[str, tuple[str, ...]]
 
 
 def chain_gap(stated: Chain, links: Links, joints: Mapping[str, Complex], size: float) -> float:
-    """How far the chain of a linkage that comes nearest is from a stated one, as a share of the task's size.
+    """Measure the deviation of a linkage's best matching chain from a given one, as a share of the task's size.
 
     Parameters
     ----------
     stated : Chain
-        What is stated of G, H₁ and H₂.
+        Given values of G, H₁ and H₂.
     links : mapping
         The joints on each link.
     joints : mapping of str to complex, shape (targets,)
-        Where the joints are at the targets.
+        Positions of the joints at the targets.
     size : float
-        The size of the task.
+        The task's size.
 
     Returns
     -------
     float
-        Infinite where no chain bends to the stated side, or there is none.
+        The deviation; infinite if no chain bends to the given side, or there is no chain.
     """
     found = ((joints[pivot], joints[knee], joints[pin]) for pivot, knee, pin in _chains(links))
     return min((_gap(stated, pivot, knee, pin, size) for pivot, knee, pin in found), default=math.inf)
 
 
 def _chains(links: Links) -> Iterator[tuple[str, str, str]]:
-    """The joints G, H₁, H₂ of all chains ground – link – link – body."""
+    """Yield the joints G, H₁, H₂ of all chains ground – link – link – body."""
     body = next(name for name, listed in links.items() if BODY_POINT in listed)
     for first, of_first in links.items():
         for second, of_second in links.items():
@@ -60,6 +60,6 @@ def _gap(stated: Chain, pivot: Complex, knee: Complex, pin: Complex, size: float
 
 
 def _off(stated: PartialPoint | None, point: complex) -> float:
-    """How far a point is from a stated one, in the coordinates that are stated."""
+    """Return the largest deviation of a point from a given one, in the given coordinates."""
     x, y = stated or (None, None)
     return max(0.0 if x is None else abs(point.real - x), 0.0 if y is None else abs(point.imag - y))

@@ -1,4 +1,4 @@
-"""What is stated and checked of a linkage that carries a body: targets, motion, what the client fixed of its sides."""
+"""Checks and report of a linkage that carries a body: targets, motion, and the client's choices for its sides."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from synthesis.proof.measures import Measures
 
 
 class Side(NamedTuple):
-    """One dyad as the driven linkage shows it.
+    """One dyad as measured on the driven linkage.
 
     Attributes
     ----------
     pivot : complex or None
-        The fixed pivot; None where the pin slides on the ground.
+        The fixed pivot; None if the pin slides on the ground.
     pins : complex, shape (targets,), or None
-        The moving pivot at the targets; None where a line of the body slides through the pivot's block.
+        The moving pivot at the targets; None if a line of the body slides through the pivot's block.
     slide_angle : float or None
         Angle of the slide's line at the first target, radians; None for a link with two pins.
     """
@@ -39,18 +39,18 @@ class Side(NamedTuple):
 
 
 class Driven(NamedTuple):
-    """What is measured of the linkage at the targets.
+    """Measurements of the driven linkage at the targets.
 
     Attributes
     ----------
     points, turns : complex and float, shape (targets,)
-        P, and the body's rotation from the first demanded position.
+        P, and the body's rotation from the first target position, radians.
     offsets : float, shape (targets, 3)
         Deviations in x, y (length units) and angle (radians).
     input_side, output_side : Side
         The dyads.
     pivots : (list of complex, list of complex), optional
-        All fixed and all moving pivots at the first target, of a linkage that has others than its sides'.
+        All fixed and all moving pivots at the first target, for a linkage with more pivots than those of its sides.
     """
 
     points: Complex
@@ -62,14 +62,14 @@ class Driven(NamedTuple):
 
     @property
     def fixed_pivots(self) -> list[complex]:
-        """Of both sides, or all."""
+        """All fixed pivots."""
         if self.pivots is not None:
             return self.pivots[0]
         return [side.pivot for side in (self.input_side, self.output_side) if side.pivot is not None]
 
     @property
     def moving_pivots(self) -> list[complex]:
-        """Of both sides, or all, at the first target."""
+        """All moving pivots at the first target."""
         if self.pivots is not None:
             return self.pivots[1]
         return [complex(side.pins[0]) for side in (self.input_side, self.output_side) if side.pins is not None]
@@ -88,22 +88,22 @@ def linkage_design(
     slides: bool = False,
     own: Sequence[Check] = (),
 ) -> LinkageDesign:
-    """A driven linkage of any type with its proof.
+    """Build the design of a driven linkage of any type, with its verification and metrics.
 
     Parameters
     ----------
     problem : MotionProblem
-        What was asked.
+        The problem.
     mechanism : LinkageMechanism
         The dimensions that were driven.
     target, driven, measures
-        What is demanded of the body, and what was measured.
+        Target poses of the body, and the measured values.
     inputs : float, shape (targets,)
-        At the targets, in one run: degrees, or length units where the input slides.
+        Inputs at the targets, in one run: degrees, or length units if the input slides.
     on_circuit, slides : bool
         Whether all targets are met on one circuit, and whether the input slides.
     carried : Carried
-        How the body is carried from the first target to the last.
+        Measurements of the body's motion from the first target to the last.
     own : sequence of Check
         Checks of the linkage's type.
     """
@@ -132,7 +132,7 @@ def linkage_design(
 
 
 def _targets(inputs: Real, target: Demanded, driven: Driven, *, slides: bool) -> list[Target]:
-    """Targets as they are met; inputs in degrees, or in length units where the input slides."""
+    """List the targets with their residuals; inputs in degrees, or in length units if the input slides."""
     residuals = target.residuals(driven.offsets)
     return [
         Target(
@@ -148,7 +148,7 @@ def _targets(inputs: Real, target: Demanded, driven: Driven, *, slides: bool) ->
 
 
 def _motion_checks(target: Demanded, driven: Driven, on_circuit: bool) -> list[Check]:
-    """What the task itself demands: held coordinates are met, others within their tolerance, all on one circuit."""
+    """Check the task itself: exact coordinates are met, others are within tolerance, all on one circuit."""
     checks = []
     if target.held.any():
         held = np.where(target.held, driven.offsets, 0.0)
@@ -161,9 +161,9 @@ def _motion_checks(target: Demanded, driven: Driven, on_circuit: bool) -> list[C
 
 
 def _choice_checks(problem: MotionProblem, target: Demanded, driven: Driven) -> list[Check]:
-    """Whether the driven linkage keeps what the client fixed of each side: shares of the task's size, and radians.
+    """Check the client's choices for each side; deviations in shares of the task's size, and in radians.
 
-    Places and lines of the body are compared with the body in the demanded first position, which a fit may miss.
+    Points and lines of the body are compared with the body in the first target position, which a fit may miss.
     """
     back = cmath.exp(-1j * float(driven.turns[0]))
     checks = []
@@ -175,7 +175,7 @@ def _choice_checks(problem: MotionProblem, target: Demanded, driven: Driven) -> 
             continue
         point = complex(target.points[0])
         pin = None if side.pins is None else point + back * complex(side.pins[0] - driven.points[0])
-        if side.pins is None and side.slide_angle is not None:  # a line of the body
+        if side.pins is None and side.slide_angle is not None:  # RP: the line belongs to the body and turns with it
             side = side._replace(slide_angle=side.slide_angle - float(driven.turns[0]))
         gap = max(_gaps(choices, side, point, pin, target.size))
         checks.append(tolerated(name, gap, CHOICE_KEPT))
@@ -186,7 +186,7 @@ def _choice_checks(problem: MotionProblem, target: Demanded, driven: Driven) -> 
 
 
 def _gaps(choices: DyadChoices, side: Side, point: complex, pin: complex | None, size: float) -> list[float]:
-    """Deviations from each stated number; infinite where the dyad has no such thing."""
+    """List the deviations from each given number; infinite if the dyad lacks that element."""
     gaps = [0.0]
     for pivot, stated in ((side.pivot, choices.fixed_pivot), (pin, choices.moving_pivot)):
         coordinates = (math.inf, math.inf) if pivot is None else (pivot.real, pivot.imag)
@@ -212,5 +212,5 @@ def _gaps(choices: DyadChoices, side: Side, point: complex, pin: complex | None,
 
 
 def _turn(vector: complex, degrees: float) -> float:
-    """Angle between a vector and a direction, radians, 0 to π."""
+    """Return the angle between a vector and a direction, radians, 0 to π."""
     return abs(cmath.phase(vector * cmath.exp(-1j * math.radians(degrees))))

@@ -1,11 +1,11 @@
-"""From what a client fixes of one side to the dyads that are tried there.
+"""Candidate dyads of one side, from the client's choices for it.
 
-n positions leave 5 − n free choices per dyad (Norton, Table 5-3). When the client makes them all, the dyads are solved
-for; when some are left open, the missing ones are drawn at random, many times, and a *cloud* of dyads results.
+n positions leave 5 − n free choices per dyad (Norton, Table 5-3). If all are given, the dyads are solved for; if some
+are open, the missing ones are sampled at random many times, which gives a *cloud* of dyads.
 
-Free pivots are drawn around the body: the moving pivot about P in the first position, the fixed pivot about the middle
-of the positions, at distances spread evenly in logarithm from a small part of the task's size to some multiples of it.
-An area that the client gives is filled evenly instead, and dyads with a pivot outside it are left out.
+Free pivots are sampled around the body: the moving pivot about P in the first position, the fixed pivot about the mean
+of the positions, at log-uniform distances from a small part of the task's size to a few times that size. A given area
+is filled uniformly instead, and dyads with a pivot outside it are dropped.
 """
 
 from __future__ import annotations
@@ -39,37 +39,37 @@ from synthesis.kinds.motion.task import Complex, MotionTask, Real, stated_pivot
 from synthesis.model.statement import PartialPoint
 
 CURVE_REACH = 50.0
-"""Dyads of Burmester's curves with a pivot farther away than this many task sizes are no candidates."""
+"""Maximum distance of a pivot on Burmester's curves, in task sizes, for a dyad to be a candidate."""
 
 CURVE_NEAR = 0.15
-"""Within this distance of the body, in task sizes, samples of the curves stand as densely as their arc length is; far
-from it, as its logarithm is."""
+"""Distance from the body, in task sizes, within which samples of the curves are uniform in arc length; beyond it they
+are uniform in its logarithm."""
 
 SECTIONS = 400
-"""Random sections, each with at most four dyads, from which a family is drawn that has no simpler description."""
+"""Number of random sections, with at most four dyads each, that sample a family without a simpler description."""
 
 NEWTON_CLOUD = 4000
-"""Dyads of a cloud at most where each takes Newton's method: some tenths of a second."""
+"""Maximum size of a cloud whose dyads each need Newton's method: a few tenths of a second."""
 
 NEAREST_SAMPLES = 4000
-"""Samples of a curve among which the pivot nearest to a stated one is looked for."""
+"""Number of curve samples among which the pivot nearest to a given one is selected."""
 
 REDUNDANT = 1e-9
-"""Part of a position's condition that is new, below which it adds nothing to the conditions of the others. Above
-:data:`~synthesis.kinds.motion.dyads.LOST` it does, in digits that are lost."""
+"""Independent part of a position's condition below which it counts as implied by the others. Above
+:data:`~synthesis.kinds.motion.dyads.LOST` it is independent, but only in digits that are lost."""
 
 REGION_DRAWS = 6
-"""Draws of a whole cloud at most, until half of it lies in the client's regions."""
+"""Maximum number of times that a whole cloud is sampled until half of it lies in the given regions."""
 
 SAME_PLACE = 2e-15
-"""Angles (radians) and lengths (task sizes) that differ by no more are equal: some roundings of the positions."""
+"""Tolerance for equal angles (radians) and lengths (task sizes): a few rounding errors of the positions."""
 
 SAME_POLE = 8.0
-"""Roundings of its images by which a pole may move in a rotation about it."""
+"""Permitted motion of the pole in a rotation about it, in rounding errors of its images."""
 
 PLAIN = 1e-9
-"""Rounding of the positions as a share of what a body that turns swings out of its straight way: up to this a rotation
-about one point is told from all other motions."""
+"""Maximum rounding of the positions, relative to the body's rotation, at which a pure rotation about one point can be
+distinguished from all other motions."""
 
 _NO_DYADS = Dyads(np.empty(0, np.complex128), np.empty(0, np.complex128))
 
@@ -82,15 +82,15 @@ class Cloud(NamedTuple):
     dyads : Dyads
         Task coordinates, shape (count,).
     sampled : bool
-        The choices leave some freedom, and these dyads are drawn from what it allows.
+        The choices leave some freedom, and these dyads are a sample.
     complete : bool
-        These are all the dyads that satisfy the client's choices; where there are none, that is proved.
+        These are provably all dyads that satisfy the client's choices, even if there are none.
     reason : str
-        Why there are none, in a sentence about "the side".
+        The reason for an empty cloud, in a sentence about "the side".
     remark : str
-        What else a client should know of them, in sentences about "the side".
+        Further remarks for the client, in sentences about "the side".
     sliders : tuple of SliderDyad
-        Dyads with a pivot at infinity that satisfy the choices, where all are known.
+        Dyads with a pivot at infinity that satisfy the choices, if all are known.
     """
 
     dyads: Dyads
@@ -102,7 +102,7 @@ class Cloud(NamedTuple):
 
 
 def stated_conditions(task: MotionTask, problem: MotionProblem, choices: DyadChoices) -> DyadConditions:
-    """The client's choices of one side in task coordinates and radians."""
+    """Convert the client's choices of one side to task coordinates and radians."""
 
     def array(pivot: complex | None) -> Complex | None:
         return None if pivot is None else np.asarray(pivot)
@@ -120,7 +120,7 @@ def stated_conditions(task: MotionTask, problem: MotionProblem, choices: DyadCho
     vector = choices.coupler_vector
     length = None if vector is None or vector.length is None else np.asarray(vector.length / task.size)
     if vector is not None and vector.length is not None and vector.angle is not None:
-        vector = length = None  # together they state the moving pivot
+        vector = length = None  # together they fix the moving pivot, which is a condition of its own
     moving = array(stated_pivot(task, choices, fixed=False))
     fixed, fixed_lines = array(stated_pivot(task, choices, fixed=True)), line(choices.fixed_pivot)
     if problem.ground_line is not None and fixed is None:
@@ -140,7 +140,7 @@ def stated_conditions(task: MotionTask, problem: MotionProblem, choices: DyadCho
 
 
 def _crossing(first: Line, second: Line) -> Complex:
-    """Where two lines meet that are not parallel."""
+    """Return the intersection of two lines that are not parallel."""
     return np.asarray(
         1j
         * (second.offset * first.normal - first.offset * second.normal)
@@ -149,9 +149,9 @@ def _crossing(first: Line, second: Line) -> Complex:
 
 
 def side_dyads(task: MotionTask, problem: MotionProblem, side: int, rng: np.random.Generator, count: int) -> Cloud:
-    """All dyads that one side's choices determine, or a cloud of about ``count`` where some are left open.
+    """Find all dyads that one side's choices determine, or a cloud of about ``count`` if some choices are open.
 
-    ``side`` is 0 for the input's and 1 for the output's.
+    ``side`` is 0 for the input and 1 for the output.
     """
     impossible = why_no_dyads(task)
     if impossible is not None:
@@ -170,7 +170,7 @@ def side_dyads(task: MotionTask, problem: MotionProblem, side: int, rng: np.rand
         cloud = _of_draws(essential, conditions, areas, rng, count)
     if len(essential.points) == len(task.points):
         return cloud
-    meets = "meets all" if not lost else "meets to nine digits all"
+    meets = "meets all" if not lost else "meets, to nine digits, all"
     return cloud._replace(
         complete=cloud.complete and not lost,
         remark=f"A dyad that meets {len(essential.points)} of the positions {meets} {len(task.points)}. {cloud.remark}",
@@ -178,7 +178,7 @@ def side_dyads(task: MotionTask, problem: MotionProblem, side: int, rng: np.rand
 
 
 class _Essential(NamedTuple):
-    """The task and the choices without some positions; ``lost`` where these said something in digits that are lost."""
+    """Task and choices without redundant positions; ``lost`` if these were independent only in lost digits."""
 
     task: MotionTask
     conditions: DyadConditions
@@ -186,9 +186,9 @@ class _Essential(NamedTuple):
 
 
 def _without_redundant_positions(task: MotionTask, conditions: DyadConditions) -> _Essential:
-    """The task and the choices without positions whose condition follows from those of the others.
+    """Drop the positions whose condition follows from those of the others.
 
-    So it is for a translation along a circle, where three positions say all. A position whose rotation is stated is
+    An example is a translation along a circle, which three positions determine. Positions with a given rotation are
     kept.
     """
     rows = pose_rows(task)
@@ -196,6 +196,7 @@ def _without_redundant_positions(task: MotionTask, conditions: DyadConditions) -
     if s[-1] > REDUNDANT:
         return _Essential(task, conditions, False)
     kept: list[int] = []
+    # Gram-Schmidt in order: keep a position only if its condition adds something to those kept before.
     for k, row in enumerate(rows):
         others = rows[kept]
         new = row - others.T @ np.linalg.lstsq(others.T, row, rcond=None)[0] if kept else row
@@ -210,30 +211,31 @@ def _without_redundant_positions(task: MotionTask, conditions: DyadConditions) -
 
 
 def _of_section(task: MotionTask, conditions: DyadConditions, rng: np.random.Generator) -> Cloud:
-    """The dyads of as many conditions as a dyad has freedoms, each once; or a cloud where they repeat one another."""
+    """Find the distinct dyads of as many conditions as a dyad has freedoms; a cloud if conditions repeat each other."""
     intersection = section(task, conditions)
     if not intersection.finite:
         cloud = _of_random_sections(task, conditions, rng)
         return cloud._replace(remark="A whole family of dyads satisfies the positions and choices of the side.")
     dyads = intersection.dyads
+    # Newton's method needs a square system; at a double root it would converge slowly and is left out.
     if conditions.count() == 5 - len(task.points):
         refined, converged = solve_dyads(task, conditions, dyads)
         kept = converged & ~intersection.double
         dyads = Dyads(np.where(kept, refined.fixed, dyads.fixed), np.where(kept, refined.moving, dyads.moving))
     remark = ""
     if intersection.double.any():
-        remark = "Dyads of the side coincide (a double root), or too nearly so to tell how many they are."
+        remark = "Dyads of the side coincide (a double root), or are too close to be counted."
     if intersection.far:
         word = "dyad of the side has" if intersection.far == 1 else "dyads of the side have"
         remark += f" {intersection.far} {word} a pivot more than {FAR:.0e} task sizes away."
     elif not intersection.proved and not remark:
-        remark = "The positions and choices of the side leave too few digits to tell how many dyads there are."
+        remark = "The positions and choices of the side leave too few digits to count the dyads."
     text = "No dyad with two pins satisfies the positions and choices of the side."
     return Cloud(dyads, False, intersection.proved, text, remark, intersection.sliders)
 
 
 def _of_random_sections(task: MotionTask, conditions: DyadConditions, rng: np.random.Generator) -> Cloud:
-    """Dyads of a family, met by random lines on which a pivot is to lie."""
+    """Sample dyads of a family by requiring a pivot to lie on random lines."""
     fixed, moving = [], []
     for k in range(SECTIONS):
         centre = complex(points_around(task.points.mean(keepdims=True), rng, 1)[0])
@@ -244,37 +246,39 @@ def _of_random_sections(task: MotionTask, conditions: DyadConditions, rng: np.ra
             if k % 2
             else replace(conditions, moving_lines=(*conditions.moving_lines, line))
         )
+        # Lines for the fixed and the moving pivot alternate: each finds dyads that the other rarely meets.
         intersection = section(task, lines)
         near = np.maximum(np.abs(intersection.dyads.fixed), np.abs(intersection.dyads.moving)) <= CURVE_REACH
         fixed.append(intersection.dyads.fixed[near])
         moving.append(intersection.dyads.moving[near])
-    text = "A family of dyads satisfies the positions and choices of the side, but none was met within reach."
+    text = "A family of dyads satisfies the positions and choices of the side, but none was found within reach."
     return Cloud(Dyads(np.concatenate(fixed), np.concatenate(moving)), True, False, text)
 
 
 def _of_curve(
     task: MotionTask, conditions: DyadConditions, areas: SideAreas, rng: np.random.Generator, count: int
 ) -> Cloud:
-    """Dyads spread along Burmester's curve of four positions."""
+    """Sample dyads along Burmester's curve of four positions."""
     curve = burmester.burmester_curve(task, conditions)
     if curve is None:
         return _of_random_sections(task, conditions, rng)
     dyads = burmester.cloud(curve, curve_window(task), count, float(rng.uniform()))
+    # Samples of the curve carry a few digits of error; project them back before they are used.
     dyads = settled(task, dyads)
     good = _in_areas(task, areas, dyads)
-    text = "No dyad of the side has its pivots within reach and in the regions that are given."
+    text = "No dyad of the side has its pivots within reach and in the given regions."
     return Cloud(Dyads(dyads.fixed[good], dyads.moving[good]), True, False, text)
 
 
 def curve_window(task: MotionTask) -> burmester.Window:
-    """What matters of Burmester's curves in a search."""
+    """Return the region of Burmester's curves that a search samples."""
     return burmester.Window((complex(task.points.mean()), complex(task.points[0])), CURVE_REACH, CURVE_NEAR)
 
 
 def _of_draws(
     task: MotionTask, conditions: DyadConditions, areas: SideAreas, rng: np.random.Generator, count: int
 ) -> Cloud:
-    """A cloud of dyads, two or more freedoms of which are drawn at random."""
+    """Sample a cloud of dyads with two or more random freedoms."""
     if _pivot(conditions) is not None or conditions.count() > 0:
         count = min(count, NEWTON_CLOUD)
     fixed, moving = [], []
@@ -288,26 +292,26 @@ def _of_draws(
         if sum(map(len, fixed)) >= count // 2:
             break
     cloud = Dyads(np.concatenate(fixed)[:count], np.concatenate(moving)[:count])
-    return Cloud(cloud, True, False, "No dyad was met that satisfies the choices and regions of the side.")
+    return Cloud(cloud, True, False, "No dyad found satisfies the choices and regions of the side.")
 
 
 def _in_areas(task: MotionTask, areas: SideAreas, dyads: Dyads) -> NDArray[np.bool_]:
-    """Which dyads have both pivots in the areas for them."""
+    """Return a mask of the dyads with both pivots in their areas."""
     return np.asarray(within(task, areas.fixed, dyads.fixed) & within(task, areas.moving, dyads.moving))
 
 
 class Impossible(NamedTuple):
-    """Why there are no dyads, in a sentence, and whether the positions have the digits to prove it."""
+    """The reason why there are no dyads, as a sentence, and whether the positions have enough digits to prove it."""
 
     text: str
     proved: bool = True
 
 
 def why_no_dyads(task: MotionTask) -> Impossible | None:
-    """Why no pin-jointed dyad of positive length exists for the positions; None where some do.
+    """Explain why no pin-jointed dyad of positive length exists for the positions; return None if some exist.
 
-    There is none for a translation through three or more positions, unless P moves on a circle; nor for a rotation
-    about one point, which every dyad would have for its fixed pivot.
+    None exists for a translation through three or more positions, unless P moves on a circle; nor for a rotation about
+    one point, which would be the fixed pivot of every dyad.
     """
     if len(task.points) < 3:
         return None
@@ -315,42 +319,43 @@ def why_no_dyads(task: MotionTask) -> Impossible | None:
         sides = task.points[1:] - task.points[0]
         if np.abs((np.conj(sides[0]) * sides).imag).max() <= SAME_PLACE:
             return Impossible(
-                "The positions are a translation along a straight line: every point of the body moves on a line, "
-                "so only a slider can guide it and no pin-jointed fourbar exists."
+                "The positions are a translation along a straight line: every point of the body moves on a line, so "
+                "only a slider can guide it. No pin-jointed fourbar exists."
             )
         if np.linalg.svd(pose_rows(task), compute_uv=False)[2:].max(initial=0.0) <= REDUNDANT:
             return None
         return Impossible(
-            "The positions are a translation, and not along a circle: every point of the body takes the same places "
-            "as P, so no link of one length can hold it and no pin-jointed fourbar exists."
+            "The positions are a translation, but not along a circle: every point of the body follows the same points "
+            "as P, so no rigid link can guide it. No pin-jointed fourbar exists."
         )
+    # The position with the largest rotation gives the best-conditioned pole; test that it is fixed in all positions.
     turning = int(np.abs(task.turns - 1.0).argmax())
     pole = _pole(task, turning)
     turned = float(abs(task.turns[turning] - 1.0))
     rounding = SAME_POLE * np.finfo(np.float64).eps * (1.0 + abs(task.origin) / task.size + abs(pole))
     if np.abs(task.images(np.asarray(pole)) - pole).max() > rounding:
         return None
-    about = "The positions are a rotation about one point: a pin joint there carries the body"
+    about = "All positions are rotations about one point: a plain pin joint there carries the body"
     if rounding > PLAIN * turned:
-        return Impossible(f"{about}, to the digits that are given.", proved=False)
-    return Impossible(f"{about}, and every dyad would have it for its fixed pivot, so no fourbar exists.")
+        return Impossible(f"{about}, to the digits given.", proved=False)
+    return Impossible(f"{about}. It would be the fixed pivot of every dyad, so no fourbar exists.")
 
 
 def _pole(task: MotionTask, k: int) -> complex:
-    """Displacement pole of positions 1 and k: the point that A_k = A fixes."""
+    """Return the displacement pole of positions 1 and k: the point with A_k = A."""
     turn = task.turns[k]
     return complex((task.points[k] - turn * task.points[0]) / (1.0 - turn))
 
 
 def _pivot(conditions: DyadConditions) -> Complex | None:
-    """The pivot that is stated, if one is."""
+    """Return the given pivot; None if neither is given."""
     return conditions.moving_pivot if conditions.fixed_pivot is None else conditions.fixed_pivot
 
 
 def _of_family(
     task: MotionTask, conditions: DyadConditions, areas: SideAreas, rng: np.random.Generator, count: int
 ) -> Cloud:
-    """The dyads of linear conditions: one, none, or a cloud where a freedom is left or a pivot is a pole."""
+    """Solve linear conditions: one dyad, none, or a cloud if a freedom remains or a pivot is a pole."""
     family = linear_family(task, conditions)
     if family.dyad is None:
         return Cloud(_NO_DYADS, False, family.proved, _why_contradictory(task, conditions, proved=family.proved))
@@ -358,7 +363,7 @@ def _of_family(
     if not free:
         reach = max(abs(family.dyad.fixed[0]), abs(family.dyad.moving[0]))
         if reach >= FAR:
-            text = f"The other pivot of the side would lie about {reach:.0e} task sizes away; a slider stands for that."
+            text = f"The other pivot of the side would lie about {reach:.0e} task sizes away; use a slider instead."
             return Cloud(_NO_DYADS, False, False, text)
         return _forwards(task, conditions, family.dyad, sampled=False, proved=family.proved)
     distance = distances(rng, count, free)
@@ -371,27 +376,27 @@ def _of_family(
 
 
 def _forwards(task: MotionTask, conditions: DyadConditions, dyads: Dyads, *, sampled: bool, proved: bool) -> Cloud:
-    """Those dyads that meet stated directions forwards."""
+    """Return the dyads that meet the given directions with positive lengths."""
     good = directions_hold(task, conditions, dyads)
-    text = "The choices of the side are met by a link or coupler vector of negative length only."
+    text = "Only a link or coupler vector of negative length would meet the choices of the side."
     return Cloud(Dyads(dyads.fixed[good], dyads.moving[good]), sampled, proved, text)
 
 
 def _why_contradictory(task: MotionTask, conditions: DyadConditions, *, proved: bool) -> str:
-    """Why linear conditions have no solution."""
+    """Explain why linear conditions have no solution."""
     pivot = _pivot(conditions)
     if pivot is None:
         return "The rotations of the side belong to no link of finite length."
     if len(task.points) > 3:
-        return f"The stated pivot of the side is on no dyad that meets all positions. {_nearest(task, conditions)}"
-    line = "The stated pivot of the side has its images on one straight line"
+        return f"The given pivot of the side belongs to no dyad that meets all positions. {_nearest(task, conditions)}"
+    line = "The given pivot of the side has all its images on one straight line"
     if not proved:
-        return f"{line}, or too nearly so to tell from the digits that are given."
-    return f"{line}: a slider, not a pin-jointed link, would guide it. No design exists with these choices."
+        return f"{line}, to within the digits given."
+    return f"{line}: only a slider can guide it, not a pin-jointed link. No design exists with these choices."
 
 
 def _nearest(task: MotionTask, conditions: DyadConditions) -> str:
-    """Which pivots near the stated one belong to dyads, in a sentence."""
+    """Return a sentence with the pivot of a dyad that is nearest to the given one."""
     nothing = DyadConditions(rotations=(None,) * (len(task.points) - 1))
     if len(task.points) == 4:
         curve = burmester.burmester_curve(task, nothing)
@@ -399,16 +404,16 @@ def _nearest(task: MotionTask, conditions: DyadConditions) -> str:
     else:
         dyads = section(task, nothing).dyads
     if not len(dyads.fixed):
-        return "No pivot within reach is."
+        return "No pivot within reach does."
     moving = conditions.fixed_pivot is None
     pivots, stated = (dyads.moving, conditions.moving_pivot) if moving else (dyads.fixed, conditions.fixed_pivot)
     assert stated is not None
     nearest = task.to_problem(complex(pivots[np.abs(pivots - stated).argmin()]))
-    return f"The nearest that is lies at about ({nearest.real:.6g}, {nearest.imag:.6g})."
+    return f"The nearest pivot that does is at about ({nearest.real:.6g}, {nearest.imag:.6g})."
 
 
 def _sampled_pivots(task: MotionTask, areas: SideAreas, rng: np.random.Generator, count: int) -> Dyads:
-    """Random fixed and moving pivots, shape (count,) each."""
+    """Sample random fixed and moving pivots, shape (count,) each."""
     middle = task.points.mean(keepdims=True)
     fixed, moving = drawn(task, areas.fixed, rng, count), drawn(task, areas.moving, rng, count)
     return Dyads(
@@ -420,10 +425,10 @@ def _sampled_pivots(task: MotionTask, areas: SideAreas, rng: np.random.Generator
 def _pinned(
     task: MotionTask, conditions: DyadConditions, pivots: Dyads, areas: SideAreas, rng: np.random.Generator
 ) -> list[tuple[DyadConditions, Dyads]]:
-    """Random conditions added until a dyad is determined; each way of doing so with its share of the pivots as starts.
+    """Add random conditions until each dyad is determined; return each set of conditions with its starting pivots.
 
-    Where both pivots are open, half of the cloud is drawn by moving pivots and half by fixed pivots: each finds dyads
-    that the other seldom meets. With a region for one of them alone, all are drawn there.
+    If both pivots are open, half of the cloud fixes the moving pivots and half the fixed pivots: each finds dyads that
+    the other rarely meets. If only one pivot has a region, all samples fix that pivot.
     """
     conditions = _on_lines(conditions, pivots)
     missing = 5 - len(task.points) - conditions.count()
@@ -447,7 +452,7 @@ def _pinned(
 
 
 def _on_lines(conditions: DyadConditions, pivots: Dyads) -> DyadConditions:
-    """A pivot that is to lie on a line put there: what is left is linear in the other pivot."""
+    """Project a pivot onto its given line, so that the remaining conditions are linear in the other pivot."""
     if conditions.fixed_lines and conditions.moving_pivot is None:
         line = conditions.fixed_lines[0]
         gap = (line.normal.conjugate() * pivots.fixed).real - line.offset
@@ -462,7 +467,7 @@ def _on_lines(conditions: DyadConditions, pivots: Dyads) -> DyadConditions:
 def _with_numbers(
     task: MotionTask, conditions: DyadConditions, pivots: Dyads, missing: int, rng: np.random.Generator
 ) -> DyadConditions:
-    """Add ``missing`` single random numbers: the other half of a coupler vector, rotations, then a coupler angle."""
+    """Add ``missing`` random scalars: the other half of a coupler vector, then rotations, then a coupler angle."""
     vector = task.points[0] - pivots.moving
     if missing and conditions.fixed_pivot is None:
         if conditions.coupler_length is None and conditions.coupler_angle is not None:

@@ -1,4 +1,4 @@
-"""Where a driven body comes nearest to demanded poses: a grid of inputs, refined without derivatives."""
+"""Inputs at which a driven body is nearest to the target poses: a grid search, refined without derivatives."""
 
 from __future__ import annotations
 
@@ -9,34 +9,35 @@ import numpy as np
 from synthesis.kinds.motion.demanded import HELD_WEIGHT, Complex, Demanded, Real
 
 GRID = 720
-"""Steps of the first grid: half a degree of a full turn."""
+"""Number of steps of the first grid: half a degree each for a full turn."""
 
 SAMPLES = 33
-"""Inputs in each refinement, over the two steps around the best of the last: 16 times finer."""
+"""Number of inputs in each refinement, over two steps around the previous best one: 16 times finer."""
 
 REFINEMENTS = 10
-"""Their number: 16¹⁰ times finer than the grid, 1e-14 radians."""
+"""Number of refinements: 16¹⁰ times finer than the grid, that is, 1e-14 radians."""
 
 SAME_MISS = 1e-10
-"""Misses, in units of the limits or the task's size, that differ by less are equal: what rounding leaves."""
+"""Tolerance for equal misses, in units of the tolerances or the task's size; it covers rounding."""
 
 Motion = Callable[[Real], tuple[Complex, Real]]
-"""P and the body's rotation from the first demanded pose, at inputs of shape (n, m); NaN where there is no position."""
+"""Map from inputs of shape (n, m) to P and the body's rotation from the first target pose; NaN if not assembled."""
 
 
 def closest_inputs(motion: Motion, target: Demanded, low: float, high: float) -> tuple[Real, Real]:
-    """The input at which the body is nearest to each demanded pose, between two inputs.
+    """Find the input at which the body is nearest to each target pose, between two inputs.
 
-    Where coordinates of a pose are held these alone decide, once it is known which of several places is meant. Where
-    all have a tolerance the nearest is the place at which the greatest share of a tolerance that is used is least.
+    If a pose has exact coordinates, these alone decide the refinement, after the first grid has selected one of several
+    minima. If all coordinates have a tolerance, the nearest input minimises the largest deviation relative to its
+    tolerance.
 
     Returns
     -------
     inputs : float, shape (n,)
-        NaN where the mechanism has no position at all in the range.
+        NaN if the mechanism has no position in the range.
     misses : float, shape (n,)
-        Deviations at these inputs in units of their limits (or the task's size): the root of the sum of squares, or the
-        greatest where all have a tolerance.
+        Deviations at these inputs in units of their tolerances (or the task's size): the root of the sum of squares, or
+        the maximum if all coordinates have a tolerance.
     """
     n = len(target.points)
     held = target.held
@@ -62,9 +63,9 @@ def closest_inputs(motion: Motion, target: Demanded, low: float, high: float) ->
 
 
 def as_near(motion: Motion, target: Demanded, k: int, one: float, other: float) -> bool:
-    """Whether the body is as near to target ``k`` at one input as at another, to rounding and by what decides there.
+    """Return whether the body is as near to target ``k`` at one input as at another, by the deciding coordinates.
 
-    It is to be within its tolerances too, unless it is not at the other either.
+    It must also be within its tolerances, unless it is outside them at the other input too.
     """
     offsets = target.offsets(*motion(np.tile([one, other], (len(target.points), 1))))
     here, there = missed_by(target, offsets * _deciding(target)[:, None, :])[k]
@@ -73,15 +74,15 @@ def as_near(motion: Motion, target: Demanded, k: int, one: float, other: float) 
 
 
 def _deciding(target: Demanded) -> Real:
-    """Weights of what decides between places that are near to one another, shape (n, 3): what is held, if anything."""
+    """Return the weights that decide between neighbouring inputs, shape (n, 3): exact coordinates only, if any."""
     held, units = target.held, target.units
     return np.asarray(np.where(np.any(held, axis=1)[:, None], held / units, 1.0 / units))
 
 
 def missed_by(target: Demanded, shares: Real) -> Real:
-    """How far poses are from the demanded ones, by their deviations in units of what each is measured by.
+    """Return the distances of poses from their targets, given their scaled deviations.
 
-    ``shares`` has the shape (n, ..., 3). Infinite where there is no pose.
+    ``shares`` has shape (n, ..., 3). The distance is infinite if there is no pose.
     """
     tolerated = np.all(np.isfinite(target.limits) & ~target.held, axis=1)
     greatest, root = np.abs(shares).max(axis=-1), np.sqrt(np.einsum("...c,...c->...", shares, shares))

@@ -1,24 +1,24 @@
-"""A dyad as a surface in the space of the body's poses, and how far a pose is from it.
+"""A dyad as a surface in the space of the body's poses, and the distance of a pose from it.
 
-A pose is (x, y, φ): where P is and how far the body has turned from the first position. A dyad holds the body to a
-surface f = 0 in the space of poses. With A = P + e^{iφ} α the place of a point α of the body, and V = e^{−iφ}(O − P)
-the place of a fixed point O as the body sees it,
+A pose (x, y, φ) consists of the coordinates of P and the body's rotation from the first position. A dyad constrains the
+body to a surface f = 0 in the space of poses. With A = P + e^{iφ} α the ground position of a body point α, and
+V = e^{−iφ}(O − P) the position of a fixed point O relative to the body,
 
     forward     w = A − w₀:   the point A of the body moves on a circle or a line fixed in the ground;
     inverted    w = V − w₀:   the fixed point O lies on a circle or a line fixed in the body;
 
     f = κ|w|²/2 + n·w − d,    n = e^{iν},    ν, d, κ and the point (α or O) the five numbers of the dyad.
 
-The circle passes near w₀ with the normal n and has the curvature κ. κ = 0 is a line: a PR dyad (the pin A slides on a
-line of the ground) or, inverted, an RP dyad (a line of the body slides through a block pinned at O). With κ ≠ 0 either
-form describes an RR dyad; the form is used whose point (α or O) lies nearer to the origin. When the other pivot goes to
-infinity, all five numbers then stay bounded, and the dyad becomes the slider with κ = 0.
+The circle passes near w₀ with normal n and has curvature κ. κ = 0 is a line: a PR dyad (the pin A slides on a line of
+the ground) or, inverted, an RP dyad (a line of the body slides through a block pinned at O). With κ ≠ 0 either form
+describes an RR dyad; the form whose point (α or O) lies nearer to the origin is used. If the other pivot then goes to
+infinity, all five numbers stay bounded, and the dyad becomes the slider with κ = 0.
 
-Poses are weighted by variances D = diag(τ²), one tolerance a coordinate, 0 where the coordinate is held. The pose
-nearest to a demanded pose t that two dyads allow is t + D Jᵀλ, by repeated linearization; with S = J D Jᵀ = L Lᵀ the
-weighted distance is |Lᵀλ|. By the envelope theorem its derivative by a number of a dyad is, to first order, that of
-L⁻¹f at the fixed nearest pose, so that the poses are no unknowns of a Gauss–Newton step, only the ten numbers (
-orthogonal distance regression; Ahn, *Least Squares Orthogonal Distance Fitting of Curves and Surfaces*, 2004).
+Poses are weighted by variances D = diag(τ²), one tolerance per coordinate, 0 for an exact coordinate. The pose nearest
+to a target pose t that two dyads allow is t + D Jᵀλ, by repeated linearization; with S = J D Jᵀ = L Lᵀ the weighted
+distance is |Lᵀλ|. By the envelope theorem its derivative by a number of a dyad is, to first order, that of L⁻¹f at the
+fixed nearest pose. The poses are therefore not unknowns of a Gauss–Newton step, only the ten numbers are (orthogonal
+distance regression; Ahn, *Least Squares Orthogonal Distance Fitting of Curves and Surfaces*, 2004).
 """
 
 from __future__ import annotations
@@ -35,27 +35,27 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 NUMBERS = 5
-"""Numbers of a dyad: two coordinates of its point, ν, d, κ."""
+"""Number of parameters of a dyad: two coordinates of its point, ν, d, κ."""
 
 MAX_LINEARIZATIONS = 30
-"""Number of linearizations for a nearest pose, at most; a few are usual."""
+"""Maximum number of linearizations for a nearest pose; a few usually suffice."""
 
 POSE_TOLERANCE = 1e-14
 """Step of the nearest pose (task sizes, radians) below which the iteration has converged."""
 
 LOST_RESIDUAL = 1e6
-"""Residual of a pose whose nearest neighbour was not found: worse than any that can be."""
+"""Residual of a pose whose nearest allowed pose was not found; larger than any regular residual."""
 
 MAX_STEP = 1e6
-"""Step of the nearest pose (task sizes, radians) at which the iteration is given up as divergent."""
+"""Step of the nearest pose (task sizes, radians) at which the iteration counts as divergent."""
 
 MIN_DETERMINANT = 1e-12
-"""Share of s₁₁s₂₂ that s₁₁s₂₂ − s₁₂² keeps at least: below it the two surfaces are tangent,
-and both dyads allow the same motions."""
+"""Minimum of s₁₁s₂₂ − s₁₂² relative to s₁₁s₂₂; below it the two surfaces are tangent, and both dyads allow the same
+motions."""
 
 
 class Surface(NamedTuple):
-    """One dyad's surface but for its five numbers: its form, the reference w₀, and whether κ is free or 0."""
+    """One dyad's surface apart from its five numbers: its form, the reference w₀, and whether κ is free or 0."""
 
     inverted: bool
     origin: complex
@@ -71,7 +71,7 @@ def constraint(
     by_pose: NDArray[np.float64],
     by_number: NDArray[np.float64],
 ) -> float:
-    """Value of f at a pose; writes its derivatives by the pose (3,) and by the dyad's numbers (5,).
+    """Return f at a pose and write its derivatives by the pose (3,) and by the dyad's numbers (5,).
 
     Parameters
     ----------
@@ -119,18 +119,18 @@ def nearest_poses(
     jacobian: NDArray[np.float64],
     poses: NDArray[np.float64],
 ) -> None:
-    """Nearest poses that two dyads allow, and weighted residuals with their Jacobian.
+    """Find the nearest poses that two dyads allow, and the weighted residuals with their Jacobian.
 
     Parameters
     ----------
     inverted, origins, numbers
         Surfaces of the two dyads, shapes (2,), (2,) and (2, 5).
     targets, variances : float, shape (n, 3)
-        Demanded poses and τ².
+        Target poses and τ².
     linearizations : int
         1 for the first-order distance (Sampson's), more for the distance itself.
     residuals, jacobian, poses : float, shapes (n, 2), (n, 2, 10) and (n, 3)
-        Written: residuals whose squares add up to the weighted distance, and the nearest poses.
+        Output arrays: residuals whose squares add up to the squared weighted distance, and the nearest poses.
     """
     by_pose, by_number = np.empty((2, 3)), np.empty((2, NUMBERS))
     value, weighted, x, ahead = np.empty(2), np.empty((2, 3)), np.empty(3), np.empty(2)
@@ -146,6 +146,7 @@ def nearest_poses(
                 )
                 for c in range(3):
                     weighted[side, c] = by_pose[side, c] * variance[c]
+                # Linearise at x, but measure from the target: ahead is f extrapolated to the target pose.
                 ahead[side] = value[side]
                 for c in range(3):
                     ahead[side] += by_pose[side, c] * (target[c] - x[c])
@@ -170,6 +171,7 @@ def nearest_poses(
                 step = target[c] + weighted[0, c] * first + weighted[1, c] * second - x[c]
                 x[c] += step
                 moved = max(moved, abs(step))
+            # Also true for NaN: a divergent iteration must end.
             if not moved < MAX_STEP:
                 break
             if moved < POSE_TOLERANCE * (1.0 + abs(x[0]) + abs(x[1])):
@@ -200,9 +202,9 @@ def surface_distances(
     residuals: NDArray[np.float64],
     jacobian: NDArray[np.float64],
 ) -> None:
-    """First-order weighted distances of poses from one dyad's surface, f/√(J D Jᵀ), with their Jacobian.
+    """Compute the first-order weighted distances of poses from one dyad's surface, f/√(J D Jᵀ), and their Jacobian.
 
-    ``residuals`` (n,) and ``jacobian`` (n, 5) are written. Where all coordinates are held the residual is f itself.
+    ``residuals`` (n,) and ``jacobian`` (n, 5) are written. If all coordinates are exact, the residual is f itself.
     """
     by_pose = np.empty(3)
     for k in range(len(targets)):
@@ -217,7 +219,7 @@ def surface_distances(
 
 
 def of_pivots(fixed: complex, moving: complex) -> tuple[Surface, Real]:
-    """Surface and numbers of an RR dyad by its fixed pivot and its moving pivot in the pose (0, 0, 0)."""
+    """Return surface and numbers of an RR dyad, given its fixed pivot and its moving pivot in the pose (0, 0, 0)."""
     inverted = abs(fixed) < abs(moving)
     point, centre = (fixed, moving) if inverted else (moving, fixed)
     arm = point - centre
@@ -226,13 +228,13 @@ def of_pivots(fixed: complex, moving: complex) -> tuple[Surface, Real]:
 
 
 def pivots_of(surface: Surface, numbers: Real) -> tuple[complex, complex]:
-    """Fixed pivot, and moving pivot in the pose (0, 0, 0), of an RR dyad; κ must not be 0."""
+    """Return the fixed pivot, and the moving pivot in the pose (0, 0, 0), of an RR dyad; κ must not be 0."""
     point = complex(numbers[0], numbers[1])
     centre = complex(surface.origin - np.exp(1j * numbers[2]) / numbers[4])
     return (point, centre) if surface.inverted else (centre, point)
 
 
 def line_of(surface: Surface, numbers: Real) -> tuple[complex, complex, float]:
-    """Point (α or O), foot of the line's normal from w₀, and the line's angle, of a surface with κ = 0."""
+    """Return the point (α or O), the foot of the normal from w₀, and the line's angle, radians, for κ = 0."""
     n = complex(np.exp(1j * numbers[2]))
     return complex(numbers[0], numbers[1]), surface.origin + numbers[3] * n, float(numbers[2]) + 0.5 * math.pi

@@ -1,6 +1,6 @@
-"""What a motion problem states that cannot be together: faults that no single field shows.
+"""Contradictions of a motion problem: errors that involve more than one field.
 
-The problem is not named by its type here: its model asks this module.
+The problem has type Any here, because its model imports this module.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ from synthesis.kinds.motion.stated_positions import MOST_HELD
 from synthesis.model.statement import Contradiction, PartialPoint
 
 LEAST_LENGTH = 1e-12
-"""Positions that differ, but by less than this many length units, are refused as absurd."""
+"""Minimum distance, in length units, between positions that differ; smaller motions indicate a wrong unit."""
 
 EQUAL_POSITIONS = 1e-9
-"""Positions closer than this share of the coordinates' size, and this many radians, count as equal.
+"""Tolerance for equal positions, as a share of the largest coordinate and in radians.
 
 Double precision keeps about 1e-16 of the largest coordinate, so a displacement below 1e-9 of it has lost
-half its digits and no residual of 1e-9 could be shown for it."""
+half its digits, and no residual of 1e-9 could be verified for it."""
 
 PARALLEL = 1e-9
-"""Component of a unit vector below which a line counts as parallel to an axis."""
+"""Tolerance for lines parallel to an axis: the component of their unit vector across that axis."""
 
 ON_LINE = 1e-9
-"""Share of the task's size by which a stated pivot may lie off a stated line: rounding."""
+"""Tolerance for a given pivot on a given line, as a share of the task's size; it covers rounding."""
 
 
 def contradictions_of(problem: Any) -> list[Contradiction]:
-    """All of them, of the problem as it is stated: equal positions, too many or colliding choices, sides and pivots."""
+    """Return all contradictions of a problem: equal positions, too many or conflicting choices, sides and pivots."""
     return [
         *_equal_positions(problem),
         *_misplaced_tolerances(problem),
@@ -56,7 +56,7 @@ def _equal_positions(problem: Any) -> list[Contradiction]:
     moved = max(abs(p.point - q.point) for p in problem.positions for q in problem.positions)
     if 0.0 < moved < LEAST_LENGTH:
         return [
-            Contradiction("/positions", f"less than {LEAST_LENGTH} {problem.length_unit} apart; take a smaller unit")
+            Contradiction("/positions", f"are less than {LEAST_LENGTH} {problem.length_unit} apart; use a smaller unit")
         ]
     contradictions = []
     for k, later in enumerate(problem.positions):
@@ -80,7 +80,7 @@ def _without_room(problem: Any) -> list[Contradiction]:
 
 def _misplaced_tolerances(problem: Any) -> list[Contradiction]:
     return [
-        Contradiction(f"/positions/{k}/exact", "a position that is met exactly has no tolerance; give one of them")
+        Contradiction(f"/positions/{k}/exact", "an exact position has no tolerance; give one of the two")
         for k, position in enumerate(problem.positions)
         if position.exact and position.tolerance is not None
     ]
@@ -88,34 +88,37 @@ def _misplaced_tolerances(problem: Any) -> list[Contradiction]:
 
 def _too_many_held(problem: Any) -> list[Contradiction]:
     if problem.method == "exact" and len(problem.positions) > MOST_HELD and not problem.approximate:
-        return [Contradiction("/method", f"{MOST_HELD} positions at most can be met exactly; fit by least_squares")]
+        return [Contradiction("/method", f"at most {MOST_HELD} positions can be exact; use least_squares for more")]
     if problem.method == "least_squares" and not (problem.approximate or problem.few_tolerated):
-        detail = "fewer than five positions can be met exactly; leave the method out or state tolerances"
+        detail = "least_squares needs at least five positions; fewer can be met exactly. Omit it or give tolerances"
         return [Contradiction("/method", detail)]
     held = [k for k, limits in enumerate(problem.limits) if limits == (0.0, 0.0, 0.0)]
     if len(held) > MOST_HELD:
-        detail = f"is the sixth position to be met exactly; give a tolerance to all but {MOST_HELD}"
+        detail = f"at most {MOST_HELD} positions can be exact; give the others a tolerance"
         return [Contradiction(f"/positions/{held[MOST_HELD]}", detail)]
     return []
 
 
 def _choices_of_few_tolerated(problem: Any) -> list[Contradiction]:
-    """Within a tolerance a position is met where the body comes nearest to it, however far links have turned."""
+    """Return the choices that conflict with tolerances: link rotations, and a link angle at a tolerated first position.
+
+    A position with a tolerance is met at the point of closest approach, whatever the rotation of the links.
+    """
     contradictions = []
     for name, side in (("input_side", problem.input_side), ("output_side", problem.output_side)):
         if not problem.few_tolerated:
             break
         if any(rotation is not None for rotation in side.rotations or []):
-            detail = "are those between positions met exactly; leave out the tolerances, or take the method exact"
+            detail = "need positions that are met exactly; omit the tolerances, or set method to exact"
             contradictions.append(Contradiction(f"/{name}/rotations", detail))
         if side.link_angle is not None and problem.positions[0].tolerance is not None:
-            detail = "holds in the first position; leave out its tolerance, or take the method exact"
+            detail = "needs an exact first position; omit its tolerance, or set method to exact"
             contradictions.append(Contradiction(f"/{name}/link_angle", detail))
     return contradictions
 
 
 def _choices_of_fits(problem: Any) -> list[Contradiction]:
-    """A fit takes one pivot of a side (or the whole coupler vector) as given, and a slider's angle."""
+    """Return the choices that a fit does not support: it takes one pivot (or Z) of a side, and a slider's angle."""
     contradictions = []
     for name, side in (("input_side", problem.input_side), ("output_side", problem.output_side)):
         if not problem.approximate:
@@ -123,55 +126,55 @@ def _choices_of_fits(problem: Any) -> list[Contradiction]:
         vector = side.coupler_vector
         if side.rotations is not None or side.link_angle is not None:
             field = "link_angle" if side.rotations is None else "rotations"
-            contradictions.append(Contradiction(f"/{name}/{field}", "cannot be stated where positions are fitted"))
+            contradictions.append(Contradiction(f"/{name}/{field}", "cannot be given if positions are fitted"))
         if vector is not None and (vector.length is None or vector.angle is None):
             contradictions.append(
-                Contradiction(f"/{name}/coupler_vector", "state length and angle where positions are fitted")
+                Contradiction(f"/{name}/coupler_vector", "give both length and angle if positions are fitted")
             )
         if side.fixed_pivot is not None and (side.moving_pivot is not None or vector is not None):
-            contradictions.append(Contradiction(f"/{name}", "state one pivot where positions are fitted, not both"))
-        contradictions += _partial_pivots(name, side, "where positions are fitted")
+            contradictions.append(Contradiction(f"/{name}", "give only one pivot if positions are fitted"))
+        contradictions += _partial_pivots(name, side, "if positions are fitted")
     if problem.approximate and problem.ground_line is not None:
-        contradictions.append(Contradiction("/ground_line", "cannot be stated where positions are fitted"))
+        contradictions.append(Contradiction("/ground_line", "cannot be given if positions are fitted"))
     return contradictions
 
 
 def _partial_pivots(name: str, side: DyadChoices, where: str) -> list[Contradiction]:
     return [
-        Contradiction(f"/{name}/{field}", f"state both coordinates {where}")
+        Contradiction(f"/{name}/{field}", f"give both coordinates {where}")
         for field, pivot in (("fixed_pivot", side.fixed_pivot), ("moving_pivot", side.moving_pivot))
         if pivot is not None and whole_point(pivot) is None
     ]
 
 
 def _choices_of_sliders(problem: Any) -> list[Contradiction]:
-    """A slider has one pivot, no link, and one free choice less than a link with two pins."""
+    """Return the choices that a slider lacks: it has one pivot, no link, and one free choice less than an RR dyad."""
     contradictions = []
     sides = ("input_side", problem.input_side), ("output_side", problem.output_side)
     for name, side in sides:
         if side.slide_angle is not None and side.dyad not in ("PR", "RP"):
-            contradictions.append(Contradiction(f"/{name}/slide_angle", "belongs to a slider; state dyad as PR or RP"))
+            contradictions.append(Contradiction(f"/{name}/slide_angle", "applies to sliders only; set dyad PR or RP"))
         if side.dyad not in ("PR", "RP"):
             continue
         absent = ["link_angle", "rotations"]
         absent += ["fixed_pivot"] if side.dyad == "PR" else ["moving_pivot", "coupler_vector"]
         for field in absent:
             if getattr(side, field) is not None:
-                contradictions.append(Contradiction(f"/{name}/{field}", f"a {side.dyad} dyad has none"))
+                contradictions.append(Contradiction(f"/{name}/{field}", f"does not apply to a {side.dyad} dyad"))
         contradictions += _partial_pivots(name, side, "of a slider's pivot")
         if problem.ground_line is not None:
-            contradictions.append(Contradiction("/ground_line", "cannot be stated with a slider"))
+            contradictions.append(Contradiction("/ground_line", "cannot be given with a slider"))
         free = max(4 - len(problem.positions), 0)
         if not problem.approximate and side.count() > free and not side.one_pivot:
-            detail = f"states {side.count()} numbers, but {len(problem.positions)} positions leave a slider {free}"
+            detail = f"fixes {side.count()} numbers, but {len(problem.positions)} positions leave a slider only {free}"
             contradictions.append(Contradiction(f"/{name}", detail))
     if problem.driver is not None and any(side.dyad in ("PR", "RP") for _, side in sides):
-        contradictions.append(Contradiction("/driver_dyad", "is added to fourbars; leave the slider out"))
+        contradictions.append(Contradiction("/driver_dyad", "applies only to fourbars; omit the slider"))
     if problem.input_side.dyad == "RP":
-        contradictions.append(Contradiction("/input_side/dyad", "a block cannot drive; state RP on the output side"))
+        contradictions.append(Contradiction("/input_side/dyad", "a block cannot be driven; set RP on the output side"))
     if all(side.dyad in ("PR", "RP") for _, side in sides):
         contradictions.append(
-            Contradiction("/output_side/dyad", "a slider stands on one side only; the other has pins")
+            Contradiction("/output_side/dyad", "only one side can have a slider; the other needs pins")
         )
     return contradictions
 
@@ -180,7 +183,7 @@ def _class_of_sliders(problem: Any) -> list[Contradiction]:
     if all(side.dyad not in ("PR", "RP") for side in (problem.input_side, problem.output_side)):
         return []
     faults: list[Contradiction] = problem.constraints.of_another_class(
-        (), "classifies fourbars; a linkage with a slider has no class"
+        (), "applies only to fourbars; a linkage with a slider has no Barker class"
     )
     return faults
 
@@ -202,23 +205,23 @@ def _overstated_sides(problem: Any) -> list[Contradiction]:
         if side.moving_pivot is not None and side.coupler_vector is not None:
             contradictions.append(
                 Contradiction(
-                    f"/{name}/coupler_vector", "moving_pivot already states the coupler vector; give one of them"
+                    f"/{name}/coupler_vector", "moving_pivot already fixes the coupler vector; give one of the two"
                 )
             )
         elif side.count() > free and not (len(problem.positions) > 3 and side.one_pivot):
             contradictions.append(
                 Contradiction(
                     f"/{name}",
-                    f"states {side.count()} numbers, but {len(problem.positions)} positions leave {free} free choices "
-                    f"per side; leave some out{' or state one pivot' if len(problem.positions) > 3 else ''}",
+                    f"fixes {side.count()} numbers, but {len(problem.positions)} positions leave {free} free choices "
+                    f"per side; omit some{' or give a single pivot' if len(problem.positions) > 3 else ''}",
                 )
             )
         elif problem.ground_line is not None and whole_point(side.fixed_pivot) is None and side.count() >= free:
             contradictions.append(
                 Contradiction(
                     "/ground_line",
-                    f"is one number more than the {free} free choices that {len(problem.positions)} positions leave "
-                    f"for {name}, which states {side.count()}",
+                    f"uses up one more number, but {len(problem.positions)} positions leave {free} free choices for "
+                    f"{name}, which already fixes {side.count()}",
                 )
             )
     return contradictions
@@ -228,7 +231,7 @@ def _pivots_outside_regions(problem: Any) -> list[Contradiction]:
     contradictions = []
     for path, pivot in _stated_pivots(problem):
         region = getattr(problem.constraints, f"{path.rsplit('/')[-1]}_region")
-        # An open coordinate cannot lie outside: the region's own stands for it.
+        # An open coordinate cannot lie outside the region: replace it by a bound of the region.
         if region is not None:
             x, y = (region.x[0] if pivot[0] is None else pivot[0]), (region.y[0] if pivot[1] is None else pivot[1])
             if not region.contains(complex(x, y)):
@@ -252,12 +255,13 @@ def _pivots_off_the_ground_line(problem: Any) -> list[Contradiction]:
     for path, pivot in _stated_pivots(problem):
         if path.endswith("/fixed_pivot"):
             whole = whole_point(pivot)
+            # A line along the open axis does not fix the open coordinate, so the pivot remains undetermined.
             parallel = abs(along.real if pivot[1] is None else along.imag) <= PARALLEL
             if whole is not None and abs(line.offset(whole)) > ON_LINE * problem.task_size:
                 contradictions.append(Contradiction(path, "does not lie on ground_line"))
             elif whole is None and parallel:
                 contradictions.append(
-                    Contradiction(path, "leaves open what ground_line leaves open; state the other coordinate")
+                    Contradiction(path, "ground_line is parallel to the open coordinate; give the other coordinate")
                 )
     return contradictions
 
@@ -268,6 +272,6 @@ def _coinciding_pivots(problem: Any) -> list[Contradiction]:
         one, other = getattr(problem.input_side, pivot), getattr(problem.output_side, pivot)
         if whole_point(one) is not None and one == other:
             contradictions.append(
-                Contradiction(f"/output_side/{pivot}", f"equal to the input side's {pivot}; the link between is lost")
+                Contradiction(f"/output_side/{pivot}", f"equals the input side's {pivot}; move one of the two")
             )
     return contradictions

@@ -1,15 +1,15 @@
 """A driver dyad on the coupler: a crank and a link that move a finished fourbar by a point of its coupler.
 
-Where the fourbar's links turn too far for a rocker, or one of them turns back, a pin C of the coupler is pulled along
-its path instead: the Stephenson III sixbar, driven from its far pivot. With C₁ and Cₙ the ends of the path
-and r the distance of C from the crank's pivot O6, crank a and link b are those of the rocker's driver,
+If the fourbar's ground links turn too far for a rocker, or one of them reverses, a pin C of the coupler is moved along
+its path instead. This gives a Stephenson III sixbar, driven from its far pivot. With C₁ and Cₙ the ends of the path and
+r the distance of C from the crank's pivot O6, crank a and link b are the same as for a driven rocker,
 
-    a = |rₙ − r₁|/2,    b = (rₙ + r₁)/2,
+    a = |rₙ − r₁|/2,    b = (rₙ + r₁)/2.
 
-and the crank turns through, with the body's end positions at its two dead centres, if r is monotonic from C₁ to Cₙ. The
-link pushes along D C; the transmission angle is that between it and the normal of C's path. Input and output are the
-other two legs of a triad, with angles of their own. All three are taken for both assemblies of the dyad at each
-position of C. C and O6 are free; all pairs of a grid of both are evaluated.
+The crank rotates fully, with the body's end positions at its two dead centres, if r is monotonic from C₁ to Cₙ. The
+link pushes along D C, and its transmission angle is the angle to the normal of C's path. Input and output are the other
+two legs of a triad, with transmission angles of their own. All three are evaluated for both assemblies of the dyad at
+each position of C. C and O6 are free; all pairs from a grid of both are evaluated.
 """
 
 from __future__ import annotations
@@ -31,34 +31,34 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 STEPS = 49
-"""Number of points of C's path that are evaluated; the verification measures what lies between."""
+"""Number of evaluated points of C's path; the verification covers the motion between them."""
 
 REACHES = np.array([0.0, 0.35, 0.7, 1.1, 1.6])
-"""Distances of C from the coupler's middle, in lengths of the coupler."""
+"""Candidate distances of C from the coupler's midpoint, in lengths of the coupler."""
 
 AROUND = np.linspace(-np.pi, np.pi, 17)[:-1]
-"""Directions of C on the coupler from its line A → B."""
+"""Candidate directions of C on the coupler, radians from its line A → B."""
 
 DISTANCES = np.geomspace(0.6, 5.0, 11)
 DIRECTIONS = np.linspace(-np.pi, np.pi, 49)[:-1]
-"""Places of O6: distance from the middle of the chord C₁ Cₙ in its lengths, and direction from it."""
+"""Grid of candidate positions of O6: distance from the midpoint of the chord C₁ Cₙ in chord lengths, and direction."""
 
 LEAST_SINE = 0.1
-"""Sine of the transmission angle, at least: drivers below 6° are not evaluated."""
+"""Minimum sine of the transmission angle: drivers below 6° are dropped."""
 
 LEAST_PATH = 1e-3
-"""A chord shorter than this share of the linkage's size is no way for a crank."""
+"""Minimum chord of C's path, as a share of the linkage's size; shorter ones cannot drive the linkage."""
 
 APART = 0.3
-"""Drivers that are kept differ in C or O6 by this share of the linkage's size."""
+"""Minimum difference of the returned drivers in C and O6 together, as a share of the linkage's size."""
 
 
 def coupler_drivers(
     design: LinkageDesign, mechanism: FourbarMechanism, wanted: DriverDyad, count: int, least: float = 0.0
 ) -> list[tuple[float, SixbarMechanism]]:
-    """The best drivers of a fourbar's coupler, at most ``count``, with their scores, best first.
+    """Find the best drivers of a fourbar's coupler, at most ``count``, with their scores, best first.
 
-    ``least`` is what the sine of the transmission angle must be at least.
+    ``least`` is the minimum sine of the transmission angle.
     """
     fourbar = driven_fourbar(mechanism)
     inputs = np.radians([target.at for target in design.targets])
@@ -105,7 +105,7 @@ def coupler_drivers(
 
 
 def _whole(joints: Complex, paths: Complex, pivots: Complex) -> Real:
-    """Diagonal of the box around a linkage's joints, the ends of C's path and O6, pins × pivots."""
+    """Return the diagonal of the box around a linkage's joints, the ends of C's path and O6; shape pins × pivots."""
 
     def span(of: Complex, ends: Complex, more: Complex, part: str) -> Real:
         given, path, other = (getattr(z, part) for z in (of, ends, more))
@@ -117,16 +117,17 @@ def _whole(joints: Complex, paths: Complex, pivots: Complex) -> Real:
 
 
 def _paths(a: Complex, b: Complex) -> tuple[Complex, Complex]:
-    """Pins C in the coupler's frame (A the origin, B at 1), and their paths, shape (pins, steps)."""
+    """Return the pins C in the coupler's frame (A at 0, B at 1), and their paths, shape (pins, steps)."""
     pins: Complex = np.unique(0.5 + (REACHES[:, None] * np.exp(1j * AROUND)).ravel())
     return pins, a + (b - a) * pins[:, None]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _sine(pin: complex, leg: complex, one: complex, on_one: complex, other: complex, on_other: complex) -> float:
-    """Sine of the angle between a leg and the normal of the way on which two other legs, unit vectors, guide its pin.
+    """Return the sine of a leg's transmission angle: between the leg and the normal of its pin's path.
 
-    Of the other legs any points of their lines are given (:mod:`kinematics.linkage.planar.triad_transmission`).
+    The two other legs of the triad guide the pin. They are given by unit vectors and by any point on each of their
+    lines (:mod:`kinematics.linkage.planar.triad_transmission`).
     """
     arm, other_arm = on_one - pin, on_other - pin
     moment = arm.real * one.imag - arm.imag * one.real
@@ -138,11 +139,11 @@ def _sine(pin: complex, leg: complex, one: complex, on_one: complex, other: comp
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def least_sines(paths: Complex, along: Complex, pivots: Complex, bars: Complex, least: Real) -> None:
-    """Least sine of the transmission angles into ``least``, pins × pivots; 0 where C's distance turns back on its way.
+    """Write the minimum sine of the transmission angles into ``least``, shape pins × pivots.
 
-    Where ``least`` is 0 already it stays so: those pivots are not looked at.
-    ``paths`` and their unit tangents ``along`` are pins × steps, ``pivots`` pins × pivots. ``bars`` (4, steps): A, B,
-    and the directions of the input and of the output.
+    The sine is 0 if C's distance from O6 is not monotonic. Entries that are 0 on input are skipped and stay 0.
+    ``paths`` and their unit tangents ``along`` have shape pins × steps, ``pivots`` pins × pivots. ``bars`` (4, steps)
+    holds A, B, and the directions of the input and of the output.
     """
     pins, steps = paths.shape
     for k in range(pins):
@@ -161,6 +162,7 @@ def least_sines(paths: Complex, along: Complex, pivots: Complex, bars: Complex, 
                     found = 0.0
                     break
                 before = r
+                # The link's direction differs from that of O6 by the angle of the triangle (r, link, crank) at C.
                 forward = reach * along[k, n].conjugate() / r
                 cosine = min(max((r * r + link * link - crank * crank) / (2.0 * r * link), -1.0), 1.0)
                 sine = math.sqrt(1.0 - cosine * cosine)

@@ -9,10 +9,10 @@ from synthesis.model.linkage_answer import LinkageDesign, LinkageResult
 
 
 class BurmesterBranch(Answer):
-    """A connected piece of Burmester's curves, at equal steps of arc length of both together.
+    """A connected branch of Burmester's curves, sampled at equal steps of the arc length of both curves together.
 
     A moving pivot at ``circle_points[k]`` in the first position has its fixed pivot at ``centre_points[k]``. ``closed``
-    branches return to their beginning; the others leave the drawn region, along an asymptote or not.
+    branches return to their start; the others leave the sampled region, with or without an asymptote.
     """
 
     circle_points: list[Point]
@@ -24,5 +24,5 @@ class MotionResult(LinkageResult[LinkageDesign]):
     """Linkages that carry the body through the positions."""
 
     curves: list[BurmesterBranch] = Field(
-        default=[], description="For four positions: all dyads that carry the body through them."
+        default=[], description="For four positions: all dyads that carry the body through them, as Burmester's curves."
     )

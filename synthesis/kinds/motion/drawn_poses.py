@@ -1,8 +1,8 @@
-"""Two to four positions of which some have tolerances, of linkages that are not steered: poses drawn within them.
+"""Two to four positions with tolerances, for linkages without a constrained fit: sample poses within the tolerances.
 
-Sliders and links at stated angles are found for positions that are met exactly. So sets of poses are drawn within the
-tolerances, the demanded ones first, each is solved exactly, and what is found is driven and verified at the positions
-as they were stated.
+Sliders and links with given angles can be solved only for exact positions. So sets of poses are sampled within the
+tolerances, the targets themselves first; each set is solved exactly, and the results are verified at the positions of
+the problem.
 """
 
 from __future__ import annotations
@@ -31,25 +31,25 @@ from synthesis.outcome.ranking import distinct, ranked
 from synthesis.outcome.sifting import OUTRANKED, Sifting
 
 SETS = 8
-"""Sets of poses that are solved, unless fewer give enough designs."""
+"""Maximum number of solved sets of poses; fewer are solved if they give enough designs."""
 
 USABLE = 30.0
-"""Degrees of transmission angle from which on a design counts toward these."""
+"""Minimum transmission angle, degrees, of a design that counts towards the requested number."""
 
 
 def solve_drawn(
     problem: MotionProblem, exactly: Callable[[MotionProblem, Progress], MotionResult], progress: Progress
 ) -> MotionResult:
-    """Designs that use the tolerances.
+    """Find designs that use the tolerances.
 
     Parameters
     ----------
     problem : MotionProblem
         Two to four positions.
     exactly : callable
-        Solves a problem whose positions are all met exactly.
+        Solver for a problem whose positions are all exact.
     progress : callable
-        Told how far the work is.
+        Progress callback.
     """
     target = demanded(problem)
     sifting = Sifting[LinkageDesign](problem, REASONS)
@@ -57,7 +57,7 @@ def solve_drawn(
     results: list[MotionResult] = []
     drawn = tolerances.copy()
     if any(side.has_partial_moving_pivot for side in (problem.input_side, problem.output_side)):
-        drawn[0] = 0.0  # a coordinate of a pin is stated of the body in the demanded first position
+        drawn[0] = 0.0  # a given coordinate of a pin refers to the body in the first target position
     for k, shares in enumerate(deviations(drawn, SETS)):
         poses = shares * tolerances
         result = exactly(_displaced(problem, poses), part_of(progress, k / SETS, (k + 1.0) / SETS))
@@ -81,7 +81,7 @@ def solve_drawn(
 
 
 def _different(problem: MotionProblem, designs: list[LinkageDesign]) -> list[LinkageDesign]:
-    """Designs that differ, the best first: sets of poses that are near to one another have linkages that are."""
+    """Select distinct designs of each type, best first: neighbouring sets of poses give similar linkages."""
     chosen: list[LinkageDesign] = []
     alike: dict[str, list[LinkageDesign]] = {}
     for design in ranked(designs, problem.rank_by):
@@ -94,7 +94,7 @@ def _different(problem: MotionProblem, designs: list[LinkageDesign]) -> list[Lin
 
 
 def _displaced(problem: MotionProblem, by: Real) -> MotionProblem:
-    """The problem with its positions moved by x, y and degrees, shape (n, 3), and met exactly there."""
+    """Return the problem with its positions moved by (x, y, degrees), shape (n, 3), and met exactly."""
     positions = [
         position.model_copy(
             update={
@@ -116,9 +116,9 @@ def _displaced(problem: MotionProblem, by: Real) -> MotionProblem:
 
 
 def _carried(side: DyadChoices, first: complex, moved: tuple[complex, complex], turned: float) -> DyadChoices:
-    """What is stated of a body in its first position, where the body stands elsewhere.
+    """Transform choices that refer to the body in its first position to a displaced first position.
 
-    ``moved`` is where P is then, and the body's turn from the demanded first position, ``turned`` in degrees.
+    ``moved`` is the new P and the body's rotation e^{iα} from the target position; ``turned`` is α in degrees.
     """
     update: dict[str, Any] = {}
     pivot, vector = whole_point(side.moving_pivot), side.coupler_vector
@@ -132,13 +132,13 @@ def _carried(side: DyadChoices, first: complex, moved: tuple[complex, complex], 
 
 
 def _summary(sifting: Sifting[LinkageDesign], results: list[MotionResult]) -> str:
-    sets = f"{len(results)} set{'s' * (len(results) > 1)} of poses drawn within the tolerances"
+    sets = f"{len(results)} set{'s' * (len(results) > 1)} of poses sampled within the tolerances"
     if not sifting.passed:
         return (
-            f"None of {sets} has a linkage that satisfies all demands. A linkage may exist that the search did not "
-            f"meet. At the positions themselves: {results[0].summary}"
+            f"No linkage for {sets} satisfies all constraints. The search is not exhaustive, so a solution may still "
+            f"exist. For the exact positions: {results[0].summary}"
         )
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
     count = sifting.accepted
-    found = f"{count} linkages that meet {sets} satisfy" if count > 1 else f"1 linkage that meets {sets} satisfies"
-    return f"{found} all demands; the least transmission angle is up to {best:.1f}°. A better linkage may exist."
+    found = f"{count} linkages for {sets} satisfy" if count > 1 else f"1 linkage for {sets} satisfies"
+    return f"{found} all constraints. Best minimum transmission angle: {best:.1f}°. A better linkage may exist."

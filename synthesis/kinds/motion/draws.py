@@ -1,7 +1,7 @@
-"""Random points around the body or around its positions, for what the client leaves open of a pivot.
+"""Random points around the body or its positions, for open coordinates of pivots.
 
-Distances are spread evenly in logarithm, from a small part of the task's size to some multiples of it: beyond that
-links get too short or too long.
+Distances are log-uniform, from a small part of the task's size to a few times that size: outside this range links
+become too short or too long.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ import numpy as np
 from synthesis.kinds.motion.task import Complex, Real
 
 MIN_REACH, MAX_REACH = 0.05, 6.0
-"""Distances between which points are drawn, in task sizes."""
+"""Range of the sampled distances, in task sizes."""
 
 
 def distances(rng: np.random.Generator, *shape: int) -> Real:
-    """Random distances of a shape, in task sizes."""
+    """Sample random distances of a given shape, in task sizes."""
     return np.asarray(np.exp(rng.uniform(math.log(MIN_REACH), math.log(MAX_REACH), shape)))
 
 
 def points_around(centre: complex | Complex, rng: np.random.Generator, count: int) -> Complex:
-    """Random points about a centre, in all directions, shape (count,)."""
+    """Sample random points about a centre, uniform in direction, shape (count,)."""
     radius = distances(rng, count)
     return np.asarray(centre + radius * np.exp(1j * rng.uniform(-np.pi, np.pi, count)))

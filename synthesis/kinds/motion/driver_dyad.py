@@ -1,15 +1,15 @@
 """A driver dyad: a crank and a link that move a finished fourbar between its end positions (Norton, Sec. 3.4).
 
-The driven link turns from the first position to the last. A pin C on it, r from its fixed pivot O, goes from C₁ to Cₙ;
-a crank-rocker with the crank's pivot O6 has its rocker's limits there when
+The driven link turns from the first position to the last. A pin C on it, at radius r from its fixed pivot O, moves from
+C₁ to Cₙ. A crank-rocker with crank pivot O6 has its rocker's limits there if
 
     crank a = (|O6 Cₙ| − |O6 C₁|)/2,    link b = (|O6 Cₙ| + |O6 C₁|)/2  (or with C₁ and Cₙ exchanged),
 
-the crank and the link lying in one line at both ends. So O6 is free in the plane; Norton's construction (Example 3-4)
-puts it on the chord, with a ratio of times of 1. The stage's shape, in units of r, depends on O6 alone: shapes are
-ranked by the least transmission angle, which stands where the crank lies on the line O O6, and by their size. Where C
-is on the link and how long r is only turns and scales the stage: it is put where the whole is small, or where O6 lies
-in the client's region. Where no link of the ground can be driven so, the coupler is (:mod:`coupler_driver`).
+because crank and link are collinear at both ends. So O6 is free in the plane; Norton's construction (Example 3-4)
+places it on the chord, with a time ratio of 1. The stage's shape, in units of r, depends on O6 alone: shapes are ranked
+by the minimum transmission angle, which occurs when the crank lies on the line O O6, and by their size. The direction
+of C on the link and the radius r only rotate and scale the stage: they are chosen to make the whole small, or to place
+O6 in the given region. If no ground link can be driven in this way, the coupler is (:mod:`coupler_driver`).
 """
 
 from __future__ import annotations
@@ -41,46 +41,46 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 WIDEST_SWING = math.radians(150.0)
-"""Swing above which a crank-rocker transmits its motion badly; 180° is impossible."""
+"""Maximum swing, radians; a crank-rocker transmits larger ones badly, and 180° is impossible."""
 
 LEAST_SWING = 1e-3
-"""Radians; a link that turns less needs no crank."""
+"""Minimum swing, radians; a link that turns less needs no crank."""
 
 DISTANCES = np.linspace(0.4, 5.0, 70)
 DIRECTIONS = np.linspace(-np.pi, np.pi, 181)[:-1]
-"""Places of O6 that are looked at: distance from O in units of r, and direction from the middle of the swing."""
+"""Grid of candidate positions of O6: distance from O in units of r, and direction from the middle of the swing."""
 
 SHAPES = 12
-"""Shapes of the stage, the best, that are put on the linkage."""
+"""Number of best stage shapes that are tried on the linkage."""
 
 ARMS = np.array([0.4, 0.55, 0.75, 1.0, 1.35, 1.8])
-"""Lengths of r that are looked at, in lengths of the driven link."""
+"""Candidate values of r, relative to the length of the driven link."""
 
 PLACES = np.linspace(-np.pi, np.pi, 49)[:-1]
-"""Directions of C on the driven link, from the line of its pins."""
+"""Candidate directions of C on the driven link, radians from the line of its pins."""
 
 USABLE = 20.0
-"""Degrees; where the client sets no limit, sixbars with a smaller transmission angle are offered only if there are no
+"""Transmission angle, degrees; if the client sets no limit, sixbars below it are returned only if there are no
 others."""
 
 LOOKED_AT = 12
-"""Drivers of a coupler that are looked at, the best first."""
+"""Maximum number of coupler drivers examined, best first."""
 
 ROUNDING = 1e-9
-"""Share by which a length may miss its limit here; the verification decides."""
+"""Relative tolerance of a length at its limit in this filter; the verification decides exactly."""
 
 TRIED = 3
-"""Drivers that are verified for a link, the best first, until one passes."""
+"""Maximum number of drivers verified per link, best first, until one passes."""
 
 SPARE = 4
-"""Linkages that are looked for, for each design wanted: some turn too far to be driven so."""
+"""Number of fourbars requested per design: some turn too far for a driver dyad."""
 
 LEAST_SPARE = 40
-"""Linkages that are looked for at least."""
+"""Minimum number of fourbars requested."""
 
 
 class _Stage(NamedTuple):
-    """Shapes in units of r: O6 from O, the middle of the swing along the real axis; crank, link and score."""
+    """Stage shapes in units of r, with O at 0 and the middle of the swing on the real axis: O6, crank, link, score."""
 
     pivot: Complex
     crank: Real
@@ -89,7 +89,7 @@ class _Stage(NamedTuple):
 
 
 def with_driver_dyads(problem: MotionProblem, result: MotionResult, progress: Progress) -> MotionResult:
-    """The fourbars of a result, each with a driver dyad, verified as sixbars."""
+    """Add a driver dyad to each fourbar of a result and verify the sixbars."""
     wanted = problem.driver
     assert wanted is not None
     sifting = Sifting[LinkageDesign](problem)
@@ -102,17 +102,17 @@ def with_driver_dyads(problem: MotionProblem, result: MotionResult, progress: Pr
             break
         tried += 1
         best = _driven(problem, design, wanted)
-        # Of a linkage that can be driven from either side both ways are looked at, but it was accepted once.
+        # A linkage that can be driven from either side appears twice in the designs, but was accepted once.
         sifting.rejected[OUTRANKED] -= sifting.rejected[OUTRANKED] > 0
         kept = not sifting.keep(best)
         sifting.count("" if kept else "driver_dyad")
         if kept and _sound(problem, sifting.passed[-1]):
             usable.append(sifting.passed[-1])
-    # Designs that transmit badly are offered where there are no others.
+    # Designs with poor transmission are returned only if there are no others.
     sifting.withdraw(usable or sifting.passed, OUTRANKED)
     were = agreeing(sifting.accepted, "was", "were")
     of = f"{grouped(sifting.accepted)} of {counted(tried, 'fourbar')}"
-    given = f"{of} {were} given a driver dyad whose crank turns through."
+    given = f"{of} {were} given a driver dyad with a fully rotating crank."
     return result.model_copy(
         update={
             "designs": sifting.designs(partial(ranked, rank_by=problem.rank_by)),
@@ -123,7 +123,7 @@ def with_driver_dyads(problem: MotionProblem, result: MotionResult, progress: Pr
 
 
 def undriven(problem: MotionProblem) -> MotionProblem:
-    """The problem of the fourbar alone: pins on both sides, and its own input need not turn through."""
+    """Return the problem of the fourbar alone: pins on both sides, and no full rotation of its own input."""
     pins = {"dyad": "RR"}
     return problem.model_copy(
         update={
@@ -142,14 +142,15 @@ def undriven(problem: MotionProblem) -> MotionProblem:
 def _driven(
     problem: MotionProblem, design: LinkageDesign, wanted: DriverDyad, *, limited: bool = True
 ) -> LinkageDesign | None:
-    """A fourbar with the best driver that passes, or the best one that does not; None where no driver fits.
+    """Return a fourbar with the best driver that passes, or else the best one that fails; None if no driver fits.
 
-    Drivers that break a limit by themselves are looked at only without ``limited``, or where failures are asked for.
+    Drivers that violate a limit themselves are tried only without ``limited``, or if failed designs are requested.
     """
     assert isinstance(design.mechanism, FourbarMechanism)
     best = None
     least = math.sin(math.radians(problem.constraints.min_transmission_angle or 0.0)) if limited else 0.0
     for link in ("input", "output", "coupler"):
+        # The coupler is the last resort: it is tried only on request or if no ground link can be driven well.
         if wanted.link not in ("any", link) or (link == "coupler" and _sound(problem, best) and wanted.link == "any"):
             continue
         if link == "coupler":
@@ -169,7 +170,7 @@ def _driven(
 
 
 def _keeps_lengths(problem: MotionProblem, mechanism: SixbarMechanism) -> bool:
-    """Whether a sixbar's links keep the limits of lengths and of their ratio, but for rounding."""
+    """Return whether a sixbar's links satisfy the limits of lengths and link ratio, apart from rounding."""
     lengths, constraints = link_lengths(mechanism), problem.constraints
     stated, ratio = constraints.link_length, constraints.max_link_ratio
     short, long = min(lengths), max(lengths)
@@ -180,7 +181,7 @@ def _keeps_lengths(problem: MotionProblem, mechanism: SixbarMechanism) -> bool:
 
 
 def _sound(problem: MotionProblem, design: LinkageDesign | None) -> bool:
-    """Whether a link of the ground is driven well enough that the coupler need not be."""
+    """Return whether a design with a driven ground link is good enough that the coupler is not tried."""
     least = USABLE if problem.constraints.min_transmission_angle is None else 0.0
     return design is not None and design.verification.passed and design.metrics.min_transmission_angle >= least
 
@@ -192,7 +193,7 @@ def _worth(design: LinkageDesign) -> tuple[bool, float]:
 def _drivers(
     design: LinkageDesign, mechanism: FourbarMechanism, link: str, wanted: DriverDyad, least: float
 ) -> list[tuple[float, SixbarMechanism]]:
-    """Drivers of one link with their scores, the best of each shape; ``least`` as for :func:`_stages`."""
+    """List the drivers of one link with their scores, the best of each shape; ``least`` as for :func:`_stages`."""
     fourbar = driven_fourbar(mechanism)
     inputs = np.radians([target.at for target in design.targets])
     at = positions(fourbar.linkage, inputs, fourbar.assembly)
@@ -214,7 +215,7 @@ def _drivers(
     middle = arms[0] / length * cmath.exp(0.5j * swing)
     found = []
     for n in range(len(stage.score)):
-        # Shapes are made for a swing that is symmetrical to the real axis; C leads the link by a place.
+        # Shapes have their swing symmetrical about the real axis; C leads the link by an angle of PLACES.
         turn = middle * np.exp(1j * PLACES)[None, :] * (ARMS * length)[:, None]
         o6 = pivot + stage.pivot[n] * turn
         c = pivot + turn[..., None] * np.exp(np.array([-0.5j, 0.5j]) * swing)
@@ -231,16 +232,16 @@ def _drivers(
 
 
 def _stages(swing: float, least: float = 0.0) -> _Stage:
-    """The best shapes of crank-rockers with a given swing, in units of the rocker.
+    """List the best shapes of crank-rockers with a given swing in radians, in units of the rocker.
 
-    ``least`` is what the sine of the transmission angle must be at least.
+    ``least`` is the minimum sine of the transmission angle.
     """
     pivot = (DISTANCES[:, None] * np.exp(1j * DIRECTIONS)[None, :]).ravel()
     ends = np.exp(np.array([-0.5j, 0.5j]) * swing)
     reach = ends - pivot[:, None]
     distance = np.abs(reach)
     crank, link, ground = 0.5 * np.abs(distance[:, 1] - distance[:, 0]), distance.mean(axis=1), np.abs(pivot)
-    # Both ends belong to one assembly where O lies on one side of the link there.
+    # Both ends belong to the same assembly if O lies on the same side of the link at both.
     sides = (np.conj(reach) * (0.0 - ends)).imag
     lengths = np.stack([crank, link, ground, np.ones_like(crank)])
     shortest, longest = lengths.min(axis=0), lengths.max(axis=0)
@@ -257,6 +258,7 @@ def _stages(swing: float, least: float = 0.0) -> _Stage:
     for k in order:
         if len(kept) == SHAPES or not score[k] > 0.0:
             break
+        # Keep only clearly different shapes; the score varies slowly over the grid of O6.
         if all(abs(pivot[k] - pivot[m]) > 0.25 for m in kept):
             kept.append(int(k))
     return _Stage(pivot[kept], crank[kept], link[kept], score[kept])

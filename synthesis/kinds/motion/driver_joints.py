@@ -1,4 +1,4 @@
-"""The sixbar of a fourbar and its driver dyad, from where pin C and the crank's pivot O6 are."""
+"""The sixbar of a fourbar and its driver dyad, built from the positions of pin C and the crank's pivot O6."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from synthesis.model.linkage_answer import FourbarMechanism, Link, SixbarMechani
 from synthesis.model.linkages import to_complex, to_point
 
 ROOM = 2.0
-"""A whole this many times as large as the linkage alone halves the score of a place."""
+"""Scale of the size penalty: the score is halved if the sixbar exceeds the fourbar's size by this many times it."""
 
 
 def diagonal(points: NDArray[np.complex128]) -> NDArray[np.float64]:
-    """Diagonal of the box around points along the last axis."""
+    """Return the diagonal of the box around points along the last axis."""
     return np.asarray(np.hypot(np.ptp(points.real, axis=-1), np.ptp(points.imag, axis=-1)))
 
 
 def rocker_driven(mechanism: FourbarMechanism, link: str, c: complex, o6: complex, swing: float) -> SixbarMechanism:
-    """The sixbar whose driver holds the input or output link at C, in the first position; ``swing`` in radians."""
+    """Build the sixbar whose driver moves the input or output link at C (first position); ``swing`` in radians."""
     pivot = to_complex(mechanism.fixed_pivots.input if link == "input" else mechanism.fixed_pivots.output)
     return _sixbar("watt_2", mechanism, link, pivot, c, o6, pivot + (c - pivot) * cmath.exp(1j * swing))
 
 
 def coupler_driven(mechanism: FourbarMechanism, c: complex, o6: complex, last: complex) -> SixbarMechanism:
-    """The sixbar whose driver holds the coupler at C, in the first position; ``last`` is C in the last one."""
+    """Build the sixbar whose driver moves the coupler at C (first position); ``last`` is C in the last position."""
     joints = mechanism.skeleton.joints
     return _sixbar("stephenson_3", mechanism, "coupler", to_complex(joints["A"]), c, o6, last)
 
@@ -41,9 +41,9 @@ def _sixbar(
     o6: complex,
     last: complex,
 ) -> SixbarMechanism:
-    """Crank and driver link that have their dead centres at C and ``last``; ``pin`` is the link's own, O2, O4 or A."""
+    """Add crank and driver link with dead centres at C and ``last``; ``pin`` is the driven link's pin O2, O4 or A."""
     first, other = abs(c - o6), abs(last - o6)
-    # Where C₁ is the nearer end, crank and link overlap there.
+    # At the nearer end of the path crank and link overlap; at the farther end they are stretched.
     d = o6 + 0.5 * (first - other) * (c - o6) / first
     bar = mechanism.skeleton
     joints = {**bar.joints, "O6": to_point(o6), "C": to_point(c), "D": to_point(d)}

@@ -1,4 +1,4 @@
-"""Dyads that carry the body through its positions, from as many conditions as a dyad has freedoms.
+"""Dyads that carry the body through its positions, determined by as many conditions as a dyad has freedoms.
 
 A dyad is a link from a fixed pivot O to a moving pivot A on the body; O and A (in the first position) are its four
 unknown numbers. With A_k = c_k + r_k A the image of A in position k (r_k = e^{iα_k}, c_k = P_k − r_k P_1) the link
@@ -7,9 +7,9 @@ keeps its length when |A_k − O|² = |A − O|². The squares of A and of O can
     Re(conj(c_k) r_k A) − Re(conj(O) (A_k − A)) + |c_k|²/2 = 0,
 
 which is bilinear: linear in A for a given O and the reverse. It is the condition behind the standard form
-W(e^{iβ_k} − 1) + Z(e^{iα_k} − 1) = δ_k (Norton 5.35) with the rotation β_k eliminated. A rotation that is given
-replaces it by A_k − O = e^{iβ_k}(A − O), which is linear. Every other choice of Norton's is linear too, but for the
-length z of the coupler vector:
+W(e^{iβ_k} − 1) + Z(e^{iα_k} − 1) = δ_k (Norton 5.35) with the rotation β_k eliminated. If the rotation is given, the
+condition is A_k − O = e^{iβ_k}(A − O) instead, which is linear. All other choices of Norton's are linear too, except
+the length z of the coupler vector:
 
     fixed pivot        O = O*, or one coordinate of it: Re(conj(n) O) = s
     moving pivot       A = A*, or one coordinate of it
@@ -17,8 +17,8 @@ length z of the coupler vector:
     coupler angle φ    Im(e^{−iφ}(P_1 − A)) = 0
     coupler length z   |P_1 − A|² = z²
 
-Four rows make a square system, and Newton's method solves a batch of them at once: in one step where all rows are
-linear, in two where a pivot is given (the first step puts that pivot in its place, the second solves the rest exactly).
+Four rows make a square system, and Newton's method solves a batch of them at once: in one step if all rows are linear,
+in two if a pivot is given (the first step places that pivot, the second solves the rest exactly).
 """
 
 from __future__ import annotations
@@ -32,29 +32,30 @@ from numpy.typing import NDArray
 from synthesis.kinds.motion.task import Complex, MotionTask, Real
 
 NEWTON_STEPS = 40
-"""Steps at most; linear conditions need two, the others converge quadratically after a few."""
+"""Maximum number of Newton steps; linear conditions need two, the others converge quadratically after a few."""
 
 CONVERGED = 1e-14
-"""Largest residual row, relative to the square of the dyad's size, at which Newton's method has arrived: some tens of
-roundings of the terms in it."""
+"""Convergence tolerance: the largest residual row, relative to the square of the dyad's size. It covers a few dozen
+rounding errors of the terms."""
 
 SINGULAR = 1e-12
-"""Determinant, relative to the product of the row norms, below which a Newton step is not taken: it would be longer
-than the farthest pivot allowed."""
+"""Minimum determinant for a Newton step, relative to the product of the row norms; below it the step would exceed the
+maximum distance of a pivot."""
 
 LOST = 1e-13
-"""The same at which it repeats them to rounding: between the two it may be one of its own, of which too few digits are
-left to tell."""
+"""Singular value, relative to the largest, below which a condition repeats the others to rounding. Between this value
+and :data:`DEPENDENT` it may be independent, but too few digits remain to decide."""
 
 DEPENDENT = 1e-9
-"""Singular value, relative to the largest, below which a linear condition counts as a repetition of the others; and the
-misfit below which it then counts as met. Half of the digits of the data stand behind either."""
+"""Singular value, relative to the largest, below which a linear condition counts as a repetition of the others, and the
+misfit below which it then counts as satisfied. Both leave half of the digits of the data as a margin."""
 
 RIDGE = 1e-14
-"""Share of its trace that is added to a normal matrix, so that a singular one (at a pole) is no error."""
+"""Ridge added to a normal matrix, as a share of its trace, so that a singular one (at a pole) can be solved."""
 
 FAR = 1e5
-"""A pivot farther than this many task sizes away stands for a slider: its residual could not be held to 1e-9."""
+"""Maximum distance of a pivot, in task sizes. Farther pivots are treated as sliders: their residuals could not be kept
+below 1e-9."""
 
 
 class Line(NamedTuple):
@@ -68,7 +69,7 @@ class Line(NamedTuple):
 class DyadConditions:
     """Conditions on a batch of dyads, in task coordinates and radians; each a scalar, an array (batch,) or None.
 
-    ``fixed_lines`` and ``moving_lines`` are lines that a pivot lies on.
+    ``fixed_lines`` and ``moving_lines`` are lines that must contain the pivot.
     """
 
     fixed_pivot: Complex | None = None
@@ -81,7 +82,7 @@ class DyadConditions:
     coupler_angle: Real | None = None
 
     def count(self) -> int:
-        """How many numbers are fixed."""
+        """Return the number of fixed scalars."""
         scalars = (self.link_angle, self.coupler_length, self.coupler_angle, *self.rotations)
         pivots = (self.fixed_pivot, self.moving_pivot)
         lines = len(self.fixed_lines) + len(self.moving_lines)
@@ -89,7 +90,7 @@ class DyadConditions:
 
     @property
     def linear(self) -> bool:
-        """Whether what is left to find is a linear system: a pivot or all rotations are given, and no bare length z."""
+        """Whether the remaining system is linear: a pivot or all rotations are given, and no coupler length z alone."""
         pivot = self.fixed_pivot is not None or self.moving_pivot is not None
         return self.coupler_length is None and (pivot or None not in self.rotations)
 
@@ -118,8 +119,8 @@ def solve_dyads(task: MotionTask, conditions: DyadConditions, start: Dyads) -> t
     dyads : Dyads
         Shape (batch,).
     found : bool, shape (batch,)
-        False where the system is singular or has no real solution near, where a pivot lies at infinity (a slider would
-        be needed), or where the link or the stated direction is met with a negative length only.
+        False if the system is singular or has no real solution nearby, if a pivot lies at infinity (a slider would be
+        needed), or if a given direction is met only with a negative length.
     """
     fixed, moving = start.fixed.astype(np.complex128), start.moving.astype(np.complex128)
     done = np.zeros(fixed.shape, np.bool_)
@@ -127,11 +128,13 @@ def solve_dyads(task: MotionTask, conditions: DyadConditions, start: Dyads) -> t
     for _ in range(NEWTON_STEPS):
         o, a = fixed[active], moving[active]
         values, jacobian = _rows(task, _taken(conditions, active), o, a)
+        # The rows are quadratic in the pivots' coordinates, so their rounding grows with the square of the size.
         size = 1.0 + np.abs(o) + np.abs(a)
         arrived = np.abs(values).max(axis=-1) <= CONVERGED * size * size
         done[active[arrived]] = True
         norms = np.sqrt((jacobian * jacobian).sum(axis=-1))
         norms[norms == 0.0] = 1.0
+        # Unit rows make the determinant a measure of independence; dyads that run off to infinity are dropped.
         jacobian = jacobian / norms[..., None]
         going = ~arrived & (size < 10.0 * FAR) & (np.abs(np.linalg.det(jacobian)) > SINGULAR)
         active = active[going]
@@ -146,9 +149,9 @@ def solve_dyads(task: MotionTask, conditions: DyadConditions, start: Dyads) -> t
 
 
 def settled(task: MotionTask, dyads: Dyads) -> Dyads:
-    """Dyads that nearly carry the body through the positions, moved least so that they do; shape (batch,).
+    """Project dyads that nearly meet the positions onto the nearest exact ones, shape (batch,).
 
-    Two steps of Gauss and Newton's method: what is meant are errors of a few digits beyond rounding.
+    Two Gauss-Newton steps of minimum norm suffice, because the errors are only a few digits above rounding.
     """
     fixed, moving = dyads
     conditions = DyadConditions(rotations=(None,) * (len(task.points) - 1))
@@ -156,6 +159,7 @@ def settled(task: MotionTask, dyads: Dyads) -> Dyads:
         values, jacobian = _rows(task, conditions, fixed, moving)
         transposed = jacobian.swapaxes(-1, -2)
         square = jacobian @ transposed
+        # At a pole the rows are dependent; the ridge turns the step into the regularised minimum-norm solution.
         square += RIDGE * np.trace(square, axis1=-2, axis2=-1)[..., None, None] * np.eye(values.shape[-1])
         step = -(transposed @ np.linalg.solve(square, values[..., None]))[..., 0]
         fixed = fixed + (step[:, 0] + 1j * step[:, 1])
@@ -164,7 +168,7 @@ def settled(task: MotionTask, dyads: Dyads) -> Dyads:
 
 
 def _taken(conditions: DyadConditions, rows: NDArray[np.int64]) -> DyadConditions:
-    """The conditions of some dyads of the batch."""
+    """Return the conditions of selected dyads of the batch."""
 
     def taken(value: Any) -> Any:
         return value if value is None or np.ndim(value) == 0 else value[rows]
@@ -182,10 +186,10 @@ def _taken(conditions: DyadConditions, rows: NDArray[np.int64]) -> DyadCondition
 
 
 class Family(NamedTuple):
-    """The solutions of linear conditions: a dyad, and the directions in which it may be moved; none if it is unique.
+    """The solutions of linear conditions: one dyad, and the directions in which it can move (none if it is unique).
 
-    ``dyad`` is None where the conditions contradict each other. ``directions`` are rows (Re O, Im O, Re A, Im A) of
-    unit length. ``proved`` is False where the conditions have too few digits to tell whether they repeat one another.
+    ``dyad`` is None if the conditions contradict each other. ``directions`` are rows (Re O, Im O, Re A, Im A) of unit
+    length. ``proved`` is False if the conditions have too few digits to decide whether they repeat one another.
     """
 
     dyad: Dyads | None
@@ -194,15 +198,15 @@ class Family(NamedTuple):
 
 
 def linear_family(task: MotionTask, conditions: DyadConditions) -> Family:
-    """All dyads of conditions that are :attr:`DyadConditions.linear`.
+    """Return all dyads that satisfy conditions which are :attr:`DyadConditions.linear`.
 
-    Where a pivot is a pole of the motion, or conditions repeat one another, there is a whole family of dyads.
+    If a pivot is a pole of the motion, or conditions repeat one another, there is a whole family of dyads.
     """
     fixed = np.atleast_1d(np.asarray(0j if conditions.fixed_pivot is None else conditions.fixed_pivot, np.complex128))
     moving = np.atleast_1d(
         np.asarray(0j if conditions.moving_pivot is None else conditions.moving_pivot, np.complex128)
     )
-    # A pivot that is given stays where it is; the conditions are linear in the coordinates that are left.
+    # A given pivot stays in place; the conditions are linear in the remaining coordinates.
     first, last = (2, 4) if conditions.fixed_pivot is not None else (0, 2 if conditions.moving_pivot is not None else 4)
     values, jacobian = _rows(task, conditions, fixed, moving)
     value, matrix = values[0], jacobian[0][:, first:last]
@@ -213,6 +217,7 @@ def linear_family(task: MotionTask, conditions: DyadConditions) -> Family:
     step = np.zeros(4)
     step[first:last] = -(vh[:rank].T / s[:rank]) @ (u[:, :rank].T @ value)
     size = 1.0 + float(np.abs(step).max() + np.abs(fixed[0]) + np.abs(moving[0]))
+    # The minimum-norm solution of a rank-deficient system solves all rows only if they do not contradict each other.
     if np.abs(value + matrix @ step[first:last]).max() > DEPENDENT * size * size:
         return Family(None, np.empty((0, 4)), proved)
     directions = np.zeros((last - first - rank, 4))
@@ -221,14 +226,14 @@ def linear_family(task: MotionTask, conditions: DyadConditions) -> Family:
 
 
 def _rows(task: MotionTask, conditions: DyadConditions, fixed: Complex, moving: Complex) -> tuple[Real, Real]:
-    """Residuals (batch, rows) and their Jacobian (batch, rows, 4) with respect to (Re O, Im O, Re A, Im A)."""
+    """Return residuals (batch, rows) and their Jacobian (batch, rows, 4) with respect to (Re O, Im O, Re A, Im A)."""
     count = len(conditions.rotations) + conditions.count()
     values = np.empty((*fixed.shape, count))
     gradients = np.zeros((*fixed.shape, count, 2), np.complex128)
     row = 0
 
     def add(value: Real, by_fixed: Complex | complex, by_moving: Complex | complex) -> None:
-        """A row; a gradient g stands for Re(conj(g) dz)."""
+        """Append a row; a complex gradient g stands for the differential Re(conj(g) dz)."""
         nonlocal row
         values[..., row] = value
         gradients[..., row, 0] = by_fixed
@@ -244,6 +249,7 @@ def _rows(task: MotionTask, conditions: DyadConditions, fixed: Complex, moving: 
             value = (np.conj(shift) * turn * moving).real - (np.conj(fixed) * (image - moving)).real + half_square
             add(value, moving - image, np.conj(turn) * shift - (np.conj(turn) - 1.0) * fixed)
         else:
+            # A given rotation fixes the image of the moving pivot completely: two real rows.
             spin = np.exp(1j * rotation)
             gap = image - fixed - spin * (moving - fixed)
             add(gap.real, np.conj(spin - 1.0), np.conj(turn - spin))
@@ -273,7 +279,7 @@ def _rows(task: MotionTask, conditions: DyadConditions, fixed: Complex, moving: 
 
 
 def directions_hold(task: MotionTask, conditions: DyadConditions, dyads: Dyads) -> NDArray[np.bool_]:
-    """Whether stated directions are met forwards, not backwards."""
+    """Return a mask of the dyads that meet given directions with positive, not negative, lengths; shape (batch,)."""
     good = np.ones(dyads.fixed.shape, np.bool_)
     if conditions.link_angle is not None:
         good &= (np.exp(-1j * conditions.link_angle) * (dyads.moving - dyads.fixed)).real > 0.0

@@ -1,6 +1,6 @@
-"""A linkage as it stands at its first target, where that is not where its solver left it.
+"""Reference configuration of a linkage at its first target, if its solver used a different one.
 
-Within tolerances a solver's first pose is one of many; the first target is where the driven body comes nearest.
+Within tolerances a solver's first pose is one of many; the first target is met where the driven body is nearest to it.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ from synthesis.model.linkages import (
 from synthesis.proof.rebuilt import rebuilt
 
 SAME_INPUT = 1e-7
-"""Radians, or task sizes: at a smooth minimum an input is known to half of its digits."""
+"""Tolerance for equal inputs, radians or task sizes: at a smooth minimum an input is known to half of its digits."""
 
 
 def at_first_target(problem: MotionProblem, design: LinkageDesign) -> LinkageMechanism | None:
-    """The mechanism of a driven design with its first target as its reference.
+    """Return a design's mechanism with its first target as reference configuration.
 
-    None where it stands there already, and for sixbars: their crank's limit is their first target.
+    Return None if the reference is there already, and for sixbars, whose first target is a limit of their crank.
     """
     mechanism = design.mechanism
     driven = None if isinstance(mechanism, SixbarMechanism) else rebuilt(mechanism)

@@ -1,9 +1,8 @@
-"""Dyads from which a fit to many positions starts.
+"""Starting dyads for a fit to many positions.
 
-Where the client leaves an RR dyad open, the starts are all dyads through sets of five positions, and the linear fits to
-larger sets (:mod:`synthesis.kinds.motion.linear_fit`). Where positions have tolerances, sets with random perturbations
-within the tolerances are added. For a stated pivot a circle is fitted to its images, for a slider a line: both fits are
-linear.
+If an RR dyad is open, the starts are all dyads through sets of five positions, and linear fits to larger sets
+(:mod:`synthesis.kinds.motion.linear_fit`). If positions have tolerances, sets with random perturbations within the
+tolerances are added. For a given pivot a circle is fitted to its images, for a slider a line; both fits are linear.
 """
 
 from __future__ import annotations
@@ -25,20 +24,20 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 SETS = 160
-"""Number of sets of five positions, at most."""
+"""Maximum number of sets of five positions."""
 
 LARGER_SETS = 40
-"""Number of sets of more positions, each of random size."""
+"""Number of sets of more than five positions, each of random size."""
 
 REACH = 300.0
-"""Pivots farther than this many task sizes are not started from; what tends there is a slider."""
+"""Maximum distance of a starting pivot, in task sizes; farther pivots approximate a slider."""
 
 SHORTEST = 1e-3
-"""Links shorter than this many task sizes are not started from."""
+"""Minimum link length of a starting dyad, in task sizes."""
 
 
 class Start(NamedTuple):
-    """A dyad to start from: what it is, its surface, its numbers, and which of them are the client's."""
+    """A starting dyad: its type (RR, PR or RP), surface and numbers, and the mask of numbers fixed by the client."""
 
     dyad: str
     surface: Surface
@@ -47,7 +46,7 @@ class Start(NamedTuple):
 
 
 def starts(task: MotionTask, demands: PoseDemands, choices: DyadChoices, rng: np.random.Generator) -> list[Start]:
-    """Dyads of one side that a fit may start from."""
+    """Return the starting dyads of one side."""
     if choices.dyad == "PR":
         return _slider(task, demands, choices, inverted=False)
     if choices.dyad == "RP":
@@ -65,7 +64,7 @@ def starts(task: MotionTask, demands: PoseDemands, choices: DyadChoices, rng: np
 
 
 def as_slider(start: Start) -> Start:
-    """The slider that an RR dyad with a pivot far away is nearly."""
+    """Return the slider that approximates an RR dyad with a distant pivot."""
     numbers = start.numbers.copy()
     numbers[4] = 0.0
     surface = start.surface._replace(curved=False)
@@ -73,7 +72,7 @@ def as_slider(start: Start) -> Start:
 
 
 def _stated(task: MotionTask, choices: DyadChoices) -> tuple[bool, complex] | None:
-    """The pivot that is stated: whether it is the fixed one, and where it is in task coordinates."""
+    """Return the given pivot as (whether it is the fixed one, position in task coordinates); None without one."""
     fixed, moving = (stated_pivot(task, choices, fixed=side) for side in (True, False))
     if fixed is not None:
         return True, fixed
@@ -81,13 +80,13 @@ def _stated(task: MotionTask, choices: DyadChoices) -> tuple[bool, complex] | No
 
 
 def _images(demands: PoseDemands, inverted: bool, point: complex) -> Complex:
-    """Places of a point of the body (or of a fixed point as the body sees it) in the demanded poses."""
+    """Return the positions of a body point (or of a fixed point relative to the body) in the target poses."""
     p, spin = demands.poses[:, 0] + 1j * demands.poses[:, 1], np.exp(1j * demands.poses[:, 2])
     return np.asarray(np.conj(spin) * (point - p) if inverted else p + spin * point)
 
 
 def _circle(demands: PoseDemands, inverted: bool, point: complex) -> list[Start]:
-    """The circle nearest to the images of a stated pivot, by linear least squares of |z|² − 2Re(conj(m)z) + k."""
+    """Fit a circle to the images of a given pivot, by linear least squares of |z|² − 2Re(conj(m)z) + k."""
     images = _images(demands, inverted, point)
     rows = np.stack([2.0 * images.real, 2.0 * images.imag, np.ones(len(images))], axis=1)
     solution, *_ = np.linalg.lstsq(rows, np.abs(images) ** 2, rcond=None)
@@ -103,7 +102,7 @@ def _circle(demands: PoseDemands, inverted: bool, point: complex) -> list[Start]
 
 
 def _slider(task: MotionTask, demands: PoseDemands, choices: DyadChoices, *, inverted: bool) -> list[Start]:
-    """The line nearest to the images of the best, or of the stated, point."""
+    """Fit a line to the images of the best point, or of the given point."""
     fixed = np.zeros(NUMBERS, np.bool_)
     normal = None
     if choices.slide_angle is not None:
@@ -115,6 +114,7 @@ def _slider(task: MotionTask, demands: PoseDemands, choices: DyadChoices, *, inv
         fixed[:2] = True
         if angle is None:
             images = _images(demands, inverted, point)
+            # Squaring doubles the angles, so the mean gives the principal direction, which is defined modulo π.
             gaps = images - images.mean()
             angle = 0.5 * float(np.angle(np.sum(gaps * gaps))) + 0.5 * math.pi
     else:
@@ -127,7 +127,7 @@ def _slider(task: MotionTask, demands: PoseDemands, choices: DyadChoices, *, inv
 
 
 def _best_slider(demands: PoseDemands, inverted: bool, normal: float | None) -> tuple[complex, float]:
-    """The point whose images lie nearest to a line, and the line's normal: linear, with n on the unit circle.
+    """Find the point whose images lie nearest to a line, and the normal's angle; linear, with n on the unit circle.
 
     PR: Re(conj(n) p) + Re(c e^{iφ}) = d with c = conj(n) α. RP: Re(conj(n) p e^{−iφ}) + Re(c e^{iφ}) = −d with
     c = −n conj(O).
@@ -136,6 +136,7 @@ def _best_slider(demands: PoseDemands, inverted: bool, normal: float | None) -> 
     q = np.conj(np.conj(p) * spin) if inverted else p
     with_n = np.stack([q.real, q.imag], axis=1)
     rest = np.stack([spin.real, -spin.imag, np.ones(len(p))], axis=1)
+    # Eliminate c and d first; the normal is then the smallest singular vector of the remaining 2-column system.
     left = with_n - rest @ np.linalg.lstsq(rest, with_n, rcond=None)[0]
     if normal is None:
         n = np.linalg.svd(left)[2][-1]
@@ -149,9 +150,10 @@ def _best_slider(demands: PoseDemands, inverted: bool, normal: float | None) -> 
 
 
 def _all_dyads(demands: PoseDemands, rng: np.random.Generator) -> tuple[Complex, Complex]:
-    """RR dyads through sets of five poses and near larger sets, those of sensible size."""
+    """Find RR dyads through sets of five poses and near larger sets; drop those of extreme size."""
     poses = demands.poses
     n, held = len(poses), demands.held
+    # Every set contains the exact poses, which all starts should meet.
     kept = [k for k in np.argsort(-held, kind="stable") if held[k] == 3][:5]
     others = [k for k in range(n) if k not in kept]
     wanted = 5 - len(kept)

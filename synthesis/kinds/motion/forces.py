@@ -1,7 +1,7 @@
-"""Which fourbars that carry a body are likely to keep the limits on their forces: looked at in closed form.
+"""Pre-filter: evaluate force limits in closed form for many fourbars that carry a body.
 
-What is left out would fail where it was looked at; what passes is measured by the general equations before it is
-answered.
+A rejected fourbar exceeds a limit at one of the sampled positions; an accepted one is verified by the general equations
+of motion before it is returned.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ COLUMNS = {
     "shaking_moment": SHAKING_MOMENT,
     "power": POWER,
 }
-"""Of the peaks, by what is limited; the joint force index has a run of its own."""
+"""Columns of the peak values, by limited quantity; the joint force index needs a separate evaluation."""
 
 
 def looked_at(problem: MotionProblem) -> bool:
-    """Whether forces are limited that the closed form knows."""
+    """Return whether the problem limits forces that the closed form covers."""
     stated = problem.dynamics
     if stated is None or not problem.constraints.of_forces or stated.speed_rpm is None:
         return False
@@ -39,16 +39,16 @@ def looked_at(problem: MotionProblem) -> bool:
 
 
 def bearable(problem: MotionProblem, task: MotionTask, joints: Complex) -> NDArray[np.bool_]:
-    """Which fourbars keep the limits on their forces at the positions that are looked at.
+    """Return a mask of the fourbars that satisfy the force limits at the sampled positions.
 
     Parameters
     ----------
     problem : MotionProblem
-        That is :func:`looked_at`.
+        A problem for which :func:`looked_at` is true.
     task : MotionTask
         Its positions.
     joints : complex, shape (n, 4)
-        O2, A, B, O4 at the first target, in task coordinates; fourbars whose motion goes through the targets.
+        O2, A, B, O4 at the first target, in task coordinates; fourbars that meet the targets.
     """
     assert problem.dynamics is not None
     placed = np.full((len(joints), 5), complex(task.origin))
@@ -67,7 +67,7 @@ def bearable(problem: MotionProblem, task: MotionTask, joints: Complex) -> NDArr
 
 
 def _span(task: MotionTask, joints: Complex) -> Real:
-    """What inputs turn: a whole turn where they turn through (Grashof), else from the first target to the last."""
+    """Return the input rotations, radians: a full turn for Grashof cranks, else from the first target to the last."""
     o2, a, b, o4 = joints[:, :4].T
     lengths = np.abs(np.stack([a - o2, b - a, b - o4, o4 - o2], axis=1))
     turns = 2.0 * (lengths.min(axis=1) + lengths.max(axis=1)) < lengths.sum(axis=1)
@@ -76,8 +76,9 @@ def _span(task: MotionTask, joints: Complex) -> Real:
 
 
 def _index(stated: DesignDynamics, linkages: Fourbars, carried: Weights) -> Real:
-    """Largest force of a pin over the first of the loads, without masses."""
+    """Return the largest pin force divided by the first load, without masses (the joint force index)."""
     first = stated.loads[0]
+    # The index is a static ratio: keep only the first load, force or torque, and drop masses and gravity.
     couples = np.zeros(3)
     if first.force is None:
         couples = np.array([1.0 if first.link == link else 0.0 for link in ("input", "coupler", "output")])

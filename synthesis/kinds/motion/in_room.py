@@ -1,8 +1,9 @@
-"""Positions of which some have tolerances, in a room: linkages that are steered into both.
+"""Constrained fits for positions with tolerances in a workspace with obstacles.
 
-Pairs of dyads that are drawn where their pivots may lie (:mod:`synthesis.kinds.motion.room_starts`), those first that
-lack least of the room, are brought to hold everything but the motion through the room. What then keeps that too is
-driven and swept; of the others those that lack least are held within it as well, until there are designs enough.
+Pairs of dyads are sampled in the permitted areas of their pivots (:mod:`synthesis.kinds.motion.room_starts`), and those
+with the smallest workspace violation are fitted first to all constraints except the collision-free motion. The results
+that are collision-free are verified; of the others, those with the smallest violation are fitted to the workspace too,
+until there are enough designs.
 """
 
 from __future__ import annotations
@@ -39,48 +40,48 @@ from synthesis.outcome.sifting import OUTRANKED, Sifting
 from synthesis.proof.space import ROOM
 
 STARTED, AT_ONCE = 60, 15
-"""Linkages that are steered, and how many of them at a time."""
+"""Maximum number of fitted starts, and batch size."""
 
 SIFTED = 3
-"""Times as many are steered where demands that do not steer, on planes or forces, leave only some of them."""
+"""Factor of the number of starts if constraints that the fit ignores (planes, forces) will reject some results."""
 
 APART = 0.2 * 0.5 ** np.arange(8)
-"""Distinct starts move some joint by at least this share of the task's size: the first at which there are enough."""
+"""Minimum separations of distinct starts, in task sizes, tried in turn until one yields enough starts."""
 
 LACKING = 0.05
-"""What a start lacks of the room, in task sizes, with which it counts half."""
+"""Workspace violation, in task sizes, at which the score of a start is halved."""
 
 MOVED, MOVED_AT_ONCE = 24, 4
-"""Linkages that are moved into the room, those that lack least of it, and how many of them at a time."""
+"""Maximum number of linkages that are fitted to the workspace, smallest violation first, and batch size."""
 
 HOPELESS = 0.4
-"""What a linkage lacks of the room, in task sizes, with which it is not moved."""
+"""Maximum workspace violation, in task sizes, of a linkage that is fitted to the workspace."""
 
 
 NARROWER = 10.0 * AIM
-"""Share of the task's size by which a room is kept more narrowly where the sweep finds what the fit passes over between
-its steps."""
+"""Tighter margin of the workspace, as a share of the task's size, if the verification finds a collision between the
+steps of the fit."""
 
 BEYOND = 1.8
-"""By how many times what it lacks a transmission angle is asked for that was measured to be too small."""
+"""Factor by which the fit overcorrects a transmission angle that was measured to be too small."""
 
 
 def solve_in_room(problem: MotionProblem, exact: MotionResult | None, progress: Progress) -> MotionResult:
-    """Designs that use the tolerances and fit into the room, beside those that meet the positions exactly.
+    """Find designs that use the tolerances and fit into the workspace, and merge them with the exact designs.
 
     Parameters
     ----------
     problem : MotionProblem
-        With a room, and positions with tolerances.
+        A problem with a workspace and positions with tolerances.
     exact : MotionResult, optional
-        The answer with all positions met exactly.
+        The result with all positions met exactly.
     progress : callable
-        Told how far the work is.
+        Progress callback.
     """
     task, target = motion_task(problem), demanded(problem)
     rows, room = demanded_rows(problem, task), room_of(problem, task)
     zones, narrower = zones_alone(room), room_of(problem, task, NARROWER)
-    progress(0.0, "drawing linkages in the room")
+    progress(0.0, "sampling linkages in the workspace")
     listed, score = pairs_in_room(problem, task, rows)
     first = [begun(problem, task, rows, start, zones) for start in listed]
     lacking = np.maximum(-room_left(first, rows, room), 0.0)
@@ -101,8 +102,11 @@ def solve_in_room(problem: MotionProblem, exact: MotionResult | None, progress: 
         return driven(problem, task, rows, linkage.x, target)
 
     def offer(linkages: list[Steered]) -> None:
-        """Drive and sweep linkages until there are enough; what misses the room or a transmission angle by what the fit
-        does not see is held once more, as much more narrowly."""
+        """Verify linkages until there are enough designs.
+
+        A linkage that misses the workspace or a transmission angle, because the fit only samples the motion, is fitted
+        once more with a correspondingly tighter limit.
+        """
         again: list[Steered] = []
         for n, one in enumerate(linkages):
             if len(sifting.passed) >= enough:
@@ -113,7 +117,7 @@ def solve_in_room(problem: MotionProblem, exact: MotionResult | None, progress: 
             if reason in ROOM:
                 again += in_rooms([one], rows, narrower)
             elif reason == "transmission_angle" and isinstance(design, LinkageDesign):
-                # The motion ends beyond the poses of the fit, where these use a tolerance that it need not.
+                # The verified motion may extend beyond the fitted poses if these use a tolerance unnecessarily.
                 angle = problem.constraints.min_transmission_angle or 0.0
                 short = angle - design.metrics.min_transmission_angle
                 again += in_rooms([with_angle(one, angle + BEYOND * short)], rows, room)
@@ -129,7 +133,7 @@ def solve_in_room(problem: MotionProblem, exact: MotionResult | None, progress: 
         if len(sifting.passed) >= enough:
             sifting.reject(OUTRANKED, len(first) - n)
             break
-        progress(0.2 + 0.4 * n / len(first), f"steering {len(first)} linkages into the tolerances")
+        progress(0.2 + 0.4 * n / len(first), f"fitting {len(first)} linkages to the tolerances")
         some = first[n : n + AT_ONCE]
         steered = all_steered(rows, some)
         fresh = different([*unlike, *steered])[len(unlike) :]
@@ -147,7 +151,7 @@ def solve_in_room(problem: MotionProblem, exact: MotionResult | None, progress: 
         if len(sifting.passed) >= enough:
             sifting.reject(OUTRANKED, len(near) - n)
             break
-        progress(0.6 + 0.4 * n / len(near), f"moving {len(near)} linkages into the room")
+        progress(0.6 + 0.4 * n / len(near), f"moving {len(near)} linkages into the workspace")
         some = near[n : n + MOVED_AT_ONCE]
         moved = all_steered(rows, in_rooms(some, rows, room))
         sifting.reject("not_steered", len(some) - len(moved))
@@ -164,14 +168,13 @@ def solve_in_room(problem: MotionProblem, exact: MotionResult | None, progress: 
 def _summary(sifting: Sifting[LinkageDesign], started: int, steered: int, exact: int) -> str:
     if not sifting.passed:
         return (
-            f"None of {counted(started, 'linkage')} that were drawn in the room and steered into the tolerances and "
-            "demands "
-            f"satisfies them all (rejected: {sifting.listed(OUTRANKED) or 'none'}). A linkage may exist that the "
-            "search did not meet."
+            f"No design found: fits from {counted(started, 'start')} in the workspace all violate a constraint "
+            f"(rejected: {sifting.listed(OUTRANKED) or 'none'}). The search is not exhaustive, so a solution may still "
+            "exist."
         )
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
     return (
-        f"{counted(steered, 'linkage that was', 'linkages that were')} steered into the room and the tolerances "
-        f"{agreeing(steered, 'satisfies', 'satisfy')} all demands, and {counted(exact, 'that meets', 'that meet')} the "
-        f"positions exactly; the least transmission angle is up to {best:.1f}°. A better linkage may exist."
+        f"{counted(steered, 'design', 'designs')} within the workspace {agreeing(steered, 'uses', 'use')} the "
+        f"tolerances, and {counted(exact, 'design meets', 'designs meet')} the positions exactly. Best minimum "
+        f"transmission angle: {best:.1f}°. A better linkage may exist."
     )

@@ -1,14 +1,15 @@
-"""Stephenson II sixbars by inversion, compiled: what moves on the input link, as it is seen from the ground.
+"""Compiled kinematic inversion of Stephenson II sixbars: motion relative to the input link, transformed to the ground.
 
-The four links between input and ground of a Stephenson II are a triad, which no two circles close. Seen from its input
-link it is a Stephenson III: the links 3, 4 and 5 are a fourbar on the input link, and the ground is the second link of
-a dyad on its coupler. So it is driven by the link 3, which turns relative to the input, and closed by dyads; then all
-is turned so that the ground stands still. The kernel's joints are then
+The four links between input and ground of a Stephenson II form a triad, which cannot be closed by two circles. Relative
+to its input link it is a Stephenson III: links 3, 4 and 5 form a fourbar on the input link, and the ground is the
+second link of a dyad on its coupler. So it is driven by link 3, which turns relative to the input, and closed by dyads;
+then everything is rotated so that the ground is at rest. The kernel's joints are
 
     O₂ A B O₄    pin of link 3 on the input, and on link 4; pin of link 5 on link 4, and on the input
     Q₁ J Q₂      pin of the output on link 4, and on the ground; pin of the input on the ground
 
-What says whether the input can drive it is how slantwise its legs push link 4 (:mod:`synthesis.fit.triad_slant`).
+The transmission angle follows from the directions in which the three legs push link 4
+(:mod:`synthesis.fit.triad_slant`).
 """
 
 from __future__ import annotations
@@ -24,12 +25,12 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 TURNED_OVER = 2.0
-"""The cosine that is told where the sine has another sign than in the first position."""
+"""Cosine returned if the sine's sign differs from that in the first position: the linkage has passed a toggle."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def on_ground(z: Complex, start: complex, at: Complex, turns: Complex) -> float:
-    """Turns what stands on the input link so that the ground stands still.
+    """Transform a configuration relative to the input link to the ground frame.
 
     Parameters
     ----------
@@ -38,15 +39,16 @@ def on_ground(z: Complex, start: complex, at: Complex, turns: Complex) -> float:
     start : complex
         P there.
     at : complex, shape (6,)
-        A, B, Q₁, Q₂, J and anything as the input link sees them; then A, B, Q₁, O₂, O₄ and P as the ground does.
+        Input: A, B, Q₁, Q₂, J and any value, relative to the input link. Output: A, B, Q₁, O₂, O₄ and P in the ground
+        frame.
     turns : complex, shape (4,)
-        The second is the coupler's seen from the input link; then the first is how the input is turned, and the last
-        how the body is.
+        Input: the second is the coupler's rotation relative to the input link. Output: the first is the input's
+        rotation, the last the body's.
 
     Returns
     -------
     float
-        The cosine of the least transmission angle; beyond 1 where the linkage has turned over at a toggle.
+        The cosine of the minimum transmission angle; above 1 if the linkage has passed a toggle.
     """
     _, first, _ = slant(z[Q1], z[J], z[O2], z[A], z[O4], z[B])
     cosine, sine, _ = slant(at[2], at[4], z[O2], at[0], z[O4], at[1])
@@ -70,20 +72,20 @@ def rates_on_ground(
     turning: Real,
     bending: Real,
 ) -> None:
-    """Turns rates as :func:`on_ground` turns places, which are to be those before; with them that of the cosine.
+    """Transform rates to the ground frame, as :func:`on_ground` transforms positions, and add that of the cosine.
 
     Parameters
     ----------
     z, start, at, turns
-        As there.
+        As for :func:`on_ground`, before that transformation.
     units : complex, shape (m, 7)
         Rates of the joints in the first position, by each unknown.
     through : float, shape (m,)
         Rates of the coupler's angle.
     moving : complex, shape (6, m)
-        Rates of ``at``, but of P.
+        Rates of ``at``, except that of P.
     turning, bending : float, shape (m,)
-        Filled: rates of the body's angle and of the cosine.
+        Output: rates of the body's angle and of the cosine.
     """
     base = z[J] - z[Q2]
     turned = (at[4] - at[3]) / base
@@ -109,5 +111,5 @@ def rates_on_ground(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _seen(point: complex, rate: complex, pin: complex, pin_rate: complex, back: complex, spin: float) -> complex:
-    """Rate of a point as the ground sees it, which turns by ``spin`` seen from the input link."""
+    """Transform the rate of a point to the ground frame, which turns at ``spin`` relative to the input link."""
     return pin_rate + back * (rate - pin_rate - 1j * spin * (point - pin))

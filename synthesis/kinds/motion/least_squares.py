@@ -1,9 +1,9 @@
-"""Motion generation by least squares: more positions than can be met, or positions with tolerances.
+"""Motion generation by least squares: more positions than can be met exactly, or positions with tolerances.
 
 Each of many starting dyads (:mod:`synthesis.kinds.motion.fit_starts`) is first fitted to all positions by itself. The
 best pairs are then fitted together to the true error of the pose (:mod:`synthesis.kinds.motion.pose_fit`), and the
-linkages are driven and verified like any other. Held positions are met to rounding throughout. Lengths are
-weighted by the task's size and angles by the radian, or both by the client's tolerances.
+linkages are driven and verified like any other. Exact positions are met to rounding throughout. Lengths are weighted by
+the task's size and angles by the radian, or both by the given tolerances.
 """
 
 from __future__ import annotations
@@ -40,48 +40,48 @@ from synthesis.outcome.sifting import DEFECTS, OUTRANKED, Sifting
 Real = NDArray[np.float64]
 
 SINGLES = 40
-"""Number of dyads of a side that are fitted by themselves."""
+"""Number of dyads per side that are fitted individually."""
 
 DYADS = 36
-"""Dyads of a side of which pairs are made: the best of those, and of those that they came from."""
+"""Number of dyads per side that are paired: the best of the fitted dyads and of their starting points."""
 
 HANDY = 3.0
-"""Distance of a pivot, in task sizes, at which the cost of a dyad is weighted by four. A dyad with a distant pivot fits
-the poses well whatever its partner is, and would displace dyads of which linkages can be made."""
+"""Distance of a pivot, in task sizes, at which the cost of a dyad is multiplied by four. A dyad with a distant pivot
+fits the poses well but gives no practical linkage, and would displace better dyads."""
 
 PAIRS_HELD = 16
-"""Pairs that are fitted where positions or coordinates are held, which takes several times as long."""
+"""Number of pairs fitted if positions or coordinates are exact, which takes several times as long."""
 
 PARTNERS = 8
-"""Pairs of a dyad that are fitted at most, so that one dyad does not fill the list."""
+"""Maximum number of fitted pairs per dyad, so that one dyad does not fill the list."""
 
 PAIRS = 48
-"""Pairs that are fitted together, a few milliseconds each at first."""
+"""Number of pairs fitted together; the first fit takes a few milliseconds each."""
 
 ROUGH, ROUGHLY = 1e-4, 25
-"""Relative change of the cost at which the first fit of a pair stops, and its evaluations at most."""
+"""Relative change of the cost at which the first fit of a pair stops, and its maximum number of evaluations."""
 
 REFINED = 8
-"""Pairs, the best after the first fit, that are fitted to the end."""
+"""Number of pairs, the best after the first fit, that are fitted until convergence."""
 
 SAME_DYAD = 0.08
-"""Dyads whose pivots differ by less than this share of their distance are one start."""
+"""Relative difference of the pivots below which two dyads count as the same starting point."""
 
 SAME_LINKAGE = 0.03
-"""Linkages whose pivots differ by less than this share of their distance are one answer; the nearest is kept."""
+"""Relative difference of the pivots below which two linkages count as the same design; the closer one is kept."""
 
 LEAST_TRIED = 10
-"""Linkages that are verified at least, however few are wanted."""
+"""Minimum number of linkages that are verified, whatever the number of requested designs."""
 
 SHORTEST_LINK = 1e-4
-"""A link shorter than this share of the longest is none."""
+"""Minimum length of a link, relative to the longest; below it the linkage is degenerate."""
 
 REASONS = DEFECTS | {"within_tolerance": "tolerance"}
-"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
+"""Rejection reason by failed check; other checks use their own name."""
 
 
 class _Pair(NamedTuple):
-    """A pair of dyads to be fitted, its problem, and the cost it starts with."""
+    """A pair of dyads to be fitted, its least-squares problem, and its initial cost."""
 
     one: Start
     other: Start
@@ -91,7 +91,7 @@ class _Pair(NamedTuple):
 
 
 def solve_least_squares(problem: MotionProblem, progress: Progress) -> MotionResult:
-    """Fit linkages to the positions of a problem, some of which may be held exactly."""
+    """Fit linkages to the positions of a problem, some of which may be exact."""
     task = motion_task(problem)
     demands = fit_demands(problem, task)
     rng = np.random.default_rng(problem.seed)
@@ -103,6 +103,7 @@ def solve_least_squares(problem: MotionProblem, progress: Progress) -> MotionRes
     progress(0.3, "pairing dyads")
     pairs = _pairs(problem, task, demands, inputs, outputs)
     run = _Run(problem, task, demands, alike=alike)
+    # First stop every fit early, then spend the effort on the few pairs that look best.
     rough: list[_Pair] = []
     for n, pair in enumerate(pairs):
         progress(0.35 + 0.3 * n / len(pairs), f"fitting pair {n + 1} of {len(pairs)}")
@@ -117,14 +118,14 @@ def solve_least_squares(problem: MotionProblem, progress: Progress) -> MotionRes
         ended = pair.problem.minimum(pair.point)
         rough[n] = pair if ended is None else pair._replace(point=ended.point, cost=ended.cost)
     for n, pair in enumerate(sorted(rough, key=lambda pair: pair.cost)):
-        progress(0.85 + 0.15 * n / len(rough), "driving what was fitted")
+        progress(0.85 + 0.15 * n / len(rough), "verifying the fitted linkages")
         run.drive(pair)
     progress(1.0, "verified")
     return run.result()
 
 
 def fit_demands(problem: MotionProblem, task: MotionTask) -> PoseDemands:
-    """Positions and tolerances in task units; without a limit the task's size and the radian stand for it."""
+    """Return positions and tolerances in task units; without a tolerance the task's size and the radian replace it."""
     poses = np.stack([task.points.real, task.points.imag, np.array(problem.turns)], axis=1)
     limits = np.array(problem.limits)
     tolerances = np.stack([limits[:, 0] / task.size, limits[:, 1] / task.size, np.radians(limits[:, 2])], axis=1)
@@ -134,7 +135,7 @@ def fit_demands(problem: MotionProblem, task: MotionTask) -> PoseDemands:
 def _dyads(
     task: MotionTask, demands: PoseDemands, problem: MotionProblem, side: int, rng: np.random.Generator
 ) -> list[Start]:
-    """The best dyads of one side: as they were started from, and as they fit all positions."""
+    """Return the best dyads of one side, among the starting points and their fits to all positions."""
     choices = (problem.input_side, problem.output_side)[side]
     listed = starts(task, demands, choices, rng)
     rough = _least(demands, listed, SINGLES)
@@ -143,13 +144,14 @@ def _dyads(
         numbers = surface_fit(demands, start.surface, start.numbers, start.fixed).point
         if np.all(np.isfinite(numbers)):
             fits.append(start._replace(numbers=numbers))
+            # An almost straight circle means a distant pivot: offer the slider that replaces it, too.
             if choices.dyad == "any" and abs(numbers[4]) * REACH < 1.0 and not start.fixed.any():
                 fits.append(as_slider(fits[-1]))
     return _least(demands, [*fits, *rough], DYADS)
 
 
 def _least(demands: PoseDemands, listed: list[Start], count: int) -> list[Start]:
-    """The dyads with the least distances from the poses, each once."""
+    """Select the distinct dyads with the smallest weighted distance from the poses."""
     cost = [_single_cost(demands, start) * (1.0 + 3.0 * _reach(start) ** 2 / HANDY**2) for start in listed]
     kept: list[Start] = []
     for k in np.argsort(cost, kind="stable"):
@@ -170,14 +172,14 @@ def _single_cost(demands: PoseDemands, start: Start) -> float:
 
 
 def _reach(start: Start) -> float:
-    """Distance of the farther pivot, or of the slider's point."""
+    """Return the distance of the farther pivot, or of the slider's point, from the origin, in task sizes."""
     if start.surface.curved:
         return max(map(abs, pivots_of(start.surface, start.numbers)))
     return float(np.hypot(start.numbers[0], start.numbers[1]))
 
 
 def _place(start: Start) -> Real:
-    """Numbers by which dyads of one kind are compared: pivots, or the slider's point and line."""
+    """Return the coordinates by which dyads of one type are compared: pivots, or the slider's point and line."""
     if start.surface.curved:
         fixed, moving = pivots_of(start.surface, start.numbers)
         return np.array([fixed.real, fixed.imag, moving.real, moving.imag])
@@ -191,9 +193,9 @@ def _place(start: Start) -> Real:
 def _pairs(
     problem: MotionProblem, task: MotionTask, demands: PoseDemands, inputs: list[Start], outputs: list[Start]
 ) -> list[_Pair]:
-    """The pairs to fit together: half of them those with the least cost, half those among them that look sound.
+    """Select the pairs to fit together: half by lowest cost, half by lowest cost among those that pass the screening.
 
-    A slider stands on one side at most.
+    At most one side has a slider.
     """
     alike = inputs is outputs
     sound = _sound(problem, task, inputs, outputs)
@@ -225,7 +227,7 @@ def _pairs(
 
 
 def _sound(problem: MotionProblem, task: MotionTask, inputs: list[Start], outputs: list[Start]) -> NDArray[np.bool_]:
-    """Which pairs of links pass the screening, as if each met all positions exactly; a slider passes."""
+    """Return a mask of the pairs that pass the screening as if they met all positions exactly; sliders always pass."""
     links = []
     for listed in (inputs, outputs):
         pivots = [pivots_of(s.surface, s.numbers) if s.surface.curved else (0j, 1.0 + 0j) for s in listed]
@@ -240,7 +242,7 @@ def _sound(problem: MotionProblem, task: MotionTask, inputs: list[Start], output
 
 
 class _Run(Sifting[LinkageDesign]):
-    """What becomes of the pairs."""
+    """Record of the fitted pairs: designs, rejections, and linkages already verified."""
 
     def __init__(self, problem: MotionProblem, task: MotionTask, demands: PoseDemands, *, alike: bool) -> None:
         super().__init__(problem, REASONS)
@@ -248,7 +250,7 @@ class _Run(Sifting[LinkageDesign]):
         self.seen: list[Real] = []
 
     def drive(self, pair: _Pair) -> None:
-        """Verify the linkage of a fitted pair, unless another pair has led to it."""
+        """Verify the linkage of a fitted pair, unless another pair has converged to the same linkage."""
         one = pair.one._replace(numbers=pair.point[:5])
         other = pair.other._replace(numbers=pair.point[5:10])
         places = np.concatenate(sorted((_place(one), _place(other)), key=lambda z: float(z[0])))
@@ -263,6 +265,7 @@ class _Run(Sifting[LinkageDesign]):
         pose = pair.problem.poses(pair.point)[0]
         best: LinkageDesign | None = None
         reason = "cannot_be_driven"
+        # If both sides have the same choices, either may be the input: keep the better of the two.
         for first, second in ((one, other), (other, one)) if self.alike else ((one, other),):
             mechanism = self._mechanism(first, second, pose)
             design = None if mechanism is None else verify(self.problem, mechanism)
@@ -273,10 +276,11 @@ class _Run(Sifting[LinkageDesign]):
         self.add(reason if best is None else best)
 
     def _mechanism(self, one: Start, other: Start, pose: Real) -> LinkageMechanism | None:
-        """The linkage of two fitted dyads with the body in its first pose; None where it has no size, or no input."""
+        """Build the linkage of two fitted dyads at the body's first pose; None if it is degenerate or has no input."""
         place, turn = complex(pose[0], pose[1]), complex(math.cos(pose[2]), math.sin(pose[2]))
         target = self.demands.poses[0]
         exact = abs(place - complex(target[0], target[1])) == 0.0 and pose[2] == target[2]
+        # A body angle is stored only if the fit turned the body away from its given first angle.
         angle = None if exact else self.problem.positions[0].angle + math.degrees(float(pose[2] - target[2]))
         p = self.task.to_problem(place)
 
@@ -311,7 +315,7 @@ class _Run(Sifting[LinkageDesign]):
         return inverted_slider_crank_mechanism(o2, a, o4, line + float(pose[2]), p, body_angle=angle)
 
     def result(self) -> MotionResult:
-        """The answer."""
+        """Build the result with its ranked designs and summary."""
         return MotionResult(
             designs=self.designs(order_of(self.problem)),
             search=self.search("least_squares"),
@@ -324,17 +328,18 @@ class _Run(Sifting[LinkageDesign]):
             share, passed = 100.0 * min(map(error_of, self.passed)), len(self.passed)
             text = (
                 f"{grouped(passed)} of {counted(self.candidates, 'fitted linkage')} "
-                f"{agreeing(passed, 'meets', 'meet')} "
-                f"the demands of the {n} positions; the best has a root-mean-square residual of {share:.3g} % of the "
-                "task size (hundredths of a radian)."
+                f"{agreeing(passed, 'satisfies', 'satisfy')} "
+                f"all constraints of the {n} positions. Best root-mean-square residual: {share:.3g} % of the task size "
+                "(angles in hundredths of a radian)."
             )
         else:
             reasons = self.listed() or "none"
-            text = f"None of {counted(self.candidates, 'fitted linkage')} satisfies all demands (rejected: {reasons})."
-        return text + " Least squares descends from many starts; a nearer linkage may exist that none of them leads to."
+            linkages = counted(self.candidates, "fitted linkage")
+            text = f"None of {linkages} satisfies all constraints (rejected: {reasons})."
+        return text + " The fit starts from many points but is not exhaustive, so a closer linkage may exist."
 
 
 def _better(design: LinkageDesign, other: LinkageDesign) -> bool:
-    """Whether a design is to be preferred to the same linkage driven at its other side."""
+    """Return whether a design is better than the same linkage with the other input side."""
     ours, theirs = design.verification.passed, other.verification.passed
     return ours > theirs or (ours == theirs and design.metrics.quality > other.metrics.quality)

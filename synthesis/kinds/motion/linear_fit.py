@@ -1,15 +1,15 @@
 """Dyads fitted to many poses at once by linear algebra.
 
-The condition that a point α of the body keeps its distance from a fixed point O is linear in eight products of the
-dyad's numbers. For a pose p = x + iy, φ, and with q = conj(p) e^{iφ},
+The condition that a body point α keeps its distance from a fixed point O is linear in eight products of the dyad's
+numbers. For a pose p = x + iy, φ, and with q = conj(p) e^{iφ},
 
     a|p|² + Re(u q) + Re(conj(v) p) + Re(c e^{iφ}) + k = 0,    u = 2aα,  v = −2aO,  c = −2a conj(O) α,
 
-so that 2ac = conj(v) u. Sliders are in it too: a = 0 and u = 0 is a PR dyad, a = 0 and v = 0 an RP dyad. In planar
+so that 2ac = conj(v) u. Sliders are included: a = 0 and u = 0 is a PR dyad, a = 0 and v = 0 an RP dyad. In planar
 quaternions these are the quadrics of a dyad's constraint manifold (Ge, Purwar, Zhao & Deshpande, J. Comput. Inf. Sci.
-Eng. 16 (2016) 041004, doi:10.1115/1.4033252). Poses give the rows of a matrix; five poses leave a null space of three
-dimensions, and more poses the three least singular vectors. The two real quadrics 2ac = conj(v) u meet in that plane in
-at most four points: the dyads.
+Eng. 16 (2016) 041004, doi:10.1115/1.4033252). Each pose gives one row of a matrix. Five poses leave a three-dimensional
+null space; for more poses the three smallest singular vectors replace it. The two real quadrics 2ac = conj(v) u
+intersect in that projective plane in at most four points: the dyads.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 REAL = 1e-6
-"""Imaginary part, as a share of 1 + |root|, below which a root of the quartic counts as real: starts may be rough."""
+"""Maximum imaginary part, relative to 1 + |root|, of a real root of the quartic; wide, because starts may be rough."""
 
 FLAT = 1e-9
-"""|a| below which a dyad of unit coefficients has a pivot so far away that it is a slider."""
+"""Minimum |a| of a dyad with unit coefficients; below it a pivot is so far away that the dyad is a slider."""
 
 
 def dyads_of_poses(points: Complex, angles: Real) -> tuple[Complex, Complex]:
-    """Dyads (O, α) through sets of five poses, or near larger sets.
+    """Find dyads (O, α) through sets of five poses, or near larger sets.
 
     Parameters
     ----------
@@ -38,8 +38,8 @@ def dyads_of_poses(points: Complex, angles: Real) -> tuple[Complex, Complex]:
     Returns
     -------
     fixed, moving : complex, shape (found,)
-        Fixed pivots, and moving pivots in the pose (0, 0); of all sets together, at most four a set. Dyads with a pivot
-        at infinity are left out.
+        Fixed pivots, and moving pivots in the pose (0, 0), of all sets together, at most four per set. Dyads with a
+        pivot at infinity are left out.
     """
     q = np.conj(points) * np.exp(1j * angles)
     rows = np.stack(
@@ -55,8 +55,9 @@ def dyads_of_poses(points: Complex, angles: Real) -> tuple[Complex, Complex]:
         ],
         axis=-1,
     )
+    # Five rows of eight coefficients: the last three right singular vectors span the (approximate) null space.
     basis = np.linalg.svd(rows)[2][:, -3:, :]
-    # A fixed rotation of the basis, so that no dyad has the last coordinate zero but by chance.
+    # Rotate the basis by a fixed generic rotation, so that a dyad has last coordinate zero only by chance.
     basis = np.einsum("ij,sjk->sik", _TURN, basis)
     a, c = basis[..., 0].astype(np.complex128), basis[..., 5] - 1j * basis[..., 6]
     u, v = basis[..., 1] - 1j * basis[..., 2], basis[..., 3] + 1j * basis[..., 4]
@@ -75,13 +76,14 @@ _TURN = np.linalg.qr(np.array([[1.0, 0.7, -0.4], [-0.3, 1.0, 0.9], [0.6, -0.8, 1
 
 
 def _meets(first: Real, second: Real) -> tuple[Real, Real, NDArray[np.int64]]:
-    """Where conics meet in the plane z = 1: x, y, and the set; forms are symmetric, shape (sets, 3, 3)."""
+    """Intersect conics in the plane z = 1: return x, y and the set of each point; symmetric forms (sets, 3, 3)."""
     # Each form is A y² + (B x + D) y + (C x² + E x + F); the resultant in y is a quartic in x.
     (a1, b1, c1), (a2, b2, c2) = _by_powers_of_y(first), _by_powers_of_y(second)
     ac = _minus(_times(a1, c2), _times(a2, c1))
     ab = _minus(_times(a1, b2), _times(a2, b1))
     bc = _minus(_times(b1, c2), _times(b2, c1))
     quartic = _minus(_times(ac, ac), _times(ab, bc))
+    # The roots are the eigenvalues of the companion matrix; a vanishing leading coefficient would make it infinite.
     leading = quartic[:, 0]
     sound = np.abs(leading) > np.finfo(float).tiny ** 0.5
     which = np.flatnonzero(sound)
@@ -102,7 +104,7 @@ def _meets(first: Real, second: Real) -> tuple[Real, Real, NDArray[np.int64]]:
 
 
 def _by_powers_of_y(form: Real) -> tuple[Real, Real, Real]:
-    """Coefficients of y², y and 1 as polynomials in x, highest power first, shapes (sets, 1), (sets, 2), (sets, 3)."""
+    """Return the coefficients of y², y, 1 as polynomials in x, highest power first: (sets, 1), (sets, 2), (sets, 3)."""
     return (
         form[:, 1:2, 1],
         2.0 * np.stack([form[:, 0, 1], form[:, 1, 2]], axis=1),
@@ -111,7 +113,7 @@ def _by_powers_of_y(form: Real) -> tuple[Real, Real, Real]:
 
 
 def _times(first: Real, second: Real) -> Real:
-    """Products of polynomials in x, highest power first."""
+    """Multiply polynomials in x, highest power first."""
     product = np.zeros((len(first), first.shape[1] + second.shape[1] - 1))
     for k in range(first.shape[1]):
         product[:, k : k + second.shape[1]] += first[:, k : k + 1] * second
@@ -119,6 +121,6 @@ def _times(first: Real, second: Real) -> Real:
 
 
 def _minus(first: Real, second: Real) -> Real:
-    """Differences of polynomials in x of one degree."""
+    """Subtract polynomials in x of the same degree."""
     assert first.shape == second.shape
     return np.asarray(first - second)

@@ -1,4 +1,4 @@
-"""How near a linkage comes to positions that are fitted, and the order of designs."""
+"""Error of fitted positions, and the ranking of designs."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from synthesis.outcome.ranking import ranked
 
 
 def error_of(design: LinkageDesign) -> float:
-    """The root mean square over the positions of distance (share of the task's size) and angle (radians) together."""
+    """Return the RMS over the positions of distance (share of the task's size) and angle (radians) together."""
     return design.metrics.rms_residual
 
 
 def order_of(problem: MotionProblem) -> Callable[[list[LinkageDesign]], list[LinkageDesign]]:
-    """The order of designs: a fit without limits is asked to be near; among equally near ones quality decides."""
+    """Return the ranking function: a fit without tolerances ranks by error, other problems by quality."""
     return partial(ranked, rank_by=problem.rank_by, own={"quality": error_of} if problem.fitted else None)

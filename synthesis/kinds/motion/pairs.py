@@ -1,8 +1,8 @@
-"""Pairs of an input and an output dyad: from clouds of dyads to the fourbars that are worth driving.
+"""Pairs of an input and an output dyad: from clouds of dyads to the fourbars that are worth verifying.
 
-A side whose dyads are determined has a few; one with some freedom left is a cloud, drawn from its families
+A side whose dyads are determined has a few; a side with remaining freedom is a cloud, sampled from its families
 (:mod:`synthesis.kinds.motion.choices`). All pairs are screened (:mod:`synthesis.kinds.motion.screening`), and the best
-that differ from one another are driven.
+distinct ones are driven and verified.
 """
 
 from __future__ import annotations
@@ -31,44 +31,45 @@ from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.outcome.ranking import widest_apart
 
 CLOUD_PAIR = 1200
-"""Dyads a side when both sides are open: 1.4 million pairs."""
+"""Number of dyads per side if both sides are open: 1.4 million pairs."""
 
 CLOUD_SINGLE = 40_000
-"""Dyads of an open side when the other is determined."""
+"""Number of dyads of an open side if the other is determined."""
 
 CURVE_PAIR, CURVE_SINGLE = 1600, 8000
-"""The same for dyads of Burmester's curve, which has one dimension to fill but reaches far."""
+"""The same two numbers for Burmester's curve, which has only one dimension to fill but extends far."""
 
 SHORTLIST = 4000
-"""Best-scored pairs from which distinct ones are chosen."""
+"""Number of best-scored pairs from which distinct ones are selected."""
 
 SWEPT_POOL = 10_000
-"""Of the sound pairs so many of the best, and as many of the rest, are looked at for obstacles at most."""
+"""Collision-test at most this many of the best pairs and the same number of the others."""
 
 SWEPT_AT_ONCE, FITTING = 1000, 500
-"""As many of the best, and of the rest, are looked at at a time, until so many fit."""
+"""Batch size of the collision test, of the best pairs and of the others, and the number of clear pairs that ends it."""
 
 WEIGHED_POOL, WEIGHED_AT_ONCE, ENOUGH = 8000, 500, 500
-"""Of the sound pairs so many of the best, and as many of the rest, are weighed where forces are limited; so many of
-each at a time, until so many keep the limits."""
+"""Force check: maximum number of the best pairs (and the same number of the others), batch size of each, and the number
+of pairs within the limits that ends it."""
 
 APART = 0.25 * 0.5 ** np.arange(6)
-"""Distinct designs move some joint by at least this share of the task's size: the first at which enough are found."""
+"""Minimum separations of distinct designs, tried in turn: the largest distance between corresponding joints, in task
+sizes. The first value that yields enough designs is used."""
 
 GOOD = 0.6
-"""Share of the best score that a linkage has to have to be offered because it is another one."""
+"""Minimum score, relative to the best, of a design that is returned for variety."""
 
 GOOD_POOL = 20_000
-"""Of more good pairs than this every so many are looked at: they lie densely enough."""
+"""Maximum number of good pairs considered for variety; more are thinned out evenly, since they lie densely."""
 
 FAR_APART = 2.0 * 0.5 ** (0.5 * np.arange(12))
-"""What is offered lies apart by the first of these, in task sizes, at which there are enough good ones."""
+"""Separations of designs returned for variety, in task sizes, tried in turn until enough good designs are found."""
 
 ATTEMPTS = 5
-"""Pairs verified at most, for each design wanted: verification seldom refuses what screening has passed."""
+"""Maximum number of verified pairs per requested design: verification rarely rejects a pair that passed screening."""
 
 LEAST_ATTEMPTS = 100
-"""Pairs tried at least before a search gives up."""
+"""Minimum number of pairs tried before a search gives up."""
 
 
 @dataclass(frozen=True)
@@ -91,27 +92,27 @@ class Pairs:
 
     @property
     def alike(self) -> bool:
-        """Whether both sides have the same dyads, of which each may drive."""
+        """Whether both sides have the same dyads, each of which may be the input."""
         return self.clouds[0] is self.clouds[1]
 
     @property
     def sampled(self) -> bool:
-        """Whether some dyads are drawn from families."""
+        """Whether some dyads are sampled from families."""
         return any(cloud.sampled for cloud in self.clouds)
 
     @property
     def sliders(self) -> tuple[SliderDyad, ...]:
-        """Sliders among the dyads of sides that are determined."""
+        """Sliders among the dyads of determined sides."""
         return self.clouds[0].sliders + self.clouds[1].sliders
 
     @property
     def lacking(self) -> tuple[str, Cloud] | None:
-        """The first side without any dyad."""
+        """Name and cloud of the first side without any dyad; None if both sides have some."""
         named = zip(("input", "output"), self.clouds, strict=True)
         return next(((name, cloud) for name, cloud in named if not len(cloud.dyads.fixed)), None)
 
     def verified(self, target: Demanded, pair: tuple[int, int]) -> LinkageDesign | str | None:
-        """The linkage of an input and an output dyad, driven."""
+        """Build and verify the linkage of an input and an output dyad."""
         o2, a = self._pivots(self.problem.input_side, self.inputs, pair[0])
         o4, b = self._pivots(self.problem.output_side, self.outputs, pair[1])
         joints = FourbarConfiguration(o2, a, b, o4, self.task.origin)
@@ -120,24 +121,24 @@ class Pairs:
         return verify(self.problem, fourbar_mechanism(joints), target)
 
     def _pivots(self, side: DyadChoices, dyads: Dyads, n: int) -> tuple[complex, complex]:
-        """Fixed and moving pivot of a dyad in the problem's coordinates; those that the client stated, as stated."""
+        """Return both pivots of a dyad in the problem's coordinates; given pivots keep their exact values."""
         fixed = self.task.pivot(side.fixed_pivot, complex(dyads.fixed[n]))
         return fixed, self.task.pivot(side.moving_pivot, complex(dyads.moving[n]))
 
     def screened(self, constraints: Constraints, least_transmission_angle: float) -> Screening:
-        """Verdicts on all pairs."""
+        """Screen all pairs against the constraints and a minimum transmission angle in degrees."""
         wanted = demands(constraints, self.task, least_transmission_angle, self.problem.rank_by)
         return screen(self.task, self.inputs, self.outputs, wanted)
 
     def best(self, screening: Screening) -> list[tuple[int, int]]:
-        """The pairs to verify, first those to offer: the best one, and good ones that lie far from one another.
+        """Select the pairs to verify: first the best one and good ones that differ widely, for variety.
 
-        After them come the best-scored ones that differ, for what verification refuses; all there are where the order
-        is another than that of quality, of which a client wants the first and no others.
+        The best-scored distinct pairs follow, as replacements for those that verification rejects. If the ranking is
+        not by quality, only these are returned, because the client wants the first in that order.
         """
         screening = self._bearable(self._with_room(screening))
         score = screening.score.ravel()
-        # Most pairs are unsound: to look for the best among the sound ones takes a tenth of the time.
+        # Most pairs are infeasible: searching only the feasible ones takes a tenth of the time.
         shortlist = np.flatnonzero(score > 0.0)
         if len(shortlist) > SHORTLIST:
             shortlist = shortlist[np.argpartition(-score[shortlist], SHORTLIST)[:SHORTLIST]]
@@ -150,13 +151,13 @@ class Pairs:
         return list(dict.fromkeys([*offered, *best]))
 
     def _with_room(self, screening: Screening) -> Screening:
-        """Without the pairs that meet an obstacle, and those that are not among the best that are looked at for it."""
+        """Drop the pairs that hit an obstacle, and those outside the pool that is tested for collisions."""
         if self.problem.space is None or not self.problem.space.swept:
             return screening
         score = screening.score.ravel()
         sound = np.flatnonzero(score > 0.0)
         best = sound[np.argsort(-score[sound], kind="stable")]
-        # The best ones lie close together: of the rest, too, some are looked at.
+        # The best pairs lie close together and may all hit the same obstacle, so test some of the others too.
         rest = best[SWEPT_POOL :: -(-len(best) // SWEPT_POOL) or 1]
         fitting, portions = np.zeros_like(score), SWEPT_POOL // SWEPT_AT_ONCE
         for k in range(affordable(self.problem.space, portions)):
@@ -165,13 +166,13 @@ class Pairs:
             joints = [self.inputs.fixed[i], self.inputs.moving[i], self.outputs.moving[j], self.outputs.fixed[j]]
             kept = looked[fits(self.problem, self.task, np.stack(joints, axis=1))] if len(looked) else looked
             fitting[kept] = score[kept]
-            # Where forces are limited these leave only some of them.
+            # If forces are limited too, the force check will drop some of these: test the whole pool.
             if np.count_nonzero(fitting) >= FITTING and not looked_at(self.problem):
                 break
         return screening._replace(score=fitting.reshape(screening.score.shape))
 
     def _bearable(self, screening: Screening) -> Screening:
-        """Without the pairs that break a limit on their forces, as :meth:`_with_room` where that is stated."""
+        """Drop the pairs that violate a force limit, or are outside the tested pool, as in :meth:`_with_room`."""
         if not looked_at(self.problem):
             return screening
         score = screening.score.ravel()
@@ -193,8 +194,9 @@ class Pairs:
     def _apart(
         self, screening: Screening, pool: NDArray[np.int64], count: int, aparts: Iterable[float]
     ) -> list[tuple[int, int]]:
-        """Of the pairs of a pool (flat indices) the best-scored ones that lie apart, best first."""
+        """Select the best-scored pairs of a pool (flat indices) that are far enough apart, best first."""
         score = screening.score.ravel()
+        # The index breaks ties, so that the selection is reproducible.
         pool = pool[np.lexsort((pool, -score[pool]))]
         i, j = np.unravel_index(pool, screening.score.shape)
         joints = np.stack(
@@ -204,7 +206,7 @@ class Pairs:
 
 
 def pairs_of_dyads(problem: MotionProblem) -> Pairs:
-    """The pairs of the dyads of both sides; a side that alone is open gets more of them."""
+    """Find the dyads of both sides; if only one side is open, it gets a larger cloud."""
     task = motion_task(problem)
     rng = np.random.default_rng(problem.seed)
     pair, single = (CURVE_PAIR, CURVE_SINGLE) if len(task.points) == 4 else (CLOUD_PAIR, CLOUD_SINGLE)

@@ -1,15 +1,14 @@
-"""Two dyads fitted to demanded poses: some held exactly, others met as nearly as their tolerances ask.
+"""Fit of two dyads to target poses, some of which are exact and others have tolerances.
 
-A demanded pose may be held in all three coordinates, in some of them, or in none (a tolerance τ stands for each
-coordinate that is not held). Poses with at most one held coordinate contribute two residuals, their weighted distance
-from the nearest pose that both dyads allow (:mod:`synthesis.kinds.motion.constraint_manifold`). A pose with a single
-tolerated coordinate has that coordinate among the unknowns, and it is held on both surfaces; so is a pose that is held
-wholly.
+A target pose may be exact in all three coordinates, in some of them, or in none; each other coordinate has a tolerance
+τ. A pose with at most one exact coordinate contributes two residuals, its weighted distance from the nearest pose that
+both dyads allow (:mod:`synthesis.kinds.motion.constraint_manifold`). A pose with a single tolerated coordinate has that
+coordinate among the unknowns and is constrained to both surfaces; a wholly exact pose is constrained in the same way.
 
-What is held is never a penalty. The unknowns are restricted to the surface that the held equations F = 0 define, by
-coordinates y in its tangent space: x(y) solves F(x) = 0 with Nᵀ(x − x₀) = y, N spanning the null space of F's
-derivatives at x₀, so that dx/dy is the solution of [F'; Nᵀ] dx = [0; dy]. Levenberg and Marquardt's method then sees an
-ordinary problem in y. A chart is renewed where a fit has ended until it ends where it began.
+Exact coordinates are constraints, never penalties. The unknowns are restricted to the surface F = 0 of the constraint
+equations by coordinates y in its tangent space: x(y) solves F(x) = 0 with Nᵀ(x − x₀) = y, where N spans the null space
+of F's derivatives at x₀, so dx/dy is the solution of [F'; Nᵀ] dx = [0; dy]. The Levenberg-Marquardt method then sees an
+ordinary problem in y. A new chart is made where a fit has ended, until the cost no longer decreases.
 """
 
 from __future__ import annotations
@@ -35,54 +34,55 @@ Real = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 HOLDS = 1e-13
-"""Value of a held equation (task sizes) at which it counts as met: a few roundings of a pivot some task sizes away."""
+"""Tolerance of a constraint equation, in task sizes: a few rounding errors of a pivot several task sizes away."""
 
 HELD_AS = 0.1
-"""Where a dyad is fitted by itself, a held coordinate counts as tolerated with this share of the least tolerance."""
+"""Tolerance that replaces an exact coordinate in the fit of a single dyad, as a share of the smallest tolerance."""
 
 ROUGH, ROUGHLY = 1e-6, 20
-"""Relative change at which the fit of a single dyad stops, and its evaluations at most: it is a start."""
+"""Relative change at which the fit of a single dyad stops, and its maximum number of evaluations. The result is only a
+starting point."""
 
 NEWTON_STEPS = 25
-"""Steps on to the held surface at most."""
+"""Maximum number of Newton steps onto the constraint surface."""
 
 CHARTS = 4
-"""Charts at most; the second already starts where the first has ended."""
+"""Maximum number of charts; from the second on, each starts where the previous fit ended."""
 
 SETTLED = 1e-9
-"""Relative decrease of the cost by a new chart below which the fit has ended."""
+"""Relative decrease of the cost by a new chart below which the fit has converged."""
 
 
 _NONE = np.zeros(NUMBERS, np.bool_)
 
 
 NOTHING = 1e-28
-"""A cost that is rounding alone: residuals of 1e-14."""
+"""Cost that consists of rounding alone: residuals of 1e-14."""
 
 
 class PoseDemands(NamedTuple):
-    """Demanded poses x, y, φ and their tolerances τ, shape (n, 3), task units; τ = 0 where a coordinate is held."""
+    """Target poses x, y, φ and their tolerances τ, shape (n, 3), task units; τ = 0 for an exact coordinate."""
 
     poses: Real
     tolerances: Real
 
     @property
     def held(self) -> NDArray[np.int64]:
-        """How many coordinates of each pose are held."""
+        """Number of exact coordinates of each pose, shape (n,)."""
         return np.asarray((self.tolerances == 0.0).sum(axis=1))
 
 
 class PoseFit:
-    """The least-squares problem of two surfaces: its unknowns are the dyads' numbers and single tolerated coordinates.
+    """Least-squares problem of two surfaces; the unknowns are the dyads' numbers and single tolerated coordinates.
 
     Parameters
     ----------
     demands : PoseDemands
-        At least one pose is not held wholly.
+        At least one pose is not wholly exact.
     surfaces : pair of Surface
         Input and output dyad.
     fixed : pair of bool arrays, shape (5,)
-        Which numbers of the surfaces may not change.
+        Mask of the numbers of each surface that must not change.
     """
 
     def __init__(
@@ -107,24 +107,24 @@ class PoseFit:
 
     @property
     def freedom(self) -> int:
-        """Unknowns less held equations; below 0 the demands can be met by chance only."""
+        """Number of unknowns minus number of constraint equations; if negative, a solution exists only by chance."""
         return int(self._free.sum()) - 2 * (len(self._loose) + len(self._exact))
 
     def start(self, one: Real, other: Real) -> Real:
-        """The point of the unknowns where two dyads stand and no tolerance is used."""
+        """Start from two dyads: return their vector of unknowns, without deviations within tolerances."""
         return np.concatenate([one, other, np.zeros(len(self._loose))])
 
     def cost(self, x: Real, *, first_order: bool = False) -> float:
-        """Half the sum of squared weighted distances; held equations are not counted."""
+        """Return half the sum of squared weighted distances, without the constraint equations."""
         residuals = self._residuals(x, 1 if first_order else MAX_LINEARIZATIONS)
         return 0.5 * float(residuals @ residuals)
 
     def gradient(self, x: Real) -> Real:
-        """Derivatives of the cost by all unknowns, held equations apart."""
+        """Return the derivatives of the cost by all unknowns, without the constraint equations."""
         return np.asarray(self._jacobian(x).T @ self._residuals(x, MAX_LINEARIZATIONS))
 
     def minimum(self, x: Real, *, tolerance: float = TIGHT, evaluations: int = EVALUATIONS) -> Fit | None:
-        """The minimum in the basin of a point; None where what is held cannot be held there."""
+        """Find the minimum in the basin of a point; return None if the constraints cannot be satisfied nearby."""
         if self.freedom < 0:
             return None
         before = np.inf
@@ -136,24 +136,25 @@ class PoseFit:
             chart = _Chart(self, held)
             ended = chart.fitted(tolerance, evaluations)
             x = ended.point
+            # Without constraints one chart covers the whole space, so a second fit would not help.
             if ended.cost >= before * (1.0 - SETTLED) or not len(self._held(x)[0]) or ended.cost < NOTHING:
                 break
             before = ended.cost
         return ended
 
     def poses(self, x: Real) -> Real:
-        """The pose that the dyads allow nearest to each demanded one, shape (n, 3)."""
+        """Return the pose nearest to each target that the dyads allow, shape (n, 3)."""
         out = self.demands.poses.copy()
         out[self._near] = self._nearest(x, MAX_LINEARIZATIONS)[2]
         out[self._loose, self._axis] += x[2 * NUMBERS :] * self.demands.tolerances[self._loose, self._axis]
         return out
 
     def has_lost_poses(self, x: Real) -> bool:
-        """Whether a demanded pose has no nearest pose that the dyads allow: its residuals are :data:`LOST_RESIDUAL`."""
+        """Return whether a target's nearest allowed pose was not found: its residuals are :data:`LOST_RESIDUAL`."""
         return bool(np.any(np.all(self._nearest(x, MAX_LINEARIZATIONS)[0] == LOST_RESIDUAL, axis=1)))
 
     def _nearest(self, x: Real, linearizations: int) -> tuple[Real, Real, Real]:
-        """Residuals, their Jacobian and the nearest poses; those of the last point are kept, as both are asked for."""
+        """Return residuals, Jacobian and nearest poses; the last point is cached, because solvers request both."""
         key = (linearizations, x.tobytes())
         if key != self._last[0]:
             self._last = (key, self._computed(x, linearizations))
@@ -188,7 +189,7 @@ class PoseFit:
         return out
 
     def _held(self, x: Real) -> tuple[Real, Real]:
-        """Held equations and their derivatives: both surfaces at each held pose, but for its free coordinate."""
+        """Return constraint equations and derivatives: both surfaces at each exact pose, with its free coordinate."""
         poses = [*self._loose, *self._exact]
         values, jacobian = np.zeros(2 * len(poses)), np.zeros((2 * len(poses), len(x)))
         by_pose, by_number = np.empty(3), np.empty(NUMBERS)
@@ -209,7 +210,7 @@ class PoseFit:
         return values, jacobian
 
     def _on_surface(self, x: Real) -> Real | None:
-        """The point of the held surface that Newton's method reaches from x by the shortest steps."""
+        """Project x onto the constraint surface by Newton steps of minimum norm; return None if that fails."""
         x = x.copy()
         for _ in range(NEWTON_STEPS):
             values, jacobian = self._held(x)
@@ -218,11 +219,12 @@ class PoseFit:
             x[self._free] -= np.linalg.lstsq(jacobian[:, self._free], values, rcond=None)[0]
             if not np.all(np.isfinite(x)):
                 return None
+        # Distant pivots leave more rounding than HOLDS allows: accept these, too, before giving up.
         return x if np.abs(self._held(x)[0]).max() <= 1e3 * HOLDS else None
 
 
 class _Chart:
-    """Coordinates y of the held surface about a point of it."""
+    """Local coordinates y of the constraint surface about one of its points."""
 
     def __init__(self, problem: PoseFit, x: Real) -> None:
         self.problem, self.x0 = problem, x
@@ -232,18 +234,18 @@ class _Chart:
         self._last: tuple[bytes, Real | None, Real | None] = (b"", None, None)
 
     def fitted(self, tolerance: float, evaluations: int) -> Fit:
-        """The minimum in this chart, as a point x."""
+        """Minimize the cost in this chart and return the minimum as a point x."""
         start = np.zeros(len(self.tangent))
         ended = fit(self._residuals, self._jacobian, start, tolerance=tolerance, evaluations=evaluations)
         x = self._at(ended.point)[0]
         if x is None:
             return Fit(self.x0, self.problem.cost(self.x0), Status.IMPOSSIBLE)
-        # A lost pose has the cost 1e12 and no gradient: beside it no other gain counts, and any end seems converged.
+        # A lost pose adds 1e12 to the cost and has no gradient: it hides all other changes and mimics convergence.
         status = Status.IMPOSSIBLE if self.problem.has_lost_poses(x) else ended.status
         return Fit(x, ended.cost, status)
 
     def _at(self, y: Real) -> tuple[Real | None, Real | None]:
-        """x(y) and dx/dy; None where Newton's method does not find it."""
+        """Return x(y) and dx/dy, cached for the last y; None if Newton's method fails."""
         key = y.tobytes()
         if key != self._last[0]:
             self._last = (key, *self._solved(y))
@@ -284,9 +286,9 @@ class _Chart:
 
 
 def surface_fit(demands: PoseDemands, surface: Surface, numbers: Real, fixed: Mask = _NONE) -> Fit:
-    """One dyad fitted to all poses by itself, to first order; held coordinates count ten times.
+    """Fit one dyad to all poses, to first order; exact coordinates weigh ten times as much as the others.
 
-    A start for pairs: most good pairs are made of such dyads.
+    The result is a starting point for pairs: most good pairs consist of such dyads.
     """
     least = float(np.min(demands.tolerances[demands.tolerances > 0.0], initial=1.0))
     variances = np.where(demands.tolerances > 0.0, demands.tolerances, HELD_AS * least) ** 2

@@ -26,12 +26,12 @@ from synthesis.model.stated_types import looked_for, without_unclassed
 from synthesis.model.statement import Contradiction, Flag
 
 LEAST_TOLERANCE = 1e-12
-"""Share of the greatest coordinate (or of the task's size), and radians, up to which a tolerance counts as none: the
-coordinate is met exactly. Doubles keep 1e-16 of either, and driving a linkage to a position leaves some thousands of
-these."""
+"""Largest tolerance that counts as zero, as a share of the largest coordinate (or of the task's size) and in radians:
+such a coordinate is met exactly. Doubles resolve 1e-16 of either, and driving a linkage to a position leaves an error
+of several thousand times that."""
 
 LEAST_MOTION = 1e-3
-"""A motion of P below this share of the way to stated pivots does not set the size of the task."""
+"""Minimum motion of P, as a share of its distance to given pivots, that sets the task's size."""
 
 SIDES = "input_side", "output_side"
 
@@ -40,8 +40,8 @@ class MotionProblem(LinkageProblem):
     """Motion generation: a fourbar whose coupler carries a body through two to five positions.
 
     Each side of the linkage is a dyad: a link from a fixed pivot to a moving pivot on the body. n positions leave 5 − n
-    free choices per dyad (Norton, Table 5-3). Choices that are not stated are searched, and the best distinct linkages
-    are returned; for five positions there are six linkages at most, and all that are sound are returned.
+    free choices per dyad (Norton, Table 5-3). Free choices that are not given are searched, and the best distinct
+    linkages are returned. For five positions there are at most six linkages, and all feasible ones are returned.
     """
 
     model_config = ConfigDict(
@@ -180,42 +180,41 @@ class MotionProblem(LinkageProblem):
     ground_line: GroundLine | None = Field(default=None, description="Both fixed pivots lie on this line.")
     method: Literal["auto", "exact", "least_squares"] = Field(
         default="auto",
-        description="How positions are met: exactly (five at most) or as nearly as can be, within tolerances where "
-        "these are stated. auto: exactly up to five, but for positions with tolerances.",
+        description="How positions are met: exactly (at most five), or as closely as possible, within the tolerances "
+        "if any are given. auto: exactly for up to five positions without tolerances.",
     )
 
     driver_dyad: Flag | DriverDyad = Field(
         default=False,
-        description="Add a crank that turns through and moves the linkage from the first position to the last.",
+        description="Add a fully rotating crank that moves the linkage from the first position to the last.",
     )
 
     mechanisms: Mechanisms | None = Field(
         default=None,
-        description="The types of linkages that are looked for; auto: fourbars and slider-cranks, and sixbars where "
-        "none of these is sound. Left out: fourbars, and slider-cranks where pins cannot do it.",
+        description="Types of linkage to search. auto: fourbars and slider-cranks, and sixbars if none of these is "
+        "feasible. Omitted: fourbars, and slider-cranks if no fourbar is feasible.",
     )
     chain: Chain | None = Field(
         default=None,
-        description="What is fixed of the chain of three links that sixbars are made of; with a list of sixbars alone.",
+        description="Fixed dimensions of the three-link chain in a sixbar; only with a list of sixbar types.",
     )
 
     _kinds_of_slider: tuple[Literal["PR", "RP"], ...] = PrivateAttr(default=("PR", "RP"))
 
     @property
     def sixbars(self) -> tuple[Sixbar, ...]:
-        """The types of sixbars that are looked for."""
+        """The types of sixbar to search."""
         return without_unclassed(looked_for(self.mechanisms, SIXBARS, lacking(self)), beyond_unclassed(self))
 
     @property
     def of_two_dyads(self) -> MotionProblem | None:
-        """The problem of the fourbars and slider-cranks among the types, as it is stated without types; None without
-        these."""
+        """The same problem restricted to the fourbars and slider-cranks in ``mechanisms``; None if there are none."""
         named = self.mechanisms
         sides: dict[str, DyadChoices] = {}
         if isinstance(named, list) and self.slider is None:
             if "fourbar" not in named and "slider_crank" not in named:
                 return None
-            # What is looked for where only some types are may fail: that is no reason to look for others.
+            # Fix the dyad types, so that a failed search does not fall back on a type that was not requested.
             if "slider_crank" not in named:
                 sides = {side: getattr(self, side).model_copy(update={"dyad": "RR"}) for side in SIDES}
             elif "fourbar" not in named:
@@ -227,34 +226,34 @@ class MotionProblem(LinkageProblem):
 
     @property
     def kinds_of_slider(self) -> tuple[Literal["PR", "RP"], ...]:
-        """Sliders that may take the place of pins: a line of the body through a pivot only where no types are named."""
+        """Kinds of slider that may replace pins: RP (inverted slider-crank) only if ``mechanisms`` is no list."""
         return self._kinds_of_slider
 
     @property
     def few_enough(self) -> bool:
-        """Whether the positions are not too many for a sixbar."""
+        """Whether the number of positions is within the limit for sixbars."""
         return len(self.positions) <= MOST_OF_SIXBARS
 
     @property
     def made(self) -> Made | str:
-        """Poses at inputs that are free."""
+        """Manufacturing analysis: the targets are poses at free input angles; an error text if it is unsupported."""
         if self.driver is not None:
-            return "is not built for linkages with a driver dyad; leave one of the two out"
+            return "does not support linkages with a driver dyad; omit one of the two"
         if self.slider == "RP" or self.input_side.dyad == "PR":
-            return "is built for fourbars, and for slider-cranks with the slider on the output side"
+            return "supports only fourbars, and slider-cranks with the slider on the output side"
         return Made(True, True, True, len(self.positions), self._ungridded)
 
     @property
     def _ungridded(self) -> str:
-        """What is stated and cannot be had on a grid."""
+        """Error text for a given value that rounding to a grid would change; empty if there is none."""
         for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
             for field in ("moving_pivot", "coupler_vector", "link_angle", "rotations"):
                 if getattr(side, field) is not None:
-                    return f"no linkage on a grid keeps {name}.{field} as it is stated; leave one of them out"
-        return "" if self.ground_line is None else "no grid keeps pivots on ground_line; leave one of them out"
+                    return f"a grid cannot keep {name}.{field} at its given value; omit one of the two"
+        return "" if self.ground_line is None else "a grid cannot keep pivots on ground_line; omit one of the two"
 
     def held_to(self, design: Any) -> Held:
-        """The positions, with their tolerances."""
+        """Return the positions and tolerances that a manufactured design must keep; angles in radians."""
         limits = np.array(self.limits)
         limits[:, 2] = np.radians(limits[:, 2])
         stands = design.mechanism.reference_body_angle
@@ -270,7 +269,7 @@ class MotionProblem(LinkageProblem):
 
     @property
     def first_pose(self) -> tuple[complex, float]:
-        """The first position."""
+        """P as a complex number, length units, and the body's angle, degrees, in the first position."""
         return self.positions[0].point, self.positions[0].angle
 
     @property
@@ -280,7 +279,7 @@ class MotionProblem(LinkageProblem):
 
     @property
     def slider(self) -> Literal["PR", "RP"] | None:
-        """The slider that is asked for on one side, if one is."""
+        """The type of the requested slider, on either side; None if both sides have pins."""
         for side in (self.output_side, self.input_side):
             if side.dyad in ("PR", "RP"):
                 return side.dyad
@@ -288,16 +287,16 @@ class MotionProblem(LinkageProblem):
 
     @property
     def driver(self) -> DriverDyad | None:
-        """What is wanted of the driver dyad, if one is."""
+        """The options of the driver dyad; None if no driver dyad is requested."""
         if isinstance(self.driver_dyad, DriverDyad):
             return self.driver_dyad
         return DriverDyad() if self.driver_dyad else None
 
     @property
     def limits(self) -> list[tuple[float, float, float]]:
-        """How far each position may be missed in x, y (length units) and angle (degrees).
+        """Tolerance of each position in x, y (length units) and angle (degrees).
 
-        0 where a coordinate is met exactly; infinite where it is fitted without a limit.
+        0 for a coordinate that is met exactly; infinite for one that is fitted without a limit.
         """
         fitted = self.fitted
         return [self._limits_of(position, fitted) for position in self.positions]
@@ -307,20 +306,21 @@ class MotionProblem(LinkageProblem):
         if isinstance(tolerance, Tolerance):
             return self._resolved(tolerance.x or 0.0, tolerance.y or 0.0, tolerance.angle or 0.0)
         if tolerance is not None:
+            # The angle may move a point one task size away by as much as the length tolerance.
             return self._resolved(tolerance, tolerance, math.degrees(min(tolerance / self.task_size, math.pi)))
         return (math.inf, math.inf, math.inf) if fitted and not position.exact else (0.0, 0.0, 0.0)
 
     def _resolved(self, x: float, y: float, angle: float) -> tuple[float, float, float]:
-        """Tolerances, 0 where they are below what doubles resolve."""
+        """Return the tolerances, with those below double-precision resolution set to 0."""
         least = LEAST_TOLERANCE * max(self.task_size, *(max(abs(p.x), abs(p.y)) for p in self.positions))
         turned = math.degrees(LEAST_TOLERANCE)
         return x if x > least else 0.0, y if y > least else 0.0, angle if angle > turned else 0.0
 
     @property
     def fitted(self) -> bool:
-        """Whether positions without a tolerance are fitted: more than five of them, or least squares asked for.
+        """Whether positions without a tolerance are fitted: more than five positions, or least squares requested.
 
-        Where some position has a tolerance, the others are met exactly.
+        If any position has a tolerance, those without one are met exactly.
         """
         if self._toleranced:
             return False
@@ -329,28 +329,28 @@ class MotionProblem(LinkageProblem):
 
     @property
     def approximate(self) -> bool:
-        """Whether the positions are fitted, with tolerances or without: five of them or more."""
+        """Whether five or more positions are fitted, with tolerances or without."""
         return self.fitted or (self._misses_allowed and len(self.positions) >= MOST_HELD)
 
     @property
     def few_tolerated(self) -> bool:
-        """Whether tolerances of two to four positions are used."""
+        """Whether there are two to four positions, some with tolerances that the method may use."""
         return self._misses_allowed and len(self.positions) < MOST_HELD and self.method != "exact"
 
     @property
     def steered(self) -> bool:
-        """Whether linkages are steered into these: fourbars of which no more is stated than pivots."""
+        """Whether a constrained fit uses these tolerances: fourbars with no given values but pivots."""
         return self.few_tolerated and self._pivots_alone
 
     @property
     def steered_in_room(self) -> bool:
-        """Whether linkages are steered into the tolerances and a room: the same of any number of positions."""
+        """Whether a constrained fit applies tolerances and a workspace together, for any number of positions."""
         tolerated = self._misses_allowed and (self.few_tolerated or self.approximate)
         return tolerated and self._pivots_alone and self.space is not None and self.space.demanding
 
     @property
     def _pivots_alone(self) -> bool:
-        """Whether a fourbar is asked for of which no more is stated than pivots."""
+        """Whether the problem is a plain fourbar whose only given values are pivots."""
         sides = self.input_side, self.output_side
         return self.driver is None and all(side.dyad in ("any", "RR") and side.pivots_alone for side in sides)
 
@@ -360,16 +360,15 @@ class MotionProblem(LinkageProblem):
 
     @property
     def _misses_allowed(self) -> bool:
-        """Whether some tolerance is more than rounding."""
+        """Whether some tolerance exceeds rounding error."""
         return self._toleranced and any(limit > 0.0 for limits in self.limits for limit in limits)
 
     @property
     def task_size(self) -> float:
-        """The length that tolerances and free choices are measured by, in length units.
+        """Characteristic length of the task, in length units; tolerances and free choices are relative to it.
 
-        The greatest distance between two positions of P; where P moves by less than a thousandth of the way to the
-        pivots and regions that the client stated, or of the length of a chain, that way; where nothing is stated
-        either, 1.
+        The maximum distance between two positions of P. If P moves by less than a thousandth of its distance to the
+        given pivots and regions, or of the length of a given chain: that distance. If none is given either: 1.
         """
         points = [position.point for position in self.positions]
         moved = max(abs(p - q) for p in points for q in points)
@@ -378,7 +377,7 @@ class MotionProblem(LinkageProblem):
 
     @property
     def size_of_chain(self) -> float:
-        """The longest length that is stated of a chain, or way to one of its pivots; 0 where none is stated."""
+        """The longest given length of the chain, or distance to one of its pivots; 0 if none is given."""
         return 0.0 if self.chain is None else self.chain.size_from(self.positions[0].point)
 
     @property
@@ -401,19 +400,21 @@ class MotionProblem(LinkageProblem):
         return points
 
     def contradictions(self) -> list[Contradiction]:
-        """Faults that no single field shows: equal positions, too many or colliding choices."""
+        """Return errors that involve several fields: equal positions, too many or conflicting choices."""
         listed = contradictions_of(self)
         part = None if self.mechanisms is None else self.of_two_dyads
         return listed if part is None else list(dict.fromkeys([*listed, *part.contradictions()]))
 
     @property
     def held_at_ends(self) -> tuple[dict[int, complex], dict[int, complex]]:
-        """P and the body's rotation e^{iα} in the first position and the last, by their numbers, if these are held; of
-        the last only where the first is."""
+        """P and the body's rotation e^{iα} at the first and last position, by index, if these are met exactly.
+
+        The last position is included only if the first one is exact too: rotations are measured from the first.
+        """
         ends = [k for k in (0, len(self.positions) - 1) if self.limits[k] == (0.0, 0.0, 0.0)]
         return self.places_of(ends if 0 in ends else [])
 
     def places_of(self, listed: list[int]) -> tuple[dict[int, complex], dict[int, complex]]:
-        """P (length units) and the body's rotation e^{iα} in some positions, by their numbers."""
+        """Return P (length units) and the body's rotation e^{iα} at the listed positions, both by index."""
         turns = self.turns
         return {k: self.positions[k].point for k in listed}, {k: cmath.rect(1.0, turns[k]) for k in listed}

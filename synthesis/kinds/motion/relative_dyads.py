@@ -1,14 +1,14 @@
-"""Dyads between two moving bodies, five relative poses of them, for many pairs of bodies at once.
+"""Dyads between two moving bodies in five relative poses, compiled for thousands of pairs of bodies.
 
-Seen from the first body, the second takes five positions X → r_k X + c_k, the first of them as it stands. A link that
-is pinned to both, at O of the first and A of the second, keeps its length: four conditions that are linear in
+Relative to the first body, the second takes five positions X → r_k X + c_k, the first of which is the identity. A link
+pinned to both, at O on the first and A on the second, has constant length: four conditions that are linear in
 
     x = (p, A, O, d + ie),      with two quadrics p (d + ie) = conj(O) A     (:mod:`synthesis.kinds.motion.sections`).
 
 They leave a plane in which the quadrics are two conics. A member det(F₁ + λF₂) = 0 of their pencil is a pair of lines,
-which meet the conics in the four common points (Richter-Gebert, *Perspectives on Projective Geometry*, Sec. 11.4); real
-ones are refined by Newton's method. :func:`synthesis.kinds.motion.sections.section` proves of one pair of bodies that
-it has all; here thousands are solved in the time of one proof, and what does not converge is left out.
+which intersect the conics in the four common points (Richter-Gebert, *Perspectives on Projective Geometry*, Sec. 11.4);
+real ones are refined by Newton's method. :func:`synthesis.kinds.motion.sections.section` finds a provably complete set
+for one pair of bodies; this module solves thousands in the same time, and drops dyads that do not converge.
 """
 
 from __future__ import annotations
@@ -29,22 +29,23 @@ Complex = NDArray[np.complex128]
 _PLACES = types.complex128[::1]
 
 CONDITIONS = 4
-"""Of five positions."""
+"""Number of conditions of five positions."""
 
 MOST = 4
-"""Dyads of five positions at most."""
+"""Maximum number of dyads of five positions."""
 
 VANISHES = 1e-13
-"""Pivot of the elimination, beside unit rows, from which on conditions repeat one another: a family, none returned."""
+"""Minimum pivot of the elimination of unit rows; below it the conditions are dependent, and no dyad of the family is
+returned."""
 
 FAR = 100.0
-"""A pivot farther away than this, in task sizes, is of no use."""
+"""Maximum distance of a usable pivot, in task sizes."""
 
 NEWTON_STEPS, CONVERGED = 8, 1e-13
-"""Steps at most, and the residual beside the square of the dyad's size at which they have arrived."""
+"""Maximum number of Newton steps, and the convergence tolerance of the residual relative to the squared dyad size."""
 
 SAME = 1e-7
-"""Distance, beside the dyad's size, of two dyads that are one."""
+"""Distance of two dyads, relative to their size, below which they are duplicates."""
 
 OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
 
@@ -53,9 +54,9 @@ OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
 def relative(
     one: Complex, one_turn: Complex, other: Complex, other_turn: Complex, shift: Complex, turn: Complex
 ) -> None:
-    """The poses of another body as a first one sees it: X → turn · X + shift; all have the shape (5,).
+    """Compute the poses of a body relative to a first one: X → turn · X + shift; all arrays have shape (5,).
 
-    A body's pose takes its points from the first position to X → z + u (X − z₀), with u₀ = 1.
+    A body's pose moves its points from the first position to X → z + u (X − z₀), with u₀ = 1.
     """
     for k in range(len(one)):
         back = one_turn[k].conjugate()
@@ -70,16 +71,16 @@ def relative(
 def dyads(
     shift: Complex, turn: Complex, known_fixed: complex, known_moving: complex, fixed: Complex, moving: Complex
 ) -> int:
-    """All real dyads of five relative poses but one that is known; their number, at most four.
+    """Solve for all real dyads of five relative poses, except a known one; return their number, at most four.
 
     Parameters
     ----------
     shift, turn : complex, shape (5,)
         Poses of :func:`relative`.
     known_fixed, known_moving : complex
-        A dyad that the bodies have already; NaN for none.
+        A dyad that already joins the bodies; NaN for none.
     fixed, moving : complex, shape (4,)
-        Filled: pins on the first and on the second body, in the first position.
+        Output: pins on the first and on the second body, in the first position.
     """
     basis = np.empty((7, 3))
     if not _plane(shift, turn, basis):
@@ -98,6 +99,7 @@ def dyads(
         if not _refined(shift, turn, pair):
             continue
         size = 1.0 + abs(pair[0]) + abs(pair[1])
+        # Written as "not <=", so that a NaN known dyad never counts as equal.
         new = not (abs(pair[0] - known_fixed) + abs(pair[1] - known_moving) <= SAME * size)
         for m in range(count):
             new &= abs(pair[0] - fixed[m]) + abs(pair[1] - moving[m]) > SAME * size
@@ -109,11 +111,15 @@ def dyads(
 
 @njit(**OPTIONS)
 def _plane(shift: Complex, turn: Complex, basis: Real) -> bool:
-    """What the four conditions leave of the seven coordinates, by elimination with full pivoting: columns (7, 3)."""
+    """Solve the four conditions by elimination with full pivoting: write a basis of the null space, columns (7, 3).
+
+    Return False if the conditions are dependent.
+    """
     rows = np.empty((CONDITIONS, 7))
     for k in range(CONDITIONS):
         r, c = turn[k + 1], shift[k + 1]
         forward = r.conjugate() * c
+        # 1 − cos from the sine avoids cancellation at small rotations.
         fall = r.imag * r.imag / (1.0 + abs(r.real)) if r.real > 0.0 else 1.0 - r.real
         rows[k, 0], rows[k, 1], rows[k, 2], rows[k, 3] = 0.5 * abs(c) ** 2, forward.real, forward.imag, -c.real
         rows[k, 4], rows[k, 5], rows[k, 6] = -c.imag, fall, r.imag
@@ -159,7 +165,7 @@ def _plane(shift: Complex, turn: Complex, basis: Real) -> bool:
 
 @njit(**OPTIONS)
 def _conics(basis: Real, first: Real, second: Real) -> None:
-    """The quadrics on the plane, as symmetric matrices."""
+    """Write the quadrics restricted to the plane, as symmetric matrices of unit norm."""
     sizes = np.zeros(2)
     for i in range(3):
         p, ax, ay, ox, oy, d, e = (
@@ -180,7 +186,7 @@ def _conics(basis: Real, first: Real, second: Real) -> None:
 
 @njit(**OPTIONS)
 def _adjugate(m: Real, out: Real) -> None:
-    """Of a symmetric matrix."""
+    """Compute the adjugate of a symmetric 3 × 3 matrix."""
     out[0, 0] = m[1, 1] * m[2, 2] - m[1, 2] * m[1, 2]
     out[1, 1] = m[0, 0] * m[2, 2] - m[0, 2] * m[0, 2]
     out[2, 2] = m[0, 0] * m[1, 1] - m[0, 1] * m[0, 1]
@@ -191,11 +197,11 @@ def _adjugate(m: Real, out: Real) -> None:
 
 @njit(**OPTIONS)
 def _common(first: Real, second: Real, points: Real) -> int:
-    """Real common points of two conics, (count, 3)."""
+    """Find the real common points of two conics, shape (count, 3); return their number."""
     adjugate, other = np.empty((3, 3)), np.empty((3, 3))
     _adjugate(first, adjugate)
     _adjugate(second, other)
-    # det(F₁ + λ F₂), by the derivatives of the determinant.
+    # Coefficients of det(F₁ + λ F₂), from the derivatives of the determinant.
     c0 = c1 = c2 = c3 = 0.0
     for i in range(3):
         c0 += adjugate[0, i] * first[0, i]
@@ -221,7 +227,8 @@ def _common(first: Real, second: Real, points: Real) -> int:
 
 @njit(**OPTIONS)
 def _cubic_roots(c0: float, c1: float, c2: float, c3: float, roots: Real) -> int:
-    """Real roots (μ, λ) of c₀μ³ + c₁μ²λ + c₂μλ² + c₃λ³, unit vectors."""
+    """Find the real roots (μ, λ) of c₀μ³ + c₁μ²λ + c₂μλ² + c₃λ³ as unit vectors; return their number."""
+    # Divide by the larger of the end coefficients; exchanging μ and λ reverses the coefficients.
     turned = abs(c3) < abs(c0)
     count: int = _cubic_roots_of(c3, c2, c1, c0, roots) if turned else _cubic_roots_of(c0, c1, c2, c3, roots)
     for n in range(count if turned else 0):
@@ -231,7 +238,7 @@ def _cubic_roots(c0: float, c1: float, c2: float, c3: float, roots: Real) -> int
 
 @njit(**OPTIONS)
 def _cubic_roots_of(c0: float, c1: float, c2: float, c3: float, roots: Real) -> int:
-    """The same where c₃ does not vanish."""
+    """Find the same roots by Cardano's formula, if c₃ does not vanish; polish them by Newton's method."""
     if c3 == 0.0:
         return 0
     a, b, c = c2 / c3, c1 / c3, c0 / c3
@@ -259,7 +266,7 @@ def _cubic_roots_of(c0: float, c1: float, c2: float, c3: float, roots: Real) -> 
 
 @njit(**OPTIONS)
 def _lines(pair: Real, bars: Real) -> bool:
-    """Splits a conic of rank two into its two lines (2, 3); whether they are real."""
+    """Split a conic of rank two into its two lines (2, 3); return whether they are real."""
     adjugate = np.empty((3, 3))
     _adjugate(pair, adjugate)
     i = 0
@@ -287,7 +294,8 @@ def _lines(pair: Real, bars: Real) -> bool:
 
 @njit(**OPTIONS)
 def _on_line(line: Real, first: Real, second: Real, points: Real, count: int) -> int:
-    """Adds the real points of a line that lie on both conics: on the one that says more of the line."""
+    """Append the real points of a line on both conics, from the conic with the larger restriction to the line."""
+    # Eliminate the coordinate with the largest coefficient, to parametrise the line without small divisors.
     i = 0
     for j in range(1, 3):
         if abs(line[j]) > abs(line[i]):
@@ -324,7 +332,7 @@ def _on_line(line: Real, first: Real, second: Real, points: Real, count: int) ->
 
 @njit(**OPTIONS)
 def _refined(shift: Complex, turn: Complex, pair: Complex) -> bool:
-    """Newton's method on the four conditions of (O, A); whether it arrived."""
+    """Refine (O, A) by Newton's method on its four conditions; return whether it converged."""
     system, values, pivots = np.empty((CONDITIONS, 4)), np.empty(CONDITIONS), np.empty(CONDITIONS, np.int64)
     for _ in range(NEWTON_STEPS):
         o, a = pair[0], pair[1]

@@ -1,8 +1,8 @@
-"""Which linkages that carry a body are likely to keep clear of obstacles: looked at in a few positions on their way.
+"""Pre-filter: test many linkages for collisions with obstacles at a few sampled positions of their motion.
 
-A kernel that leaves out what plainly does not fit, so that only what may fit is driven and proven. What it passes may
-still fail between the positions; what it drops would fail. What costs least comes first: a few positions before those
-between them, the box before obstacles, and circles around outlines before the outlines.
+A compiled kernel drops linkages that clearly collide, so that only the others are driven and verified. A linkage that
+passes may still collide between the samples; one that is dropped would fail. Cheap tests come first: a few widely
+spaced positions before those between them, the box before obstacles, and circles around outlines before the outlines.
 """
 
 from __future__ import annotations
@@ -22,32 +22,32 @@ from synthesis.kinds.motion.ways import turned_way
 from synthesis.model.space import Space
 
 LOOKED_AT = 60
-"""Positions on the way from the first target to the last, or round the cycle."""
+"""Number of sampled positions from the first target to the last, or over the cycle."""
 
 CORNERS = 60
-"""Corners of obstacles with which as many fourbars are looked at as there are to be; with more of them, fewer."""
+"""Number of obstacle corners up to which the full number of fourbars is tested; with more corners, fewer are tested."""
 
 SURE = 1e-6
-"""Share of the task's size by which a distance may fall short: these numbers are for choosing only."""
+"""Tolerance of a clearance, as a share of the task's size: this filter only selects candidates."""
 
 
 def affordable(space: Space, portions: int) -> int:
-    """How many portions of fourbars are looked at, of as many as would be in a room of few corners; one at least."""
+    """Return the number of batches to test, at least one: ``portions``, reduced if obstacles have many corners."""
     corners = sum(len(points) for points, _ in (zone.outline for zone in space.obstacles))
     return max(int(portions * min(CORNERS / max(corners, 1), 1.0)), 1)
 
 
 def fits(problem: MotionProblem, task: MotionTask, joints: Complex) -> NDArray[np.bool_]:
-    """Which fourbars keep within the box and clear of the obstacles where they are looked at.
+    """Return a mask of the fourbars that stay within the box and clear of obstacles at the sampled positions.
 
     Parameters
     ----------
     problem : MotionProblem
-        With a space that demands something of the motion.
+        A problem whose ``space`` constrains the motion.
     task : MotionTask
         Its positions.
     joints : complex, shape (n, 4)
-        O2, A, B, O4 at the first target, in task coordinates; fourbars whose motion goes through the targets.
+        O2, A, B, O4 at the first target, in task coordinates; fourbars that meet the targets.
     """
     space = problem.space
     assert space is not None
@@ -63,14 +63,14 @@ def fits(problem: MotionProblem, task: MotionTask, joints: Complex) -> NDArray[n
 
 
 def sliders_fit(problem: MotionProblem, task: MotionTask, joints: Complex, angles: Real) -> NDArray[np.bool_]:
-    """The same of slider-cranks that their crank drives.
+    """Return the same mask for slider-cranks driven by their crank.
 
     Parameters
     ----------
     joints : complex, shape (n, 3)
         O2, A and the pin B of the slider at the first target, in task coordinates.
     angles : float, shape (n,)
-        Of the lines on which B slides, radians.
+        Angles of the lines on which B slides, radians.
     """
     space = problem.space
     assert space is not None
@@ -84,12 +84,12 @@ def sliders_fit(problem: MotionProblem, task: MotionTask, joints: Complex, angle
     at_b = at_a + along[:, None] * (np.sign(reach)[:, None] * np.sqrt(np.maximum(square, 0.0)) + 1j * off)
     spin = (at_b - at_a) / (b - a)[:, None]
     at_p = at_a + (point - a)[:, None] * spin
-    # No link is behind the slider: a bar without length at B stands for it.
+    # A slider has no output link: represent it by a bar of zero length at B.
     return _kept(space, task, _Way(o2, at_b, at_a, at_b, at_p, spin, square >= 0.0))
 
 
 class _Way(NamedTuple):
-    """Linkages at the inputs that are looked at: O2 of shape (n,), O4 of (n, 1) or (n, m), the others of (n, m)."""
+    """Linkages at the sampled inputs: O2 of shape (n,), O4 of shape (n, 1) or (n, m), the others of shape (n, m)."""
 
     o2: Complex
     o4: Complex
@@ -101,7 +101,7 @@ class _Way(NamedTuple):
 
 
 def _kept(space: Space, task: MotionTask, way: _Way) -> NDArray[np.bool_]:
-    """Which of them keep within the box and clear of the obstacles."""
+    """Return a mask of the linkages that stay within the box and clear of the obstacles."""
     point = complex(task.origin)
     corners = [zone.outline for zone in space.obstacles]
     starts = np.cumsum([0, *(len(points) for points, _ in corners)])
@@ -121,7 +121,7 @@ def _kept(space: Space, task: MotionTask, way: _Way) -> NDArray[np.bool_]:
 
 
 def _inputs(space: Space, task: MotionTask, o2: Complex, a: Complex) -> Real:
-    """Input angles that are looked at, shape (n, LOOKED_AT)."""
+    """Return the sampled input angles, radians, shape (n, LOOKED_AT)."""
     stands = np.angle(a - o2)
     shares = np.linspace(0.0, 1.0, LOOKED_AT)
     if space.over == "cycle":
@@ -130,7 +130,7 @@ def _inputs(space: Space, task: MotionTask, o2: Complex, a: Complex) -> Real:
 
 
 def _box(space: Space) -> Real:
-    """Left, right, low, high; infinite where no box is given."""
+    """Return the box as (left, right, low, high); infinite bounds without a box."""
     if space.box is None:
         return np.array([-np.inf, np.inf, -np.inf, np.inf])
     (left, low), (right, high) = space.box
@@ -138,7 +138,7 @@ def _box(space: Space) -> Real:
 
 
 def _coarse_first(count: int) -> NDArray[np.int64]:
-    """The numbers below a count, those first that lie far apart."""
+    """Return the integers below a count in order of decreasing spacing, so that gross collisions show early."""
     order: dict[int, None] = {}
     step = 1 << (count - 1).bit_length()
     while step:
@@ -169,20 +169,20 @@ def _look(
     slack: float,
     out: NDArray[np.bool_],
 ) -> None:
-    """Fill ``out``: whether each of n linkages keeps clear at m inputs; shapes of the joints as in :class:`_Way`."""
+    """Fill ``out`` with whether each of n linkages is clear at m inputs; shapes of the joints as in :class:`_Way`."""
     bar, hull, body = np.empty(2, np.complex128), np.empty(3, np.complex128), np.empty(len(outline), np.complex128)
     for n in range(len(o2)):
         free = True
         for m in order:
             if not valid[n, m]:
-                continue
+                continue  # the linkage cannot be assembled here; the verification decides about that
             hull[0], hull[1], hull[2] = a[n, m], b[n, m], p[n, m]
             for k in range(len(outline)):
                 body[k] = p[n, m] + spin[n, m] * outline[k]
             coupler = hull[:2] if len(outline) else hull
             ground = o4[n, m if o4.shape[1] > 1 else 0]
             bar[0], bar[1] = ground, o2[n]
-            # The other joints of both links are those of the coupler.
+            # The moving ends of both ground links are on the coupler, whose box test covers them.
             free = _boxed(coupler, half, box, slack) and _boxed(bar, half, box, slack) and _boxed(body, 0.0, box, slack)
             free = free and _clear(coupler, half, corners, starts, radii, middles, reaches, clearance)
             free = free and _clear(body, 0.0, corners, starts, radii, middles, reaches, clearance)
@@ -197,7 +197,7 @@ def _look(
 
 @njit(**OPTIONS)
 def _boxed(core: Complex, half: float, box: Real, slack: float) -> bool:
-    """Whether a part lies in the box."""
+    """Return whether a part lies in the box."""
     for z in core:
         if z.real - half < box[0] - slack or z.real + half > box[1] + slack:
             return False
@@ -217,7 +217,7 @@ def _clear(
     reaches: Real,
     clearance: float,
 ) -> bool:
-    """Whether a part keeps clear of all obstacles; one without corners does."""
+    """Return whether a part is clear of all obstacles; a part without corners is."""
     if not len(core):
         return True
     middle, reach = core.mean(), 0.0
@@ -225,6 +225,7 @@ def _clear(
         reach = max(reach, abs(z - middle))
     for k in range(len(radii)):
         wanted = clearance + half + radii[k]
+        # Enclosing circles decide most cases without the distance of the outlines.
         if abs(middle - middles[k]) - reach - reaches[k] >= wanted:
             continue
         if distance(core, corners[starts[k] : starts[k + 1]]) < wanted:

@@ -1,14 +1,14 @@
-"""Pairs of dyads from which linkages are steered into a room: drawn where their pivots may lie.
+"""Starting pairs of dyads for constrained fits in a workspace, sampled in the permitted areas of their pivots.
 
-A dyad that meets its poses but for deviations has a link of one length l. With u the link's direction in a pose, the
-deviations (x, y, angle), in units of their tolerances t, change its length by
+A dyad that meets its poses within tolerances has a link of constant length l. With u the link's direction in a pose,
+the deviations (x, y, angle), in units of their tolerances t, change its length by
 
     u_x t_x δ_x + u_y t_y δ_y + Re(ū i e^{iα} arm) t_α δ_α = σ |δ|        at most,
 
-so that (|A_k − O| − l)/σ_k is the least deviation with which pose k is met. Dyads are drawn in the zones and moved
-least to where the squares of these are least, all at once, by Gauss and Newton's method. All pairs of what is left are
-screened at the demanded poses; of the best, the least deviations that both links need together are those to start from,
-and those that lack least of the room come first.
+so |(|A_k − O| − l)/σ_k| is the minimum deviation that meets pose k. Dyads are sampled in the zones and moved, all at
+once and as little as possible, to minimise the sum of the squared deviations by the Gauss-Newton method. All pairs of
+the remaining dyads are screened at the target poses. The starts of the best pairs use the minimum deviations that both
+links need together; pairs that need small deviations come first.
 """
 
 from __future__ import annotations
@@ -26,51 +26,51 @@ from synthesis.kinds.motion.steered_starts import EASED_ANGLE, FARTHEST, Start, 
 from synthesis.kinds.motion.task import Complex, MotionTask, Real
 
 DRAWN = 6000
-"""Dyads of a side that are drawn."""
+"""Number of sampled dyads per side."""
 
 KEPT = 500
-"""Dyads of a side of which pairs are made."""
+"""Maximum number of dyads per side that are paired."""
 
 STEPS = 5
-"""Gauss–Newton steps that bring dyads to the poses."""
+"""Number of Gauss–Newton steps that fit dyads to the poses."""
 
 HELD = 1e-3
-"""σ of a pose that is held, task sizes: it is met to rounding later."""
+"""σ of an exact pose, task sizes; the later fit meets it to rounding."""
 
 FREE = 0.1
-"""Way of a pivot from where it was drawn, task sizes, that counts as much as one tolerance."""
+"""Displacement of a pivot from its sampled position, task sizes, that weighs as much as one tolerance."""
 
 ASTRAY = 0.03
-"""Distance from its zone, task sizes, at which a pivot counts half."""
+"""Distance from its zone, task sizes, at which the weight of a pivot is halved."""
 
 NEEDED = 1.5
-"""Deviation of a pose, in tolerances, that a dyad may need by itself."""
+"""Maximum deviation of a pose, in tolerances, that a single dyad may need."""
 
 OUT_OF_ORDER = 0.3
-"""How much a pair counts that does not meet the demanded poses in order."""
+"""Weight of a pair that does not meet the target poses in order."""
 
 POOL = 1000
-"""Best pairs of which starts are chosen."""
+"""Number of best pairs from which starts are selected."""
 
 
 class _Side(NamedTuple):
-    """Dyads of one side, the body in its first demanded pose, and how they weigh by their zones and what they need."""
+    """Dyads of one side with the body in its first target pose, and their weights by zones and needed deviations."""
 
     dyads: Dyads
     weight: Real
 
 
 def pairs_in_room(problem: MotionProblem, task: MotionTask, rows: Real) -> tuple[list[Start], Real]:
-    """Starts, and their scores, those first that score best.
+    """Return starts and their scores, best first.
 
     Parameters
     ----------
     problem : MotionProblem
-        With a room.
+        A problem with a workspace.
     task : MotionTask
-        The demanded poses.
+        The target poses.
     rows : float, shape (n, 6)
-        Of :func:`synthesis.kinds.motion.steered_fit.demanded_rows`.
+        Result of :func:`synthesis.kinds.motion.steered_fit.demanded_rows`.
     """
     rng = np.random.default_rng(problem.seed)
     sides, areas = (problem.input_side, problem.output_side), side_areas(problem)
@@ -82,7 +82,7 @@ def pairs_in_room(problem: MotionProblem, task: MotionTask, rows: Real) -> tuple
     met = screen(task, one.dyads, other.dyads, wanted).score
     score = met * np.outer(one.weight, other.weight)
     if np.count_nonzero(met) < POOL:
-        # Deviations may bring poses that lie close together into order.
+        # Poses that lie close together may come into order by deviations: include such pairs at a lower weight.
         any_order = screen(task, one.dyads, other.dyads, wanted._replace(in_order=False)).score
         score = np.where(met > 0.0, score, OUT_OF_ORDER * any_order * np.outer(one.weight, other.weight))
     best = np.argpartition(-score, min(POOL, score.size - 1), axis=None)[:POOL]
@@ -99,7 +99,7 @@ def pairs_in_room(problem: MotionProblem, task: MotionTask, rows: Real) -> tuple
 
 
 def _side(task: MotionTask, rows: Real, choices: DyadChoices, areas: SideAreas, rng: np.random.Generator) -> _Side:
-    """The dyads of one side that need least, in their zones or near to them."""
+    """Sample the dyads of one side that need the smallest deviations, in their zones or near them."""
     fixed, moving, free = drawn_pivots(task, choices, areas, rng, DRAWN)
     fixed, moving, needed = _brought(rows, fixed, moving, task.points[0], free)
     reach = np.maximum(np.abs(fixed), np.abs(moving))
@@ -112,7 +112,7 @@ def _side(task: MotionTask, rows: Real, choices: DyadChoices, areas: SideAreas, 
 
 
 class _Links(NamedTuple):
-    """Links of dyads in all poses, shape (m, n): their vectors, lengths, and what deviations change of these (…, 3)."""
+    """Links of dyads in all poses, shape (m, n): vectors, lengths, and derivatives by the deviations (…, 3)."""
 
     vectors: Complex
     lengths: Real
@@ -130,9 +130,9 @@ def _links(rows: Real, fixed: Complex, moving: Complex, home: complex) -> _Links
 
 
 def _brought(rows: Real, fixed: Complex, moving: Complex, home: complex, free: Real) -> tuple[Complex, Complex, Real]:
-    """Dyads moved least to where they need least, and the greatest deviation that one of their poses needs.
+    """Move dyads to minimise their needed deviations; also return the maximum deviation over the poses of each.
 
-    ``free`` is 1 for the coordinates of both pivots that may be moved, else 0; shape (4,).
+    ``free`` is 1 for the coordinates of both pivots that may change, else 0; shape (4,).
     """
     spins = np.exp(1j * rows[:, 2])
     drawn = np.stack([fixed.real, fixed.imag, moving.real, moving.imag], axis=1)
@@ -149,6 +149,7 @@ def _brought(rows: Real, fixed: Complex, moving: Complex, home: complex, free: R
         jacobian = np.stack([*columns, -np.ones_like(off)], axis=-1) / sigma[..., None]
         here = np.stack([fixed.real, fixed.imag, moving.real, moving.imag, np.zeros(len(fixed))], axis=1)
         square = jacobian.swapaxes(-1, -2) @ jacobian
+        # A prior keeps the pivots near their samples; the link length, the last unknown, is free.
         pulled = np.array([FREE, FREE, FREE, FREE, np.inf]) ** -2
         right = -(jacobian.swapaxes(-1, -2) @ off[..., None])[..., 0]
         right[:, :4] -= (here[:, :4] - drawn) * pulled[:4]
@@ -162,7 +163,7 @@ def _brought(rows: Real, fixed: Complex, moving: Complex, home: complex, free: R
 
 
 def _needed(rows: Real, pivots: Complex, home: complex) -> Real:
-    """The least deviations, in tolerances, with which both links of pairs keep their lengths; shape (m, n, 3)."""
+    """Return the minimum deviations, in tolerances, at which both links of pairs have constant length: (m, n, 3)."""
     links = [_links(rows, pivots[:, k], pivots[:, k + 2], home) for k in (0, 1)]
     weights = [1.0 / np.hypot(np.linalg.norm(one.by_deviation, axis=-1), HELD) ** 2 for one in links]
     off = np.stack(

@@ -1,20 +1,20 @@
 """Screening of all pairs of an input dyad and an output dyad, in a compiled kernel.
 
-Both dyads carry the same body, so the positions of all four joints at every target are known; no linkage is solved for.
-What has to be decided for a pair is whether one motion of the input meets the targets:
+Both dyads carry the same body, so the positions of all four joints at every target are known and no linkage has to be
+solved. The screening decides whether one motion of the input meets all targets:
 
-* Assembly. At target k the sign of (B − A) × (B − O4) tells the assembly; all targets must agree.
-* Order. The input turns one way: its rotations ρ_k from the first target, taken modulo a full turn, must rise
-  (turning counter-clockwise) or fall (clockwise). With two targets both ways are open, and the shorter is taken. The
-  input dyad alone decides it; where it fails and order is demanded, that is the verdict on all its pairs.
+* Assembly. At target k the sign of (B − A) × (B − O4) gives the assembly; it must be the same at all targets.
+* Order. The input turns in one direction: its rotations ρ_k from the first target, taken modulo a full turn, must rise
+  (turning counter-clockwise) or fall (clockwise). With two targets both directions are possible, and the shorter is
+  taken. This depends on the input dyad alone; if it fails and order is required, all its pairs are rejected.
 * Toggles and transmission. The diagonal f = |O4 − A| decides both. While the input turns, f has its extremes at the
-  ends of the range or where the input lies on the ground line, so the range holds no toggle when
-  cos γ = (b² + c² − f²) / 2bc stays within ±1 there, and its largest magnitude is the cosine of the least
+  ends of the range or where the input lies on the ground line. So the range contains no toggle if
+  cos γ = (b² + c² − f²) / 2bc stays within ±1 there, and its largest magnitude is the cosine of the minimum
   transmission angle.
 
-The score of a sound pair is :func:`synthesis.proof.measures.quality`, eased by what the input turns
-(:func:`synthesis.proof.carried.ease`; the body's way is measured of designs only). The verdicts are for choosing among
-candidates only; what is returned to a client is verified by the analysis core from the dimensions.
+The score of a feasible pair is :func:`synthesis.proof.measures.quality`, multiplied by a factor for the input's
+rotation (:func:`synthesis.proof.carried.ease`; the body's path length is measured only for designs). The verdicts only
+select candidates; every returned design is verified by the analysis core from its dimensions.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ REASONS = (
     "order_defect",
     "transmission_angle",
 )
-"""What becomes of a pair; the kernel returns the index."""
+"""Possible verdicts on a pair; the kernel returns the index."""
 
 LIMITS = frozenset({"link_length", "link_ratio", "grashof", "full_rotation", "transmission_angle"})
-"""Of these the reasons of pairs that move as is demanded, or might, and break a limit."""
+"""Verdicts on pairs that move correctly, or may do so, and violate a limit."""
 
 (
     SOUND,
@@ -63,10 +63,11 @@ LIMITS = frozenset({"link_length", "link_ratio", "grashof", "full_rotation", "tr
 ) = range(len(REASONS))
 
 FOLDED = 1.0 - 1e-9
-"""|cos γ| from which coupler and output count as in line: a toggle or change point, to the rounding of long links."""
+"""|cos γ| from which coupler and output count as collinear (a toggle or change point), given the rounding of long
+links."""
 
 SHORTEST_LINK = 1e-4
-"""A link shorter than this share of the longest is no link: the linkage is degenerate."""
+"""Minimum length of a link, relative to the longest; below it the linkage is degenerate."""
 
 ANY, CRANK_ROCKER, DOUBLE_CRANK, DOUBLE_ROCKER, NON_GRASHOF = range(5)
 _GRASHOF_DEMAND = {
@@ -80,14 +81,14 @@ _GRASHOF_DEMAND = {
 
 BY_QUALITY, BY_SIZE, BY_TRANSMISSION = range(3)
 _RANKING = {"quality": BY_QUALITY, "accuracy": BY_QUALITY, "size": BY_SIZE, "transmission_angle": BY_TRANSMISSION}
-"""What the score goes by. Exact designs are all alike in accuracy."""
+"""Quantity that the score measures, by ``rank_by``. Exact designs all have the same accuracy."""
 
 PAST_TOGGLE = 1e-3
-"""Sine that stands for the transmission angle of a motion past a toggle in a score, so that it counts for little."""
+"""Sine used in the score as the transmission angle of a motion through a toggle, so that such a pair ranks low."""
 
 
 class Demands(NamedTuple):
-    """The client's constraints as the kernel takes them; lengths in task units."""
+    """The client's constraints in the kernel's form; lengths in task units."""
 
     least_transmission_cosine: float
     grashof: int
@@ -101,16 +102,16 @@ class Demands(NamedTuple):
 
 
 class Screening(NamedTuple):
-    """Verdicts of all pairs, index into :data:`REASONS`, and scores, shape (inputs, outputs).
+    """Verdicts (index into :data:`REASONS`) and scores of all pairs, shape (inputs, outputs).
 
-    Scores are positive for sound pairs, higher is better, and 0 for all others.
+    Scores are positive for feasible pairs (higher is better) and 0 for all others.
     """
 
     verdict: NDArray[np.int8]
     score: NDArray[np.float32]
 
     def rejected(self) -> dict[str, int]:
-        """How many pairs were rejected for each reason that occurred."""
+        """Count the rejected pairs by reason, for reasons that occur."""
         counts = np.zeros(len(REASONS), np.int64)
         _count(self.verdict, counts)
         return {name: int(n) for name, n in zip(REASONS, counts, strict=True) if n and name != "sound"}
@@ -119,7 +120,7 @@ class Screening(NamedTuple):
 def demands(
     constraints: Constraints, task: MotionTask, least_transmission_angle: float, rank_by: str = "quality"
 ) -> Demands:
-    """Constraints in task units; the least transmission angle, degrees, is given apart."""
+    """Convert constraints to task units; the minimum transmission angle, degrees, is a separate argument."""
     limits = constraints.link_length
     return Demands(
         least_transmission_cosine=math.cos(math.radians(least_transmission_angle)),
@@ -144,7 +145,7 @@ def screen(task: MotionTask, inputs: Dyads, outputs: Dyads, wanted: Demands) -> 
     inputs, outputs : Dyads
         Shapes (i,) and (o,), task coordinates.
     wanted : Demands
-        What a pair must satisfy.
+        The constraints on a pair.
     """
     shape = (len(inputs.fixed), len(outputs.fixed))
     verdict, score = np.full(shape, ORDER_DEFECT, np.int8), np.zeros(shape, np.float32)
@@ -172,7 +173,7 @@ def _screen(
     verdict: NDArray[np.int8],
     score: NDArray[np.float32],
 ) -> None:
-    """Judge all pairs; those that are not judged keep the verdict and score that they have."""
+    """Screen all pairs in place; pairs of an input dyad with an order defect keep the initial verdict and score."""
     n = a_images.shape[1]
     turned = np.empty((2, n))
     inputs, outputs = _lengths(a_images, o2s), _lengths(b_images, o4s)
@@ -189,7 +190,7 @@ def _screen(
 
 @njit(cache=True, nogil=True)
 def _count(verdict: NDArray[np.int8], counts: NDArray[np.int64]) -> None:
-    """How often each verdict is among millions: NumPy's count would first make wide integers of them."""
+    """Count each verdict. A loop is faster here: NumPy's bincount would first widen millions of int8 values."""
     for row in verdict:
         for reason in row:
             counts[reason] += 1
@@ -197,7 +198,7 @@ def _count(verdict: NDArray[np.int8], counts: NDArray[np.int64]) -> None:
 
 @njit(cache=True, nogil=True)
 def _lengths(images: NDArray[np.complex128], pivots: NDArray[np.complex128]) -> NDArray[np.float64]:
-    """Link lengths of dyads."""
+    """Return the link lengths of dyads, task units."""
     lengths = np.empty(len(pivots))
     for i in range(len(pivots)):
         lengths[i] = abs(images[i, 0] - pivots[i])
@@ -211,13 +212,16 @@ def _cross(u: complex, v: complex) -> float:
 
 @njit(cache=True, nogil=True)
 def _size_of(z: complex) -> float:
-    """|z| of a number near one in size: without the care for overflow that abs takes."""
+    """Return |z| without the overflow protection of ``abs``; valid for numbers of moderate size."""
     return math.sqrt(z.real * z.real + z.imag * z.imag)
 
 
 @njit(cache=True, nogil=True)
 def _turns(a: NDArray[np.complex128], o2: complex, turned: NDArray[np.float64]) -> tuple[bool, bool]:
-    """Input rotations from the first target, counter-clockwise (row 0) and clockwise; which way they are in order."""
+    """Fill the input rotations from the first target, counter-clockwise (row 0) and clockwise (row 1), radians.
+
+    Return for each direction whether the targets are met in order.
+    """
     n = len(a)
     first = (a[0] - o2).conjugate()
     for k in range(n):
@@ -251,9 +255,9 @@ def _judge(
     verdict: NDArray[np.int8],
     score: NDArray[np.float32],
 ) -> None:
-    """Judge the pairs of one input dyad with all outputs.
+    """Screen the pairs of one input dyad with all outputs.
 
-    One long loop: handing arrays to a function for each pair would cost more than what is decided there.
+    This is one long loop because passing arrays to a function for each pair would cost more than the tests themselves.
     """
     n = a_images.shape[1]
     for j in range(len(o4s)):
@@ -282,6 +286,7 @@ def _judge(
             if not good:
                 verdict[i, j] = GRASHOF
                 continue
+        # Cheapest tests come first: most pairs are rejected before the targets are compared.
         input_turns_through = grashof and shortest in (a, d)
         if wanted.full_rotation and not input_turns_through:
             verdict[i, j] = FULL_ROTATION
@@ -297,6 +302,7 @@ def _judge(
             verdict[i, j] = CIRCUIT_DEFECT
             continue
         if grashof and not input_turns_through:
+            # A Grashof rocker swings on one side of the ground line only; the two sides are different circuits.
             one_side = True
             first_lateral = _cross(ground, a_images[i, 0] - o2)
             for k in range(1, n):
@@ -305,19 +311,20 @@ def _judge(
                 verdict[i, j] = CIRCUIT_DEFECT
                 continue
 
-        best = 2.0  # largest |cos γ| on the way that is taken; above 1 none is free of toggles
-        swept = 0.0  # what the input turns on that way
+        best = 2.0  # largest |cos γ| over the chosen range; above 1 no range is free of toggles
+        swept = 0.0  # rotation of the input over that range, radians
         if one_assembly:
             first, last = (a_images[i, 0] - o2) * ground.conjugate(), (a_images[i, n - 1] - o2) * ground.conjugate()
             near, far = min(first.real, last.real) / (a * d), max(first.real, last.real) / (a * d)
             shorter = 0 if turned[0, n - 1] <= -turned[1, n - 1] else 1
-            for way in (1 - shorter, shorter):  # the shorter way that is free of toggles has the last word
+            for way in (1 - shorter, shorter):  # the shorter range overwrites the longer one if it has no toggle
                 if in_order[way]:
                     folded, stretched = _ground_line_passed(first, last, turned[way, n - 1])
                     worst = _larger_cosine(a, b, c, d, -1.0 if folded else near, 1.0 if stretched else far)
                     if worst < FOLDED:
                         best, swept = worst, abs(turned[way, n - 1])
             if best >= FOLDED:
+                # No ordered range works: tell an order defect from a branch defect by allowing any order.
                 out_of_order, around_all = _out_of_order(a, b, c, d, math.atan2(first.imag, first.real), around)
                 if out_of_order < FOLDED:
                     if wanted.in_order:
@@ -353,7 +360,7 @@ def _size(
     o4: complex,
     points: NDArray[np.complex128],
 ) -> float:
-    """Diagonal of the box around all joints and the body's point at all targets."""
+    """Return the diagonal of the bounding box of all joints and the body's point at all targets."""
     left, right = min(o2.real, o4.real), max(o2.real, o4.real)
     low, high = min(o2.imag, o4.imag), max(o2.imag, o4.imag)
     for k in range(len(points)):
@@ -367,9 +374,10 @@ def _size(
 def _out_of_order(
     a: float, b: float, c: float, d: float, delta: float, around: NDArray[np.float64]
 ) -> tuple[float, float]:
-    """Largest |cos γ| over the shortest toggle-free range that covers all targets, and that range; 2 if there is none.
+    """Return the largest |cos γ| over the shortest toggle-free range through all targets, and that range, radians.
 
-    Such a range leaves out one of the gaps between neighbouring targets, which are given in their order.
+    |cos γ| is 2 if there is no such range. A range omits one of the gaps between neighbouring targets; ``around`` holds
+    the input rotations of the targets in ascending order.
     """
     best, longest = 2.0, 0.0
     for k in range(len(around)):
@@ -383,8 +391,9 @@ def _out_of_order(
 
 @njit(cache=True, nogil=True)
 def _worst_cosine(a: float, b: float, c: float, d: float, start: float, end: float) -> float:
-    """Largest |cos γ| while the input turns from start up to end (from the ground line); above 1 past a toggle."""
+    """Return the largest |cos γ| while the input turns up from start to end; above 1 if it passes a toggle."""
     turn = 2.0 * math.pi
+    # |cos γ| has interior extremes only where the input lies on the ground line, at multiples of π.
     near, far = min(math.cos(start), math.cos(end)), max(math.cos(start), math.cos(end))
     if math.floor(end / turn) >= math.ceil(start / turn):
         far = 1.0
@@ -395,9 +404,9 @@ def _worst_cosine(a: float, b: float, c: float, d: float, start: float, end: flo
 
 @njit(cache=True, nogil=True)
 def _ground_line_passed(first: complex, last: complex, turned: float) -> tuple[bool, bool]:
-    """Whether an input that turns from first to last points away from O4 on its way, and whether towards it.
+    """Return whether an input turning from first to last points away from O4 in between, and whether towards it.
 
-    The two are directions as seen from the ground line; the turn, within a full one, tells the way between them.
+    The two are directions relative to the ground line; the turn, within one revolution, fixes the direction of motion.
     """
     start, end = (first.imag, last.imag) if turned >= 0.0 else (-first.imag, -last.imag)
     if abs(turned) <= math.pi:
@@ -407,7 +416,7 @@ def _ground_line_passed(first: complex, last: complex, turned: float) -> tuple[b
 
 @njit(cache=True, nogil=True)
 def _larger_cosine(a: float, b: float, c: float, d: float, near: float, far: float) -> float:
-    """The larger |cos γ| of two inputs, given by the cosines of their angles from the ground line."""
+    """Return the larger |cos γ| of two input angles, given by their cosines relative to the ground line."""
     constant = b * b + c * c - a * a - d * d
     gamma_one = (constant + 2.0 * a * d * far) / (2.0 * b * c)
     gamma_two = (constant + 2.0 * a * d * near) / (2.0 * b * c)

@@ -1,10 +1,10 @@
-"""All dyads that meet linear conditions, as the points where a linear space cuts the variety of dyads.
+"""All dyads that satisfy linear conditions, as the intersections of a linear space with the variety of dyads.
 
 Write a dyad with fixed pivot o/o₀ and moving pivot a/a₀ (homogeneous, so that either may lie at infinity) as the point
 
     x = (p, A, O, d + ie) = (o₀a₀, o₀a, a₀o, conj(o)a)          (seven real coordinates, up to a factor).
 
-Points of that kind are those with
+These points are exactly those with
 
     p · (d + ie) = conj(O) A,                                    (two quadrics; a variety of dimension 4 and degree 4)
 
@@ -13,19 +13,20 @@ x,
 
     p|c|²/2 + Re(conj(c) r A) − Re(conj(c) O) − Re((r − 1)(d + ie)) = 0.
 
-So are a coordinate of a pivot, the angle of the link, the angle of the coupler vector, a whole pivot (O = O* p and
-d + ie = conj(O*) A), and a rotation of the link (p c + r A − O = e^{iβ}(A − O)). Four conditions leave a plane, which
-the two quadrics cut in four points: Burmester's four dyads of five positions, counted with the complex ones and with
-multiplicity. Three conditions leave a space of three dimensions, in which the quadrics meet in a curve: Burmester's
-curve of four positions (:mod:`synthesis.kinds.motion.burmester`). A length of the coupler vector is a third quadric.
+The following are linear too: a coordinate of a pivot, the angle of the link, the angle of the coupler vector, a whole
+pivot (O = O* p and d + ie = conj(O*) A), and a rotation of the link (p c + r A − O = e^{iβ}(A − O)). Four conditions
+leave a plane, which intersects the two quadrics in four points: Burmester's four dyads of five positions, counted with
+multiplicity and including complex ones. Three conditions leave a three-dimensional space, in which the quadrics meet in
+a curve: Burmester's curve of four positions (:mod:`synthesis.kinds.motion.burmester`). A given length of the coupler
+vector is a third quadric.
 
-p = 0 stands for a slider: with O ≠ 0 the fixed pivot is at infinity, and A moves on a straight line (PR); with A ≠ 0
-the moving pivot is, and a line of the body passes through O (RP). They are answers as good as the others here, hence
-no dyad is lost that runs away.
+p = 0 represents a slider: with O ≠ 0 the fixed pivot is at infinity, and A moves on a straight line (PR); with A ≠ 0
+the moving pivot is at infinity, and a line of the body passes through O (RP). Sliders are regular solutions in these
+coordinates, so dyads that approach infinity are not lost.
 
 The seven coordinates are those of planar kinematic mapping without its two isotropic ones (Bottema & Roth,
-*Theoretical Kinematics*, ch. 11; McCarthy, *Geometric Design of Linkages*, ch. 5), whose two points the cubic curves of
-Burmester have in common at infinity in addition to the four.
+*Theoretical Kinematics*, ch. 11; McCarthy, *Geometric Design of Linkages*, ch. 5). Burmester's cubic curves share the
+two isotropic points at infinity in addition to the four dyads.
 """
 
 from __future__ import annotations
@@ -40,32 +41,31 @@ from synthesis.kinds.motion.task import MotionTask, Real
 from synthesis.numerics.quadrics import common_points
 
 BLANK = 1e-10
-"""Norm of a quadric on the linear space below which it vanishes there; its matrix has unit size in all."""
+"""Norm of a quadric restricted to the linear space, below which it vanishes there; the full matrix has unit norm."""
 
 ROW_ERROR = 2e-15
-"""Error of a unit row: some roundings."""
+"""Error of a unit row: a few rounding errors."""
 
 SHARPEST = 1e-10
-"""Error of the space that the conditions leave beyond which nothing is proved of what lies in it."""
+"""Maximum error of the solution space; beyond it nothing can be proved about the points in it."""
 
 IN_SPACE = 1e-13
-"""Distance of a point at infinity from the space that the conditions leave, up to which it lies in it: rounding, as is
-the error of the space that is added to it."""
+"""Distance up to which a point at infinity lies in the solution space: rounding. The error of the space is added."""
 
 AT_INFINITY = 1e-5
-"""Distance of a solution, as a unit point x, from one at infinity that it is: conditions on the coupler's length have
-double solutions there, which show half of their digits, and threefold ones a third."""
+"""Distance, between unit points x, up to which a solution counts as one at infinity. Conditions on the coupler's length
+have double solutions there, which keep half of their digits, and triple ones, which keep a third."""
 
 NOWHERE = 1e-6
-"""A and O of a unit point x below which both pivots are at infinity: it guides nothing. Where the solution is double,
-as it is for a stated coupler length, rounding leaves half of the digits of a zero."""
+"""Minimum norm of A and O in a unit point x; below it both pivots are at infinity, and the point is no dyad. At a
+double solution, as for a given coupler length, rounding leaves a zero only half of its digits."""
 
 
 class SliderDyad(NamedTuple):
     """A dyad with a pivot at infinity, in task coordinates.
 
-    PR: the point ``point`` of the body (in the first position) moves on a line with the normal ``normal``. RP: the line
-    of the body that, in the first position, passes through ``point`` with the normal ``normal`` always does.
+    PR: the body point ``point`` (first position) moves on a line with unit normal ``normal``. RP: the line of the body
+    that passes through ``point`` with unit normal ``normal`` in the first position passes through it in all positions.
     """
 
     kind: Literal["PR", "RP"]
@@ -74,24 +74,24 @@ class SliderDyad(NamedTuple):
 
 
 class Section(NamedTuple):
-    """Dyads that meet linear conditions.
+    """Dyads that satisfy linear conditions.
 
     Attributes
     ----------
     dyads : Dyads
-        Those with both pivots within reach, shape (k,), task coordinates.
+        Dyads with both pivots within reach, shape (k,), task coordinates.
     double : bool, shape (k,)
-        Two or more dyads lie here, to rounding.
+        Two or more dyads coincide here, to rounding.
     sliders : tuple of SliderDyad
-        Those with a pivot at infinity, to rounding.
+        Dyads with a pivot at infinity, to rounding.
     far : int
-        Number of those with a pivot farther away than :data:`~synthesis.kinds.motion.dyads.FAR` that is not at
-        infinity: they are not returned.
+        Number of dyads with a finite pivot farther away than :data:`~synthesis.kinds.motion.dyads.FAR`; they are not
+        returned.
     finite : bool
-        False where a whole family of dyads meets the conditions; then none is returned.
+        False if a whole family of dyads satisfies the conditions; then none is returned.
     proved : bool
-        All solutions, the complex ones included, are accounted for, but for what lies at infinity: these are all dyads.
-        Never where a dyad is far, or where the conditions leave too few digits: then it is not known.
+        Whether ``dyads`` is proved complete: all solutions are accounted for, including complex ones and those at
+        infinity. False if a dyad is far, or if the conditions leave too few digits to decide.
     """
 
     dyads: Dyads
@@ -103,21 +103,21 @@ class Section(NamedTuple):
 
 
 def pose_rows(task: MotionTask) -> Real:
-    """Conditions that the link keeps its length from the first position to each later one: unit rows (n − 1, 7)."""
+    """Return the conditions that the link has the same length in each later position: unit rows (n − 1, 7)."""
     r = task.turns[1:]
     c = task.points[1:] - r * task.points[0]
     forward = np.conj(r) * c
-    # 1 − cos of a small angle by its sine, which has all digits.
+    # Compute 1 − cos of a small angle from its sine, which keeps all digits.
     fall = np.where(r.real > 0.0, r.imag**2 / (1.0 + np.abs(r.real)), 1.0 - r.real)
     return _unit(np.stack([np.abs(c) ** 2 / 2.0, forward.real, forward.imag, -c.real, -c.imag, fall, r.imag], axis=1))
 
 
 def condition_rows(task: MotionTask, conditions: DyadConditions) -> Real:
-    """The client's linear conditions: unit rows (count, 7); a coupler length is none of them."""
+    """Return the given linear conditions as unit rows (count, 7); a coupler length is not linear and is left out."""
     rows: list[Real] = []
 
     def add(p: complex, a: complex, o: complex, de: complex = 0.0) -> None:
-        """The row of Re(p) p + Re(conj(a) A) + Re(conj(o) O) + Re(conj(de) (d + ie)) = 0."""
+        """Append the row of Re(p) p + Re(conj(a) A) + Re(conj(o) O) + Re(conj(de) (d + ie)) = 0."""
         rows.append(np.array([p.real, a.real, a.imag, o.real, o.imag, de.real, de.imag]))
 
     for k, rotation in enumerate(conditions.rotations, start=1):
@@ -150,25 +150,25 @@ def condition_rows(task: MotionTask, conditions: DyadConditions) -> Real:
 
 
 def null_space(rows: Real) -> Real:
-    """Orthonormal columns (7, m) that span what the rows leave."""
+    """Return orthonormal columns (7, m) that span the null space of the rows."""
     return _space(rows).basis
 
 
 def variety_forms(basis: Real) -> Real:
-    """The two quadrics p(d + ie) = conj(O)A, real and imaginary part, on the space of ``basis``: (2, m, m)."""
+    """Restrict the quadrics p(d + ie) = conj(O)A (real and imaginary part) to the space of ``basis``: (2, m, m)."""
     forms: Real = np.einsum("im,qij,jn->qmn", basis, VARIETY, basis)
     return forms
 
 
 def section(task: MotionTask, conditions: DyadConditions) -> Section:
-    """All dyads of as many conditions as a dyad has freedoms, or more.
+    """Find all dyads that satisfy at least as many conditions as a dyad has freedoms.
 
     Parameters
     ----------
     task : MotionTask
         n positions.
     conditions : DyadConditions
-        Numbers, not arrays. 5 − n of them at least; at most one of them a coupler length.
+        Scalars, not arrays. At least 5 − n of them; at most one is a coupler length.
     """
     space = _space(np.concatenate([pose_rows(task), condition_rows(task, conditions)]))
     basis, sharp = space.basis, space.error <= SHARPEST
@@ -181,14 +181,17 @@ def section(task: MotionTask, conditions: DyadConditions) -> Section:
     if conditions.coupler_length is not None:
         forms.append(basis.T @ _length_form(task, float(conditions.coupler_length)) @ basis)
     independent = _independent(forms)
+    # m homogeneous coordinates need m − 1 equations; with fewer the solutions form a family.
     if len(independent) < m - 1:
         return none._replace(finite=False, proved=False)
     if m == 1:
+        # A single point remains; it is a dyad only if every quadric vanishes on it.
         met = len(independent) == 0
         return _sorted_out(task, conditions, space, basis.T, np.zeros(1, np.bool_), sharp) if met else none
     solved = common_points(independent[: m - 1], space.error)
     if not solved.finite:
         return none._replace(finite=False, proved=False)
+    # Surplus quadrics did not take part in the intersection: they filter its points.
     met = np.abs(np.einsum("qij,ki,kj->kq", independent[m - 1 :], solved.real, solved.real)).max(axis=1, initial=0.0)
     kept = met <= DEPENDENT
     proved = sharp and bool(np.all(_at_infinity(space, solved.unproved)))
@@ -196,7 +199,7 @@ def section(task: MotionTask, conditions: DyadConditions) -> Section:
 
 
 class _Space(NamedTuple):
-    """What linear conditions leave: orthonormal columns (7, m), and by how much, about, rounding may turn them."""
+    """Solution space of linear conditions: orthonormal columns (7, m), and their approximate rounding error."""
 
     basis: Real
     error: float
@@ -205,16 +208,17 @@ class _Space(NamedTuple):
 def _space(rows: Real) -> _Space:
     _, s, vh = np.linalg.svd(rows)
     rank = int(np.sum(s > DEPENDENT))
-    # A condition that repeats the others but for a few digits is left out, and may be off by all that it says.
+    # A condition that repeats the others except for a few digits is dropped, so the space is wholly uncertain.
     least = float(s[rank - 1]) if rank else 1.0
     error = math.inf if np.any(s[rank:] > LOST) else ROW_ERROR / least
     return _Space(vh[rank:].T, error)
 
 
 def _at_infinity(space: _Space, points: np.ndarray) -> np.ndarray:
-    """Which points of a space, by their unit vectors in it (k, m), are solutions with a pivot at infinity.
+    """Return a mask of the points of a space, given by unit vectors in it (k, m), that have a pivot at infinity.
 
-    p = A = 0 and p = O = 0 lie on the variety. The space has such points where three of its rows are dependent.
+    All points with p = A = 0 or p = O = 0 lie on the variety. The space has such points if the three rows of its basis
+    for p and A (or p and O) are dependent.
     """
     met = np.zeros(len(points), np.bool_)
     for rows in ([0, 1, 2], [0, 3, 4]):
@@ -227,7 +231,7 @@ def _at_infinity(space: _Space, points: np.ndarray) -> np.ndarray:
 
 
 def _split(points: Real) -> tuple[Dyads, np.ndarray, np.ndarray]:
-    """Dyads of real points x (k, 7) with both pivots in reach, which points they are, and which have one in reach."""
+    """Return the dyads of real points x (k, 7) within reach, the mask of these points, and of those with one pivot."""
     p = points[:, 0]
     moving, fixed = points[:, 1] + 1j * points[:, 2], points[:, 3] + 1j * points[:, 4]
     reach = np.maximum(np.abs(moving), np.abs(fixed))
@@ -237,10 +241,11 @@ def _split(points: Real) -> tuple[Dyads, np.ndarray, np.ndarray]:
 
 
 def _sliders(points: Real) -> tuple[SliderDyad, ...]:
-    """The sliders that points x with a pivot at infinity stand for."""
+    """Convert points x with a pivot at infinity to sliders."""
     sliders: list[SliderDyad] = []
     moving, fixed = points[:, 1] + 1j * points[:, 2], points[:, 3] + 1j * points[:, 4]
     for a, o, de in zip(moving, fixed, points[:, 5] + 1j * points[:, 6], strict=True):
+        # With p = 0 one of O and A vanishes; the other is the direction of the normal.
         if abs(o) > abs(a):
             sliders.append(SliderDyad("PR", complex(de * o) / abs(o) ** 2, complex(o / abs(o))))
         else:
@@ -265,7 +270,7 @@ def _unit(rows: Real) -> Real:
 
 
 def _independent(forms: list[Real]) -> Real:
-    """Combinations of the forms that are independent, of unit norm."""
+    """Return independent combinations of the forms, of unit norm, that span the same space."""
     m = forms[0].shape[-1]
     _, s, vh = np.linalg.svd(np.array(forms).reshape(len(forms), m * m), full_matrices=False)
     kept: Real = vh[s > BLANK].reshape(-1, m, m)
@@ -273,7 +278,7 @@ def _independent(forms: list[Real]) -> Real:
 
 
 def _length_form(task: MotionTask, length: float) -> Real:
-    """|A − P₁ p|² = z² p² as a symmetric matrix of unit norm."""
+    """Return |A − P₁ p|² = z² p² as a symmetric matrix of unit norm."""
     point = complex(task.points[0])
     form = np.zeros((7, 7))
     form[0, 0] = abs(point) ** 2 - length**2

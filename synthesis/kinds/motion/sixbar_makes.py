@@ -1,4 +1,4 @@
-"""Sixbars that carry a body, by makes: their types, their links, and where their joints stand in a kernel's rows."""
+"""Topologies of sixbars that carry a body: type, links, and the indices of joints in the kernel's rows."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from synthesis.model.sixbars import Links
 
 
 class Make(NamedTuple):
-    """A make: its type, where its joints stand among the kernel's, and its links."""
+    """A topology: type, index of each joint among the kernel's joints, and links."""
 
     type: Sixbar
     joints: dict[str, int]
@@ -74,14 +74,14 @@ MAKES = (
          "link_5": ("C", "D"), "output": ("O4", "E")},
     ),
 )  # fmt: skip
-"""By the number of a make (:data:`chain_kernels.MAKES`)."""
+"""Topologies in the order of their kernel numbers (:data:`chain_kernels.MAKES`)."""
 
 
 class Found(NamedTuple):
-    """Sixbars of the search, the best first.
+    """Candidate sixbars of a search, best first.
 
-    ``makes`` (n,), ``joints`` (n, 7), ``bodies`` (n,), where P is in the first position, ``stands`` (n,), how far the
-    body is turned there from the demanded angle, radians, and ``values`` (n,).
+    ``makes`` (n,) are topology numbers, ``joints`` (n, 7) and ``bodies`` (n,) the joints and P in the first position,
+    ``stands`` (n,) the body's rotation there from its target angle, radians, and ``values`` (n,) the scores.
     """
 
     makes: NDArray[np.int64]
@@ -92,20 +92,20 @@ class Found(NamedTuple):
 
     @classmethod
     def none(cls) -> Found:
-        """No sixbar yet."""
+        """Return an empty set of candidates."""
         return cls.room(0)
 
     @classmethod
     def room(cls, n: int) -> Found:
-        """Room for so many, to be filled."""
+        """Allocate uninitialised arrays for n candidates."""
         return cls(np.empty(n, np.int64), np.empty((n, 7), complex), np.empty(n, complex), np.empty(n), np.empty(n))
 
     def best(self, rows: NDArray[np.int64]) -> Found:
-        """Some of them."""
+        """Return selected candidates, in the order of the given row indices."""
         return Found(self.makes[rows], self.joints[rows], self.bodies[rows], self.stands[rows], self.values[rows])
 
     def beside(self, other: Found) -> Found:
-        """These and others."""
+        """Return these candidates followed by others."""
         return Found(
             np.concatenate([self.makes, other.makes]),
             np.concatenate([self.joints, other.joints]),

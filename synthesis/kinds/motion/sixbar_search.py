@@ -1,10 +1,11 @@
-"""Motion generation by sixbars: descents that hold their branch, and constrained chains where a chain is stated.
+"""Motion generation by sixbars: descents that stay on their branch, and constrained chains if a chain is given.
 
-Descents from random linkages (:mod:`branch_search`) find sixbars for nearly all positions that random chains
-(:mod:`chain_search`) do not find in hours. Chains are drawn where one is stated, and in turn with descents where a
-class or a full turn is demanded, or a region or a box: what a descent does not see, or must find its way into. Chains
-have five positions at most. Of positions that are fitted without a limit those that miss least are taken to the end of
-their least squares (:mod:`branch_fit`). What is offered is driven and verified like any linkage.
+Descents from random linkages (:mod:`branch_search`) find sixbars for almost all problems, including many that random
+chains (:mod:`chain_search`) do not solve in hours. Chains are sampled if one is given; they alternate with descents if
+a Grashof class, a full rotation, a region or a box is required, which a descent ignores or reaches with difficulty.
+Chains support at most five positions. If positions are fitted without tolerances, the candidates with the smallest
+errors are fitted by least squares until convergence (:mod:`branch_fit`). All returned designs are driven and verified
+like any linkage.
 """
 
 from __future__ import annotations
@@ -36,56 +37,57 @@ from synthesis.outcome.sifting import DEFECTS, Sifting
 from synthesis.outcome.simplest import SOUND
 
 OF_CHAINS, OF_BRANCHES = 1.0 / 16.0, 1.0 / 72.0
-"""What a round of either sort spends of a search: it ends when all is spent."""
+"""Share of the search budget that a round of chains, or of branches, uses; the search ends when all is used."""
 
 LEAST_ROUNDS = 2
-"""Rounds in any case."""
+"""Minimum number of rounds."""
 
 ENOUGH, AND_MORE = 3.0, 0.1
-"""A search with too few sound sixbars goes on for as much more as it took to find the first, times this, and this."""
+"""Extension of a search that has feasible sixbars, but too few: this factor of the budget used for the first one, plus
+this share."""
 
 STALE, LOWER = 8, 0.97
-"""A fit begins anew where so many rounds leave more than this share of the least cost."""
+"""A fit restarts if this many rounds do not lower the cost below this share of its minimum."""
 
 FITTED, AS_FAR = 0.5, 1.1
-"""What is spent of a search for fits; and where positions are nearly met, since what meets them may exist."""
+"""Search budget for fits; and the extended budget if positions are almost met, because an exact solution may exist."""
 
 NEAR_ENOUGH, NEARLY_MET = 1e-6, 1e-4
-"""Errors of fits, in task sizes and radians: the search ends with as many of the first as are wanted, and goes on
-further with one of the second."""
+"""Errors of fits, in task sizes and radians: the search ends when the requested number of fits is below the first, and
+is extended when one fit is below the second."""
 
 RELAXED_FROM, RELAXED_EVERY = 0.5, 3
-"""What is spent, none sound yet, from which on every third round takes no limit that nobody stated."""
+"""Share of the budget after which, without a feasible sixbar, every third round drops the default limits."""
 
 REACH, RATIO = 5.0, 20.0
-"""Limits where the client states none: longest distance of two joints of a link in task sizes, and link ratio."""
+"""Default limits: maximum distance of two joints of a link, in task sizes, and maximum link ratio."""
 
 REACH_OF_CHAIN = 2.0
-"""What the first limit is at least, beside the longest length or way that is stated of the chain."""
+"""Minimum of the first limit, relative to the longest given length or distance of the chain."""
 
 MARGIN = 0.5
-"""Degrees by which a demanded transmission angle is exceeded: between the steps of the drive it is less."""
+"""Margin, degrees, added to a required transmission angle, because the angle is smaller between the sampled steps."""
 
 APART = 0.1
-"""Distance, in task sizes, by which a joint of distinct sixbars differs."""
+"""Minimum separation of distinct sixbars: the largest distance between corresponding joints, in task sizes."""
 
 ATTEMPTS, LEAST_ATTEMPTS = 4, 20
-"""Sixbars that are verified at most, for each design wanted, and in any case."""
+"""Maximum number of verified sixbars: per requested design, and its lower bound."""
 
 ATTEMPTS_IN_ROOM = 150
-"""The same where obstacles or forces decide, which the search does not weigh."""
+"""The same lower bound if obstacles, planes or forces matter, which the search ignores."""
 
 CLASSES = "any", "crank_rocker", "double_crank", "double_rocker", "non_grashof"
-"""As the kernel numbers them."""
+"""Grashof classes in the kernel's numbering."""
 
-NO_CRANK = "A Stephenson II has a crank between body and ground, and none was found that meets these positions"
-"""What is said where none is looked for."""
+NO_CRANK = "A Stephenson II sixbar needs a crank between body and ground, and no crank found meets these positions"
+"""Summary text if no sixbar was searched."""
 
 EVERYWHERE = np.array([-np.inf, np.inf, -np.inf, np.inf])
 
 
 class SixbarSearch:
-    """A search for the sixbars of one problem."""
+    """Search for the sixbars of one problem."""
 
     def __init__(self, problem: MotionProblem, types: tuple[Sixbar, ...]) -> None:
         self.problem, self.types = problem, types
@@ -97,17 +99,17 @@ class SixbarSearch:
 
     @property
     def weighed(self) -> int:
-        """Sixbars that were looked at so far."""
+        """Number of sixbars examined so far."""
         return self.chains.weighed + self.branches.descents
 
     @property
     def method(self) -> str:
-        """How they were found."""
+        """Names of the search methods used."""
         counts = (self.branches.descents, "held_branches"), (self.chains.weighed, "constrained_chains")
         return ", ".join(name for count, name in counts if count) or "held_branches"
 
     def run(self, progress: Progress) -> Found:
-        """Rounds until enough sound sixbars that differ are known, or all is spent."""
+        """Run rounds until there are enough distinct feasible sixbars, or the budget is used up."""
         rng = np.random.default_rng(self.problem.seed)
         stated = self.problem.constraints
         regions = stated.fixed_pivot_region, stated.moving_pivot_region, self.problem.space
@@ -125,15 +127,16 @@ class SixbarSearch:
                 spent += OF_BRANCHES
             n += 1
             sound_ones = int(np.count_nonzero(found.values >= 1.0))
+            # One feasible sixbar shows how hard the problem is: bound the rest of the search by that effort.
             if sound_ones and until == 1.0:
                 until = min(1.0, (1.0 + ENOUGH) * spent + AND_MORE)
             if n >= LEAST_ROUNDS and sound_ones >= self.problem.max_designs:
                 break
-            progress(min(spent, 1.0), f"{self.weighed} sixbars looked at")
+            progress(min(spent, 1.0), f"{self.weighed} sixbars examined")
         return found
 
     def fitted(self, progress: Progress) -> Found:
-        """Rounds until enough sound sixbars meet all positions, or as many as a fit is given; those that miss least."""
+        """Run rounds until enough feasible sixbars meet all positions or the budget is used; smallest errors first."""
         rng = np.random.default_rng(self.problem.seed)
         found = Found.none()
         least, since, n, told = math.inf, 0, 0, 0.0
@@ -141,7 +144,7 @@ class SixbarSearch:
         while n * OF_BRANCHES < until:
             relaxed = n * OF_BRANCHES >= RELAXED_FROM * FITTED and not bool(np.any(found.values >= 1.0))
             met = self.branches.round(rng, relaxed=relaxed)
-            # What meets all positions comes before what misses any.
+            # Candidates that meet all positions (values of 2 and more) rank before those that miss any.
             values = np.where(met.values >= 1.0, 1.0 + met.values, met.values)
             found = self._distinct(found.beside(met._replace(values=values)))
             n += 1
@@ -157,13 +160,13 @@ class SixbarSearch:
                 if np.any(found.values >= nearly):
                     until = AS_FAR
             told = max(told, min(n * OF_BRANCHES / until, 1.0))
-            progress(told, f"{self.weighed} sixbars looked at")
+            progress(told, f"{self.weighed} sixbars examined")
         return found
 
     def _distinct(self, found: Found) -> Found:
-        """The best of those that differ from one another, first the sound ones."""
+        """Select the best distinct candidates, feasible ones first."""
         ordered = found.best(np.argsort(-found.values, kind="stable"))
-        # Joints of another make are nowhere near.
+        # A large offset per topology makes candidates of different topologies distinct.
         apart = np.concatenate([ordered.joints, 1e6 * ordered.makes[:, None].astype(np.complex128)], axis=1)
         most = max(ATTEMPTS * self.problem.max_designs, LEAST_ATTEMPTS)
         if self.problem.space is not None or self.problem.constraints.of_forces or self.problem.layout is not None:
@@ -171,7 +174,7 @@ class SixbarSearch:
         return ordered.best(np.array(distinct(apart, most, APART), np.int64))
 
     def mechanism(self, found: Found, n: int) -> SixbarMechanism:
-        """A sixbar of the search in the problem's coordinates."""
+        """Build a sixbar of the search in the problem's coordinates."""
         make, row = MAKES[found.makes[n]], found.joints[n]
         joints = {name: self.task.to_problem(complex(row[k])) for name, k in make.joints.items()}
         joints["P"] = self.task.to_problem(complex(found.bodies[n]))
@@ -182,13 +185,13 @@ class SixbarSearch:
 
 
 def solve_sixbars(problem: MotionProblem, types: tuple[Sixbar, ...], progress: Progress) -> MotionResult:
-    """Sixbars of some types that carry the body through two to sixty positions."""
+    """Solve for sixbars of the given types that carry the body through two to sixty positions."""
     search = SixbarSearch(problem, types)
     looked = part_of(progress, 0.0, 0.9)
     found = search.fitted(looked) if problem.fitted else search.run(looked)
     sifting = Sifting[LinkageDesign](problem, DEFECTS)
     progress(0.9, f"verifying the best of {search.weighed} sixbars")
-    # The sound ones come first. What the others break may be no limit of the client's: that is judged by the proof.
+    # Feasible ones come first. The others may violate only default limits, so the verification decides about them.
     rows = np.flatnonzero(found.values >= 0.0)
 
     def verified(n: int) -> LinkageDesign | None:
@@ -205,7 +208,7 @@ def solve_sixbars(problem: MotionProblem, types: tuple[Sixbar, ...], progress: P
 
 
 def _limits(problem: MotionProblem, task: MotionTask) -> Real:
-    """The limits of a problem as the kernel takes them (:data:`chain_kernels.LEAST_SINE`)."""
+    """Pack the limits of a problem for the kernel (:data:`chain_kernels.LEAST_SINE`)."""
     stated = problem.constraints
     angle = SOUND if stated.min_transmission_angle is None else min(stated.min_transmission_angle + MARGIN, 89.9)
     lengths = stated.link_length
@@ -226,7 +229,7 @@ def _box(region: Region | None, task: MotionTask) -> Real:
 
 
 def _within(sides: tuple[float, float, float, float], task: MotionTask) -> Real:
-    """Sides of a box, x from, to, y from, to, in the unit of the task."""
+    """Convert a box (x min, x max, y min, y max) to task coordinates."""
     left, right, low, high = sides
     corners = task.to_task(complex(left, low)), task.to_task(complex(right, high))
     return np.array([corners[0].real, corners[1].real, corners[0].imag, corners[1].imag])
@@ -236,22 +239,22 @@ def _summary(sifting: Sifting[LinkageDesign], search: SixbarSearch) -> str:
     looked_at = [
         counted(count, f"sixbar {which}was {done}", f"sixbars {which}were {done}")
         for count, which, done in (
-            (search.branches.descents, "", "taken towards the positions on one branch"),
-            (search.chains.weighed, "of chains that are constrained by two more cranks ", "weighed"),
+            (search.branches.descents, "", "fitted to the positions on one branch"),
+            (search.chains.weighed, "from chains with two constraining cranks ", "evaluated"),
         )
         if count
     ]
     told = " and ".join(looked_at) or NO_CRANK
     if not sifting.passed:
         return (
-            f"{told}, and none was found that satisfies all demands.{sifting.reasons()} "
-            "That does not prove that none exists."
+            f"{told}; no design found satisfies all constraints.{sifting.reasons()} "
+            "This does not prove that none exists."
         )
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
     count = len(sifting.passed)
-    many = f"the best {count} that differ were driven and verified" if count > 1 else "the best was driven and verified"
+    many = f"{count} distinct designs verified" if count > 1 else "1 design verified"
     near = ""
     if search.problem.fitted:
         share = 100.0 * min(map(error_of, sifting.passed))
-        near = f"a root-mean-square residual of {share:.3g} % of the task size (hundredths of a radian) at best, and "
-    return f"{told}; {many}, with {near}a least transmission angle of up to {best:.1f}°."
+        near = f"Best root-mean-square residual: {share:.3g} % of the task size (angles in hundredths of a radian). "
+    return f"{told}; {many}. {near}Best minimum transmission angle: {best:.1f}°."

@@ -1,14 +1,15 @@
 """Slider-cranks and inverted slider-cranks that carry the body: pairs of a link and a slider, screened and verified.
 
-Both dyads carry the same body, so all joints at the targets are known, as for fourbars. What the screening decides:
+Both dyads carry the same body, so all joints at the targets are known, as for fourbars. The screening decides:
 
-* Assembly. A PR dyad's pin stays ahead of the crank pin along its line, or behind; the same of the block at O4 along
-  the body's line of an RP dyad. Where the slider drives, the crank pin stays on one side of the line from slider to O2.
-* Order. The driving crank turns one way (or the driving slider moves one way) through the targets.
+* Assembly. A PR dyad's pin stays ahead of the crank pin along its line, or stays behind it; likewise the block at O4
+  along the body's line of an RP dyad. If the slider is the input, the crank pin stays on one side of the line from the
+  slider to O2.
+* Order. The driving crank turns (or the driving slider moves) in one direction through the targets.
 * Transmission. With a PR dyad the sine is √(1 − (h/b)²), h the crank pin's distance from the slide's line; with an RP
-  dyad √(1 − (ρ/f)²), ρ the pin's distance from the body's line and f its distance from O4; with a driving slider that
-  of the angle between crank and coupler. h, f and the diagonal have their extremes at the ends of the used range, or
-  where the crank is square to the line, in line with O4, or where the slider passes the foot of O2.
+  dyad √(1 − (ρ/f)²), ρ the pin's distance from the body's line and f its distance from O4; with a driving slider it is
+  the sine of the angle between crank and coupler. h, f and the diagonal have their extremes at the ends of the used
+  range, or where the crank is perpendicular to the line, collinear with O4, or where the slider passes the foot of O2.
 """
 
 from __future__ import annotations
@@ -46,22 +47,23 @@ from synthesis.proof.measures import BULKY, UNEVEN
 Whole = NDArray[np.int64]
 
 USABLE_TRANSMISSION_ANGLE = 30.0
-"""Degrees; where the client sets no limit, pairs below this are tried only if none reaches it."""
+"""Transmission angle, degrees; if the client sets no limit, pairs below this are tried only if no pair reaches it."""
 
 SHORTEST_LINK = 1e-3
-"""A link shorter than this share of the longest is none."""
+"""Minimum length of a link, relative to the longest; below it the linkage is degenerate."""
 
 NO_LENGTH = 1e-12
-"""Task sizes; lengths below this are none, and their ratio to others says nothing."""
+"""Minimum length, in task sizes, in the denominator of the link ratio; shorter links are degenerate anyway."""
 
 ROUNDING = 1e-9
-"""Share by which a sine may miss its limit in the screening; the verification decides."""
+"""Relative tolerance of a sine at its limit in the screening; the verification decides exactly."""
 
 LEAST_ATTEMPTS = 40
-"""Pairs driven at least before the search gives up; at most three for each design wanted."""
+"""Minimum number of pairs driven before the search gives up, or three per requested design if that is more."""
 
 APART = 0.25 * 0.5 ** np.arange(5)
-"""Distinct designs move some joint by at least this share of the task's size: the first at which enough are found."""
+"""Minimum separations of distinct designs, tried in turn: the largest distance between corresponding joints, in task
+sizes. The first value that yields enough designs is used."""
 
 REJECTED = (
     "sound",
@@ -76,30 +78,30 @@ REJECTED = (
 
 
 class _Screened(NamedTuple):
-    """Verdicts (index into REJECTED) and scores of all pairs, shape (links, sliders); positive scores are sound."""
+    """Verdicts (index into REJECTED) and scores of all pairs, shape (links, sliders); feasible pairs score above 0."""
 
     verdict: NDArray[np.int64]
     score: Real
 
 
 LINKS, SLIDERS = 500, 160
-"""Dyads of both sides where both are drawn from families."""
+"""Numbers of links and of sliders if both sides are sampled from families."""
 
 IN_ZONES = 100
-"""Times as many sliders are drawn where they have a zone in a room: those in it are kept, no more than elsewhere."""
+"""Oversampling factor for sliders that must lie in a zone: those inside it are kept, up to the usual number."""
 
 LOOKED_AT, AT_ONCE, FITTING = 60_000, 4000, 400
-"""Pairs that are looked at in a room at most, how many at a time, and with how many that fit it is left at that."""
+"""Collision test: maximum number of pairs, batch size, and the number of clear pairs that ends it."""
 
 WEIGHED, WEIGHED_AT_ONCE = 4000, 500
-"""Pairs that are weighed at most where forces are limited, and how many at a time, until :data:`FITTING` keep them."""
+"""Force check: maximum number of pairs, and batch size; :data:`FITTING` pairs within the limits end it."""
 
 ALONE = 6000
-"""Dyads of a side that is drawn where the other is determined."""
+"""Number of dyads of a sampled side if the other side is determined."""
 
 
 def solve_sliders(problem: MotionProblem, kind: Literal["PR", "RP"], progress: Progress) -> MotionResult:
-    """Linkages with the slider that is asked for on one side, for two to five positions."""
+    """Solve for linkages with the requested slider on one side, for two to five positions."""
     task = motion_task(problem)
     rng = np.random.default_rng(problem.seed)
     progress(0.0, "finding sliders")
@@ -125,16 +127,16 @@ def solve_sliders(problem: MotionProblem, kind: Literal["PR", "RP"], progress: P
 
 
 def with_sliders(problem: MotionProblem, result: MotionResult, progress: Progress) -> MotionResult:
-    """The answer to a problem that no fourbar solves: with a slider, where the client leaves that open.
+    """Try sliders for a problem that no fourbar solves, on sides that allow them; return the result with or without.
 
-    A search that merely met no fourbar is left as it is: sliders are then to be asked for.
+    If an incomplete search found no fourbar, the result is left unchanged: sliders must then be requested.
     """
     if result.search.candidates and not result.search.complete:
         return result
     for kind, asked in _asking_for_sliders(problem):
         answer = solve_sliders(asked, kind, lambda fraction, message: progress(1.0, message))
         if answer.designs:
-            text = f"{result.summary} A slider does what pins cannot: {answer.summary}"
+            text = f"{result.summary} With a slider instead of a pin: {answer.summary}"
             return answer.model_copy(update={"summary": text})
     return result
 
@@ -142,10 +144,10 @@ def with_sliders(problem: MotionProblem, result: MotionResult, progress: Progres
 def beside_sliders(
     problem: MotionProblem, result: MotionResult, known: tuple[SliderDyad, ...], progress: Progress
 ) -> MotionResult:
-    """The answer to a problem whose dyads are all known, where some of them, ``known``, are sliders.
+    """Merge linkages with a slider into the result of a problem whose dyads are all known; ``known`` are sliders.
 
-    The linkages with a slider are as good as the others. Each way of driving one counts as a candidate. Choices that
-    belong to pins leave sliders out.
+    They rank equally with the others, and each input side counts as a candidate. Choices that apply only to pins
+    exclude sliders.
     """
     parts: list[MotionResult] = []
     kinds = {slider.kind for slider in known}
@@ -157,6 +159,7 @@ def beside_sliders(
             parts.append(answer)
     if not met:
         return result
+    # A known slider that the slider search did not reproduce means that the enumeration is not proved complete.
     missing = {kind for kind in kinds if not met.get(kind, True)}
     sifting = Sifting[LinkageDesign](problem)
     for part in (result, *parts):
@@ -174,7 +177,7 @@ def beside_sliders(
 
 
 def _asking_for_sliders(problem: MotionProblem) -> Iterator[tuple[Literal["PR", "RP"], MotionProblem]]:
-    """The problem with a slider asked for on each side that is open to it."""
+    """Yield the problem with a slider requested on each side whose dyad is open."""
     for kind in problem.kinds_of_slider:
         for name in ("output_side", "input_side") if kind == "PR" else ("output_side",):
             choices: DyadChoices = getattr(problem, name)
@@ -186,7 +189,7 @@ def _asking_for_sliders(problem: MotionProblem) -> Iterator[tuple[Literal["PR", 
 
 
 def _none(problem: MotionProblem, reason: str, *, complete: bool) -> MotionResult:
-    """The answer where one side has no dyad at all."""
+    """Build the result for a problem in which one side has no dyad at all."""
     search = Sifting[LinkageDesign](problem).search("slider_search", complete=complete)
     return MotionResult(designs=[], search=search, summary=reason)
 
@@ -194,16 +197,17 @@ def _none(problem: MotionProblem, reason: str, *, complete: bool) -> MotionResul
 def slider_linkages(
     problem: MotionProblem, task: MotionTask, links: Dyads, sliders: Sliders, kind: str, progress: Progress
 ) -> MotionResult:
-    """Linkages of a link with two pins and a slider (``kind`` PR or RP), the best distinct ones verified.
+    """Screen pairs of an RR link and a slider (``kind`` PR or RP) and verify the best distinct ones.
 
-    The slider drives where the client asks for it on the input side.
+    The slider is the input if it is requested on the input side.
     """
     driving = problem.input_side.dyad == "PR"
     limit = problem.constraints.min_transmission_angle
     progress(0.3, f"screening {len(links.fixed) * len(sliders.points)} pairs of links and sliders")
-    few = len(links.fixed) * len(sliders.points) <= LEAST_ATTEMPTS  # then all are driven
+    few = len(links.fixed) * len(sliders.points) <= LEAST_ATTEMPTS  # all of them can be driven: no filter is needed
     wanted = (0.0 if few else USABLE_TRANSMISSION_ANGLE) if limit is None else limit
     screened = _screen(problem, task, links, sliders, kind, driving, wanted)
+    # Lower the default angle only if no pair reaches it; a limit of the client is never lowered.
     if limit is None and not screened.score.any():
         screened = _screen(problem, task, links, sliders, kind, driving, 0.0)
     sound = int(np.count_nonzero(screened.score))
@@ -228,10 +232,10 @@ def slider_linkages(
     sifting.reject(OUTRANKED, sound - driven)
     progress(1.0, "verified")
     word = "slider-crank" if kind == "PR" else "inverted slider-crank"
-    distinct = counted(sifting.accepted, f"distinct {word} was", f"distinct {word}s were")
-    text = f"{distinct} driven and verified, of {counted(sifting.candidates, 'pair')} of dyads."
+    distinct = counted(sifting.accepted, f"distinct {word}", f"distinct {word}s")
+    text = f"{distinct} verified, chosen from {counted(sifting.candidates, 'pair')} of dyads."
     if not sifting.accepted:
-        text = f"No {word} was found that satisfies all demands (rejected: {sifting.listed() or 'none'})."
+        text = f"No {word} found satisfies all constraints (rejected: {sifting.listed() or 'none'})."
     return MotionResult(
         designs=sifting.designs(partial(ranked, rank_by=problem.rank_by)),
         search=sifting.search("slider_search"),
@@ -242,7 +246,7 @@ def slider_linkages(
 def _screen(
     problem: MotionProblem, task: MotionTask, links: Dyads, sliders: Sliders, kind: str, driving: bool, least: float
 ) -> _Screened:
-    """Verdicts and scores; axes are link, slider, target."""
+    """Return verdicts and scores of all pairs; the axes of the arrays are link, slider, target."""
     pins = task.images(links.moving)[:, None, :]
     pivots = links.fixed[:, None, None]
     crank = np.abs(links.moving - links.fixed)[:, None]
@@ -259,7 +263,7 @@ def _screen(
             ahead = (np.conj(line) * (others - pins)).real
             moved, turned = _turned(pins, pivots)
             foot = ((pivots - others[..., :1]) * np.conj(line)).imag[..., 0]
-            # h(θ) = foot + a sin(θ − σ)
+            # h(θ) = foot + a sin(θ − σ): the largest |h| is that of the sine's maximum or minimum over the range.
             start = np.angle((pins[..., :1] - pivots) * np.conj(line))[..., 0]
             farthest = np.maximum(
                 foot + crank * _greatest_sine(start, turned), -(foot - crank * _greatest_sine(-start, -turned))
@@ -302,6 +306,7 @@ def _judged(
     )
     one_side = np.all(ahead > 0.0, axis=-1) | np.all(ahead < 0.0, axis=-1)
     verdict = np.zeros(shape, np.int64)
+    # Later assignments overwrite earlier ones: the most fundamental reason comes last.
     verdict[sines < math.sin(math.radians(least)) * (1.0 - ROUNDING)] = REJECTED.index("transmission_angle")
     verdict[~np.broadcast_to(clear, shape)] = REJECTED.index("branch_defect")
     verdict[~np.broadcast_to(moved, shape)] = REJECTED.index("order_defect")
@@ -322,8 +327,12 @@ def _judged(
 
 
 def _turned(pins: Complex, pivots: Complex) -> tuple[NDArray[np.bool_], Real]:
-    """Whether a crank turns one way through the targets, and how far it turns to the last one; shape (links, 1)."""
+    """Return whether a crank turns in one direction through the targets, and its rotation to the last one, radians.
+
+    The shapes are (links, 1). If both directions keep the order (two targets), the shorter rotation counts.
+    """
     rotation = np.angle((pins - pivots) * np.conj(pins[..., :1] - pivots))
+    # Rounding must not turn the first rotation into a full turn.
     rotation[..., 0] = 0.0
     onward = np.mod(rotation, 2.0 * np.pi)
     backward = np.where(onward > 0.0, onward - 2.0 * np.pi, 0.0)
@@ -334,7 +343,7 @@ def _turned(pins: Complex, pivots: Complex) -> tuple[NDArray[np.bool_], Real]:
 
 
 def _greatest_sine(start: Real, turned: Real) -> Real:
-    """Greatest sine of an angle that runs from ``start`` by ``turned``."""
+    """Return the maximum sine of an angle that runs from ``start`` by ``turned``, radians."""
     low, high = np.minimum(start, start + turned), np.maximum(start, start + turned)
     crest = np.floor((high - 0.5 * np.pi) / (2.0 * np.pi)) >= np.ceil((low - 0.5 * np.pi) / (2.0 * np.pi))
     return np.where(crest, 1.0, np.maximum(np.sin(low), np.sin(high)))
@@ -348,7 +357,8 @@ def _sine_of(height: Real, rod: Real) -> Real:
 def _driven_by_slider(
     pins: Complex, pivots: Complex, others: Complex, line: Complex, rod: Real
 ) -> tuple[Real, NDArray[np.bool_], NDArray[np.bool_]]:
-    """Least sine of the angle between crank and coupler, whether the slider moves one way, and whether it is clear."""
+    """Return the minimum sine of the angle between crank and coupler, whether the slider moves in one direction, and
+    whether its motion is free of dead centres."""
     places = ((others - others[..., :1]) * np.conj(line)).real
     steps = np.diff(places)
     moved = np.all(steps > 0.0, axis=-1) | np.all(steps < 0.0, axis=-1)
@@ -366,16 +376,16 @@ def _driven_by_slider(
 def _in_room(
     problem: MotionProblem, task: MotionTask, links: Dyads, sliders: Sliders, screened: _Screened
 ) -> _Screened:
-    """Without the pairs that plainly do not fit into a room, and those that are not looked at for it.
+    """Drop the pairs that clearly collide in the workspace, and those that are not tested.
 
-    All of them where none fits: what is driven then tells why not.
+    If no pair is clear, all are kept, so that verifying some of them yields the reason.
     """
     if problem.space is None or not problem.space.swept:
         return screened
     score = screened.score.ravel()
     sound = np.flatnonzero(score > 0.0)
     best = sound[np.argsort(-score[sound], kind="stable")]
-    # The best ones lie close together: each portion has some of the others.
+    # The best pairs lie close together: interleaved batches contain some of the others too.
     best = best[:: -(-len(best) // LOOKED_AT) or 1]
     portions = -(-len(best) // AT_ONCE)
     fitting = np.zeros_like(score)
@@ -399,9 +409,9 @@ def _bearable(
     kind: str,
     driving: bool,
 ) -> _Screened:
-    """Without the pairs that break a limit on their forces, and those that are not looked at for it.
+    """Drop the pairs that violate a force limit, and those that are not tested.
 
-    All of them where none keeps the limits, as for a room.
+    If no pair satisfies the limits, all are kept, as in the collision test.
     """
     score = screened.score.ravel()
     sound = np.flatnonzero(score > 0.0)
@@ -414,7 +424,7 @@ def _bearable(
         i, j = np.unravel_index(weighed, screened.score.shape)
         try:
             mechanism, moved = _many(task, links, sliders, kind, driving, i, j)
-        except DimensionError:  # P is on a pin of a block's body, which has no direction then
+        except DimensionError:  # P coincides with a pin of the RP body, whose line then has no direction
             return screened
         kept = weighed[bearable(problem, mechanism, moved)]
         light[kept] = score[kept]
@@ -426,7 +436,7 @@ def _bearable(
 def _many(
     task: MotionTask, links: Dyads, sliders: Sliders, kind: str, driving: bool, i: Whole, j: Whole
 ) -> tuple[Mechanism, Real]:
-    """Many linkages of a link and a slider in the problem's coordinates, and what their inputs move by."""
+    """Build a batch of linkages in the problem's coordinates; also return their input motions (radians or length)."""
     o2, a, z = (task.origin + task.size * places for places in (links.fixed[i], links.moving[i], sliders.points[j]))
     angle = sliders.angles[j]
     p = np.full(len(i), task.origin)
@@ -447,11 +457,12 @@ def _many(
 
 
 def _best(task: MotionTask, links: Dyads, sliders: Sliders, screened: _Screened, count: int) -> list[tuple[int, int]]:
-    """The best-scored pairs that differ from one another."""
+    """Select the best-scored distinct pairs."""
     score = screened.score.ravel()
     order = np.argsort(-score, kind="stable")[: 20 * count]
     order = order[score[order] > 0.0]
     i, j = np.unravel_index(order, screened.score.shape)
+    # A line's angle is defined modulo π, hence the factor 2 in its coordinate.
     joints = np.stack([links.fixed[i], links.moving[i], sliders.points[j], np.exp(2j * sliders.angles[j])], axis=1)
     return [(int(i[k]), int(j[k])) for k in widest_apart(joints, count, APART)]
 
@@ -466,7 +477,7 @@ def _mechanism(
     i: int,
     j: int,
 ) -> LinkageMechanism:
-    """The linkage of a link and a slider in the problem's coordinates; what the client stated as it was stated."""
+    """Build the linkage of a link and a slider in the problem's coordinates; given pivots keep their exact values."""
     side, slider_side = problem.input_side, problem.output_side
     if driving:
         side, slider_side = slider_side, side

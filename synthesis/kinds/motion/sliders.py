@@ -1,16 +1,16 @@
-"""Slider dyads that carry the body exactly: points of the body, or of the ground seen by the body, that keep to lines.
+"""Slider dyads that carry the body exactly: points of the body (or of the ground, relative to it) that move on lines.
 
 A PR dyad is a point A of the body whose images lie on one line of the ground; an RP dyad is a fixed point O whose
 images in the body lie on one line of the body, which then slides through a block at O. In both the images are
-s_k + t_k z with |t_k| = 1 and z the point, and so are the differences d_k = a_k + b_k z from the first one. With the
-position j that is turned farthest, and the pole w = −a_j/b_j of that displacement, u = z − w gives d_j = b_j u and
-d_k = e_k + b_k u. Three images are in line when Im(conj(d_j) d_k) = 0; divided by |u|² that is *linear in y = 1/u*,
+s_k + t_k z with |t_k| = 1 and z the point, so their differences from the first one are d_k = a_k + b_k z. With the
+position j of the largest rotation, and the pole w = −a_j/b_j of that displacement, u = z − w gives d_j = b_j u and
+d_k = e_k + b_k u. Three images are collinear if Im(conj(d_j) d_k) = 0; divided by |u|² this is *linear in y = 1/u*,
 
     Im(conj(b_j) e_k y) = −Im(conj(b_j) b_k).
 
-So two positions leave the whole plane, three a line of y, which is a circle of points through the pole, four one point,
-and five a point by chance only (Bottema & Roth, *Theoretical Kinematics*, ch. VIII, and Ball's point in finite motion).
-The pole itself is no slider: its two images coincide.
+So two positions leave the whole plane; three leave a line of y, that is, a circle of points through the pole; four
+leave one point; five leave a point only by chance (Bottema & Roth, *Theoretical Kinematics*, ch. VIII; the finite
+analogue of Ball's point). The pole itself is no slider: its two images coincide.
 """
 
 from __future__ import annotations
@@ -25,25 +25,26 @@ from synthesis.kinds.motion.stated_dyads import DyadChoices
 from synthesis.kinds.motion.task import Complex, MotionTask, Real, stated_pivot
 
 IN_LINE = 1e-9
-"""Distance of images from their line, in task sizes, below which they count as on it: as for residuals of targets."""
+"""Tolerance for images on a line, in task sizes; the same as for residuals of targets."""
 
 TURNED = 1e-9
 """|b_k| below which two positions count as parallel."""
 
 LOST = 1e-13
-"""The same up to which they are so to rounding: between the two too few digits are left to tell."""
+"""|b_k| up to which two positions are parallel to rounding; between this value and :data:`TURNED` too few digits remain
+to decide."""
 
 MAX_DISTANCE = 1e3
-"""Points farther away than this many task sizes are no sliders that anybody builds."""
+"""Maximum distance of a slider's point, in task sizes; farther ones cannot be built in practice."""
 
 STRAIGHT = 1e-9
-"""Distance of the line of y from the origin below which the circle of points is a line through the pole."""
+"""Distance of the line of y from the origin below which the circle of points degenerates to a line through the pole."""
 
 
 class Sliders(NamedTuple):
-    """Slider dyads: their points z, and the angles of their lines (radians; of the body's line in the first position).
+    """Slider dyads: their points z and the angles of their lines (radians; for RP in the first position).
 
-    ``sampled`` says that they are drawn from a family; ``proved`` that these are all.
+    ``sampled``: they are a sample of a family. ``proved``: they are provably all.
     """
 
     points: Complex
@@ -61,15 +62,15 @@ class _Images(NamedTuple):
 
 
 def sliders(task: MotionTask, choices: DyadChoices, *, inverted: bool, rng: np.random.Generator, count: int) -> Sliders:
-    """All slider dyads of one side, or about ``count`` of them where there is a family.
+    """Find all slider dyads of one side, or sample about ``count`` of them if there is a family.
 
     Parameters
     ----------
     task : MotionTask
         Two to five positions.
     choices : DyadChoices
-        The pivot (``moving_pivot`` or ``coupler_vector`` for PR, ``fixed_pivot`` for RP) and ``slide_angle`` may be
-        stated.
+        May contain the pivot (``moving_pivot`` or ``coupler_vector`` for PR, ``fixed_pivot`` for RP) and
+        ``slide_angle``.
     inverted : bool
         RP instead of PR.
     """
@@ -87,6 +88,7 @@ def sliders(task: MotionTask, choices: DyadChoices, *, inverted: bool, rng: np.r
     proved = plain and not sampled and bool(near.all())
     points = points[near]
     d = images.a[:, None] + images.b[:, None] * points
+    # The longest displacement gives the best-conditioned direction of the line.
     along = d[np.abs(d).argmax(axis=0), np.arange(len(points))] if len(points) else np.empty(0, np.complex128)
     with np.errstate(divide="ignore", invalid="ignore"):
         unit = along / np.abs(along)
@@ -96,7 +98,7 @@ def sliders(task: MotionTask, choices: DyadChoices, *, inverted: bool, rng: np.r
         off = np.maximum(off, np.abs(np.sin(angles - angle)) * np.abs(along))
         angles = np.full(len(points), angle)
     good = (off <= IN_LINE) & (np.abs(along) > IN_LINE)
-    reason = f"No {name} has its images in all positions on one line."
+    reason = f"No {name} has all its images on one line."
     return Sliders(points[good], angles[good], sampled, proved, reason)
 
 
@@ -107,9 +109,9 @@ def _images(task: MotionTask, inverted: bool) -> _Images:
 
 
 def _with_angle(images: _Images, angle: float, rng: np.random.Generator, count: int) -> tuple[Complex, bool, bool]:
-    """Points that slide in a given direction: one linear equation for each later position.
+    """Find points that slide in a given direction: one linear equation for each later position.
 
-    Returned with them: whether they are drawn, and whether the positions have the digits to tell.
+    Also return whether the points are a sample, and whether the positions have enough digits to decide this.
     """
     turn = np.exp(-1j * angle)
     # Im(turn (a + b z)) = 0 with z = x + iy
@@ -125,11 +127,12 @@ def _with_angle(images: _Images, angle: float, rng: np.random.Generator, count: 
 def _any_angle(
     task: MotionTask, images: _Images, rng: np.random.Generator, count: int, inverted: bool
 ) -> tuple[Complex, bool, bool]:
-    """Points whose images are in line, whatever the line's direction; the rest as :func:`_with_angle`."""
+    """Find points whose images lie on a line of any direction; return the same values as :func:`_with_angle`."""
     n = len(images.a) + 1
     centre = task.points.mean() if inverted else task.points[0]
     around = points_around(centre, rng, count)
     j = int(np.abs(images.b).argmax())
+    # Two images always lie on a line; in a pure translation all points are alike, and the caller's check decides.
     if n == 2 or abs(images.b[j]) <= TURNED:
         return around, True, False
     others = [k for k in range(n - 1) if k != j]
@@ -144,13 +147,13 @@ def _any_angle(
         parallel = np.abs(right).max() <= TURNED
         return around if parallel else nobody, bool(parallel), plain and not parallel
     if not len(free):
-        # The point runs off to infinity where y vanishes.
+        # The point approaches infinity as y vanishes.
         return (np.array([pole + 1.0 / y]), False, plain) if abs(y) > STRAIGHT else (nobody, False, False)
     direction = complex(free[0])
     if abs(y) <= STRAIGHT:
         spread = distances(rng, count) * rng.choice([-1.0, 1.0], count)
         return np.asarray(pole + spread * direction.conjugate()), True, False
-    # u runs on a circle through the pole with the diameter 1/|y|: evenly, and densely near the body.
+    # u lies on a circle through the pole with diameter 1/|y|: half of the samples are uniform, half dense near it.
     turned = rng.uniform(-0.5 * np.pi, 0.5 * np.pi, count - count // 2)
     distance = distances(rng, count // 2)
     distance = distance[distance * abs(y) < 1.0]
@@ -160,9 +163,9 @@ def _any_angle(
 
 
 def _solutions(matrix: Real, right: Real) -> tuple[complex, Complex, bool]:
-    """Least solution of M (x, y) = r as x + iy, and unit directions, none to two, in which it may be moved.
+    """Return the minimum-norm solution of M (x, y) = r as x + iy, and zero to two unit directions of freedom.
 
-    The last tells whether their number is beyond doubt.
+    The third value is False if too few digits remain to determine the number of directions.
     """
     u, s, vh = np.linalg.svd(matrix, full_matrices=True)
     rank = int(np.sum(s > TURNED))

@@ -1,11 +1,11 @@
-"""Motion generation: dyads for both sides, all pairs screened, the best distinct ones verified.
+"""Motion generation: find dyads for both sides, screen all pairs, verify the best distinct ones.
 
-Where the positions and the client's choices determine both dyads there is one linkage, or a few, and each is verified.
-Where some freedom is left all pairs (:mod:`synthesis.kinds.motion.pairs`) are screened, and the best that differ from
-one another are verified until enough have passed.
+If the positions and the client's choices determine both dyads, there are one or a few linkages, and each is verified.
+If freedom remains, all pairs (:mod:`synthesis.kinds.motion.pairs`) are screened, and the best distinct pairs are
+verified until enough have passed.
 
-Where both sides are stated alike they have the same dyads, as for five positions, and two of them make one fourbar that
-may be driven from either side. It counts as one candidate; each way of driving it that passes is an answer.
+If both sides have the same choices they have the same dyads (always so for five positions), and two of these make one
+fourbar that can be driven from either side. It counts as one candidate; each input side that passes gives a design.
 """
 
 from __future__ import annotations
@@ -42,32 +42,34 @@ from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import DEFECTS, LENGTHS, NUMERICAL, OUTRANKED, Sifting
 
 USABLE_TRANSMISSION_ANGLES = 30.0, 20.0, 10.0, 0.0
-"""Degrees. Where the client sets no limit, a search offers linkages below each of these only if it met none that
-reaches it; practice wants 30 to 40 at least (Norton, Sec. 4.10)."""
+"""Transmission angles, degrees, tried in turn as the lower limit if the client sets none: linkages below one of these
+are returned only if no candidate reaches it. Practice requires at least 30 to 40 (Norton, Sec. 4.10)."""
 
 CURVES_REACH = 4.0
-"""Burmester's curves are returned up to this many task sizes from the body, or half as far again as designs reach."""
+"""Minimum half-width of the window of Burmester's curves, in task sizes; 1.5 times the reach of the designs if that
+is larger."""
 
 CURVES_SAMPLES = 400
-"""Samples of Burmester's curves that are returned, all branches together."""
+"""Number of returned samples of Burmester's curves, over all branches together."""
 
-UNDECIDED = "That does not prove that none exists."
-"""What is said where the dyads, or what became of them, are not all beyond doubt."""
+UNDECIDED = "This does not prove that none exists."
+"""Remark for an empty result if some dyad, or its rejection, is numerically uncertain."""
 
 _EITHER_WAY = {"degenerate", "residual", "cannot_be_driven", "circuit_defect"}
-"""Reasons that hold whichever side drives."""
+"""Rejection reasons that do not depend on which side is the input."""
 
 
 def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
-    """Solve a motion-generation problem, each way of asking by its own method."""
+    """Solve a motion-generation problem by the method that its statement selects."""
     if problem.mechanisms is not None:
         return solve_types(problem, _of_two_dyads, progress)
     return _of_two_dyads(problem, progress)
 
 
 def _of_two_dyads(problem: MotionProblem, progress: Progress) -> MotionResult:
-    """Fourbars, slider-cranks, and fourbars with a driver."""
+    """Solve for fourbars, slider-cranks, and fourbars with a driver dyad."""
     if problem.driver is not None:
+        # A driver dyad is added to finished fourbars, so these are solved first, without it.
         bare = _of_two_dyads(undriven(problem), part_of(progress, 0.0, 0.8))
         return with_driver_dyads(problem, bare, progress)
     if problem.steered_in_room:
@@ -75,6 +77,7 @@ def _of_two_dyads(problem: MotionProblem, progress: Progress) -> MotionResult:
     if problem.approximate:
         return solve_least_squares(problem, progress)
     if problem.steered:
+        # Designs that meet all positions exactly also satisfy any tolerance: they are cheap, so find them first.
         exact = _exact(problem, part_of(progress, 0.0, 0.3))
         return solve_steered(problem, exact, part_of(progress, 0.3, 1.0))
     if problem.few_tolerated:
@@ -85,7 +88,7 @@ def _of_two_dyads(problem: MotionProblem, progress: Progress) -> MotionResult:
 def continued(
     problem: MotionProblem, designs: Sequence[LinkageDesign], progress: Progress
 ) -> list[LinkageDesign] | None:
-    """Designs of a statement by continuation from those of a looser one; None where linkages are not steered."""
+    """Continue designs of a looser problem to this one; return None if the problem needs no constrained fit."""
     bare = problem if problem.driver is None else undriven(problem)
     if not bare.steered:
         return None
@@ -98,7 +101,7 @@ def continued(
 
 
 def _in_room(problem: MotionProblem, progress: Progress) -> MotionResult:
-    """Positions of which some have tolerances, in a room; what is fitted without it only where nothing else is."""
+    """Solve for positions with tolerances in a workspace; fall back to a fit that ignores it if no design passes."""
     exact = None if problem.approximate else _exact(problem, part_of(progress, 0.0, 0.3))
     found = solve_in_room(problem, exact, part_of(progress, 0.3, 0.8))
     if any(design.verification.passed for design in found.designs) or not problem.approximate:
@@ -107,7 +110,7 @@ def _in_room(problem: MotionProblem, progress: Progress) -> MotionResult:
 
 
 def _exact(problem: MotionProblem, progress: Progress) -> MotionResult:
-    """Two to five positions met exactly."""
+    """Solve for two to five positions that are met exactly."""
     if problem.slider is not None:
         return solve_sliders(problem, problem.slider, progress)
     progress(0.0, "finding dyads")
@@ -123,25 +126,27 @@ def _exact(problem: MotionProblem, progress: Progress) -> MotionResult:
             result = beside_sliders(problem, result, pairs.sliders, progress)
             noun = "linkage"
         if not any(design.verification.passed for design in result.designs):
-            end = f"These are all, so no {noun} exists." if result.search.complete else UNDECIDED
+            # Only an enumeration without doubtful roots or residuals proves that no linkage exists.
+            end = f"All are enumerated, so no {noun} exists." if result.search.complete else UNDECIDED
             result = result.model_copy(update={"summary": f"{result.summary} {end}"})
     return result if result.designs else with_sliders(problem, result, progress)
 
 
 def _without_dyads(pairs: Pairs, side: str, cloud: Cloud) -> MotionResult:
-    """The answer when one side has no dyad at all, with the reason."""
+    """Build the result for a problem in which one side has no dyad at all, with the reason."""
     method = "dyad_search" if pairs.sampled else "exact"
     search = Sifting[LinkageDesign](pairs.problem).search(method, complete=cloud.complete)
     return _result(pairs, [], search, cloud.reason.replace("the side", f"the {side} side"))
 
 
 def _determined(pairs: Pairs, progress: Progress) -> MotionResult:
-    """Verify every pair of a few determined dyads; of two that serve either side, both ways of driving."""
+    """Verify every pair of a few determined dyads, with either side as the input if both sides have the same dyads."""
     sifting = Sifting[LinkageDesign](pairs.problem, DEFECTS | LENGTHS)
     target = demanded(pairs.problem)
     for i in range(len(pairs.inputs.fixed)):
         for j in range(i + 1 if pairs.alike else 0, len(pairs.outputs.fixed)):
             reasons = [sifting.keep(pairs.verified(target, (i, j)))]
+            # Driving from the other side can only help if the first rejection depends on the input side.
             if pairs.alike and reasons[0] not in _EITHER_WAY:
                 reasons.append(sifting.keep(pairs.verified(target, (j, i))))
             sifting.count("" if "" in reasons else reasons[0])
@@ -158,6 +163,7 @@ def _searched(pairs: Pairs, progress: Progress) -> MotionResult:
     count = len(pairs.inputs.fixed) * len(pairs.outputs.fixed)
     progress(0.1, f"screening {count} pairs of dyads")
     limit = problem.constraints.min_transmission_angle
+    # Lower the threshold only if the transmission angle is what rejects pairs: other constraints stay violated.
     for least in USABLE_TRANSMISSION_ANGLES if limit is None else (limit,):
         screening = pairs.screened(problem.constraints, least)
         if screening.score.any() or "transmission_angle" not in screening.rejected():
@@ -169,7 +175,7 @@ def _searched(pairs: Pairs, progress: Progress) -> MotionResult:
     driven = sifting.sift(pairs.best(screening), partial(pairs.verified, target), enough=problem.max_designs)
     sifting.reject(OUTRANKED, sound - driven)
     if problem.include_failed and len(sifting.passed) < problem.max_designs:
-        # The best linkages that move as is demanded but break a limit; those that break none are met already.
+        # Show the best linkages that move correctly but violate a limit; those that violate none are found already.
         stated = problem.constraints
         motion_alone = Constraints(same_branch=stated.same_branch, in_order=stated.in_order)
         passed = list(sifting.passed)
@@ -177,6 +183,7 @@ def _searched(pairs: Pairs, progress: Progress) -> MotionResult:
             screening = pairs.screened(motion_alone, 0.0)
         for pair in pairs.best(screening)[: problem.max_designs]:
             sifting.keep(pairs.verified(target, pair))
+        # This second screening is only for failed designs; it must not change the list of passed ones.
         sifting.passed = passed
     progress(1.0, "verified")
     designs = sifting.designs(partial(ranked, rank_by=problem.rank_by))
@@ -198,34 +205,33 @@ def _summary_of_determined(pairs: Pairs, sifting: Sifting[LinkageDesign]) -> str
     linkages = counted(count, "linkage")
     if pairs.alike:
         dyads = len(pairs.inputs.fixed)
-        text = f"{counted(dyads, 'dyad')} with two pins {agreeing(dyads, 'makes', 'make')} {linkages}"
-        text += f", of which {accepted} {verb} the body through all positions." if count else "."
+        text = f"{counted(dyads, 'dyad')} with two pins {agreeing(dyads, 'gives', 'give')} {linkages}"
+        text += f"; {accepted} of them {verb} the body through all positions." if count else "."
         if accepted and len(sifting.passed) > accepted:
-            text += f" {len(sifting.passed) - accepted} can be driven from either side."
+            text += f" Of these, {len(sifting.passed) - accepted} can be driven from either side."
     else:
-        text = f"{accepted} of {linkages} with the stated choices {verb} the body through all positions."
+        text = f"{accepted} of {linkages} with the given choices {verb} the body through all positions."
     return text + sifting.reasons()
 
 
 def _summary_of_search(sifting: Sifting[LinkageDesign], sound: int) -> str:
     if not sifting.passed:
         return (
-            f"None of the {grouped(sifting.candidates)} pairs of dyads that were tried makes a linkage that satisfies "
-            f"all demands (rejected: {sifting.listed(OUTRANKED)}). A linkage may exist that the search did not meet."
+            f"No design found: each of the {grouped(sifting.candidates)} dyad pairs tried violates a constraint "
+            f"(rejected: {sifting.listed(OUTRANKED)}). The search is not exhaustive, so a solution may still exist."
         )
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
     text = (
-        f"{grouped(sound)} of {grouped(sifting.candidates)} pairs of dyads passed the screening; the best "
-        f"{counted(len(sifting.passed), 'distinct one was', 'distinct ones were')} driven and verified, with a least "
-        f"transmission angle of up to {best:.1f}°."
+        f"{counted(len(sifting.passed), 'design', 'designs')} verified, chosen from {grouped(sound)} feasible dyad "
+        f"pairs ({grouped(sifting.candidates)} tried). Best minimum transmission angle: {best:.1f}°."
     )
     if best < USABLE_TRANSMISSION_ANGLES[0]:
-        text += f" None that was found reaches {USABLE_TRANSMISSION_ANGLES[0]:.0f}°."
+        text += f" No design found reaches {USABLE_TRANSMISSION_ANGLES[0]:.0f}°."
     return text
 
 
 def _remarks(pairs: Pairs) -> list[str]:
-    """What a client should know of the dyads beside the linkages."""
+    """List remarks on the dyads that the linkages do not show, such as sliders (pivots at infinity)."""
     remarks = []
     names = ("side",) if pairs.alike else ("input side", "output side")
     for name, cloud in zip(names, pairs.clouds, strict=False):
@@ -235,14 +241,14 @@ def _remarks(pairs: Pairs) -> list[str]:
             count = len(cloud.sliders)
             kinds = " and ".join(sorted({slider.kind for slider in cloud.sliders}))
             remarks.append(
-                f"{counted(count, 'more dyad')} of the {name} {agreeing(count, 'has', 'have')} a pivot "
-                f"at infinity: a slider ({kinds})."
+                f"{counted(count, 'more dyad')} of the {name} {agreeing(count, 'has', 'have')} a pivot at infinity, "
+                f"that is, a slider ({kinds})."
             )
     return list(dict.fromkeys(remarks))
 
 
 def _curves(task: MotionTask, designs: list[LinkageDesign]) -> list[BurmesterBranch]:
-    """Burmester's curves of a task of four positions for drawing, wide enough for the designs."""
+    """Sample Burmester's curves of four positions for drawing, in a window that contains all designs."""
     if len(task.points) != 4:
         return []
     curve = burmester_curve(task, DyadConditions(rotations=(None,) * 3))

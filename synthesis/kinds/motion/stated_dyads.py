@@ -1,4 +1,4 @@
-"""What the client fixes of the linkage: numbers of its two dyads, a line of the ground, and what drives it."""
+"""Optional choices that fix parts of the linkage: numbers of its two dyads, a ground line, and a driver dyad."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from synthesis.model.statement import Degrees, PartialPoint, Point, PositiveLeng
 
 
 def whole_point(point: PartialPoint | None) -> complex | None:
-    """A stated point as a complex number; None where it, or one of its coordinates, is left open."""
+    """Return a given point as a complex number; None if the point or one of its coordinates is open."""
     if point is None or point[0] is None or point[1] is None:
         return None
     return complex(point[0], point[1])
@@ -26,23 +26,23 @@ class GroundLine(Statement):
     angle: Degrees = Field(description="Direction of the line, degrees.")
 
     def offset(self, point: complex) -> float:
-        """Signed distance of a point from the line, in length units."""
+        """Return the signed distance of a point from the line, in length units (positive on its left)."""
         return ((point - complex(*self.point)) * cmath.exp(-1j * math.radians(self.angle))).imag
 
     def foot(self, point: complex) -> complex:
-        """The point of the line that is nearest to a point."""
+        """Return the point of the line that is nearest to a given point."""
         return point - 1j * cmath.rect(self.offset(point), math.radians(self.angle))
 
 
 class CouplerVector(Statement):
-    """Vector Z from the moving pivot to the body's point P in the first position; each part may be left open."""
+    """Vector Z from the moving pivot to the body's point P in the first position; length or angle may be left open."""
 
     length: PositiveLength | None = None
     angle: Degrees | None = Field(default=None, description="Angle of Z in the first position, degrees.")
 
 
 class DyadChoices(Statement):
-    """What the client fixes of one dyad (link and coupler side); all that is left out is searched.
+    """Given values of one dyad (link and coupler side); values that are left out are searched.
 
     Norton's letters: ``link_angle`` is θ (output side: σ), ``coupler_vector`` is Z at φ (S at ψ), ``rotations``
     are β₂, β₃ (γ₂, γ₃).
@@ -50,9 +50,9 @@ class DyadChoices(Statement):
 
     dyad: Literal["any", "RR", "PR", "RP"] = Field(
         default="any",
-        description="What joins the body to the ground. RR: a link with two pins. PR: a pin of the body slides on a "
-        "line of the ground. RP: a line of the body slides through a block that is pinned to the ground. any: "
-        "pins, and a slider where pins cannot do what is asked.",
+        description="Type of the joint between body and ground. RR: a link with two pins. PR: a pin of the body slides "
+        "on a line of the ground. RP: a line of the body slides through a block that is pinned to the ground. any: "
+        "RR, or a slider if no RR dyad is feasible.",
     )
     fixed_pivot: PartialPoint | None = Field(default=None, description="A coordinate may be left open.")
     moving_pivot: PartialPoint | None = Field(
@@ -74,7 +74,7 @@ class DyadChoices(Statement):
     )
 
     def count(self) -> int:
-        """How many numbers are fixed."""
+        """Return the number of fixed scalars."""
         vector = self.coupler_vector or CouplerVector()
         pivots = [*(self.fixed_pivot or ()), *(self.moving_pivot or ())]
         scalars = [self.link_angle, self.slide_angle, vector.length, vector.angle, *(self.rotations or []), *pivots]
@@ -82,28 +82,28 @@ class DyadChoices(Statement):
 
     @property
     def pivots_alone(self) -> bool:
-        """Whether nothing but pivots is fixed, or their coordinates."""
+        """Whether only pivots, or coordinates of pivots, are fixed."""
         vector = self.coupler_vector
         whole = vector is None or (vector.length is not None and vector.angle is not None)
         return whole and self.link_angle is None and not any(b is not None for b in self.rotations or [])
 
     @property
     def has_partial_moving_pivot(self) -> bool:
-        """Whether one coordinate of the moving pivot is fixed and the other left open."""
+        """Whether one coordinate of the moving pivot is fixed and the other is open."""
         return self.moving_pivot is not None and whole_point(self.moving_pivot) is None
 
     @property
     def one_pivot(self) -> bool:
-        """Whether one whole pivot is all that is fixed."""
+        """Whether exactly one pivot, with both coordinates, is fixed and no other number."""
         pivots = whole_point(self.fixed_pivot), whole_point(self.moving_pivot)
         return self.count() == 2 and pivots.count(None) == 1
 
 
 class DriverDyad(Statement):
-    """A crank and a link that are added to drive the linkage between its end positions."""
+    """A crank and a link added to drive the linkage between its end positions."""
 
     link: Literal["any", "input", "output", "coupler"] = Field(
         default="any",
-        description="The link that is driven; any: input or output, and the coupler where neither can be driven well.",
+        description="The link to drive. any: input or output, or the coupler if neither can be driven well.",
     )
-    pivot_region: Region | None = Field(default=None, description="Where the crank's fixed pivot may lie.")
+    pivot_region: Region | None = Field(default=None, description="Region that must contain the crank's fixed pivot.")

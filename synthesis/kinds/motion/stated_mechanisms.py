@@ -1,4 +1,4 @@
-"""Which types of mechanism may carry the body, and what the client fixes of the chain that sixbars are made of."""
+"""Requested types of mechanism, and given dimensions of the three-link chain in a sixbar."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from synthesis.model.stated_types import UNCLASSED, Auto, beside_sixbars, named_
 from synthesis.model.statement import Contradiction, PartialPoint, PositiveLength, Statement
 
 Sixbar = Literal["watt_1", "stephenson_1", "stephenson_2", "stephenson_3"]
-"""Sixbars that carry a body by a link that a fourbar alone does not move."""
+"""Sixbar types in which the body's link is no link of a fourbar within the sixbar."""
 
 SIXBARS: tuple[Sixbar, ...] = get_args(Sixbar)
 
 Mechanisms = Auto | Annotated[list[Literal["fourbar", "slider_crank"] | Sixbar], Field(min_length=1, max_length=6)]
-"""Types by their names, or the simplest that does."""
+"""A list of types by name, or ``auto`` for the simplest type that is feasible."""
 
 
 class Chain(Statement):
-    """The chain G–H₁–H₂ that carries the body at H₂; what is left out is drawn by the search."""
+    """The chain G–H₁–H₂ that carries the body at H₂; values that are left out are sampled by the search."""
 
     links: tuple[PositiveLength | None, PositiveLength | None] | None = Field(
         default=None, description="Lengths G–H₁ and H₁–H₂; one may be left open."
@@ -33,11 +33,11 @@ class Chain(Statement):
         default=None, description="H₂ in the first position; a coordinate may be left open."
     )
     elbow: Literal["any", "left", "right"] = Field(
-        default="any", description="On which side of the way from G to H₂ the joint H₁ lies in all positions."
+        default="any", description="Side of the line from G to H₂ on which joint H₁ lies in all positions."
     )
 
     def size_from(self, point: complex) -> float:
-        """The longest stated length, or the way from a point to a stated pivot if that is longer; 0 without either.
+        """Return the longest of the given lengths and of the distances from a point to given pivots; 0 without either.
 
         An open coordinate of a pivot counts as that of the point.
         """
@@ -49,16 +49,14 @@ class Chain(Statement):
 
 
 def of_sixbars(problem: Any) -> list[Contradiction]:
-    """What cannot be demanded of the types that are looked for."""
+    """Return contradictions between the requested types and the other fields."""
     listed: list[Contradiction] = []
     stated = problem.mechanisms
     if problem.chain is not None and not (isinstance(stated, list) and set(stated) <= set(SIXBARS)):
-        detail = "belongs to sixbars; name types of sixbars alone in mechanisms"
+        detail = "applies only to sixbars; list only sixbar types in mechanisms"
         listed.append(Contradiction("/chain", detail))
     elif problem.chain is not None and (len(problem.positions) > MOST_HELD or problem.fitted):
-        detail = (
-            f"is constrained for up to {MOST_HELD} positions that are met exactly or within tolerances; leave it out"
-        )
+        detail = f"applies only to at most {MOST_HELD} positions that are met exactly or within tolerances; omit it"
         listed.append(Contradiction("/chain", detail))
     if not (isinstance(stated, list) and named_among(stated, SIXBARS)):
         return [*listed, *_of_types(problem)]
@@ -69,9 +67,9 @@ def of_sixbars(problem: Any) -> list[Contradiction]:
 
 
 def lacking(problem: Any) -> Iterator[Contradiction]:
-    """What is stated that sixbars cannot keep."""
+    """Yield the given fields that sixbars do not support."""
     if not problem.few_enough:
-        detail = f"sixbars are sought for up to {MOST_OF_SIXBARS} positions; take fourbars for more"
+        detail = f"sixbars support at most {MOST_OF_SIXBARS} positions; request fourbars for more"
         yield Contradiction("/mechanisms", detail)
     for name, of_fourbars in (
         ("input_side", problem.input_side != type(problem.input_side)()),
@@ -80,44 +78,44 @@ def lacking(problem: Any) -> Iterator[Contradiction]:
         ("driver_dyad", problem.driver is not None),
     ):
         if of_fourbars:
-            detail = "is of fourbars; leave it out, or take the sixbars out of mechanisms"
+            detail = "applies only to fourbars; omit it, or remove the sixbars from mechanisms"
             yield Contradiction(f"/{name}", detail)
     yield from beside_sixbars(problem)
 
 
 def beyond_unclassed(problem: Any) -> Iterator[Contradiction]:
-    """What is stated that a Stephenson II sixbar cannot keep, or is not looked for with."""
+    """Yield the given fields that Stephenson II sixbars, or their search, do not support."""
     yield from no_class(problem.constraints)
     if problem.constraints.full_rotation:
         yield Contradiction(
-            "/constraints/full_rotation", "is not looked for in Stephenson II sixbars; drop the demand, or name others"
+            "/constraints/full_rotation", "is not supported for Stephenson II sixbars; omit it, or request other types"
         )
     if problem.chain is not None:
-        detail = "is constrained to Watt I and Stephenson I and III sixbars; name one of these, or leave it out"
+        detail = "applies only to Watt I, Stephenson I and Stephenson III sixbars; request one of these, or omit it"
         yield Contradiction("/chain", detail)
 
 
 def _of_types(problem: Any) -> list[Contradiction]:
-    """Types beside choices that exclude them."""
+    """Return contradictions between the listed types and the dyads of the sides."""
     stated = problem.mechanisms
     if stated is None or isinstance(stated, str):
         return []
     slider = problem.slider is not None
     if slider and "slider_crank" not in stated:
-        return [Contradiction("/mechanisms", "a side has a slider; take slider_crank into mechanisms")]
+        return [Contradiction("/mechanisms", "a side has a slider; add slider_crank to mechanisms")]
     if problem.slider == "RP":
-        detail = "a line of the body slides, which makes an inverted slider-crank: no list names that; leave it out"
+        detail = "an RP dyad makes an inverted slider-crank, which no list can name; omit mechanisms"
         return [Contradiction("/mechanisms", detail)]
     if "fourbar" not in stated and not slider and problem.output_side.dyad == "RR":
-        return [Contradiction("/mechanisms", "both sides have pins; take fourbar into mechanisms")]
+        return [Contradiction("/mechanisms", "both sides have pins; add fourbar to mechanisms")]
     return []
 
 
 def _faults_of_chain(problem: Any) -> list[Contradiction]:
-    """A chain that does not reach, as far as all of it is stated."""
+    """Return the contradiction of a fully given chain that cannot reach one of the positions."""
     chain = problem.chain
     if chain is None or chain.links is None or None in chain.links or problem.positions[0].tolerance is not None:
-        return []  # H₂ is stated in the first position as it is met
+        return []  # H₂ is given at the first position as the mechanism meets it, which a tolerance leaves open
     pivot, pin = whole_point(chain.fixed_pivot), whole_point(chain.moving_pivot)
     if pivot is None or pin is None:
         return []
@@ -126,6 +124,6 @@ def _faults_of_chain(problem: Any) -> list[Contradiction]:
     for k, (position, turn) in enumerate(zip(problem.positions, problem.turns, strict=True)):
         reach = abs(position.point + cmath.exp(1j * turn) * (pin - start) - pivot)
         if position.tolerance is None and not abs(first - second) < reach < first + second:
-            detail = f"G and H₂ are {reach:.6g} {problem.length_unit} apart in position {k}, which these do not reach"
+            detail = f"cannot span G to H₂ at position {k}: the distance is {reach:.6g} {problem.length_unit}"
             return [Contradiction("/chain/links", detail)]
     return []

@@ -1,8 +1,8 @@
-"""Two to four positions of which some have tolerances: linkages that use them to satisfy all demands.
+"""Constrained fit for two to four positions with tolerances: use the tolerances to satisfy all constraints.
 
-Starts (:mod:`synthesis.kinds.motion.steered_starts`) meet poses that are drawn within the tolerances. Each is then made
-to hold all demands at once (:mod:`synthesis.kinds.motion.steered_fit`), every position within its tolerance, and is
-driven and verified like any other. Positions without a tolerance are held to rounding.
+Starting linkages (:mod:`synthesis.kinds.motion.steered_starts`) meet poses sampled within the tolerances. Each is then
+fitted to all constraints at once (:mod:`synthesis.kinds.motion.steered_fit`), with every position within its tolerance,
+and is driven and verified like any other. Positions without a tolerance are met to rounding.
 """
 
 from __future__ import annotations
@@ -38,30 +38,30 @@ from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import DEFECTS, LENGTHS, OUTRANKED, Sifting
 
 STARTED, BETTERED = 40, 8
-"""Linkages that are steered, staying near to their starts; and those of them, as many as differ, that are then brought
-to where they are most usable."""
+"""Maximum number of starting linkages, which are first fitted close to their starts; and of the distinct results that
+are then optimised freely."""
 
 REASONS = DEFECTS | LENGTHS | {"within_tolerance": "tolerance"}
-"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
+"""Rejection reason by failed check; other checks use their own name."""
 
 
 def solve_steered(problem: MotionProblem, exact: MotionResult, progress: Progress) -> MotionResult:
-    """Designs that use the tolerances, beside those that meet the positions exactly.
+    """Find designs that use the tolerances, and merge them with those that meet the positions exactly.
 
     Parameters
     ----------
     problem : MotionProblem
         Two to four positions.
     exact : MotionResult
-        The answer with all positions met exactly.
+        The result with all positions met exactly.
     progress : callable
-        Told how far the work is.
+        Progress callback.
     """
     task = motion_task(problem)
     rows = demanded_rows(problem, task)
-    progress(0.0, "drawing poses within the tolerances")
+    progress(0.0, "sampling poses within the tolerances")
     listed = starts(problem, task, rows[:, 3:], STARTED)
-    progress(0.4, f"steering {len(listed)} linkages")
+    progress(0.4, f"fitting {len(listed)} linkages to the tolerances")
     first = [begun(problem, task, rows, start) for start in listed]
     steered = all_steered(rows, first)
     sifting = Sifting[LinkageDesign](problem, REASONS)
@@ -69,6 +69,7 @@ def solve_steered(problem: MotionProblem, exact: MotionResult, progress: Progres
     sifting.passed = [design for design in exact.designs if design.verification.passed]
     sifting.failed = [design for design in exact.designs if not design.verification.passed]
     met = len(sifting.passed)
+    # Staying near the starts keeps the fits diverse; only then may the distinct ones move to better minima.
     unlike = different(steered)
     free = [let_go(linkage) for linkage in unlike[:BETTERED]]
     bettered = all_steered(rows, free)
@@ -88,7 +89,7 @@ def solve_steered(problem: MotionProblem, exact: MotionResult, progress: Progres
 
 
 def steered_on(problem: MotionProblem, designs: Sequence[LinkageDesign]) -> list[LinkageDesign]:
-    """Designs of a statement, steered on from those of a looser one; sixbars without their drivers."""
+    """Continue designs of a looser problem to this one by constrained fits; driver dyads are removed first."""
     task, target = motion_task(problem), demanded(problem)
     rows = demanded_rows(problem, task)
     bare = (verify(problem, _fourbar_of(design.mechanism), target) for design in designs[:BETTERED])
@@ -99,7 +100,7 @@ def steered_on(problem: MotionProblem, designs: Sequence[LinkageDesign]) -> list
 
 
 def _fourbar_of(mechanism: LinkageMechanism) -> FourbarMechanism:
-    """The fourbar of a linkage that is one, or that is one with a driver."""
+    """Return a linkage's fourbar, without its driver dyad if it has one."""
     if isinstance(mechanism, FourbarMechanism):
         return mechanism
     joints = (complex(*mechanism.skeleton.joints[name]) for name in ("O2", "A", "B", "O4", "P"))
@@ -107,7 +108,7 @@ def _fourbar_of(mechanism: LinkageMechanism) -> FourbarMechanism:
 
 
 def _start_of(problem: MotionProblem, task: MotionTask, rows: Real, design: LinkageDesign) -> Start:
-    """A driven fourbar as a start, with the poses in which it meets its targets."""
+    """Convert a verified fourbar to a start, with the poses in which it meets its targets."""
     assert isinstance(design.mechanism, FourbarMechanism)
     fourbar = driven_fourbar(design.mechanism)
     at = positions(fourbar.linkage, np.radians([target.at for target in design.targets]), fourbar.assembly)
@@ -127,15 +128,14 @@ def _start_of(problem: MotionProblem, task: MotionTask, rows: Real, design: Link
 def _summary(sifting: Sifting[LinkageDesign], started: int, steered: int, exact: int) -> str:
     if not sifting.passed:
         return (
-            f"None of {counted(started, 'linkage')} that were steered into the tolerances and demands satisfies them "
-            "all "
-            f"(rejected: {sifting.listed(OUTRANKED) or 'none'}). A linkage may exist that the search did not meet."
+            f"No design found: fits from {counted(started, 'start')} within the tolerances all violate a constraint "
+            f"(rejected: {sifting.listed(OUTRANKED) or 'none'}). The search is not exhaustive, so a solution may still "
+            "exist."
         )
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
     return (
-        f"{counted(steered, 'linkage that was', 'linkages that were')} steered into the tolerances from "
-        f"{counted(started, 'start')} {agreeing(steered, 'satisfies', 'satisfy')} all demands, and "
-        f"{counted(exact, 'that meets', 'that meet')} the positions exactly; the least transmission angle is up to "
-        f"{best:.1f}°. The tolerances "
-        "were searched from poses drawn within them; a better linkage may exist."
+        f"{counted(steered, 'design', 'designs')} from {counted(started, 'start')} "
+        f"{agreeing(steered, 'uses', 'use')} the tolerances, and {counted(exact, 'design meets', 'designs meet')} the "
+        f"positions exactly. Best minimum transmission angle: {best:.1f}°. The search samples poses within the "
+        "tolerances, so a better linkage may exist."
     )

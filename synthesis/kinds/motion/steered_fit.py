@@ -1,7 +1,7 @@
-"""Linkages that are steered into the tolerances of their positions and all demands: begun, brought there, and driven.
+"""Constrained fits of fourbars to positions with tolerances: set up from a start, solve, verify.
 
-Each is a vector of unknowns with a setting (:mod:`synthesis.kinds.motion.steered_rows`). What a start decides for good
-is which way the input turns, and the assembly.
+A fit is a vector of unknowns with a setting (:mod:`synthesis.kinds.motion.steered_rows`). The start fixes the direction
+in which the input turns, and the assembly.
 """
 
 from __future__ import annotations
@@ -52,39 +52,39 @@ from synthesis.numerics.status import Status
 from synthesis.outcome.ranking import distinct
 
 STAYING = 0.3
-"""Weight of the way from the start, in task sizes, of a linkage that is to stay near to it."""
+"""Weight of the distance from the start, in task sizes, for a linkage that should stay near it."""
 
 WEIGHT, WEIGHT_IN_ROOM = 10.0, 1e4
-"""Weight of limits in the first descent, and where the margins of a room are among them, which have kinks."""
+"""Penalty weights of limits in the first descent: in general, and with workspace margins, which have kinks."""
 
 ROUNDS_IN_ROOM, STEPS_IN_ROOM = 20, 12
-"""Descents in a room, and steps of each, at most."""
+"""Maximum number of descents in a workspace, and of steps in each."""
 
 SAME_LINKAGE = 0.02
-"""Linkages whose joints differ by less than this share of the task's size are one answer; the better is kept."""
+"""Distance of joints, as a share of the task's size, below which two linkages are duplicates; the better is kept."""
 
 LEAST_ANGLE = 2.0
-"""Degrees of transmission angle that are aimed at where the client sets no limit: away from toggles."""
+"""Minimum transmission angle, degrees, if the client sets no limit; it keeps the fit away from toggles."""
 
 _SHORTEST = {"double_crank": 0, "crank_rocker": 1, "double_rocker": 2}
-"""The shortest link, in the order d, a, b, c, of classes of fourbars."""
+"""Index of the shortest link, in the order d, a, b, c, by Grashof class."""
 
 
 class Steered(NamedTuple):
-    """A linkage on its way: unknowns, and its setting (:mod:`synthesis.kinds.motion.steered_rows`)."""
+    """State of a constrained fit: unknowns and setting (:mod:`synthesis.kinds.motion.steered_rows`)."""
 
     x: Real
     setting: Real
 
 
 def demanded_rows(problem: MotionProblem, task: MotionTask) -> Real:
-    """Demanded poses and their tolerances as :func:`~synthesis.kinds.motion.steered_rows.steered_rows` takes them."""
+    """Return target poses and tolerances in the form of :func:`~synthesis.kinds.motion.steered_rows.steered_rows`."""
     points = np.stack([task.points.real, task.points.imag, np.angle(task.turns)], axis=1)
     return np.ascontiguousarray(np.concatenate([points, fit_demands(problem, task).tolerances], axis=1))
 
 
 def begun(problem: MotionProblem, task: MotionTask, rows: Real, start: Start, room: Real = NONE) -> Steered:
-    """A start, which is to stay near to where it is."""
+    """Set up a fit that stays near its start."""
     pivots = np.ascontiguousarray(start.pivots).view(np.float64)
     setting = _setting(problem, task, start, room)
     setting[HOME : HOME + PIVOTS], setting[WEIGHT_OF_HOME] = pivots, STAYING
@@ -92,22 +92,24 @@ def begun(problem: MotionProblem, task: MotionTask, rows: Real, start: Start, ro
 
 
 def let_go(linkage: Steered) -> Steered:
-    """The same, free to go where it is most usable."""
+    """Return the fit without the term that keeps it near its start."""
     setting = linkage.setting.copy()
     setting[WEIGHT_OF_HOME] = 0.0
     return linkage._replace(setting=setting)
 
 
 def with_angle(linkage: Steered, degrees: float) -> Steered:
-    """The same with another least transmission angle."""
+    """Return the fit with another minimum transmission angle, degrees."""
     setting = linkage.setting.copy()
     setting[COSINE] = math.cos(math.radians(min(degrees, 89.0)))
     return linkage._replace(setting=setting)
 
 
 def room_of(problem: MotionProblem, task: MotionTask, aim: float = AIM) -> Real:
-    """What is demanded of the room (:mod:`synthesis.fit.room`), kept more narrowly by a share of the task's size; empty
-    where that is nothing."""
+    """Return the workspace constraints as parameters (:mod:`synthesis.fit.room`), empty without a workspace.
+
+    ``aim`` tightens the constraints by a share of the task's size.
+    """
     if problem.space is None:
         return NONE
     spare = problem.space.spared_at(*problem.held_at_ends)
@@ -115,13 +117,13 @@ def room_of(problem: MotionProblem, task: MotionTask, aim: float = AIM) -> Real:
 
 
 def in_rooms(linkages: Sequence[Steered], rows: Real, room: Real) -> list[Steered]:
-    """The same in another room."""
+    """Return the fits with another workspace."""
     end = STEPS + len(rows) - 1
     return [one._replace(setting=np.concatenate([one.setting[:end], room])) for one in linkages]
 
 
 def room_left(linkages: Sequence[Steered], rows: Real, room: Real) -> Real:
-    """The least margin of a room for each linkage, in task sizes; infinite where there is no room."""
+    """Return the minimum workspace margin of each linkage, in task sizes; infinite without a workspace."""
     if not len(room) or not linkages:
         return np.full(len(linkages), math.inf)
     settings = np.array([one.setting[: STEPS + len(rows) - 1] for one in linkages])
@@ -130,7 +132,7 @@ def room_left(linkages: Sequence[Steered], rows: Real, room: Real) -> Real:
 
 
 def all_steered(rows: Real, linkages: Sequence[Steered]) -> list[Steered]:
-    """Linkages brought to where all demands hold, without those that cannot be."""
+    """Fit linkages to all constraints; drop those that cannot satisfy them."""
     n = len(rows)
     ended: list[Steered | None] = [None] * len(linkages)
 
@@ -151,12 +153,13 @@ def all_steered(rows: Real, linkages: Sequence[Steered]) -> list[Steered]:
     def work(some: slice) -> None:
         ended[some] = [steered(linkage) for linkage in linkages[some]]
 
+    # The kernels release the interpreter lock, so portions run in parallel threads.
     in_portions(work, len(linkages), 1)
     return [linkage for linkage in ended if linkage is not None]
 
 
 def _setting(problem: MotionProblem, task: MotionTask, start: Start, room: Real) -> Real:
-    """The demands as numbers, and what a start decides: which way the input turns, and in which assembly."""
+    """Pack the constraints, and the choices of the start (direction of the input, assembly), into a setting."""
     constraints = problem.constraints
     n = len(start.poses)
     setting = np.full(STEPS + n - 1, math.inf)
@@ -168,16 +171,18 @@ def _setting(problem: MotionProblem, task: MotionTask, start: Start, room: Real)
     turned = np.angle((pins - o2) / (pins[0] - o2))
     onward, backward = np.mod(turned, math.tau), -np.mod(-turned, math.tau)
     rises, falls = bool(np.all(np.diff(onward) > 0.0)), bool(np.all(np.diff(backward) < 0.0))
+    # If both directions keep the order (two poses), take the shorter rotation.
     forward = rises and not (falls and -backward[-1] < onward[-1])
     steps = np.diff(onward if forward else backward)
     if len(room) and not (rises or falls):
-        # Deviations are to bring the poses into order: the input turns as it does on the whole.
+        # The poses are out of order; deviations within tolerances may fix that. Use the overall direction.
         steps = np.diff(np.unwrap(turned))
         forward = bool(steps.sum() > 0.0)
     setting[DIRECTION] = 1.0 if forward else -1.0
     setting[STEPS:] = steps
     setting[ASSEMBLY] = math.copysign(1.0, float(((others - pins)[0].conjugate() * (others[0] - o4)).imag))
     setting[SHORTEST] = _SHORTEST.get(constraints.grashof, -1)
+    # A fully rotating input needs the ground or the input as shortest link: take the shorter one of the start.
     if constraints.full_rotation and setting[SHORTEST] < 0:
         setting[SHORTEST] = 0 if abs(o4 - o2) < abs(pins[0] - o2) else 1
     setting[COSINE] = math.cos(math.radians(max(constraints.min_transmission_angle or 0.0, LEAST_ANGLE)))
@@ -197,7 +202,7 @@ def _setting(problem: MotionProblem, task: MotionTask, start: Start, room: Real)
 
 
 def different(linkages: list[Steered]) -> list[Steered]:
-    """Linkages that differ, in the order in which they come."""
+    """Return the distinct linkages, in their given order."""
     if not linkages:
         return []
     joints = np.array([linkage.x[:PIVOTS] for linkage in linkages]).view(np.complex128)
@@ -207,7 +212,8 @@ def different(linkages: list[Steered]) -> list[Steered]:
 def driven(
     problem: MotionProblem, task: MotionTask, rows: Real, x: Real, target: Demanded
 ) -> LinkageDesign | str | None:
-    """The linkage of steered unknowns, driven; either way round where both sides are stated alike."""
+    """Build the linkage of a constrained fit and verify it; return a design, a rejection reason, or None."""
+    # The first pose includes its fitted deviations, so the body angle is stored with the mechanism.
     pose = rows[0, :3].copy()
     free = rows[0, 3:] > 0.0
     pose[free] += rows[0, 3:][free] * x[PIVOTS : PIVOTS + int(free.sum())]

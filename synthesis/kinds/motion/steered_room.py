@@ -1,10 +1,10 @@
-"""The room of a linkage that is steered: its margins along the motion from the first target to the last.
+"""Workspace margins of a constrained fit, along the motion from the first target to the last.
 
-Pivots and poses are taken to the chart of a fourbar that carries a body (:mod:`synthesis.fit.fourbar_room`), where the
-margins and their derivatives are; the chart, a few numbers, is differenced. A motion begins and ends where the finished
-linkage meets its first and its last target: at the input at which the greatest share of a tolerance is least. With
-shares s_i(φ) that is met by steps δ to the least of max |s_i + s_i' δ|, which lies where one of these lines is zero or
-two are equally far from it.
+Pivots and poses are converted to the chart of a fourbar that carries a body (:mod:`synthesis.fit.fourbar_room`), which
+provides the margins and their derivatives; the chart's few numbers are differenced. The motion begins and ends where
+the finished linkage meets its first and last target: at the input that minimises the largest deviation relative to its
+tolerance. With relative deviations s_i(φ) this is found by steps δ that minimise max |s_i + s_i' δ|; the minimum lies
+where one of these lines is zero or two have the same absolute value.
 """
 
 from __future__ import annotations
@@ -25,22 +25,23 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 BODY, ENDS, CHART = LINKAGE, LINKAGE + 1, LINKAGE + 3
-"""Places in a chart, behind the fourbar's own (lengths themselves, not their logarithms): the direction of A → B on the
-body as it is drawn, and the crank's angles from the ground line at both ends; and how many numbers a chart has."""
+"""Indices into a chart after the fourbar's own entries (lengths here, not logarithms): the direction of A → B on the
+body as given, and the crank's angles from the ground line at both ends; last the number of entries."""
 
 DIFFERENCE = 1e-6
-"""Change of an unknown over which the chart is differenced."""
+"""Step of the unknowns for finite differences of the chart."""
 
 NEAREST_STEPS, GREATEST_STEP, SAME_ANGLE = 12, 0.1, 1e-13
-"""Steps to the nearest input at most, radians of one at most, and those of one that is none."""
+"""Iteration for the nearest input: maximum number of steps, maximum step in radians, and convergence tolerance in
+radians."""
 
 AROUND = 4
-"""Greatest steps either way of a pose at which the nearest input is looked for at first."""
+"""Number of maximum steps scanned on either side of a pose for the initial nearest input."""
 
 
 @njit(**OPTIONS)
 def _pose(x: Real, points: Real, k: int, pose: Real) -> None:
-    """Pose k with its deviations, which stand behind the eight coordinates of the pivots; written."""
+    """Write pose k with its deviations; these follow the eight pivot coordinates in x."""
     at = 8
     for j in range(k + 1):
         for c in range(3):
@@ -54,7 +55,7 @@ def _pose(x: Real, points: Real, k: int, pose: Real) -> None:
 
 @njit(**OPTIONS)
 def chart_of(x: Real, points: Real, assembly: float, steps: Real, beyond: Real, chart: Real) -> bool:
-    """The chart of steered unknowns, written; False where a link has no length.
+    """Write the chart of the unknowns of a constrained fit; return False if a link has no length.
 
     Parameters
     ----------
@@ -63,12 +64,12 @@ def chart_of(x: Real, points: Real, assembly: float, steps: Real, beyond: Real, 
     assembly : float
         Sign of the assembly.
     steps : float64, shape (n − 1,)
-        The input's turn from each pose to the next, to half a turn.
+        The input's rotation from each pose to the next, radians, known to half a turn.
     beyond : float64, shape (2,)
-        How far beyond the first pose and the last the motion begins and ends, radians: where that is looked for, and
-        written. Not a number where it is to be looked for all around.
+        Offsets of the ends of the motion from the first and last pose, radians: start of the search on input, result on
+        output. NaN requests a scan of the neighbourhood.
     chart : float64, shape (CHART,)
-        Written.
+        Output.
     """
     n = len(points)
     o2, o4 = complex(x[0], x[1]), complex(x[2], x[3])
@@ -105,13 +106,17 @@ def chart_of(x: Real, points: Real, assembly: float, steps: Real, beyond: Real, 
 
 @njit(**OPTIONS)
 def _nearest(chart: Real, assembly: float, angle: float, beyond: float, row: Real) -> float:
-    """The crank angle beside one at which the greatest share of a pose's tolerances is least; the same angle where a
-    coordinate of the pose is held, which decides then. ``beyond`` is as for :func:`chart_of`."""
+    """Find the crank angle near a given one that minimises the largest deviation from a pose, relative to tolerance.
+
+    Return the given angle if a coordinate of the pose is exact, because that one determines the input. ``beyond`` is as
+    for :func:`chart_of`.
+    """
     if not row[3:].min() > 0.0:
         return angle
     shares, slopes = np.empty(3), np.empty(3)
     ahead, after = np.empty(3), np.empty(3)
     missed, at = np.inf, angle
+    # beyond is NaN if no earlier result exists (NaN differs from itself): then scan both sides of the angle.
     for k in range(1 if beyond == beyond else 2 * AROUND + 1):
         tried = angle + (beyond if beyond == beyond else GREATEST_STEP * ((k + 1) // 2) * (1 if k % 2 else -1))
         if _shares(chart, assembly, tried, row, ahead, after) and np.abs(ahead).max() < missed:
@@ -122,6 +127,7 @@ def _nearest(chart: Real, assembly: float, angle: float, beyond: float, row: Rea
     angle = at
     for _ in range(NEAREST_STEPS):
         step = min(max(_evened(shares, slopes), -GREATEST_STEP), GREATEST_STEP)
+        # Shorten the step until it improves: the linear model is not valid far away, and the linkage may not close.
         while abs(step) > SAME_ANGLE:
             closes = _shares(chart, assembly, angle + step, row, ahead, after)
             if closes and np.abs(ahead).max() < missed:
@@ -137,8 +143,9 @@ def _nearest(chart: Real, assembly: float, angle: float, beyond: float, row: Rea
 
 @njit(**OPTIONS)
 def _evened(shares: Real, slopes: Real) -> float:
-    """δ at which max |s_i + s_i' δ| is least."""
+    """Return the δ that minimises max |s_i + s_i' δ|."""
     best, least = 0.0, np.abs(shares).max()
+    # The minimum is at a zero of one line (i = j) or where two have equal or opposite values: try all candidates.
     for i in range(len(shares)):
         for j in range(i + 1):
             for sign in (-1.0, 1.0):
@@ -156,8 +163,10 @@ def _evened(shares: Real, slopes: Real) -> float:
 
 @njit(**OPTIONS)
 def _shares(chart: Real, assembly: float, angle: float, row: Real, shares: Real, slopes: Real) -> bool:
-    """Deviations from a pose in its tolerances, and their derivatives by the crank's angle; False where the linkage
-    does not close."""
+    """Write deviations from a pose relative to its tolerances, and their derivatives by the crank's angle.
+
+    Return False if the linkage does not close.
+    """
     lengths = chart[LENGTHS : LENGTHS + 4]
     ground = lengths[0] * unit(chart[2])
     crank = lengths[1] * unit(chart[2] + angle)
@@ -189,8 +198,7 @@ def steered_room_rows(
     jacobian: Real,
     m: int,
 ) -> int:
-    """Append the rows of a room's margins that bear a load; returns the number of rows, −1 where the motion does not
-    close.
+    """Append the rows of the active workspace margins; return the new row count, or −1 if the motion does not close.
 
     Parameters
     ----------
@@ -205,6 +213,7 @@ def steered_room_rows(
     if not chart_of(x, points, assembly, steps, beyond, chart):
         return -1
     turns[0, ENDS], turns[1, ENDS + 1] = 1.0, 1.0
+    # Chain rule: derivatives of the margins by the chart are exact, those of the chart by x are differenced below.
     by_chart = np.empty((margins_of(room), CHART))
     count: int = room_rows(
         chart, chart[LENGTHS : LENGTHS + 4].copy(), np.eye(4), assembly, chart[ENDS : ENDS + 2].copy(), turns, False,
@@ -224,6 +233,7 @@ def steered_room_rows(
         changed[i] = x[i]
         for j in range(CHART):
             change = ahead[j] - behind[j]
+            # Entries that are angles may jump by a full turn between the two evaluations.
             if j == 2 or j >= BODY:
                 change -= 2.0 * math.pi * round(change / (2.0 * math.pi))
             change /= 2.0 * DIFFERENCE
@@ -235,18 +245,18 @@ def steered_room_rows(
 
 @njit(VECTOR(MATRIX, MATRIX, VECTOR, MATRIX, VECTOR), **OPTIONS)
 def least_margins(x: Real, points: Real, assemblies: Real, steps: Real, room: Real) -> Real:
-    """The least margin of each of many linkages, −∞ of one whose motion does not close.
+    """Return the minimum workspace margin of each of m linkages, −∞ for one whose motion does not close.
 
     Parameters
     ----------
     x : float64, shape (m, unknowns)
-        Of each linkage.
+        Unknowns of each linkage.
     points : float64, shape (n, 6)
-        Of all.
+        Target poses and tolerances, common to all.
     assemblies, steps : float64, shapes (m,) and (m, n − 1)
-        Of each, as for :func:`chart_of`.
+        Values of each linkage, as for :func:`chart_of`.
     room : float64
-        Not empty.
+        Workspace parameters, not empty.
     """
     least, chart = np.full(len(x), -np.inf), np.empty(CHART)
     values, rows = np.empty(margins_of(room)), np.empty((margins_of(room), ROW))

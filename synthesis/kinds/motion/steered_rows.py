@@ -1,29 +1,29 @@
-"""A fourbar that carries a body through poses, each within its tolerance, under all demands: residuals and limits.
+"""Residuals and constraints of a fourbar that carries a body through poses, each within its tolerance.
 
-The unknowns are the pivots O2, O4, A and B (A and B of the body in the first demanded pose, task coordinates) and, for
-each coordinate of a pose that has a tolerance, its deviation in units of that. What has to hold are equations and
-inequalities of :mod:`synthesis.numerics.augmented_lagrangian`:
+The unknowns are the pivots O2, O4, A and B (A and B with the body in the first target pose, task coordinates) and, for
+each coordinate of a pose with a tolerance, its deviation in units of the tolerance. The constraints are inequalities
+(g ≥ 0) and equations (h = 0) of :mod:`synthesis.numerics.augmented_lagrangian`:
 
 =================== ==== ============================================================
-demand              g, h margin
+constraint          g, h margin
 =================== ==== ============================================================
-room                g    of :mod:`synthesis.fit.room_margins`, if there is one
+workspace           g    of :mod:`synthesis.fit.room_margins`, if there is one
 tolerance           g    1 ∓ deviation
 pivot regions       g    distance from each side of a box; moving pivots in the first pose
-link lengths        g    ln(l / least), ln(most / l)
+link lengths        g    ln(l / l_min), ln(l_max / l)
 link ratio          g    ln(ratio · lᵢ / lₖ)
-transmission angle  g    cos γ_least ∓ cos γ, at the ends of the used range and on the ground line where it is passed
+transmission angle  g    cos γ_min ∓ cos γ, at the ends of the used range and on the ground line if it is passed
 Grashof             g    P + Q − L − S for each L; the shortest link S is that of the start
 one circuit         g    sin γ in each pose, in the assembly of the start
-order               g    turn of the input from each pose to the next, and what is left of a whole turn
+order               g    input rotation from each pose to the next, and the rest of a full turn
 the links' lengths  h    |A_k − O2| − |A − O2|, |B_k − O4| − |B − O4|
-stated coordinates  h    distance along each axis; of fixed pivots from the ground line
+given coordinates   h    distance along each axis; of fixed pivots from the ground line
 =================== ==== ============================================================
 
-What is made least keeps the linkage usable: cosines of transmission angles, lengths of links, and deviations; and, with
-a weight, near to where it started, so that many starts lead to different linkages. Derivatives are central
-differences: a fourbar has few unknowns, and what is differenced is smooth. Those of a room come from its own rows
-(:mod:`synthesis.kinds.motion.steered_room`).
+The minimised residuals keep the linkage usable: cosines of transmission angles, lengths of links, and deviations. A
+weighted term can keep it near its start, so that many starts lead to different linkages. Derivatives are central
+differences: a fourbar has few unknowns, and the functions are smooth. The derivatives of workspace margins come from
+:mod:`synthesis.kinds.motion.steered_room`.
 """
 
 from __future__ import annotations
@@ -44,49 +44,50 @@ Real = NDArray[np.float64]
 DIRECTION, ASSEMBLY, SHORTEST, COSINE, LINKS, RATIO, BOXES, GIVEN, LINE, HOME, WEIGHT_OF_HOME, STEPS = (
     0, 1, 2, 3, 4, 6, 7, 23, 31, 34, 42, 43,
 )  # fmt: skip
-"""Places in a setting: the way in which the input turns (±1), sign of the assembly, the shortest link that is demanded
-(0 to 3 for d, a, b, c; −1 where none is), cosine of the least transmission angle, least and most length (0 and infinite
-where open), link ratio (infinite where open), boxes (x from, to, y from, to) of O2, O4, A and B, stated
-coordinates of the same (NaN where open), the ground line (unit normal and offset; NaN where open), the pivots to stay
-near to and the weight of that, from there on the input's turn from each pose to the next, to half a turn, and last the
-room (:mod:`synthesis.fit.room`), if there is one."""
+"""Indices into a setting: direction of the input (±1); sign of the assembly; required shortest link (0 to 3 for d, a,
+b, c; −1 if open); cosine of the minimum transmission angle; minimum and maximum length (0, infinite if open); maximum
+link ratio (infinite if open); boxes (x min, x max, y min, y max) of O2, O4, A and B; given coordinates of the same (NaN
+if open); ground line (unit normal and offset; NaN if open); pivots to stay near, and the weight of that term; from
+there on the input's rotation from each pose to the next, known to half a turn. The workspace parameters
+(:mod:`synthesis.fit.room`), if any, come last."""
 
 OTHERS = 14 + 8
-"""Number of residuals beside those of deviations."""
+"""Number of residuals other than those of deviations."""
 
 PIVOTS = 8
 """Number of unknowns that are coordinates of pivots."""
 
 EDGE = 1e-7
-"""Share of a tolerance, of a transmission cosine and of logarithms of lengths by which a limit is kept more narrowly
-than it is checked."""
+"""Amount by which limits are tightened relative to their verification, in shares of a tolerance, transmission cosines
+and logarithms of lengths."""
 
 LEAST_STEP = 1e-3
-"""Turn of the input, radians, from one pose to the next, at least."""
+"""Minimum rotation of the input from one pose to the next, radians."""
 
 LEAST_SINE = 1e-3
-"""Sine of the transmission angle in each pose, at least: it stays in its assembly."""
+"""Minimum sine of the transmission angle in each pose, so that the linkage stays in its assembly."""
 
 LEAST_LINK = 1e-6
-"""Length of a link, task sizes, below which it is none."""
+"""Minimum length of a link, task sizes; below it the linkage is degenerate."""
 
 DIFFERENCE = 1e-5
-"""Change of an unknown over which derivatives are differenced."""
+"""Step of the unknowns for finite differences."""
 
 BY_COSINE, BY_RATIO, BY_LENGTH, BY_ARM, BY_DEVIATION = 0.3, 0.15, 0.05, 0.05, 0.05
-"""Weights of what is made least: cosines of transmission angles, logarithms of links over their geometric mean, lengths
-of links and distances of moving pivots from P in task sizes, and deviations in tolerances."""
+"""Weights of the minimised residuals: cosines of transmission angles, logarithms of links over their geometric mean,
+lengths of links and distances of moving pivots from P in task sizes, and deviations in tolerances."""
 
 
 @njit(cache=True, nogil=True)
 def equations(poses: int) -> int:
-    """Number of margins, the last ones, that must be zero."""
+    """Return the number of equations: the last margins, which must be zero."""
     return 2 * (poses - 1) + PIVOTS + 2
 
 
 @njit(cache=True, nogil=True)
 def limits(poses: int) -> int:
-    """Number of all margins."""
+    """Return the number of all margins."""
+    # Deviations, boxes, lengths, ratios, transmission, Grashof, circuit, order, equations.
     return 6 * poses + 16 + 8 + 12 + 8 + 3 + poses + poses + equations(poses)
 
 
@@ -97,7 +98,7 @@ def _cross(u: complex, v: complex) -> float:
 
 @njit(cache=True, nogil=True)
 def _evaluated(x: Real, points: Real, setting: Real, residuals: Real, margins: Real) -> int:
-    """Residuals and margins at x; how many residuals there are, or −1 where a link has no length."""
+    """Write residuals and margins at x; return the number of residuals, or −1 if a link has no length."""
     n = len(points)
     o2, o4 = complex(x[0], x[1]), complex(x[2], x[3])
     arm_a, arm_b = complex(x[4] - points[0, 0], x[5] - points[0, 1]), complex(x[6] - points[0, 0], x[7] - points[0, 1])
@@ -133,6 +134,7 @@ def _evaluated(x: Real, points: Real, setting: Real, residuals: Real, margins: R
     order = m + 8 + 3 + n
     for k in range(n - 1):
         step = (a[k + 1] - o2) * (a[k] - o2).conjugate()
+        # Unwrap the rotation towards its value at the start, so that it changes continuously during the fit.
         off = math.atan2(step.imag, step.real) - setting[STEPS + k]
         step_turned = setting[STEPS + k] + off - 2.0 * math.pi * round(off / (2.0 * math.pi))
         margins[order + k] = setting[DIRECTION] * step_turned - LEAST_STEP
@@ -143,7 +145,7 @@ def _evaluated(x: Real, points: Real, setting: Real, residuals: Real, margins: R
     low, high = min(start, start + turned), max(start, start + turned)
     for k in range(4):
         if k < 2:
-            # The multiple of a half turn, even or odd, that lies in the range.
+            # Find the multiple of π (even for k = 0, odd for k = 1) that lies in the used range.
             passed = 2.0 * math.pi * math.ceil((low - k * math.pi) / (2.0 * math.pi)) + k * math.pi
             used = passed <= high
             diagonal = d - crank if k == 0 else d + crank
@@ -192,7 +194,7 @@ def _evaluated(x: Real, points: Real, setting: Real, residuals: Real, margins: R
 
 @njit(cache=True, nogil=True)
 def _of_lengths(lengths: Real, setting: Real, margins: Real, m: int) -> int:
-    """Logarithmic margins of links from the least and the greatest length and from the ratio, from margin m on."""
+    """Write the logarithmic margins of link lengths and link ratios from index m on; return the next index."""
     for i in range(4):
         if setting[LINKS] > 0.0:
             margins[m] = math.log(lengths[i] / setting[LINKS]) - EDGE
@@ -212,10 +214,10 @@ def _of_lengths(lengths: Real, setting: Real, margins: Real, m: int) -> int:
 def steered_rows(
     x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
 ) -> int:
-    """Residuals and limits with their Jacobian; see :data:`synthesis.numerics.levenberg.ROWS`.
+    """Evaluate residuals and limits with their Jacobian; see :data:`synthesis.numerics.levenberg.ROWS`.
 
-    ``points`` are rows (x, y, angle, and the tolerance of each; 0 where it is held) in task units and radians;
-    ``state`` is the margins alone, those of the room first.
+    ``points`` are rows (x, y, angle, and the tolerance of each; 0 if exact) in task units and radians; ``state`` holds
+    only the margins, those of the workspace first.
     """
     n, unknowns = len(points), x.size
     count = limits(n)
@@ -240,7 +242,7 @@ def steered_rows(
         for k in range(rows):
             jacobian[k, i] = (ahead[k] - behind[k]) / (2.0 * DIFFERENCE)
         for k in range(count):
-            # A passage of the ground line that begins or ends within the difference has no margin on one side.
+            # A margin at the ground line exists only while the line is passed: use a one-sided difference there.
             if own[k] == np.inf or (further[k] == np.inf and back[k] == np.inf):
                 continue
             if back[k] == np.inf:

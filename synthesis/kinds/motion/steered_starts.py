@@ -1,10 +1,10 @@
-"""Pairs of dyads from which linkages are steered into tolerances and demands.
+"""Starting pairs of dyads for constrained fits.
 
-Poses are drawn within the tolerances, by a sequence of low discrepancy that begins with the demanded poses themselves.
-For each set of poses many dyads are drawn in the client's regions, or around the body, and moved least so that they
-meet the poses exactly, all sets at once. What has then left its regions is kept where it is near to them: the
-tolerances are to bring it back. All pairs of a set are screened (:mod:`synthesis.kinds.motion.screening`) by the
-client's constraints, a little eased, and the best that differ are the starts.
+Poses are sampled within the tolerances by a low-discrepancy sequence that begins with the target poses themselves. For
+each set of poses many dyads are sampled in the given regions, or around the body, and projected onto dyads that meet
+the poses exactly, all sets at once. Dyads that have then left their regions are kept if they are near them: the fit can
+use the tolerances to bring them back. All pairs of a set are screened (:mod:`synthesis.kinds.motion.screening`) by
+slightly relaxed constraints, and the best distinct pairs are the starts.
 """
 
 from __future__ import annotations
@@ -27,44 +27,45 @@ from synthesis.model.zones import Area
 from synthesis.outcome.ranking import widest_apart
 
 SETS = 24
-"""Sets of poses that are drawn within the tolerances."""
+"""Number of sets of poses sampled within the tolerances."""
 
 DRAWN = 1200
-"""Dyads a side that are drawn for each set."""
+"""Number of dyads sampled per side and set."""
 
 KEPT = 110
-"""Dyads a side of a set of which pairs are made, those nearest to their regions."""
+"""Maximum number of dyads per side and set that are paired, those nearest to their regions."""
 
 STEPS = 4
-"""Gauss–Newton steps that bring dyads to the poses of their set."""
+"""Number of Gauss–Newton steps that fit dyads to the poses of their set."""
 
 MET = 1e-3
-"""Change of a link's length, task sizes, up to which a dyad meets the poses of its set."""
+"""Maximum change of a link's length, task sizes, for a dyad that meets the poses of its set."""
 
 RIDGE = 1e-9
-"""Share of its trace that is added to a normal matrix, so that a singular one is no error."""
+"""Ridge added to a normal matrix, as a share of its trace, so that a singular one can be solved."""
 
 FARTHEST = 50.0
-"""Pivots farther away than this many task sizes are not started from."""
+"""Maximum distance of a starting pivot, in task sizes."""
 
 ASTRAY = 0.1
-"""Distance from its region, in task sizes, at which a pivot counts half."""
+"""Distance from its region, in task sizes, at which the weight of a pivot is halved."""
 
 EASED_ANGLE, EASED_LENGTH = 0.6, 1.3
-"""Share of the demanded transmission angle, and factor of limits of lengths and ratio, by which starts are screened."""
+"""Relaxation for the screening of starts: factor of the minimum transmission angle, and factor of the limits of lengths
+and link ratio."""
 
 POOL = 4000
-"""Best pairs from which distinct ones are chosen."""
+"""Number of best pairs from which distinct ones are selected."""
 
 APART = 0.3 * 0.5 ** np.arange(8)
-"""Distinct starts move some joint by at least this share of the task's size: the first at which there are enough."""
+"""Minimum separations of distinct starts, in task sizes, tried in turn until one yields enough starts."""
 
 
 class Start(NamedTuple):
-    """A linkage to start from.
+    """A starting linkage.
 
-    ``pivots`` are O2, O4, A and B, the moving ones of the body as it lies in the first demanded pose, shape (4,).
-    ``deviations``, in tolerances, and ``poses``, in task units and radians, have the shape (n, 3).
+    ``pivots`` are O2, O4, A and B, shape (4,); A and B with the body in the first target pose. ``deviations``, in units
+    of the tolerances, and ``poses``, in task units and radians, have shape (n, 3).
     """
 
     pivots: Complex
@@ -73,18 +74,18 @@ class Start(NamedTuple):
 
 
 def starts(problem: MotionProblem, task: MotionTask, tolerances: Real, count: int) -> list[Start]:
-    """The best pairs that differ, best first.
+    """List the best distinct pairs of dyads, best first.
 
     Parameters
     ----------
     problem : MotionProblem
-        What was asked.
+        The problem.
     task : MotionTask
-        The demanded poses.
+        The target poses.
     tolerances : float, shape (n, 3)
-        Of x, y (task units) and angle (radians); 0 where a coordinate is held.
+        Tolerances of x, y (task units) and angle (radians); 0 for an exact coordinate.
     count : int
-        How many are wanted.
+        Maximum number of starts.
     """
     rng = np.random.default_rng(problem.seed)
     shares = deviations(tolerances, SETS if tolerances.any() else 1)
@@ -116,7 +117,7 @@ def starts(problem: MotionProblem, task: MotionTask, tolerances: Real, count: in
     found = []
     for n in picked:
         pose = poses[sets[n]]
-        # The body as it lies in the first demanded pose.
+        # Express the moving pivots with the body in the first target pose, from which deviations are measured.
         first, turn = complex(pose[0, 0], pose[0, 1]), complex(np.exp(-1j * pose[0, 2]))
         body = task.points[0] + turn * (pivots[n, 2:] - first)
         found.append(Start(np.concatenate([pivots[n, :2], body]), shares[sets[n]], pose))
@@ -124,15 +125,16 @@ def starts(problem: MotionProblem, task: MotionTask, tolerances: Real, count: in
 
 
 def deviations(tolerances: Real, sets: int) -> Real:
-    """Deviations in (−1, 1) of each coordinate with a tolerance, shape (sets, n, 3); none in the first set.
+    """Sample deviations in (−1, 1) of each coordinate with a tolerance, shape (sets, n, 3); all 0 in the first set.
 
-    Roberts' sequence: multiples of the powers of 1/φ with φ^(d+1) = φ + 1, d coordinates, modulo 1.
+    Roberts' low-discrepancy sequence: multiples of the powers of 1/φ with φ^(d+1) = φ + 1, d coordinates, modulo 1.
     """
     free = tolerances > 0.0
     d = int(free.sum())
     shares = np.zeros((sets, *tolerances.shape))
     if d:
         ratio = 2.0
+        # The fixed-point iteration for φ contracts quickly; 60 steps reach double precision for every d.
         for _ in range(60):
             ratio = (1.0 + ratio) ** (1.0 / (d + 1.0))
         powers = ratio ** -np.arange(1.0, d + 1.0)
@@ -141,13 +143,13 @@ def deviations(tolerances: Real, sets: int) -> Real:
 
 
 def _task_of(poses: Real) -> MotionTask:
-    """A set of poses as a task; what is in the first pose stays where it is."""
+    """Convert a set of poses to a task whose coordinates are those of the first pose."""
     turns = np.exp(1j * (poses[:, 2] - poses[0, 2]))
     return MotionTask(poses[:, 0] + 1j * poses[:, 1], turns, 0j, 1.0)
 
 
 class _Drawn(NamedTuple):
-    """Dyads that meet the poses of one set, moving pivots in its first pose, and how they weigh by their regions."""
+    """Dyads that meet the poses of one set (moving pivots in its first pose), and their weights by region."""
 
     dyads: Dyads
     weight: Real
@@ -156,7 +158,7 @@ class _Drawn(NamedTuple):
 def _side(
     task: MotionTask, poses: Real, choices: DyadChoices, areas: SideAreas, rng: np.random.Generator
 ) -> list[_Drawn]:
-    """The dyads of one side for each set."""
+    """Sample the dyads of one side for each set of poses."""
     fixed, moving, free = drawn_pivots(task, choices, areas, rng, len(poses) * DRAWN)
     of = np.repeat(np.arange(len(poses)), DRAWN)
     places, spins = poses[..., 0] + 1j * poses[..., 1], np.exp(1j * poses[..., 2])
@@ -179,8 +181,10 @@ def _side(
 def drawn_pivots(
     task: MotionTask, choices: DyadChoices, areas: SideAreas, rng: np.random.Generator, count: int
 ) -> tuple[Complex, Complex, Real]:
-    """Fixed and moving pivots (the body in its first demanded pose) as they are stated, or drawn; and 1 for each of
-    their four coordinates that is not stated, else 0."""
+    """Return given or sampled fixed and moving pivots (the body in its first target pose), shape (count,) each.
+
+    The third value is 1 for each of their four coordinates that is open, else 0.
+    """
     fixed = _drawn(task, areas.fixed, complex(task.points.mean()), rng, count)
     moving = _drawn(task, areas.moving, complex(task.points[0]), rng, count)
     stated = [stated_pivot(task, choices, fixed=side) for side in (True, False)]
@@ -192,7 +196,7 @@ def drawn_pivots(
 
 
 def _drawn(task: MotionTask, areas: tuple[Area, ...], centre: complex, rng: np.random.Generator, count: int) -> Complex:
-    """Random pivots in their areas, or around a centre."""
+    """Sample random pivots in their areas, or around a centre without areas."""
     inside = drawn(task, areas, rng, count)
     return points_around(centre, rng, count) if inside is None else inside
 
@@ -200,23 +204,23 @@ def _drawn(task: MotionTask, areas: tuple[Area, ...], centre: complex, rng: np.r
 def _brought(
     places: Complex, spins: Complex, fixed: Complex, arms: Complex, free: Real
 ) -> tuple[Complex, Complex, Real]:
-    """Dyads moved least so that their links keep their lengths in their poses.
+    """Move dyads by minimum-norm steps until their links have the same length in all poses.
 
     Parameters
     ----------
     places, spins : complex, shape (m, n)
-        P, and the body's turn from where its points are ``arms`` from P.
+        P, and the body's rotation relative to the orientation of ``arms``.
     fixed, arms : complex, shape (m,)
-        The dyads: fixed pivots, and moving pivots from P.
+        The dyads: fixed pivots, and vectors from P to the moving pivots.
     free : float, shape (4,)
-        1 for the coordinates of both that may be moved, else 0.
+        1 for coordinates of both pivots that may change, else 0.
 
     Returns
     -------
     fixed, arms : complex, shape (m,)
-        The dyads.
+        The moved dyads.
     off : float, shape (m,)
-        The greatest change of the link's length that is left.
+        The remaining maximum change of the link's length.
     """
     off = np.full(len(fixed), np.inf)
     for step in range(STEPS + 1):
@@ -235,6 +239,7 @@ def _brought(
         trace = np.trace(square, axis1=-2, axis2=-1)[:, None, None]
         square += (RIDGE * trace + np.finfo(np.float64).tiny) * np.eye(square.shape[-1])
         move = -(jacobian.swapaxes(-1, -2) @ np.linalg.solve(square, gaps[..., None]))[..., 0]
+        # Limit a step to one task size: longer ones leave the range of the linearisation.
         move /= np.maximum(np.linalg.norm(move, axis=1, keepdims=True), 1.0)
         fixed = fixed + (move[:, 0] + 1j * move[:, 1])
         arms = arms + (move[:, 2] + 1j * move[:, 3])
@@ -242,7 +247,7 @@ def _brought(
 
 
 def eased(constraints: Constraints) -> Constraints:
-    """Constraints by which starts are screened; regions are looked at apart."""
+    """Return relaxed constraints for screening starts; regions are weighted separately."""
     lengths, ratio = constraints.link_length, constraints.max_link_ratio
     if lengths is not None:
         most = None if lengths.max is None else EASED_LENGTH * lengths.max
@@ -252,7 +257,7 @@ def eased(constraints: Constraints) -> Constraints:
 
 
 def stated_coordinates(task: MotionTask, problem: MotionProblem) -> Real:
-    """What is stated of O2, O4, A and B, coordinate by coordinate in task units, NaN where it is open; shape (8,)."""
+    """Return the given coordinates of O2, O4, A and B in task units, NaN if open; shape (8,)."""
     stated = np.full(8, math.nan)
     for side, choices in enumerate((problem.input_side, problem.output_side)):
         for moving, partial in ((False, choices.fixed_pivot), (True, choices.moving_pivot)):

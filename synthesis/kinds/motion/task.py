@@ -1,7 +1,7 @@
-"""The motion to be generated, as numbers: positions and rotations of the body.
+"""Numerical form of the task: positions and rotations of the body.
 
-Solvers work in *task coordinates*: the origin is P in the first position and the unit is the task's size, so that
-tolerances are relative to the problem.
+Solvers work in *task coordinates*: the origin is P in the first position and the unit is the task's size. Tolerances
+are therefore relative to the problem.
 """
 
 from __future__ import annotations
@@ -40,28 +40,28 @@ class MotionTask(NamedTuple):
     size: float
 
     def images(self, points: Complex) -> Complex:
-        """Where points of the body, given in the first position, come to lie in each position: shape (..., n)."""
+        """Return the images of body points, given in the first position, in each position: shape (..., n)."""
         images: Complex = self.points + self.turns * (np.asarray(points)[..., None] - self.points[0])
         return images
 
     def to_task(self, z: complex) -> complex:
-        """A point of the problem in task coordinates."""
+        """Convert a point from the problem's coordinates to task coordinates."""
         return (z - self.origin) / self.size
 
     def to_problem(self, z: complex) -> complex:
-        """A point in task coordinates in the problem's."""
+        """Convert a point from task coordinates to the problem's."""
         return self.origin + z * self.size
 
     def pivot(self, stated: PartialPoint | None, computed: complex) -> complex:
-        """A pivot in the problem's coordinates: where the client stated it, to the last digit, or as computed."""
+        """Return a pivot in the problem's coordinates: the given value, to the last digit, or the computed one."""
         whole = whole_point(stated)
         return self.to_problem(computed) if whole is None else whole
 
 
 def stated_pivot(task: MotionTask, choices: DyadChoices, *, fixed: bool) -> complex | None:
-    """The fixed or the moving pivot that the client states, in task coordinates.
+    """Return the given fixed or moving pivot in task coordinates; None if it is open.
 
-    A coupler vector of stated length and angle states the moving pivot too.
+    A coupler vector of given length and angle fixes the moving pivot too.
     """
     whole = whole_point(choices.fixed_pivot if fixed else choices.moving_pivot)
     vector = choices.coupler_vector
@@ -71,7 +71,7 @@ def stated_pivot(task: MotionTask, choices: DyadChoices, *, fixed: bool) -> comp
 
 
 def motion_task(problem: MotionProblem) -> MotionTask:
-    """The problem's positions in task coordinates."""
+    """Return the problem's positions in task coordinates."""
     points = np.array([p.point for p in problem.positions])
     size = problem.task_size
     turns = np.exp(1j * np.array(problem.turns))

@@ -1,7 +1,7 @@
-"""The proof of a design: it is driven by the analysis core and measured, from its dimensions alone.
+"""Verification of a design: the analysis core drives it and measures it, from its dimensions alone.
 
-Nothing that a solver computed on the way is taken over. One module drives the fourbar in closed form, one drives any
-other linkage by its closures, and one states what is checked, the same for both.
+No intermediate result of a solver is used. One module drives the fourbar in closed form, another drives any other
+linkage by its closures, and a third performs the checks for both.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ def verify(problem: MotionProblem, mechanism: LinkageMechanism, target: Demanded
     Parameters
     ----------
     problem : MotionProblem
-        What was asked.
+        The problem.
     mechanism : LinkageMechanism
-        Dimensions only; the skeleton is looked at where it is the dimensions, as for sixbars.
+        Only the dimensions are used; the skeleton is used if it defines the dimensions, as for sixbars.
     target : Demanded, optional
-        What the problem demands, ``demanded(problem)``, from a caller that verifies many mechanisms.
+        Target poses ``demanded(problem)``, from a caller that verifies many mechanisms.
 
     Returns
     -------
     LinkageDesign or None
-        The mechanism with its checks and metrics; ``verification.passed`` tells whether it may be used. Where the first
-        position may be missed its reference is the first target, whatever it was. None where the dimensions do not
-        make a linkage that can be assembled and driven at all.
+        The mechanism with its checks and metrics; ``verification.passed`` states whether it may be used. If the first
+        position has a tolerance, the reference is moved to the first target. None if the dimensions do not make a
+        linkage that can be assembled and driven.
     """
     target = demanded(problem) if target is None else target
     design = _driven(problem, mechanism, target)
@@ -48,7 +48,7 @@ def verify(problem: MotionProblem, mechanism: LinkageMechanism, target: Demanded
 
 
 def verify_nearly(problem: MotionProblem, mechanism: LinkageMechanism) -> LinkageDesign | None:
-    """The same where what is to be met exactly is met as nearly as can be: of linkages on a grid."""
+    """Verify a linkage whose exact targets are treated as fitted without a limit: for dimensions rounded to a grid."""
     target = demanded(problem)
     return verify(problem, mechanism, target._replace(limits=np.where(target.held, np.inf, target.limits)))
 

@@ -1,10 +1,9 @@
 """Verification of the fourbar in closed form.
 
-Where all targets are held, the demanded position of the coupler gives the pin A, and with it the input angle; the
-linkage is then driven to that angle in both assemblies, and what stands there is compared with what was demanded. Where
-targets are fitted, the input at which the body comes nearest is looked for in both assemblies. The motion between the
-targets is followed in closed form: toggles have closed-form angles, and so has the least transmission angle over a
-range.
+If all targets are exact, the target position of the coupler gives pin A, and with it the input angle; the linkage is
+then driven to that angle in both assemblies, and its position is compared with the target. If targets are fitted, the
+input at which the body comes nearest is searched in both assemblies. The motion between the targets is checked in
+closed form: toggle angles and the minimum transmission angle over a range have closed-form expressions.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ from synthesis.proof.carried import Carried, carried, ease
 from synthesis.proof.measures import TURNS_THROUGH, link_lengths, measured, reach_of_fourbar
 
 OWN = 1.5
-"""A fitted target counts as met in the reference's own assembly unless the other one misses it this many times less."""
+"""A fitted target is assigned to the reference's own assembly unless the other one is closer by this factor."""
 
 
 class _Met(NamedTuple):
@@ -94,7 +93,7 @@ def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism, target: 
 
 
 def _held(target: Demanded, fourbar: DrivenFourbar, shift: float) -> _Met | None:
-    """Drive the linkage to where each target demands its input, in both assemblies; None if it stands nowhere."""
+    """Drive the linkage to the input that each target determines, in both assemblies; None if it is not assembled."""
     linkage = fourbar.linkage
     reference = positions(linkage, fourbar.reference, fourbar.assembly)
     if not reference.valid:
@@ -107,12 +106,12 @@ def _held(target: Demanded, fourbar: DrivenFourbar, shift: float) -> _Met | None
     off = driven.coupler_angle - coupler_angles
     turned_off = np.abs(off - 2.0 * np.pi * np.round(off / (2.0 * np.pi)))
     residuals = np.where(driven.valid, np.maximum(np.abs(driven.p - target.points) / target.size, turned_off), np.inf)
-    # The first target is met by the reference configuration itself, or not at all.
+    # The first target must be met by the reference configuration itself.
     first = abs(complex(reference.p) - target.points[0]) / target.size
     off_reference = residuals[0, 0] < first
     residuals[0, 0] = max(residuals[0, 0], first)
     residuals[1, 0] = np.inf
-    # The reference's own assembly stands first, and is taken at a toggle, where both meet the target.
+    # The reference's own assembly comes first, so argmin prefers it at a toggle, where both meet the target.
     best = residuals.argmin(axis=0), np.arange(len(target.points))
     if not np.all(np.isfinite(residuals[best])):
         return None
@@ -124,7 +123,7 @@ def _held(target: Demanded, fourbar: DrivenFourbar, shift: float) -> _Met | None
 
 
 def _fitted(target: Demanded, fourbar: DrivenFourbar, shift: float) -> _Met | None:
-    """Drive the linkage to where the body comes nearest to each target; None where it has no position at all."""
+    """Drive the linkage to the input at which the body is nearest to each target; None if it cannot be assembled."""
     linkage = fourbar.linkage
     reference = positions(linkage, fourbar.reference, fourbar.assembly)
     if not reference.valid:
@@ -144,7 +143,7 @@ def _fitted(target: Demanded, fourbar: DrivenFourbar, shift: float) -> _Met | No
     row = np.where(misses[0] <= OWN * misses[1], 0, 1)
     row[0] = 0
     angles = np.stack([inputs for inputs, _ in closest])[row, np.arange(len(row))]
-    # The reference is known to all digits, the least of a smooth deviation to half of them.
+    # The minimum of a smooth deviation is known to half of the digits only; the reference input is exact.
     if as_near(motion_in(fourbar.assembly), target, 0, fourbar.reference, float(angles[0])):
         angles[0] = fourbar.reference
     if not np.all(np.isfinite(angles)):

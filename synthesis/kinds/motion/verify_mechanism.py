@@ -1,9 +1,9 @@
-"""Verification of any linkage that is driven through its closures: slider-cranks, and fourbars with a driver dyad.
+"""Verification of any linkage by its loop closures: slider-cranks, sixbars, and fourbars with a driver dyad.
 
-The branches of the mechanism are found by root finding in the analysis core; on each of them the input is looked for at
-which the body comes nearest to each target. What the reference's own branch meets as well as any other counts as met
-there. The motion is then one input range on one branch, and over it, or over the whole cycle of a driver's crank, the
-least transmission angle at each closure is looked for.
+The analysis core finds the branches of the mechanism by root finding; on each of them the input at which the body is
+nearest to each target is searched. A target that several branches meet equally well is assigned to the reference's own
+branch. The motion is then one input range on one branch. Over it, or over the whole cycle of a driver's crank, the
+minimum transmission angle at each closure is measured.
 """
 
 from __future__ import annotations
@@ -43,26 +43,26 @@ from synthesis.proof.rebuilt import rebuilt
 from synthesis.proof.space import BODY_POINT, carrier
 
 OWN = 1.5
-"""A target counts as met on the reference's branch unless another one misses it this many times less."""
+"""A target is assigned to the reference's branch unless another branch is closer by this factor."""
 
 AT_LIMIT = 1e-7
-"""Radians that the driven link may turn beyond its place at the first and last target: at a limit its angle goes with
-the square of the crank's, so this is far above what rounding leaves and far below what can be seen."""
+"""Tolerance, radians, of the driven link's limits beyond its angles at the first and last target. At a limit its angle
+varies with the square of the crank's, so this is far above rounding and far below any visible motion."""
 
 END_WITHIN, END_SAMPLES, END_REFINEMENTS = 0.1, 33, 6
-"""Radians of the crank around a last target within which its toggle is looked for; grids, each 32 times finer: 1e-10
-radians in the end. Where the body turns about a point that the linkage holds nearly still, the nearest place is known
-to some hundredths only."""
+"""Search for the crank's dead centre around the last target: range in radians, number of samples, number of grids, each
+32 times finer, down to 1e-10 radians. The range is wide because the nearest input is known only to a few hundredths of
+a radian if the body turns about a point that the linkage holds nearly still."""
 
 DRIVER = "driver_coupler"
-"""The link of a driver dyad."""
+"""Name of the link of a driver dyad."""
 
 RANGE_GRID = 721
-"""Inputs at which the driven link's way is looked at."""
+"""Number of inputs at which the driven link's rotation is sampled."""
 
 
 class _Met(NamedTuple):
-    """Where the targets are met: inputs, and the row of the branch in the list of all."""
+    """Configurations at the targets: inputs, and index of the branch in the list of all branches."""
 
     inputs: Real
     rows: NDArray[np.int64]
@@ -133,7 +133,7 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
 
 
 class _Body(OnBranch):
-    """The body on the link with P, on one branch; it is turned by ``shift`` against the first demanded pose."""
+    """The body on the link with P, on one branch; rotated by ``shift`` from the first target pose, radians."""
 
     def __init__(self, mechanism: Mechanism, branch: Branch, shift: float) -> None:
         super().__init__(mechanism, branch)
@@ -141,14 +141,14 @@ class _Body(OnBranch):
         self._first = float(mechanism.link_angle(self._link)) - shift
 
     def pose(self, inputs: Real) -> tuple[Complex, Real]:
-        """P and the body's rotation from the first demanded pose, at inputs of any shape."""
+        """Return P and the body's rotation from the first target pose, at inputs of any shape."""
         motion = self.at(inputs.ravel())
         points = motion.joints["P"][0].reshape(inputs.shape)
         return points, (motion.angles[self._link][0] - self._first).reshape(inputs.shape)
 
 
 def _closest(bodies: list[_Body], target: Demanded, own: int) -> _Met | None:
-    """The inputs at which the targets are met best, on the reference's branch where that is as good as any."""
+    """Find the inputs at which the targets are met best, on the reference's branch if that is as good as any."""
     rows = [own, *(n for n, body in enumerate(bodies) if n != own and body.branch.signs)]
     inputs, misses = [], []
     for n in rows:
@@ -158,11 +158,11 @@ def _closest(bodies: list[_Body], target: Demanded, own: int) -> _Met | None:
     missed = np.stack(misses)
     best = missed.argmin(axis=0)
     best = np.where(missed[0] <= OWN * missed.min(axis=0) + SAME_MISS, 0, best)
-    # The reference is the first target's configuration: it is met there, or not at all.
+    # The reference is the first target's configuration, so the first target must be met on its branch.
     best[0] = 0
     columns = np.arange(missed.shape[1])
     at = np.stack(inputs)[best, columns]
-    # Where the body comes to rest an input is known to half of its digits; the reference is known to all.
+    # At a rest of the body the nearest input is known to half of its digits only; the reference input is exact.
     home = float(bodies[own].mechanism.reference_input)
     if as_near(bodies[own].pose, target, 0, home, at[0]):
         at[0] = home
@@ -174,7 +174,7 @@ def _closest(bodies: list[_Body], target: Demanded, own: int) -> _Met | None:
 
 
 def _dead_centre(body: _Body, near: float) -> float | None:
-    """The input near to another at which a driver's crank lies in one line with its link; None if there is none."""
+    """Find the input near a given one at which a driver's crank and its link are collinear; None if there is none."""
     low, high = near - END_WITHIN, near + END_WITHIN
     for _ in range(END_REFINEMENTS):
         inputs = np.linspace(low, high, END_SAMPLES)
@@ -190,7 +190,7 @@ def _dead_centre(body: _Body, near: float) -> float | None:
 
 
 def _way(mechanism: Mechanism, here: Branch, inputs: Real) -> _Way:
-    """One run of the input through the targets: on a full branch the way round that meets them in order."""
+    """Arrange the inputs in one run through the targets; on a full branch in the direction that meets them in order."""
     if not here.full or mechanism.driven_by_slide:
         steps = np.diff(inputs)
         return _Way(inputs, bool(np.all(steps > 0.0) or np.all(steps < 0.0)))
@@ -205,7 +205,7 @@ def _way(mechanism: Mechanism, here: Branch, inputs: Real) -> _Way:
 
 
 def _at_targets(bodies: list[_Body], met: _Met) -> tuple[dict[str, Complex], Real]:
-    """All joints at the targets, and the body's rotations there."""
+    """Return all joints and the body's rotations at the targets."""
     joints: dict[str, list[complex]] = {}
     turns = []
     for at, row in zip(met.inputs[:, None], met.rows, strict=True):
@@ -218,7 +218,7 @@ def _at_targets(bodies: list[_Body], met: _Met) -> tuple[dict[str, Complex], Rea
 def _driven(
     design: LinkageMechanism, mechanism: Mechanism, joints: dict[str, Complex], turns: Real, target: Demanded
 ) -> Driven:
-    """The linkage at the targets, by its two sides."""
+    """Describe the linkage at the targets by its two sides."""
     link = Side(complex(joints["O2"][0]), joints["A"])
     if isinstance(design, SliderCrankMechanism):
         slide = Side(None, joints["B"], math.radians(design.slide.angle))
@@ -245,7 +245,7 @@ def _own_checks(
     joints: dict[str, Complex],
     target: Demanded,
 ) -> list[Check]:
-    """Checks of a sixbar: of its driver, or of the chain that carries the body."""
+    """Return the checks of a sixbar: those of its driver, or of the chain that carries the body."""
     if not isinstance(design, SixbarMechanism):
         return []
     if DRIVER in mechanism.links:
@@ -259,14 +259,14 @@ def _own_checks(
 def _driver_checks(
     problem: MotionProblem, design: SixbarMechanism, mechanism: Mechanism, here: Branch, way: _Way
 ) -> list[Check]:
-    """A driver's crank turns through, and the link that it drives has its limits at the first and the last target."""
+    """Check that a driver's crank rotates fully and its driven link has its limits at the first and last target."""
     held = next(name for name, listed in mechanism.links.items() if "C" in listed and name != DRIVER)
-    # The coupler may turn back on its way; the input, which took the fourbar through its targets, does not.
+    # A driven coupler may reverse its rotation; the fourbar's input does not, so measure that instead.
     driven = "input" if held == "coupler" else held
     run = np.linspace(way.inputs[0], way.inputs[-1], RANGE_GRID)
     turned = np.unwrap(drive(mechanism, run, order=0).angles[driven][0])
     (span,), _ = limit_positions(mechanism, here, [driven], [])
-    # From end to end and no farther: the swing alone tells, as each end lies within it.
+    # Both end positions lie within the swing, so comparing its size with their difference is sufficient.
     beyond = math.inf if span is None else (span[1] - span[0]) - abs(float(turned[-1] - turned[0]))
     checks = [
         Check(name="crank_turns", passed=here.full),
