@@ -1,12 +1,12 @@
-"""Arcs and lines that pieces of coupler curves come close to, for many curves at once.
+"""Fit arcs and lines to pieces of coupler curves, for many curves at once.
 
-For every piece of a closed curve, a given number of samples long, the circle is fitted for which Σ (|z − c|² − r²)² is
-least (Kåsa, IEEE Trans. Instrum. Meas. 25 (1976) 8, doi:10.1109/TIM.1976.6312298): linear in c and r² − |c|². About the
-piece's mean, with moments S of x and y,
+To every piece of a closed curve, a given number of samples long, the circle that minimizes Σ (|z − c|² − r²)² is fitted
+(Kåsa, IEEE Trans. Instrum. Meas. 25 (1976) 8, doi:10.1109/TIM.1976.6312298): a linear problem in c and r² − |c|². About
+the piece's mean, with moments S of x and y,
 
     [Sxx Sxy; Sxy Syy] c = ½ [Sx(x²+y²); Sy(x²+y²)],        r² = |c|² + (Sxx + Syy) / n.
 
-The line is that of least squared distances, along the main axis of the same moments.
+The line is the least-squares line, along the main axis of the same moments.
 """
 
 from __future__ import annotations
@@ -24,8 +24,9 @@ Complex = NDArray[np.complex128]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _centred(curve: Complex, start: int, piece: Complex) -> tuple[complex, float, float, float]:
-    """Writes the samples of a piece about their mean; returns the mean and the second moments Sxx, Syy, Sxy."""
+    """Write the samples of a piece about their mean; return the mean and the second moments Sxx, Syy, Sxy."""
     length = len(piece)
+    # Moments about the mean avoid the cancellation that a small arc far from the origin would suffer.
     mean = 0j
     for k in range(length):
         piece[k] = curve[(start + k) % len(curve)]
@@ -43,7 +44,7 @@ def _centred(curve: Complex, start: int, piece: Complex) -> tuple[complex, float
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def arcs(curves: Complex, length: int, centres: Complex, radii: Real, off: Real) -> None:
-    """Circle of every piece of ``length`` samples: centre, radius and the largest distance from it, shape (m, N)."""
+    """Fit a circle to every piece of ``length`` samples: centre, radius and maximum distance from it, shape (m, N)."""
     count, n = curves.shape
     piece = np.empty(length, np.complex128)
     for row in range(count):
@@ -54,6 +55,8 @@ def arcs(curves: Complex, length: int, centres: Complex, radii: Real, off: Real)
                 square = z.real * z.real + z.imag * z.imag
                 sxz += z.real * square
                 syz += z.imag * square
+            # Zero for a straight piece: the division then gives infinity, as the error model of NumPy allows, and no
+            # arc.
             determinant = sxx * syy - sxy * sxy
             x = 0.5 * (sxz * syy - syz * sxy) / determinant
             y = 0.5 * (syz * sxx - sxz * sxy) / determinant
@@ -62,6 +65,7 @@ def arcs(curves: Complex, length: int, centres: Complex, radii: Real, off: Real)
             nearest, farthest = np.inf, 0.0
             for z in piece:
                 arm = z - centre
+                # Compare squares; only the two extremes need a root.
                 square = arm.real * arm.real + arm.imag * arm.imag
                 nearest, farthest = min(nearest, square), max(farthest, square)
             centres[row, start] = mean + centre
@@ -71,7 +75,8 @@ def arcs(curves: Complex, length: int, centres: Complex, radii: Real, off: Real)
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def lines(curves: Complex, length: int, points: Complex, directions: Real, off: Real) -> None:
-    """Line of every piece of ``length`` samples: a point, the angle, and the largest distance from it, shape (m, N)."""
+    """Fit a line to every piece of ``length`` samples: a point, the angle, and the maximum distance from it, shape (m,
+    N)."""
     count, n = curves.shape
     piece = np.empty(length, np.complex128)
     for row in range(count):

@@ -1,8 +1,8 @@
-"""Starts for dwell sixbars: many coupler curves, their arcs and lines, and outputs that rest on them.
+"""Find starts for dwell sixbars: random coupler curves, their arcs and lines, and outputs that rest on them.
 
-Crank-rockers are drawn at random, half of them symmetric (coupler = rocker = B P): their coupler curves have pairs of
-arcs of equal radius. The pieces that are nearest to arcs or lines get outputs in all directions. Each sixbar is driven
-through the turn on a grid of crank angles, and those with the best scores are refined.
+Crank-rockers are drawn at random, half of them symmetric (coupler = rocker = B P), whose coupler curves have pairs of
+arcs of equal radius. The pieces nearest to arcs or lines get outputs in all directions. Each sixbar is driven through
+the turn on a grid of crank angles, and those with the best scores are refined.
 """
 
 from __future__ import annotations
@@ -25,41 +25,43 @@ Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]
 
 CODES: dict[Kind, int] = {"rocker": ROCKER, "slider": SLIDER, "slot": SLOT}
-"""The kinds of output, as the compiled loops know them."""
+"""Codes of the kinds of output in the compiled loops."""
 
 NUMBERS: dict[Kind, int] = {"rocker": 4, "slider": 3, "slot": 2}
-"""How many numbers an output has."""
+"""Number of dimensions of each kind of output."""
 
 DRAWN = 4000
-"""Fourbars that are drawn, of the symmetric and of the general ones each."""
+"""Number of symmetric and of general fourbars that are drawn."""
 
 PIECES = 300
-"""Pieces of curves that get outputs."""
+"""Number of pieces of curves that get outputs."""
 
 DIRECTIONS, REACHES = 24, 10
-"""Directions of an output from where its pin rests, and its distances."""
+"""Number of directions of an output from the place where its pin rests, and of its distances."""
 
 LONG = math.radians(60.0)
-"""Length of the pieces for two dwells, at least: any shorter piece is near to some arc, so that all would pass."""
+"""Minimum length of the pieces for two dwells, radians of the crank: any shorter piece is near some arc, so all would
+pass."""
 
 FEWEST = 4
-"""Samples of a piece at least: three always lie on a circle."""
+"""Minimum number of samples of a piece: three always lie on a circle."""
 
 GOOD, ALIKE, APART = 0.03, 0.06, 0.15
-"""Pieces for two dwells: farthest from an arc or line, and most that their radii or angles are wrong, least distance of
-the arcs' centres; shares of the curve's extent."""
+"""Limits of pieces for two dwells: maximum distance from an arc or line, maximum difference of their radii or error of
+their angles, minimum distance of the arcs' centres; shares of the curve's extent."""
 
 MOST_PAIRS, JUDGED = 1_000_000, 60_000
-"""Pairs of pieces that are looked at, and pairs that get an output."""
+"""Maximum number of pairs of pieces that are listed, and of those that get an output."""
 
 UNEVEN = 0.3
-"""What a start costs whose links are more uneven than is allowed, times the logarithm of by how much."""
+"""Weight in a start's score of the logarithm by which its link ratio exceeds the limit."""
 
 
 class Start(NamedTuple):
-    """A shape of :mod:`outputs` or :mod:`triads`, the sign of its output's assembly, and each dwell's place in the way.
+    """A shape of :mod:`outputs` or :mod:`triads`, its output's assembly sign, and each dwell's place in the output's
+    range.
 
-    A triad has no other sign, no link with P and no fourbar.
+    A Stephenson II has no other sign, no link with P and no fourbar.
     """
 
     shape: Real
@@ -71,16 +73,16 @@ class Start(NamedTuple):
 
 
 class Asked(NamedTuple):
-    """What starts are for.
+    """Requirements on starts.
 
     Attributes
     ----------
     dwells, places : tuple of float
-        Of each dwell its length, radians, and its share of the way; NaN at either end.
+        Length of each dwell, radians of the crank, and its share of the output's range; NaN for either end.
     way, transmission : float
-        Radians; the way is NaN for a slider.
+        Range of the output and minimum transmission angle, radians; the range is NaN for a slider.
     link_ratio : float
-        Longest distance of two pins of a link over the shortest, at most.
+        Maximum of the longest distance of two pins of a link over the shortest.
     """
 
     dwells: tuple[float, ...]
@@ -93,8 +95,8 @@ class Asked(NamedTuple):
 class Pieces(NamedTuple):
     """All pieces of curves that are ``length`` samples long: the arc or line of each, shapes (m, N).
 
-    Places are centres of arcs or points of lines, sizes radii or angles; ``share`` is how far the piece is from its arc
-    or line, as a share of the curve's extent.
+    Places are centres of arcs or points of lines, sizes are radii or angles; ``share`` is the maximum distance of the
+    piece from its arc or line, as a share of the curve's extent.
     """
 
     places: Complex
@@ -104,7 +106,7 @@ class Pieces(NamedTuple):
 
 
 class Outputs(NamedTuple):
-    """Outputs to be tried: row of the curve, first samples of the dwells, and up to four numbers of the output."""
+    """Outputs to be tried: row of the curve, first samples of the dwells, and up to four dimensions of the output."""
 
     rows: Integers
     first: Integers
@@ -113,20 +115,20 @@ class Outputs(NamedTuple):
 
 
 def samples_of(dwell: float) -> int:
-    """Samples of a piece of a curve as long as a dwell, radians: one more than steps."""
+    """Return the number of samples of a piece as long as a dwell (radians): one more than steps."""
     return max(FEWEST, round(dwell / math.tau * CYCLE) + 1)
 
 
 def beginning(at: Real, length: int | Integers, dwell: float | Real) -> Real:
-    """Where dwells begin whose pieces, of so many samples, begin at some angles.
+    """Return the crank angles at which dwells begin, from those at which their pieces of ``length`` samples begin.
 
-    A piece is a little longer or shorter than its dwell: both have one middle.
+    A piece is a little longer or shorter than its dwell: both have the same middle.
     """
     return np.asarray(at + 0.5 * ((length - 1) * math.tau / CYCLE - dwell))
 
 
 def promising(scores: Real, rows: Integers, most: int) -> Iterator[int]:
-    """The outputs of the least finite scores, each of another row, so many at most."""
+    """Yield the outputs with the lowest finite scores, at most ``most``, each of another row."""
     used: set[int] = set()
     for n in np.argsort(scores):
         if len(used) == most or not np.isfinite(scores[n]):
@@ -137,23 +139,24 @@ def promising(scores: Real, rows: Integers, most: int) -> Iterator[int]:
 
 
 def uneven(lengths: Real) -> Real:
-    """Longest length over shortest, the crank of 1 among them; lengths (n, k)."""
+    """Return the longest length over the shortest, including the crank of 1; lengths (n, k)."""
     return np.asarray(np.maximum(lengths.max(axis=1), 1.0) / np.minimum(lengths.min(axis=1), 1.0))
 
 
 def cost_of_uneven(shapes: Real, tried: Outputs, kind: Kind, carrier: Carrier, link_ratio: float) -> Real:
-    """What outputs cost in their scores that make a sixbar more uneven than is allowed, (n,)."""
+    """Return the cost added to the scores of outputs that make a sixbar more uneven than allowed, (n,)."""
     whole = np.concatenate([shapes[tried.rows], tried.numbers[:, : NUMBERS[kind]]], axis=1)
     over = uneven(np.stack(pin_distances(whole, kind, carrier), axis=1)) / link_ratio
     return np.asarray(UNEVEN * np.log(np.maximum(over, 1.0)))
 
 
 def starts(kind: Kind, asked: Asked, rng: np.random.Generator, most: int) -> list[Start]:
-    """The most promising shapes for one dwell or two of one length at ends of the way, each of another fourbar."""
+    """Find the most promising shapes for one dwell, or two equal ones at both ends, each of another fourbar."""
     dwells, dwell, way = len(asked.dwells), asked.dwells[0], asked.way
     shapes = drawn(rng, asked.transmission)
     turn = np.linspace(0.0, 2.0 * np.pi, CYCLE, endpoint=False)
     curves = np.ascontiguousarray(points(shapes, turn, "coupler"))
+    # Pieces for two dwells are lengthened, so that only pronounced arcs match.
     length = samples_of(dwell if dwells == 1 else max(dwell, LONG))
     found_on = pieces_of(curves, length, kind)
     if dwells == 1:
@@ -168,6 +171,7 @@ def starts(kind: Kind, asked: Asked, rng: np.random.Generator, most: int) -> lis
         np.empty((len(tried.rows), 2), np.int64),
     )
     judge(CODES[kind], curves, *tried, length, dwells, way, math.sin(asked.transmission), scores, signs, ends)
+    # A penalty instead of a limit: refinement often evens out the links.
     scores += cost_of_uneven(shapes, tried, kind, "coupler", asked.link_ratio)
     found: list[Start] = []
     for n in promising(scores, tried.rows, most):
@@ -179,13 +183,17 @@ def starts(kind: Kind, asked: Asked, rng: np.random.Generator, most: int) -> lis
 
 
 def drawn(rng: np.random.Generator, transmission: float) -> Real:
-    """Crank-rockers with a crank of 1: b, c, d, and P in the coupler's frame."""
+    """Draw crank-rockers with a crank of 1: b, c, d, and P in the coupler's frame."""
+    # Most random triples are no sound crank-rockers; a twelvefold number leaves enough of both sorts.
     count = 12 * DRAWN
     b, c, d = np.exp(rng.uniform(math.log(1.2), math.log(6.0), (3, count)))
+    # Even rows are symmetric: coupler = rocker, and below also B P.
     c = np.where(np.arange(count) % 2 == 0, b, c)
     longest, total = np.maximum(np.maximum(b, c), d), 1.0 + b + c + d
     with np.errstate(invalid="ignore"):
         cosines = np.stack([(b * b + c * c - (d + k) ** 2) / (2.0 * b * c) for k in (-1.0, 1.0)])
+    # Grashof's condition with a margin, and the extreme transmission angles, where the crank lies along the ground
+    # line.
     sound = (2.0 * (longest + 1.0) < total - 0.1) & (np.abs(cosines).max(axis=0) < math.cos(transmission))
     rows = np.flatnonzero(sound)
     rows = np.sort(np.concatenate([rows[rows % 2 == 0][:DRAWN], rows[rows % 2 == 1][:DRAWN]]))
@@ -200,19 +208,20 @@ def _extent(curves: Complex) -> Real:
 
 
 def pieces_of(curves: Complex, length: int, kind: Kind) -> Pieces:
-    """The arcs of all pieces of a length, or for a slotted output their lines."""
+    """Fit the arcs of all pieces of a length, or for a slotted output their lines."""
     places, sizes, off = np.empty_like(curves), np.empty(curves.shape), np.empty(curves.shape)
     extent = _extent(curves)[:, None]
     if kind == "slot":
         lines(curves, length, places, sizes, off)
         return Pieces(places, sizes, off / extent, length)
     arcs(curves, length, places, sizes, off)
+    # Much smaller or larger arcs would need a link 5 out of proportion to the fourbar.
     share = np.where((sizes > 0.2 * extent) & (sizes < 4.0 * extent), off / extent, np.inf)
     return Pieces(places, sizes, share, length)
 
 
 def of_arcs(curves: Complex, pieces: Pieces, kind: Kind) -> Outputs:
-    """Outputs whose pin rests in the centre of a curve's best arc."""
+    """Build outputs whose pin rests in the centre of each curve's best arc."""
     centres, radii, share, _ = pieces
     extent = _extent(curves)
     first = share.argmin(axis=1)
@@ -220,12 +229,14 @@ def of_arcs(curves: Complex, pieces: Pieces, kind: Kind) -> Outputs:
     rows = np.argsort(best)[:PIECES]
     rows = rows[np.isfinite(best[rows])]
     first = first[rows]
+    # With link 5 as long as the radius, its pin stays in the centre while P follows the arc.
     centre, radius = centres[rows, first], radii[rows, first]
     if kind == "slider":
         angle = np.tile(np.linspace(0.0, np.pi, DIRECTIONS, endpoint=False), len(rows))
         rows, first, centre, radius = (np.repeat(part, DIRECTIONS) for part in (rows, first, centre, radius))
         offset = (centre * np.exp(-1j * angle)).imag
         return Outputs(rows, first, first, np.stack([radius, offset, angle, 0.0 * angle], axis=1))
+    # Distances of the output's pivot from the rest, in extents of the curve.
     reach = np.geomspace(0.25, 2.5, REACHES)
     direction = np.exp(2j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
     each = REACHES * DIRECTIONS
@@ -236,9 +247,11 @@ def of_arcs(curves: Complex, pieces: Pieces, kind: Kind) -> Outputs:
 
 
 def of_two_arcs(curves: Complex, pieces: tuple[Pieces, Pieces], kind: Kind, way: float) -> Outputs:
-    """Outputs whose pin rests in the centres of two arcs of nearly one radius, ``way`` apart."""
+    """Build outputs whose pin rests in the centres of two arcs of nearly equal radius; ``way`` is the swing between
+    them."""
     rows, first, second = _best_pairs(pieces, _extent(curves), 0.0)
     one, other = pieces[0].places[rows, first], pieces[1].places[rows, second]
+    # One link serves both arcs, so that their radii are averaged.
     radius = 0.5 * (pieces[0].sizes[rows, first] + pieces[1].sizes[rows, second])
     chord = other - one
     if kind == "slider":
@@ -247,13 +260,14 @@ def of_two_arcs(curves: Complex, pieces: tuple[Pieces, Pieces], kind: Kind, way:
         return Outputs(rows, first, second, np.stack([radius, offset, angle, 0.0 * angle], axis=1))
     sides = []
     for side in (1j, -1j):
+        # The two rests are seen from the pivot under the angle of the swing; it may lie on either side.
         pivot = 0.5 * (one + other) + side * chord / (2.0 * math.tan(0.5 * way))
         sides.append(np.stack([radius, pivot.real, pivot.imag, np.abs(one - pivot)], axis=1))
     return Outputs(np.tile(rows, 2), np.tile(first, 2), np.tile(second, 2), np.concatenate(sides))
 
 
 def _best_pairs(pieces: tuple[Pieces, Pieces], extent: Real, way: float) -> tuple[Integers, Integers, Integers]:
-    """Row, first and second piece of the best pairs."""
+    """Return row, first and second piece of the best pairs."""
     found, score = np.empty((3, MOST_PAIRS), np.int64), np.empty(MOST_PAIRS)
     one, other = pieces
     alike = one is other
@@ -263,7 +277,7 @@ def _best_pairs(pieces: tuple[Pieces, Pieces], extent: Real, way: float) -> tupl
 
 
 def of_lines(curves: Complex, pieces: Pieces, _kind: Kind) -> Outputs:
-    """Slotted outputs along the straightest piece of each curve: their pivots lie on its line."""
+    """Build slotted outputs along the straightest piece of each curve: their pivots lie on its line."""
     places, angles, share, _ = pieces
     extent = _extent(curves)
     first = share.argmin(axis=1)
@@ -279,7 +293,7 @@ def of_lines(curves: Complex, pieces: Pieces, _kind: Kind) -> Outputs:
 
 
 def of_two_lines(curves: Complex, pieces: tuple[Pieces, Pieces], _kind: Kind, way: float) -> Outputs:
-    """Slotted outputs whose pivots lie where two lines cross at the angle ``way``."""
+    """Build slotted outputs whose pivots lie at the intersection of two lines that cross at the angle ``way``."""
     places, angles = pieces[0].places, pieces[0].sizes
     rows, first, second = _best_pairs(pieces, _extent(curves), way)
     one, other = np.exp(1j * angles[rows, first]), np.exp(1j * pieces[1].sizes[rows, second])
@@ -305,17 +319,18 @@ def _pairs(
     found: Integers,
     score: Real,
 ) -> int:
-    """All pairs of pieces of a curve, clear of each other, that may rest an output twice; how many were found.
+    """List all disjoint pairs of pieces of a curve that may rest an output twice; return their number.
 
-    For arcs ``places`` are their centres, which must lie apart, and the radii should be equal. For lines, with ``way``
-    the angle at which they should cross, ``radii`` are their angles. Of pieces that are ``alike`` each pair is looked
-    at once. Filled are row, first and second piece, and a score.
+    For arcs ``places`` are their centres, which must be separated, and the radii should be equal. For lines, with
+    ``way`` the angle at which they should cross, ``radii`` are their angles. Pairs of ``alike`` pieces are listed once.
+    Fills row, first and second piece, and a score.
     """
     n, count = share.shape[1], 0
     for row in range(len(share)):
         for i in range(n):
             if not share[row, i] < GOOD:
                 continue
+            # The second piece begins after the first ends, and ends before the first begins.
             last = i + n - other_length + 1
             for beyond in range(i + length, min(n, last) if alike else last):
                 j = beyond % n

@@ -1,4 +1,4 @@
-"""Its examples as a person looks for them, in their order."""
+"""Examples of dwells for the gallery, in the order in which it shows them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The output of a dwell sixbar over the turn of its crank, for many shapes at once.
+"""Output of a dwell sixbar over the turn of its crank, for many shapes at once.
 
 A shape is a row of numbers in a frame with the crank's pivot O2 at the origin, a crank of 1 and O4 on the real axis:
 
@@ -7,7 +7,7 @@ A shape is a row of numbers in a frame with the crank's pivot O2 at the origin, 
     rocker               R = P D, O6 (x, y), O6 D
     slider               R = P D, the line's distance from O2 to its left, its angle
     slot                 O6 (x, y)
-    θ for each dwell     the crank's angle where it begins
+    θ for each dwell     the crank's angle at which it begins
 
 With r = |P − O6| the rocker's pin D lies at the angle ±arccos((c6² + r² − R²) / 2 c6 r) from the line O6 → P; on a
 slide with unit vector u the place of D is Re(P ū) ± √(R² − y²), y being P's distance from the line; a slotted link
@@ -33,50 +33,50 @@ Kind = Literal["rocker", "slider", "slot", "triad"]
 Carrier = Literal["coupler", "rocker"]
 
 CYCLE = 72
-"""Crank angles of the turn at which the output is looked at."""
+"""Number of crank angles of the turn at which the output is evaluated."""
 
 RESTING = 21
-"""Crank angles of a dwell, in Chebyshev's spacing."""
+"""Number of crank angles in a dwell, in Chebyshev's spacing."""
 
 SPARSE = 2
-"""Transmission angles are kept at every other of the turn's crank angles."""
+"""Transmission angles are constrained at every second of the turn's crank angles."""
 
 AT_END = 0.03
-"""How far the dwell's mean may lie from the end of the way, as a share of it."""
+"""Maximum distance of a dwell's mean from its place in the output's range, as a share of the range."""
 
 SPARE = 0.02
-"""The crank is this much shorter at least than Grashof's condition asks."""
+"""Minimum margin of the crank's length in Grashof's condition."""
 
 LEAST_STROKE = 0.3
-"""Least stroke of a slider in units of the ground link."""
+"""Minimum stroke of a slider in units of the ground link."""
 
 NEAREST = 0.3
-"""Least distance of P from the pivot of a slotted link, in crank lengths: nearer, the link is thrown round."""
+"""Minimum distance of P from the pivot of a slotted link, in crank lengths: nearer, the link would be thrown around."""
 
 
 class Task(NamedTuple):
-    """What a shape is for.
+    """Requirements on a shape.
 
     Attributes
     ----------
     kind : str
-        Of the output.
+        Kind of output.
     sign : int
-        Of its assembly.
+        Assembly of the output.
     dwells : tuple of float
         Rotation of the crank during each dwell, radians.
     places : tuple of float
-        Where each dwell lies, as a share of the way: 0 the least output, 1 the greatest.
+        Place of each dwell, as a share of the output's range: 0 the minimum, 1 the maximum.
     way : float
-        The swing in radians, or NaN for a slider, whose size comes after.
+        Required swing, radians, or NaN for a slider, which is scaled afterwards.
     transmission : float
-        Least sine of a transmission angle.
+        Minimum sine of a transmission angle.
     link_ratio : float
-        Longest link over shortest, at most.
+        Maximum of the longest link over the shortest.
     carrier : str
-        The link that P is on.
+        The link that carries P.
     turning : str
-        What the fourbar O2 A B O4 is: its rocker swings, or turns through as its crank does.
+        Class of the fourbar O2 A B O4: its rocker swings, or turns through like its crank.
     """
 
     kind: Kind
@@ -91,24 +91,26 @@ class Task(NamedTuple):
 
 
 def fourbars(shapes: Real) -> Fourbar:
-    """The fourbars of shapes (m, ...)."""
+    """Return the fourbars of shapes (m, ...)."""
     ones = np.ones(len(shapes))
     return Fourbar.from_lengths(ones, shapes[:, 0], shapes[:, 1], shapes[:, 2], shapes[:, 3] + 1j * shapes[:, 4])
 
 
 def points(shapes: Real, theta: Real, carrier: Carrier) -> Complex:
-    """Where P stands at crank angles (N,) or (m, N), shape (m, N)."""
+    """Return the place of P at crank angles (N,) or (m, N), shape (m, N)."""
     linkage = fourbars(shapes)
     if carrier == "coupler":
         return coupler_points(linkage, theta, np.full(len(shapes), OPEN)).p
     at_b = Fourbar.from_lengths(np.ones(len(shapes)), shapes[:, 0], shapes[:, 1], shapes[:, 2], shapes[:, 0] + 0j)
     pivot = shapes[:, 2, None]
+    # Unit vector along the rocker: a coupler point at B gives B itself.
     arm = (coupler_points(at_b, theta, np.full(len(shapes), OPEN)).p - pivot) / shapes[:, 1, None]
     return np.asarray(pivot + arm * (shapes[:, 3] + 1j * shapes[:, 4])[:, None])
 
 
 def output(kind: Kind, sign: int, shapes: Real, p: Complex) -> tuple[Real, Real]:
-    """Output (radians from a mean direction, or place along the slide) and sine of its transmission angle, (m, N).
+    """Return the output (radians from a mean direction, or place along the slide) and sine of its transmission angle,
+    (m, N).
 
     NaN where the links do not reach; the sine of a slotted link is P's distance from its pivot, up to 1.
     """
@@ -116,6 +118,7 @@ def output(kind: Kind, sign: int, shapes: Real, p: Complex) -> tuple[Real, Real]
         if kind == "slider":
             along = np.exp(1j * shapes[:, 7, None])
             across = (p * along.conj()).imag - shapes[:, 6, None]
+            # NaN where P is farther from the slide than the link is long.
             sine = np.sqrt(1.0 - (across / shapes[:, 5, None]) ** 2)
             return (p * along.conj()).real + sign * shapes[:, 5, None] * sine, sine
         if kind == "slot":
@@ -130,13 +133,14 @@ def output(kind: Kind, sign: int, shapes: Real, p: Complex) -> tuple[Real, Real]
 
 
 def _turned(directions: Complex) -> Real:
-    """Angles from a mean direction: the output turns by less than half a turn."""
+    """Return angles from a mean direction: the output turns by less than half a turn."""
+    # Angles about the mean direction do not jump by a full turn.
     mean = np.where(np.isfinite(directions), directions, 0.0).sum(axis=1, keepdims=True)
     return np.asarray(np.angle(directions * np.conj(mean)))
 
 
 def extremes(values: Real) -> tuple[Real, Real]:
-    """Least and greatest of periodic samples (m, N), by the parabola through the neighbours of each."""
+    """Return minimum and maximum of periodic samples (m, N), by the parabola through the neighbours of each."""
     found = []
     for sign in (-1.0, 1.0):
         signed = sign * values
@@ -144,13 +148,14 @@ def extremes(values: Real) -> tuple[Real, Real]:
         before, at, after = (signed[rows, (top + k) % values.shape[1]] for k in (-1, 0, 1))
         bend = before - 2.0 * at + after
         with np.errstate(invalid="ignore", divide="ignore"):
+            # Vertex of the parabola; a flat neighbourhood keeps the sample itself.
             peak = at - 0.125 * np.where(bend < 0.0, (after - before) ** 2 / bend, 0.0)
         found.append(sign * peak)
     return found[0], found[1]
 
 
 def crank_angles(shapes: Real, task: Task, nodes: Real) -> Real:
-    """Crank angles of the dwells, (m, nodes · dwells), and after them those of the turn; ``nodes`` in [0, 1]."""
+    """Return crank angles of the dwells, (m, nodes · dwells), followed by those of the turn; ``nodes`` in [0, 1]."""
     count = len(task.dwells)
     resting = [shapes[:, -count + k, None] + dwell * nodes for k, dwell in enumerate(task.dwells)]
     turn = np.broadcast_to(np.linspace(0.0, 2.0 * np.pi, CYCLE, endpoint=False), (len(shapes), CYCLE))
@@ -158,7 +163,7 @@ def crank_angles(shapes: Real, task: Task, nodes: Real) -> Real:
 
 
 def judged(task: Task, nodes: Real, shapes: Real) -> Values:
-    """What is minimised, the output's way during the dwells as a share of the whole, and what is kept."""
+    """Compute the objective, the output's movement during the dwells as a share of its range, and the constraints."""
     theta = crank_angles(shapes, task, nodes)
     p = points(shapes, theta, task.carrier)
     out, sine = output(task.kind, task.sign, shapes, p)
@@ -176,15 +181,15 @@ def judged(task: Task, nodes: Real, shapes: Real) -> Values:
 
 
 def dwelling(task: Task, count: int, out: Real, ground: Real) -> tuple[Real, Real]:
-    """How outputs move during the dwells, as shares of their way, and the room that places and way have.
+    """Compute the output's movement during the dwells, as shares of its range, and the margins of places and range.
 
     Parameters
     ----------
     task : Task
     count : int
-        Crank angles of a dwell.
+        Number of crank angles of a dwell.
     out : float, shape (m, dwells · count + CYCLE)
-        The output during the dwells, and after them over the turn.
+        The output during the dwells, and then over the turn.
     ground : float, shape (m,)
         Lengths of the ground links.
 
@@ -201,14 +206,16 @@ def dwelling(task: Task, count: int, out: Real, ground: Real) -> tuple[Real, Rea
             level = resting.mean(axis=1)
             banded.append((resting - level[:, None]) / way[:, None])
             at_place += _at_place(place, low, high, level, way)
-        # A slide has any stroke in a unit frame, but one that is small beside the linkage makes that large.
+        # A slider's stroke is free in a unit frame, but a small one makes the scaled linkage large.
         slides = math.isnan(task.way)
+        # Two opposite inequalities make an equation for the swing.
         swing = [way / ground - LEAST_STROKE] if slides else [way / task.way - 1.0, 1.0 - way / task.way]
     return np.concatenate(banded, axis=1), np.stack([*at_place, *swing], axis=1)
 
 
 def _at_place(place: float, low: Real, high: Real, level: Real, way: Real) -> list[Real]:
-    """Room that a dwell's mean has about its place: from one side at an end of the way, from both between."""
+    """Return the margins of a dwell's mean about its place: on one side at an end of the range, on both sides
+    between."""
     if place in (0.0, 1.0):
         return [AT_END - (high - level if place else level - low) / way]
     off = (level - low) / way - place
@@ -216,13 +223,14 @@ def _at_place(place: float, low: Real, high: Real, level: Real, way: Real) -> li
 
 
 def _slot_kept(shapes: Real, p: Complex, task: Task) -> Real:
-    """Room of the link ratio over the slotted link, which is as long as P is far from its pivot at most, (m, 1)."""
+    """Return the margin of the link ratio for the slotted link, whose length is P's maximum distance from its pivot,
+    (m, 1)."""
     reach = np.abs(p - (shapes[:, 5] + 1j * shapes[:, 6])[:, None]).max(axis=1)
     return np.asarray(task.link_ratio / reach - 1.0)[:, None]
 
 
 def pin_distances(shapes: Real, kind: Kind, carrier: Carrier) -> list[Real]:
-    """All distances between two pins of a link but the crank, which is 1: first b, c and d; each (m,)."""
+    """Return all distances between two pins of a link except the crank, which is 1: first b, c and d; each (m,)."""
     b, c, d, x, y = shapes[:, :5].T
     lengths = [b, c, d, np.hypot(x, y), np.hypot(x - (b if carrier == "coupler" else c), y)]
     lengths += [shapes[:, k] for k in {"rocker": (5, 8), "slider": (5,), "slot": ()}[kind]]
@@ -233,11 +241,12 @@ def pin_distances(shapes: Real, kind: Kind, carrier: Carrier) -> list[Real]:
 
 
 def _fourbar_kept(shapes: Real, task: Task) -> Real:
-    """Grashof's conditions, sin² of the transmission angle where it is least and greatest, and the link ratio."""
+    """Return margins of Grashof's conditions, of sin² of the extreme transmission angles, and of the link ratio."""
     b, c, d = shapes[:, 0], shapes[:, 1], shapes[:, 2]
     sines = [1.0 - ((b * b + c * c - (d + k) ** 2) / (2.0 * b * c)) ** 2 - task.transmission**2 for k in (-1.0, 1.0)]
     lengths = pin_distances(shapes, task.kind, task.carrier)
     if task.turning == "double_crank":
+        # The ground is a double crank's shortest link; the crank of 1 takes its place among the others.
         shortest, lengths[2] = d, np.ones_like(d)
         uneven = [task.link_ratio * shortest / length - 1.0 for length in lengths]
         uneven += [length / shortest - 1.0 for length in lengths]

@@ -1,8 +1,8 @@
-"""Starts for dwells of stated lengths and places: sixbars of all types, scored by their motion alone.
+"""Find starts for dwells of given lengths and places: sixbars of all types, scored by their motion alone.
 
 Outputs of coupler curves rest on arcs or lines: on the best of each curve for the longest dwell, or on two, each as
-long as a dwell of its own. Watt II sixbars, whose P goes to and fro on a circle about O4 or all around it, are drawn at
-random.
+long as a dwell of its own. Watt II sixbars, whose P moves back and forth on a circle about O4 or all around it, are
+drawn at random.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 EACH: dict[Carrier, int] = {"rocker": 24, "coupler": 8}
-"""Outputs that are drawn at random for each fourbar, by the link that P is on."""
+"""Number of random outputs for each fourbar, by the link that carries P."""
 
 
 def placed_starts(
@@ -51,15 +51,16 @@ def placed_starts(
     rng: np.random.Generator,
     most: int,
 ) -> list[Start]:
-    """The most promising shapes, each of another fourbar.
+    """Find the most promising shapes, each of another fourbar.
 
     Parameters
     ----------
     kind, carrier, turning : str
-        Output, the link that P is on, and what the fourbar is.
+        Output, the link that carries P, and the class of the fourbar.
     asked : Asked
     rng : Generator
     most : int
+        Maximum number of starts.
 
     Returns
     -------
@@ -68,9 +69,10 @@ def placed_starts(
     """
     dwells, places, way, transmission, link_ratio = asked
     shapes = drawn(rng, transmission) if turning == "crank_rocker" else double_cranks(rng, transmission)
+    # Links of the fourbar itself can only become more uneven with the output.
     shapes = shapes[uneven(shapes[:, :3]) <= link_ratio]
     if carrier == "rocker":
-        # The second loop may have any size and any direction: P is as far from O4 as B, and from B, to begin with.
+        # Size and direction of the second loop are free: initially P forms an equilateral triangle with O4 and B.
         shapes[:, 3], shapes[:, 4] = 0.5 * shapes[:, 1], math.sqrt(0.75) * shapes[:, 1]
     turn = np.linspace(0.0, 2.0 * np.pi, CYCLE, endpoint=False)
     curves = np.ascontiguousarray(points(shapes, turn, carrier))
@@ -108,7 +110,8 @@ def placed_starts(
 
 
 def double_cranks(rng: np.random.Generator, transmission: float) -> Real:
-    """Double cranks with a crank of 1: b, c, d, and P in the coupler's frame."""
+    """Draw double cranks with a crank of 1: b, c, d, and P in the coupler's frame."""
+    # Few random lengths make a sound double crank.
     count = 60 * DRAWN
     b, c = np.exp(rng.uniform(math.log(0.4), math.log(3.0), (2, count)))
     d = np.exp(rng.uniform(math.log(0.12), math.log(0.9), count))
@@ -123,29 +126,32 @@ def double_cranks(rng: np.random.Generator, transmission: float) -> Real:
 def _on_curves(
     kind: Kind, curves: Complex, dwells: tuple[float, ...], places: tuple[float, ...], way: float
 ) -> Outputs:
-    """Outputs that rest on the best arc or line of a curve, and on pairs of them."""
+    """Build outputs that rest on the best arc or line of a curve, and on pairs of them."""
     longest = sorted(range(len(dwells)), key=lambda k: -dwells[k])
     found = [
         (of_lines if kind == "slot" else of_arcs)(curves, pieces_of(curves, samples_of(dwells[longest[0]]), kind), kind)
     ]
     for other in longest[1:]:
+        # Combine the longest dwell with each of the others.
         pair = dwells[longest[0]], dwells[other]
+        # Longer pieces make pronounced arcs, as long as both fit into the turn.
         looked_at = [max(dwell, LONG) if sum(pair) < math.pi else dwell for dwell in pair]
         two = [pieces_of(curves, samples_of(dwell), kind) for dwell in looked_at]
+        # The swing between two dwells is that share of the whole range.
         apart = abs(places[longest[0]] - places[other])
         rests = of_two_lines if kind == "slot" else of_two_arcs
         found.append(rests(curves, (two[0], two[1]), kind, apart * way))
     tried = Outputs(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
     if kind != "slider":
         return tried
-    # The other way along the same line: low is high there.
+    # The same slide in the opposite direction exchanges low and high.
     turned = tried.numbers * np.array([1.0, -1.0, 1.0, 1.0]) + np.array([0.0, 0.0, math.pi, 0.0])
     both = np.concatenate([tried.numbers, turned])
     return Outputs(np.tile(tried.rows, 2), np.tile(tried.first, 2), np.tile(tried.second, 2), both)
 
 
 def _drawn_outputs(kind: Kind, carrier: Carrier, shapes: Real, curves: Complex, rng: np.random.Generator) -> Outputs:
-    """Links and outputs on P, at random: in units of the rocker about O4, or of the curve about its middle."""
+    """Draw random links and outputs on P: in units of the rocker about O4, or of the curve about its middle."""
     rows = np.repeat(np.arange(len(shapes)), EACH[carrier])
     middle, size = shapes[:, 2] + 0j, shapes[:, 1]
     if carrier == "coupler":

@@ -1,4 +1,4 @@
-"""Dwells: a sixbar whose output rests, once or twice in a turn, while its crank turns on."""
+"""Problems of dwells: a sixbar whose output rests, once or more often in a turn, while its crank turns on."""
 
 from __future__ import annotations
 
@@ -22,31 +22,32 @@ from synthesis.model.statement import (
 )
 
 DEFAULT_TOLERANCE = 0.01
-"""How far the output may move during a dwell, as a share of its swing or stroke, where nothing is stated."""
+"""Default of the maximum movement of the output during a dwell, as a share of its swing or stroke."""
 
 DEFAULT_CRANK = 10.0
-"""Length of the crank, in length units, where nothing gives the linkage a size."""
+"""Length of the crank, in length units, if nothing else determines the linkage's size."""
 
 
 APART = 0.1
-"""Places of two dwells in the way that are nearer than this, as a share of it, are not told apart: see `END`."""
+"""Minimum separation of the places of two dwells, as a share of the output's range: twice :data:`END`, so that they
+differ."""
 
 END = 0.05
-"""How far a dwell's mean may be from its place in the way, as a share of it."""
+"""Maximum distance of a dwell's mean from its place in the output's range, as a share of the range."""
 
 LOW, HIGH = 0.0, 1.0
-"""Places of a dwell at the ends of the way, as shares of it."""
+"""Places of a dwell at the ends of the output's range, as shares of it."""
 
 
 SixbarType = Literal["pseudo_arc", "straight_slot", "watt_2", "stephenson_2"]
-"""How an output is kept at rest."""
+"""Ways to keep an output at rest."""
 
 Turning = Literal["crank_rocker", "double_crank"]
-"""What the fourbar O2 A B O4 may be that the crank turns through in; a Stephenson II has none."""
+"""Classes of the fourbar O2 A B O4 whose crank turns through; a Stephenson II has no such fourbar."""
 
 
 class Wanted(NamedTuple):
-    """A dwell that is asked for: rotation of the crank, degrees, and share of the way; None at one of its ends."""
+    """A requested dwell: rotation of the crank, degrees, and share of the range; None for either end."""
 
     angle: float
     place: float | None
@@ -60,7 +61,7 @@ class RockerOutput(Statement):
 
 
 class SliderOutput(Statement):
-    """The output slides to and fro."""
+    """The output slides back and forth."""
 
     type: Literal["slider"]
     stroke: PositiveLength = Field(description="In length units.")
@@ -75,34 +76,34 @@ Output = Annotated[
     Annotated[RockerOutput, Tag("<rocker>")] | Annotated[SliderOutput, Tag("<slider>")],
     Discriminator(_tag, custom_error_type="unknown_output", custom_error_message="type must be one of: rocker, slider"),
 ]
-"""The output of a dwell mechanism; the field ``type`` tells which, a rocker where it is left out."""
+"""The output of a dwell mechanism; the field ``type`` selects it, a rocker by default."""
 
 
 class StatedDwell(Statement):
-    """A dwell of a stated length at a stated place."""
+    """A dwell of a given length at a given place."""
 
     angle: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=360.0), Sizable] = Field(
         description="Rotation of the crank during the dwell, degrees."
     )
     at: Literal["low", "high"] | Annotated[float, Field(strict=True, ge=0.0, le=1.0), Sizable] = Field(
-        description="Where it lies in the way: at its least output, at its greatest, or at a share of the way."
+        description="Place in the output's range: low, its minimum; high, its maximum; or a share of the range."
     )
 
     @property
     def place(self) -> float:
-        """Share of the way."""
+        """Share of the range."""
         return {"low": LOW, "high": HIGH}[self.at] if isinstance(self.at, str) else self.at
 
 
 class DwellProblem(LinkageProblem):
-    """Dwell: a sixbar whose output swings or slides by a stated way and rests in it, at its ends or between them.
+    """Dwell: a sixbar whose output swings or slides through a given range and rests in it, at its ends or between them.
 
-    A fourbar's coupler point goes along a circular arc, and a link of the arc's radius leaves the output at rest
-    (`pseudo_arc`); or it goes along a straight line in a slot of the output (`straight_slot`); or the fourbar's rocker
+    A fourbar's coupler point follows a circular arc, and a link of the arc's radius leaves the output at rest
+    (`pseudo_arc`); or it follows a straight line in a slot of the output (`straight_slot`); or the fourbar's rocker
     drives another one that rests near its dead points (`watt_2`); or two links from the crank carry a third, which
-    turns about the pin of the resting output (`stephenson_2`). `dwell_angle` and `count` ask for one dwell or two of
-    one length at the ends of the way, `dwells` for each by its length and place. Swing, dwells and accelerations are
-    measured over the whole turn.
+    turns about the pin of the resting output (`stephenson_2`). `dwell_angle` and `count` request one dwell, or two of
+    equal length at the ends of the range; `dwells` requests each by its length and place. Swing, dwells and
+    accelerations are measured over the full turn.
     """
 
     model_config = ConfigDict(
@@ -140,21 +141,23 @@ class DwellProblem(LinkageProblem):
 
     kind: Literal["dwell"]
     dwell_angle: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=360.0), Sizable] | None = Field(
-        default=None, description="Rotation of the crank during a dwell, degrees; of each of two. Or state `dwells`."
+        default=None, description="Rotation of the crank during a dwell, or each of two, degrees. Or give `dwells`."
     )
     dwells: Annotated[list[StatedDwell], Field(min_length=1, max_length=3)] | None = Field(
-        default=None, description="Each dwell by its length and its place in the way, instead of `dwell_angle`."
+        default=None, description="Each dwell by its length and its place in the range, instead of `dwell_angle`."
     )
-    output: Output = Field(description="What the output is, and how far it goes.")
-    count: Annotated[Count, Field(ge=1, le=2)] = Field(default=1, description="Dwells of `dwell_angle` in a turn.")
+    output: Output = Field(description="Type of the output, and its swing or stroke.")
+    count: Annotated[Count, Field(ge=1, le=2)] = Field(
+        default=1, description="Number of dwells of `dwell_angle` in a turn."
+    )
     mechanism: Literal["auto", "pseudo_arc", "straight_slot", "watt_2", "stephenson_2"] = Field(
         default="auto",
         description="How the output is kept at rest. `auto` compares arc and slot for a rocker, and with `dwells` also "
-        "`watt_2`; `stephenson_2`, of a rocker, has to be named.",
+        "`watt_2`; `stephenson_2`, for a rocker only, must be chosen explicitly.",
     )
     tolerance: Annotated[PositiveNumber, OUTPUT] | None = Field(
         default=None,
-        description="Most that the output may move during a dwell: degrees, or length units of a slider. By default a "
+        description="Maximum movement of the output during a dwell: degrees, or length units of a slider. By default a "
         "hundredth of the swing or stroke.",
     )
     crank: PositiveLength | None = Field(
@@ -162,8 +165,8 @@ class DwellProblem(LinkageProblem):
     )
     pivot: Point | None = Field(
         default=None,
-        description="Where the crank's fixed pivot lies. Left out it is (0, 0); where regions or limits of length want "
-        "it, the linkage is put elsewhere, turned and, with a rocker and no `crank`, made larger or smaller.",
+        description="Place of the crank's fixed pivot; by default (0, 0). If it is left out, regions and limits of "
+        "length may move the linkage, rotate it and, with a rocker and no `crank`, scale it.",
     )
 
     @property
@@ -173,7 +176,7 @@ class DwellProblem(LinkageProblem):
 
     @property
     def allowed(self) -> float:
-        """How far the output may move during a dwell, in units of the way."""
+        """Maximum movement of the output during a dwell, in units of the output."""
         return DEFAULT_TOLERANCE * self.way if self.tolerance is None else self.tolerance
 
     @property
@@ -183,28 +186,29 @@ class DwellProblem(LinkageProblem):
 
     @property
     def wanted(self) -> tuple[Wanted, ...]:
-        """The dwells that are asked for; of several without a place one lies at each end."""
+        """The requested dwells; two of equal length without places lie one at each end."""
         if self.dwells is not None:
             return tuple(Wanted(dwell.angle, dwell.place) for dwell in self.dwells)
         return self.count * (Wanted(self.dwell_angle or 0.0, None),)
 
     @property
     def placed(self) -> bool:
-        """Whether outputs are looked for by where the dwells lie, and how long each is."""
+        """Whether outputs are searched by the place and length of each dwell."""
         return self.dwells is not None or self.mechanism in ("watt_2", UNCLASSED)
 
     @property
     def types(self) -> tuple[SixbarType, ...]:
-        """The types that are to be tried."""
+        """The types to be tried."""
         if self.mechanism != "auto":
             return (self.mechanism,)
+        # A slotted link swings and cannot slide.
         slot: tuple[SixbarType, ...] = ("straight_slot",) if self.output.type == "rocker" else ()
         pair: tuple[SixbarType, ...] = ("watt_2",) if self.placed else ()
         return ("pseudo_arc", *slot, *pair)
 
     @property
     def searches(self) -> tuple[tuple[SixbarType, Turning | None], ...]:
-        """The types that are to be tried, each with what its fourbar may be, whatever class is demanded."""
+        """The types to be tried, each with a possible class of its fourbar, regardless of the required class."""
         if self.mechanism == UNCLASSED:
             return ((UNCLASSED, None),)
         classes: tuple[Turning, ...] = ("crank_rocker", "double_crank") if self.placed else ("crank_rocker",)
@@ -212,12 +216,12 @@ class DwellProblem(LinkageProblem):
             (name, turning)
             for name in self.types
             for turning in classes
-            # In a double crank P comes too near to the pivot of a slotted link.
+            # In a double crank P comes too close to the pivot of a slotted link.
             if turning == "crank_rocker" or name != "straight_slot"
         )
 
     def shortened(self, share: float) -> Self:
-        """The same with dwells that are shorter, by a share of each."""
+        """Return the problem with each dwell shortened to a share of its length."""
         if self.dwells is None:
             return self.model_copy(update={"dwell_angle": share * self.wanted[0].angle})
         return self.model_copy(
@@ -225,21 +229,24 @@ class DwellProblem(LinkageProblem):
         )
 
     def contradictions(self) -> list[Contradiction]:
-        """Demands that exclude one another."""
+        """Return requests that exclude one another."""
         found = [*self.contradicting_demands(), *self._contradicting_dwells()]
         if self.output.type == "slider" and self.mechanism == "straight_slot":
-            found.append(Contradiction("/mechanism", "a slotted output swings; take pseudo_arc or a rocker"))
+            found.append(Contradiction("/mechanism", "a slotted output swings; choose pseudo_arc or a rocker"))
         if self.output.type == "slider" and self.mechanism == UNCLASSED:
-            found.append(Contradiction("/mechanism", "its output swings; take pseudo_arc, watt_2 or a rocker"))
+            found.append(Contradiction("/mechanism", "its output swings; choose pseudo_arc, watt_2 or a rocker"))
         if self.output.type == "slider" and self.crank is not None:
-            found.append(Contradiction("/crank", "the stroke gives the size; leave the crank out"))
+            found.append(Contradiction("/crank", "the stroke determines the size; leave the crank out"))
         size, field = (
             (self.way, "/output/stroke") if self.output.type == "slider" else (self.crank or DEFAULT_CRANK, "/crank")
         )
+        # Differences of large coordinates would lose the digits of the crank.
         if self.pivot is not None and size < ROUNDED_OFF * max(map(abs, self.pivot)):
-            found.append(Contradiction(field, "too short beside the coordinates of the pivot; move the origin nearer"))
+            found.append(
+                Contradiction(field, "too short relative to the coordinates of the pivot; move the origin nearer")
+            )
         if self.tolerance is not None and self.tolerance >= self.way:
-            found.append(Contradiction("/tolerance", "as far as the output goes; nothing would have to rest"))
+            found.append(Contradiction("/tolerance", "not less than the output's range; no dwell would be needed"))
         classes = {turning for _, turning in self.searches if turning is not None}
         if not classes:
             return [*found, *no_class(self.constraints)]
@@ -248,31 +255,34 @@ class DwellProblem(LinkageProblem):
         return [*found, *self.constraints.of_another_class(classes, reason)]
 
     def _contradicting_dwells(self) -> list[Contradiction]:
-        """Dwells of which nothing can have all."""
+        """Return contradictory dwell requests."""
         if self.dwells is None:
             if self.dwell_angle is None:
-                return [Contradiction("/dwell_angle", "say how long the output rests: dwell_angle, or dwells")]
+                return [Contradiction("/dwell_angle", "give the length of the dwell by dwell_angle, or use dwells")]
             if self.count * self.dwell_angle < 360.0:
                 return []
-            detail = f"{self.count} dwells of {self.dwell_angle:g}° leave nothing of a turn to move in"
+            detail = f"{self.count} dwells of {self.dwell_angle:g}° leave no part of the turn for the movement"
             return [Contradiction("/dwell_angle", detail)]
         found = []
         if self.dwell_angle is not None:
-            found.append(Contradiction("/dwell_angle", "dwells says how long each is; leave this out"))
+            found.append(Contradiction("/dwell_angle", "dwells gives the length of each; leave this out"))
         if self.count not in (1, len(self.dwells)):
-            found.append(Contradiction("/count", "dwells says how many there are; leave this out"))
+            found.append(Contradiction("/count", "dwells determines their number; leave this out"))
         total = sum(dwell.angle for dwell in self.dwells)
         if total >= 360.0:
-            found.append(Contradiction("/dwells", f"dwells of {total:g}° in all leave nothing of a turn to move in"))
+            found.append(
+                Contradiction("/dwells", f"dwells of {total:g}° in total leave no part of the turn for the movement")
+            )
         for (n, one), (k, other) in combinations(enumerate(self.dwells), 2):
             apart = abs(one.place - other.place)
             if apart < APART:
-                detail = f"less than a tenth of the way from dwell {n + 1}: they are not told apart"
+                detail = f"less than a tenth of the range from dwell {n + 1}; separate them further"
                 found.append(
                     Contradiction(f"/dwells/{k}/at", "the same place as dwell " + f"{n + 1}" if not apart else detail)
                 )
+            # An output that may move from one place to the other would satisfy both with one dwell.
             elif apart * self.way <= self.allowed:
                 found.append(
-                    Contradiction(f"/dwells/{k}/at", f"within the tolerance of dwell {n + 1}; they are one dwell")
+                    Contradiction(f"/dwells/{k}/at", f"within the tolerance of dwell {n + 1}; make them one dwell")
                 )
         return found

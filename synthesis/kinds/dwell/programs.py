@@ -1,7 +1,7 @@
-"""How promising outputs are for a program of dwells, each of its own length and at its own place in the way.
+"""Score outputs for a program of dwells, each of its own length and at its own place in the output's range.
 
-Every output is driven through the turn on a grid. Of each dwell the stretch of the turn is looked for in which the
-output moves least near the dwell's place; nothing is known of when in the turn the dwells come.
+Every output is driven through the turn on a grid. For each dwell the section of the turn is searched in which the
+output moves least near the dwell's place; the times of the dwells within the turn are free.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]
 
 WAY_APART = 1.0
-"""Logarithm of the way over the demanded one beyond which an output is not looked at: refinement does not mend it."""
+"""Maximum logarithm of the output's range over the required one: refinement does not mend a larger error."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -46,26 +46,26 @@ def judge_program(
     begins: Integers,
     ends: Real,
 ) -> None:
-    """Drive every output through the turn in both assemblies and score the better: way, rests, and what they lack.
+    """Drive every output through the turn in both assemblies and score the better: range, rests, and shortcomings.
 
     Parameters
     ----------
     kind : int
         ``ROCKER``, ``SLIDER`` or ``SLOT``.
     curves : complex, shape (m, N)
-        Where P stands.
+        Places of P.
     rows : int, shape (n,)
         The curve of each output.
     numbers : float, shape (n, 4)
-        Its dimensions, as :mod:`scoring` has them.
+        Its dimensions, in the order of :mod:`scoring`.
     lengths, places : int and float, shape (k,)
-        Of each dwell its samples, and its share of the way from the least output; NaN at either end.
+        Number of samples of each dwell, and its share of the range from the minimum output; NaN for either end.
     way, least : float
-        The way, or NaN for a slider, and the least sine of a transmission angle.
+        The required range, radians, or NaN for a slider, and the minimum sine of a transmission angle.
     scores, signs : float and int, shape (n,)
-        Filled in: the score, infinite for what is no start, and the assembly.
+        Filled: the score, infinite for unsuitable outputs, and the assembly.
     begins, ends : int and float, shape (n, k)
-        Filled in: first sample of each dwell, and its share of the way.
+        Filled: first sample of each dwell, and its share of the range.
     """
     n, dwells = curves.shape[1], len(lengths)
     out, ux, uy = np.empty(n), np.empty(n), np.empty(n)
@@ -83,6 +83,7 @@ def judge_program(
                 sine = slot_turn(curve, a, b, ux, uy)
             else:
                 break
+            # Out of reach in one assembly means out of reach in both.
             if not sine > 0.0:
                 break
             if kind != SLIDER:
@@ -95,6 +96,7 @@ def judge_program(
                 for m in range(n):
                     out[m] = level(kind, out[m])
             score = lacking(0.0, kind, curve, span, way, least, sine)
+            # Each dwell may lie anywhere in the turn, so that all places of the grid are tried.
             score += rests(out, low, span, lengths, places, at, share)
             if score < scores[k]:
                 scores[k], signs[k] = score, sign
@@ -103,7 +105,11 @@ def judge_program(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def rests(out: Real, low: float, span: float, lengths: Integers, places: Real, at: Integers, share: Real) -> float:
-    """The worst of the dwells, each where it moves least and is nearest to its place; fills in where that is."""
+    """Find for each dwell the section that moves least and is nearest to its place; return the worst score of all
+    dwells.
+
+    ``at`` and ``share`` receive the first sample and the place of each.
+    """
     n, worst = len(out), 0.0
     for dwell in range(len(lengths)):
         best = np.inf
@@ -113,6 +119,7 @@ def rests(out: Real, low: float, span: float, lengths: Integers, places: Real, a
                 value = out[(begin + m) % n]
                 least, most = min(least, value), max(most, value)
                 total += value
+                # This section is already worse than the best one.
                 if most - least > best * span:
                     break
             rest = (most - least) / span

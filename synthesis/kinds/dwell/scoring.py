@@ -1,8 +1,8 @@
-"""How promising outputs of a dwell sixbar are: each driven through the turn on a grid, in compiled loops.
+"""Score outputs of a dwell sixbar: each is driven through the turn on a grid, in compiled loops.
 
 A rocker has the numbers R = P D, O6 (x, y), O6 D; a slider R, the line's distance from O2 to its left and its angle; a
-slotted link O6 (x, y). Directions are handled as unit vectors and as half tangents, so that no arctangent is taken of
-the many outputs that come to nothing.
+slotted link O6 (x, y). Directions are handled as unit vectors and as half tangents, so that no arctangent is computed
+for the many outputs that are discarded.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]
 
 ROCKER, SLIDER, SLOT = range(3)
-"""Kinds of output, as the loops know them."""
+"""Codes of the kinds of output in the loops."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -39,7 +39,7 @@ def judge(
     signs: Integers,
     ends: Integers,
 ) -> None:
-    """Drive every output through the turn and score it: the way during the dwells, and what it lacks."""
+    """Drive every output through the turn and score its movement during the dwells and its shortcomings."""
     n = curves.shape[1]
     out, ux, uy = np.empty(n), np.empty(n), np.empty(n)
     for k in range(len(rows)):
@@ -67,12 +67,14 @@ def judge(
             begin = first[k] if dwell == 0 else second[k]
             least_out, most_out, mean = np.inf, -np.inf, 0.0
             for m in range(length):
+                # The grid is periodic, and a dwell may cross its seam.
                 value = out[(begin + m) % n]
                 least_out, most_out = min(least_out, value), max(most_out, value)
                 mean += level(kind, value) / length
             rest = max(rest, (level(kind, most_out) - level(kind, least_out)) / span)
             ends[k, dwell] = 1 if high - mean < mean - low else -1
             ending = max(ending, min(high - mean, mean - low) / span)
+        # Both dwells at one end leave the other end without a rest.
         if dwells == 2 and ends[k, 0] == ends[k, 1]:
             continue
         scores[k] = lacking(rest + 0.5 * ending, kind, curve, span, way, least, sine)
@@ -80,33 +82,39 @@ def judge(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def lacking(score: float, kind: int, curve: Complex, span: float, way: float, least: float, sine: float) -> float:
-    """A score with what an output lacks of transmission and way; of a stroke, which has any size, of the curve's size.
+    """Add to a score the shortcomings of transmission and range; for a slider, whose stroke is free, of the curve's
+    size.
 
-    ``span`` is the way that it goes, ``way`` the demanded one, ``least`` and ``sine`` sines of transmission angles.
+    ``span`` is the output's range, ``way`` the required one, ``least`` and ``sine`` are sines of transmission angles.
     """
+    # A start should exceed the required transmission angle, because refinement trades some of it for stillness.
     score += 0.5 * max(0.0, 1.5 * least - sine)
     if kind != SLIDER:
         return score + 0.3 * abs(math.log(span / way))
     extent = 0.0
     for z in curve:
         extent = max(extent, abs(z - curve[0]))
+    # A slider's linkage is scaled to the stroke: a small stroke makes it large.
     return score + 0.05 * max(0.0, math.log(2.0 * extent / span))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def rocker_turn(curve: Complex, link: float, x: float, y: float, rocker: float, sign: int, ux: Real, uy: Real) -> float:
-    """Direction of a rocker at every sample; the least sine of its transmission angle, 0 where it is not reached."""
+    """Compute a rocker's direction at every sample; return the minimum sine of its transmission angle, 0 if out of
+    reach."""
     nearest, farthest = np.inf, 0.0
     for m in range(len(curve)):
         dx, dy = curve[m].real - x, curve[m].imag - y
         square = dx * dx + dy * dy
         nearest, farthest = min(nearest, square), max(farthest, square)
+        # Triangle P D O6 must close at every sample.
         if not (rocker - link) ** 2 < square < (rocker + link) ** 2:
             return 0.0
         r = math.sqrt(square)
         cosine = (rocker * rocker + square - link * link) / (2.0 * rocker * r)
         leaning = sign * math.sqrt(max(1.0 - cosine * cosine, 0.0))
         ux[m], uy[m] = (dx * cosine - dy * leaning) / r, (dx * leaning + dy * cosine) / r
+    # The angle at D is extreme where P is nearest to and farthest from O6.
     ends = rocker * rocker + link * link - nearest, rocker * rocker + link * link - farthest
     pin = max(abs(ends[0]), abs(ends[1])) / (2.0 * rocker * link)
     return math.sqrt(max(1.0 - pin * pin, 0.0))
@@ -114,7 +122,8 @@ def rocker_turn(curve: Complex, link: float, x: float, y: float, rocker: float, 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def slider_turn(curve: Complex, link: float, offset: float, angle: float, sign: int, out: Real) -> float:
-    """Place of a slider at every sample; the least sine of its transmission angle, 0 where it is not reached."""
+    """Compute a slider's place at every sample; return the minimum sine of its transmission angle, 0 if out of
+    reach."""
     along_x, along_y = math.cos(angle), math.sin(angle)
     least = 1.0
     for m in range(len(curve)):
@@ -130,7 +139,7 @@ def slider_turn(curve: Complex, link: float, offset: float, angle: float, sign: 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def slot_turn(curve: Complex, x: float, y: float, ux: Real, uy: Real) -> float:
-    """Direction of a slotted link at every sample; 1, or 0 where P comes too near to its pivot."""
+    """Compute a slotted link's direction at every sample; return 1, or 0 if P comes too close to its pivot."""
     for m in range(len(curve)):
         dx, dy = curve[m].real - x, curve[m].imag - y
         r = math.sqrt(dx * dx + dy * dy)
@@ -142,7 +151,7 @@ def slot_turn(curve: Complex, x: float, y: float, ux: Real, uy: Real) -> float:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def half_tangents(ux: Real, uy: Real, out: Real) -> None:
-    """Tangents of half the angles from the mean direction: they grow with the angles, and cost no arctangent."""
+    """Compute tangents of half the angles from the mean direction: they grow with the angles and need no arctangent."""
     x, y = ux.sum(), uy.sum()
     size = math.sqrt(x * x + y * y)
     for m in range(len(ux)):
@@ -151,13 +160,13 @@ def half_tangents(ux: Real, uy: Real, out: Real) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def level(kind: int, value: float) -> float:
-    """The output of a number of ``out``: an angle of its half tangent, or a slider's place."""
+    """Return the output for a value of ``out``: the angle of its half tangent, or a slider's place."""
     return value if kind == SLIDER else 2.0 * math.atan(value)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _slide_sign(curve: Complex, begin: int, length: int, link: float, offset: float, angle: float) -> int:
-    """The assembly in which a slider moves least while P runs through a piece."""
+    """Return the assembly in which a slider moves least while P passes a piece."""
     along_x, along_y = math.cos(angle), math.sin(angle)
     n = len(curve)
     best, chosen = np.inf, 1
@@ -176,7 +185,7 @@ def _slide_sign(curve: Complex, begin: int, length: int, link: float, offset: fl
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _rest_sign(curve: Complex, begin: int, length: int, link: float, pivot: complex, rocker: float) -> int:
-    """The assembly in which a rocker's pin moves least while P runs through a piece."""
+    """Return the assembly in which a rocker's pin moves least while P passes a piece."""
     n = len(curve)
     best, chosen = np.inf, 1
     for sign in (1, -1):

@@ -1,4 +1,4 @@
-"""A shape of :mod:`outputs` or :mod:`triads` as a sixbar: its joints, its exact way, and what the client gets."""
+"""Convert a shape of :mod:`outputs` or :mod:`triads` into a sixbar: its joints, its exact range, and the answer."""
 
 from __future__ import annotations
 
@@ -24,10 +24,11 @@ from synthesis.model.sixbars import Links, lengths_of
 Real = NDArray[np.float64]
 
 WAY_STEPS = 30
-"""Secant steps to the demanded way at most; five are usual."""
+"""Maximum number of secant steps to the required range; five are usual."""
 
 WAY_TOLERANCE, MAX_WAY_ERROR = 1e-11, 1e-8
-"""Relative errors of the way at which the secant method has converged, and with which its last step is still used."""
+"""Relative errors of the range at which the secant method has converged, and up to which its last step is still
+used."""
 
 
 STEPHENSON_2: Links = {
@@ -37,7 +38,7 @@ STEPHENSON_2: Links = {
 
 
 class Sixbar(NamedTuple):
-    """A shape in its own frame, with a crank of 1; how many dwells it has, and the link that P is on, if it has P."""
+    """A shape in its own frame, with a crank of 1; its number of dwells, and the link that carries P, if it has P."""
 
     kind: Kind
     sign: int
@@ -47,7 +48,7 @@ class Sixbar(NamedTuple):
 
 
 def way_of(sixbar: Sixbar) -> float:
-    """Swing (radians) or stroke over the turn."""
+    """Return swing (radians) or stroke over the turn."""
     if sixbar.kind == "triad":
         return triads.way_of(sixbar.shape, GRID)
     turn = np.linspace(0.0, 2.0 * np.pi, GRID, endpoint=False)
@@ -57,7 +58,7 @@ def way_of(sixbar: Sixbar) -> float:
 
 
 def with_way(sixbar: Sixbar, way: float) -> Sixbar | None:
-    """The output's pivot moved along the line from the pin at rest (or along the slot) until the way is met."""
+    """Move the output's pivot along the line from the pin at rest (or along the slot) until the range is exact."""
     before, factor = (0.0, 0.0), 1.0
     made = sixbar
     for _ in range(WAY_STEPS):
@@ -66,6 +67,7 @@ def with_way(sixbar: Sixbar, way: float) -> Sixbar | None:
             return None
         if abs(off) < WAY_TOLERANCE:
             return made
+        # The swing is roughly inverse to the distance of the pivot: slope −1 for the first step.
         slope = (off - before[1]) / (factor - before[0]) if before[0] else -1.0
         if slope == 0.0:
             return None
@@ -75,23 +77,25 @@ def with_way(sixbar: Sixbar, way: float) -> Sixbar | None:
 
 
 def _moved(sixbar: Sixbar, factor: float) -> Sixbar:
-    """The output's pivot ``factor`` times as far from where the pin, or P, stands when the first dwell begins."""
+    """Move the output's pivot to ``factor`` times its distance from the pin, or P, at the begin of the first dwell."""
     if sixbar.kind == "triad":
         return sixbar._replace(shape=triads.with_pivot(sixbar.shape, factor))
     shape = sixbar.shape.copy()
     at = slice(5, 7) if sixbar.kind == "slot" else slice(6, 8)
     pivot = complex(*shape[at])
     joints = _joints(sixbar)
+    # The output rests as long as this point does, wherever its pivot is on the line.
     rest = joints["P"] if sixbar.kind == "slot" else joints["D"]
     moved = rest + factor * (pivot - rest)
     shape[at] = moved.real, moved.imag
     if sixbar.kind == "rocker":
+        # The rocker's length changes with its pivot, so that D stays in place.
         shape[8] *= factor
     return sixbar._replace(shape=shape)
 
 
 def _joints(sixbar: Sixbar) -> dict[str, complex]:
-    """Joints where the first dwell begins, in the shape's own frame."""
+    """Return the joints at the begin of the first dwell, in the shape's own frame."""
     if sixbar.kind == "triad":
         return triads.joints(sixbar.shape)
     shape = sixbar.shape[None]
@@ -115,14 +119,16 @@ def _joints(sixbar: Sixbar) -> dict[str, complex]:
     else:
         joints["O6"] = complex(*sixbar.shape[5:7])
         turn = np.linspace(0.0, 2.0 * np.pi, GRID, endpoint=False)
+        # The slot must be long enough for P's greatest distance in the turn.
         reach = np.abs(points(shape, turn[None], sixbar.carrier) - joints["O6"]).max()
         joints["C"] = joints["O6"] + (p - joints["O6"]) / abs(p - joints["O6"]) * float(reach)
     return {name: complex(z) for name, z in joints.items()}
 
 
 def mechanism_of(problem: DwellProblem, sixbar: Sixbar) -> DwellMechanism:
-    """The sixbar in the client's units, with the crank's pivot where it is wanted."""
+    """Build the sixbar in the client's units, with the crank's pivot at its required place."""
     if sixbar.kind == "slider":
+        # Only a slider's linkage has a free size: the stroke determines it.
         scale = problem.way / way_of(sixbar)
     else:
         scale = DEFAULT_CRANK if problem.crank is None else problem.crank
@@ -145,7 +151,7 @@ def mechanism_of(problem: DwellProblem, sixbar: Sixbar) -> DwellMechanism:
 
 
 def _linked(sixbar: Sixbar, joints: dict[str, complex]) -> tuple[MechanismType, Links, list[Slide]]:
-    """The type of a sixbar, the joints on each of its links, and its slides."""
+    """Return the type of a sixbar, the joints on each of its links, and its slides."""
     if sixbar.kind == "triad":
         return "dwell_stephenson_2", STEPHENSON_2, []
     on_rocker = sixbar.carrier == "rocker"

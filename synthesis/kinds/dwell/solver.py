@@ -1,4 +1,4 @@
-"""Dwell sixbars: promising starts, the output kept as still as can be, the way made exact, and verification."""
+"""Dwell sixbars: find promising starts, minimize the output's movement, make the range exact, and verify."""
 
 from __future__ import annotations
 
@@ -33,47 +33,49 @@ from synthesis.proof.measures import link_lengths
 Real = NDArray[np.float64]
 
 LINK_RATIO = 10.0
-"""Longest distance of two pins of a link over the shortest, at most, where the client says nothing."""
+"""Default maximum of the longest distance of two pins of a link over the shortest."""
 
 TRANSMISSION = 25.0
-"""Least transmission angle over the turn, degrees, where the client says nothing."""
+"""Default minimum transmission angle over the turn, degrees."""
 
 ARRIVED = 1e-2
-"""Gain of a step, as a share, below which no more are made: the jitter is far below the tolerance, or stays above."""
+"""Relative gain of a step below which refinement stops: the jitter is far below the tolerance, or stays above it."""
 
 EVENER = 0.99
-"""Share of a demanded link ratio that is used: the output's pivot is moved a little at last, to make the way exact."""
+"""Share of a required link ratio that is used: the output's pivot is moved a little at the end, to make the range
+exact."""
 
 MARGIN = 1.0
-"""Degrees by which a demanded transmission angle is exceeded: between the angles that are looked at it is less."""
+"""Degrees added to a required transmission angle, because it is less between the angles evaluated."""
 
 STARTS, ENOUGH = 8, 5
-"""Starts that are refined for each type at most, and sound designs after which no more are."""
+"""Maximum number of starts refined for each type, and number of sound designs that ends the search."""
 
 STILL_ENOUGH = 8
-"""Shapes within the tolerance after which no more are refined, of dwells with places of their own."""
+"""Number of shapes within the tolerance that ends refinement, for dwells with places of their own."""
 
 SHAKEN = 4
-"""How many of the stillest shapes are shaken at a time."""
+"""Number of shapes with the least movement that are perturbed at a time."""
 
 ALIKE = 0.02
-"""Share of the largest number of a shape by which all numbers of another must not differ for it to be another."""
+"""Two shapes are duplicates if no number differs by more than this share of the largest."""
 
 AGAIN, LARGER_ANGLES = 2, (35.0, 45.0)
-"""Refined shapes that are refined once more, and the transmission angles with which, degrees."""
+"""Number of refined shapes that are refined again, and the larger transmission angles for it, degrees."""
 
 HOPELESS, HOPELESS_DRIVEN = 1.1, 2
-"""Movement over the tolerance beyond which a refined shape is not driven, but for some that may come nearest."""
+"""Movement over the tolerance beyond which a refined shape is not driven, and the number of exceptions that may be the
+nearest misses."""
 
 FARTHEST = 4.0
-"""Coordinates of P, pivots and slides, in units of the greatest link ratio, at most."""
+"""Maximum coordinates of P, pivots and slides, in units of the maximum link ratio."""
 
 SLACK = 1e-4
-"""Violation of a constraint with which a shape still counts as one; verification decides."""
+"""Maximum violation of a constraint after refinement; verification decides."""
 
 CURVES = "coupler curves drawn at random, outputs on their arcs and lines"
 SIXBARS = "sixbars drawn at random"
-"""Where the starts come from, in words."""
+"""Sources of the starts, in words."""
 
 KINDS: dict[tuple[str, str], Kind] = {
     ("pseudo_arc", "rocker"): "rocker",
@@ -87,7 +89,7 @@ KINDS: dict[tuple[str, str], Kind] = {
 
 
 class _Search(NamedTuple):
-    """What is looked for together: a type of mechanism, its output, and what its fourbar is, if it has one."""
+    """A joint search: a type of mechanism, its output, and the class of its fourbar, if it has one."""
 
     name: str
     kind: Kind
@@ -96,16 +98,16 @@ class _Search(NamedTuple):
 
 
 class _Effort(NamedTuple):
-    """What is spent where the stillest of many refined shapes are driven, since few starts lead to sound designs.
+    """Effort of a search that drives the stillest of many refined shapes, because few starts lead to sound designs.
 
     Attributes
     ----------
     starts : int
-        That are refined at most.
+        Maximum number of starts refined.
     shakes : int
-        Times that the stillest shapes are shaken.
+        Number of times that the stillest shapes are perturbed.
     shares : tuple of float
-        By which share of each number.
+        Relative perturbations of each number.
     """
 
     starts: int
@@ -115,12 +117,12 @@ class _Effort(NamedTuple):
 
 ON_CURVES = _Effort(48, 5, (0.06,))
 AT_RANDOM = _Effort(160, 8, (0.02, 0.06))
-"""For outputs on coupler curves, and for triads: of random sixbars fewer are near to something still, and near these
-there is more to be found."""
+"""Effort for outputs on coupler curves, and for Stephenson II sixbars: fewer random sixbars are nearly still, but more
+solutions lie near these."""
 
 
 class _Refined(NamedTuple):
-    """A shape, where it was begun, and what its output moves during a dwell, as a share of the way."""
+    """A shape, its start, and its output's movement during a dwell, as a share of the range."""
 
     sixbar: Sixbar
     start: Start
@@ -141,13 +143,16 @@ def solve_dwell(problem: DwellProblem, progress: Progress) -> DwellResult:
         begun = _starts(problem, search, rng)
         span = (n + 1.0 / (len(begun) + 1)) / len(searches), (n + 1.0) / len(searches)
         told = reported(begun, progress, span, "refining {next} of at most {all}")
+        # Every type gets its own share of designs, so that none is crowded out by the first.
         enough = len(sifting.passed) + ENOUGH
+        # Few starts of placed dwells become still enough: refine many, and drive only the best.
         if problem.placed:
             refined, tried = _enough_refined(problem, search.kind, told, rng)
             again = _at_larger_angles(problem, search.kind, refined)
             refined, tried = [*refined, *again], tried + len(again)
             stillest = _worth_driving(problem, refined)
             driven = sifting.sift(stillest, partial(_verified, problem), enough)
+            # Account for the refined shapes that are not driven, so that the counts add up.
             sifting.reject("not_at_rest", tried - len(stillest))
             sifting.reject(OUTRANKED, len(stillest) - driven)
         else:
@@ -170,7 +175,7 @@ def _searches(problem: DwellProblem) -> list[_Search]:
 
 
 def _starts(problem: DwellProblem, search: _Search, rng: np.random.Generator) -> list[Start]:
-    """The most promising shapes of a search."""
+    """Return the most promising shapes of a search."""
     way = math.nan if problem.slides else math.radians(problem.way)
     dwells = tuple(math.radians(wanted.angle) for wanted in problem.wanted)
     places = tuple(math.nan if wanted.place is None else wanted.place for wanted in problem.wanted)
@@ -186,7 +191,8 @@ def _starts(problem: DwellProblem, search: _Search, rng: np.random.Generator) ->
 
 
 def warm_up() -> None:
-    """Load the kernels: of arcs and pairs by a rocker with two dwells, of lines by a slot with one, and of triads."""
+    """Compile or load the kernels: of arcs and pairs by a rocker with two dwells, of lines by a slot with one, and of
+    triads."""
     rng = np.random.default_rng(0)
     one, two = (Asked(count * (0.5,), (LOW, HIGH)[:count], 0.7, 0.3, LINK_RATIO) for count in (1, 2))
     placed_starts("slider", "rocker", "crank_rocker", one._replace(way=math.nan), rng, 1)
@@ -210,7 +216,7 @@ def _ranked(problem: DwellProblem, designs: list[DwellDesign]) -> list[DwellDesi
 
 
 def _driven(problem: DwellProblem, kind: Kind, start: Start) -> DwellDesign | str | None:
-    """The verified design that a start leads to."""
+    """Refine a start and return its verified design, or the reason for its rejection."""
     refined = _refined(problem, kind, start)
     return "not_at_rest" if refined is None else _verified(problem, refined)
 
@@ -218,14 +224,15 @@ def _driven(problem: DwellProblem, kind: Kind, start: Start) -> DwellDesign | st
 def _enough_refined(
     problem: DwellProblem, kind: Kind, begun: Iterable[Start], rng: np.random.Generator
 ) -> tuple[list[_Refined], int]:
-    """Refined shapes, until enough of them keep within the tolerance; and how many starts that took.
+    """Refine starts until enough shapes are within the tolerance; return them and the number of starts used.
 
-    Where the starts do not give enough, the stillest shapes are shaken and refined once more.
+    If the starts do not suffice, the stillest shapes are perturbed and refined again.
     """
     found: list[_Refined] = []
     tried = 0
     allowed = problem.allowed / problem.way
     effort = AT_RANDOM if kind == "triad" else ON_CURVES
+    # The generator perturbs what has been found by then, so that it must stay lazy.
     for start in chain(begun, _shaken(found, effort, rng)):
         refined = _refined(problem, kind, start)
         tried += 1
@@ -237,7 +244,7 @@ def _enough_refined(
 
 
 def _shaken(found: list[_Refined], effort: _Effort, rng: np.random.Generator) -> Iterator[Start]:
-    """Starts near the stillest of the shapes that were found by the time it is asked."""
+    """Yield perturbations of the stillest shapes known at the time of each request."""
     for _ in range(effort.shakes):
         for one in sorted(found, key=lambda one: one.moved)[:SHAKEN]:
             for share in effort.shares:
@@ -246,7 +253,7 @@ def _shaken(found: list[_Refined], effort: _Effort, rng: np.random.Generator) ->
 
 
 def _at_larger_angles(problem: DwellProblem, kind: Kind, refined: list[_Refined]) -> list[_Refined]:
-    """The stillest of refined shapes once more, with larger transmission angles: the front tells what these cost."""
+    """Refine the stillest shapes again with larger transmission angles: the trade-off shows the cost of these."""
     best = sorted(refined, key=lambda one: one.moved)[:AGAIN]
     stated = _transmission(problem)
     larger = [angle for angle in map(math.radians, LARGER_ANGLES) if angle > stated]
@@ -257,7 +264,7 @@ def _at_larger_angles(problem: DwellProblem, kind: Kind, refined: list[_Refined]
 
 
 def _worth_driving(problem: DwellProblem, refined: list[_Refined]) -> list[_Refined]:
-    """Refined shapes that differ, the stillest first; of those that do not keep within the tolerance only the best."""
+    """Return distinct refined shapes, the stillest first; of those beyond the tolerance only the best."""
     ordered: list[_Refined] = []
     for one in sorted(refined, key=lambda one: one.moved):
         if not any(_alike(one.sixbar, other.sixbar) for other in ordered):
@@ -267,22 +274,24 @@ def _worth_driving(problem: DwellProblem, refined: list[_Refined]) -> list[_Refi
 
 
 def _alike(one: Sixbar, other: Sixbar) -> bool:
-    """Whether two sixbars of a search are nearly the same; when in the turn their dwells begin is not looked at."""
+    """Return whether two sixbars of a search are nearly equal, regardless of when their dwells begin in the turn."""
     first, second = _numbers(one), _numbers(other)
     return one.sign == other.sign and float(np.abs(first - second).max()) <= ALIKE * float(np.abs(first).max())
 
 
 def _numbers(sixbar: Sixbar) -> Real:
-    """What tells sixbars apart; of a triad C on the crank beside the distances, which its mirror image has too."""
+    """Return numbers that distinguish sixbars; for a triad C on the crank and the distances, which its mirror image
+    shares."""
     if sixbar.kind != "triad":
         return sixbar.shape[: -sixbar.dwells]
     return np.append(triads.pin_distances(sixbar.shape[None])[0], sixbar.shape[C : C + 2])
 
 
 def _verified(problem: DwellProblem, refined: _Refined) -> DwellDesign | str | None:
-    """The design of a shape, with exactly the demanded way."""
+    """Make the range of a shape exact, place it, and verify it."""
     sixbar = refined.sixbar
     if sixbar.kind != "slider":
+        # Refinement meets the swing only up to its tolerance.
         shaped = with_way(sixbar, math.radians(problem.way))
         if shaped is None:
             return "not_at_rest"
@@ -295,12 +304,13 @@ def _verified(problem: DwellProblem, refined: _Refined) -> DwellDesign | str | N
 
 
 def _refined(problem: DwellProblem, kind: Kind, start: Start, transmission: float | None = None) -> _Refined | None:
-    """The shape near a start whose output moves least during the dwells, with nearly the demanded way."""
+    """Minimize the output's movement during the dwells near a start, with nearly the required range."""
     ratio = _link_ratio(problem)
     way = math.nan if kind == "slider" else math.radians(problem.way)
     dwells = tuple(math.radians(wanted.angle) for wanted in problem.wanted)
     sine = math.sin(_transmission(problem) if transmission is None else transmission)
     task = Task(kind, start.sign, dwells, start.places, way, sine, ratio, start.carrier, start.turning)
+    # Chebyshev's nodes are dense at the ends, where the movement is largest.
     nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(RESTING) / (RESTING - 1))
     if kind == "triad":
         judge, (low, high) = triads.judged, triads.bounds(len(start.shape), ratio)
@@ -313,9 +323,10 @@ def _refined(problem: DwellProblem, kind: Kind, start: Start, transmission: floa
 
 
 def _bounds(kind: Kind, start: Start, ratio: float) -> tuple[Real, Real]:
-    """Least and greatest numbers of a shape with a fourbar O2 A B O4."""
+    """Return minimum and maximum numbers of a shape with a fourbar O2 A B O4."""
     high = np.full(len(start.shape), FARTHEST * ratio)
     low = -high
+    # The crank of 1 is the shortest link of a crank-rocker.
     low[:3], high[:3] = 1.0, ratio
     if start.turning == "double_crank":
         low[:3], high[2] = 1.0 / ratio, 1.0
@@ -330,7 +341,7 @@ def _summary(problem: DwellProblem, sifting: Sifting[DwellDesign]) -> str:
     unit = f" {problem.length_unit}" if problem.output.type == "slider" else "°"
     if not sifting.passed:
         reasons = sifting.listed() or "none comes to rest"
-        return f"No dwell sixbar was found that meets every demand ({reasons}); that none exists is not proven."
+        return f"No dwell sixbar was found that satisfies all constraints ({reasons}). One may still exist."
     shown, count = _ranked(problem, sifting.passed), len(sifting.passed)
     if problem.listed_later:
         best, which = min(shown, key=lambda design: design.metrics.jitter), "stillest"
@@ -338,6 +349,7 @@ def _summary(problem: DwellProblem, sifting: Sifting[DwellDesign]) -> str:
         best, which = usable_first(problem, shown[: problem.max_designs]).designs[0], "first"
     widths = " and ".join(f"{rest.width:.1f}°" for rest in best.targets)
     return (
-        f"{counted(count, 'dwell sixbar')}; in the {which} the output moves by {best.metrics.jitter:.2g}{unit} at most "
-        f"while it rests, and keeps within {problem.allowed:.3g}{unit} over {widths} of the crank."
+        f"{counted(count, 'dwell sixbar')} found. In the {which} the output moves by at most "
+        f"{best.metrics.jitter:.2g}{unit} during the dwell, and stays within {problem.allowed:.3g}{unit} over {widths} "
+        "of the crank."
     )

@@ -1,4 +1,4 @@
-"""Starts for Stephenson II dwell sixbars: random ones that turn through, scored by their motion."""
+"""Find starts for Stephenson II dwell sixbars: random ones that turn through, scored by their motion."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]
 
 DRAWN, ROUNDS = 200_000, 3
-"""Sixbars that are drawn at a time, of which one in forty turns through and transmits enough, and how often."""
+"""Number of sixbars drawn at a time, of which one in forty turns through and transmits enough, and number of rounds."""
 
 EASED = 0.15
-"""Sine of a transmission angle that a start has at least, whatever is demanded."""
+"""Minimum sine of a start's transmission angle, regardless of the required angle."""
 
 GROUND, CRANK, LEG, ASIDE = (0.5, 5.0), (0.3, 3.0), (0.3, 4.0), (0.2, 2.0)
-"""Ranges in which lengths are drawn: O2–O4, O2–C, links 3 and 5 beside O2–A; E from the middle of B–D beside B–D."""
+"""Ranges of drawn lengths: O2–O4, O2–C, links 3 and 5 relative to O2–A; E from the middle of B–D relative to B–D."""
 
 PARALLEL, UNLIKE = 0.2, 0.1
-"""Share of what is drawn that are nearly parallelograms, and how far their pins are from that, beside O2–A."""
+"""Share of starts that are nearly parallelograms, and the deviation of their pins from that, relative to O2–A."""
 
 OPPOSITE, LONG_LEG, OUTPUT = (0.5, 2.0), (1.5, 5.0), (0.4, 2.0)
-"""Ranges of their lengths: O2–C, which goes on from A–O2, links 3 and 5, and O4–E."""
+"""Ranges of their lengths: O2–C, opposite to O2–A, links 3 and 5, and O4–E."""
 
 
 def triad_starts(asked: Asked, rng: np.random.Generator, most: int) -> list[Start]:
-    """The most promising shapes, best first."""
+    """Find the most promising shapes, best first."""
     dwells, places, way, transmission, link_ratio = asked
     lengths, least = np.array([samples_of(dwell) for dwell in dwells]), math.sin(transmission)
     found: list[Start] = []
@@ -47,6 +47,7 @@ def triad_starts(asked: Asked, rng: np.random.Generator, most: int) -> list[Star
         begins, ends = np.zeros((DRAWN, len(dwells)), np.int64), np.zeros((DRAWN, len(dwells)))
         judge_triads(shapes, lengths, np.array(places), way, least, scores, begins, ends)
         for n in promising(scores, np.arange(DRAWN), most):
+            # The middle of the values allowed by the link ratio, on a logarithmic scale.
             shapes[n, SHORTEST] = math.sqrt(pins[n].min() * pins[n].max() / link_ratio)
             at = shapes[n, BEGIN] + begins[n] * (math.tau / CYCLE)
             shape = _standing(shapes[n], beginning(at, lengths, np.array(dwells)))
@@ -55,13 +56,13 @@ def triad_starts(asked: Asked, rng: np.random.Generator, most: int) -> list[Star
 
 
 def drawn(rng: np.random.Generator, count: int, dwells: int) -> Real:
-    """So many random shapes for so many dwells: at random, and some near parallelograms."""
+    """Draw ``count`` random shapes for a number of dwells: general ones, and some near parallelograms."""
     near = round(PARALLEL * count)
     return np.concatenate([near_parallelograms(rng, near, dwells), at_random(rng, count - near, dwells)])
 
 
 def at_random(rng: np.random.Generator, count: int, dwells: int) -> Real:
-    """Shapes whose crank stands anywhere, and their pins beside it."""
+    """Draw shapes with the crank in any position, and their pins relative to it."""
     crank, carried = np.exp(2j * np.pi * rng.random(count)), _arms(rng, count, CRANK)
     b, d = crank + _arms(rng, count, LEG), carried * crank + _arms(rng, count, LEG)
     e = 0.5 * (b + d) + np.abs(d - b) * _arms(rng, count, ASIDE)
@@ -69,9 +70,9 @@ def at_random(rng: np.random.Generator, count: int, dwells: int) -> Real:
 
 
 def near_parallelograms(rng: np.random.Generator, count: int, dwells: int) -> Real:
-    """Shapes in which A B D C is nearly a parallelogram, and E to it as O2 is, between A and C.
+    """Draw shapes in which A B D C is nearly a parallelogram, with E relative to B D like O2 relative to A C.
 
-    In the parallelogram E stands still while the crank turns.
+    In an exact parallelogram E stands still while the crank turns.
     """
 
     def off() -> Complex:
@@ -84,13 +85,14 @@ def near_parallelograms(rng: np.random.Generator, count: int, dwells: int) -> Re
 
 
 def _arms(rng: np.random.Generator, count: int, lengths: tuple[float, float]) -> Complex:
-    """Vectors in all directions, of lengths whose logarithms are evenly spread."""
+    """Draw vectors in all directions with evenly spread logarithms of their lengths."""
     size = np.exp(rng.uniform(math.log(lengths[0]), math.log(lengths[1]), count))
     return np.asarray(size * np.exp(2j * np.pi * rng.random(count)))
 
 
 def _shapes(crank: Complex, carried: Complex, b: Complex, d: Complex, e: Complex, o4: Complex, dwells: int) -> Real:
-    """Shapes from pins with O2 at the origin; ``carried`` is C in the frame of the crank."""
+    """Assemble shapes from pins with O2 at the origin; ``carried`` is C in the frame of the crank."""
+    # Rotate everything so that O4 lies on the positive real axis.
     back = np.conj(o4) / np.abs(o4)
     shapes = np.zeros((len(crank), BEGIN + dwells))
     shapes[:, FIXED], shapes[:, BEGIN] = np.abs(o4), np.angle(crank * back)
@@ -110,19 +112,19 @@ def judge_triads(
     begins: Integers,
     ends: Real,
 ) -> None:
-    """Drive every sixbar through its turn and add to its score what it lacks of rest, way and transmission.
+    """Drive every sixbar through its turn and add its shortcomings of rest, range and transmission to its score.
 
     Parameters
     ----------
     shapes : float, shape (m, ...)
     lengths, places : int and float, shape (k,)
-        Of each dwell its samples, and its share of the way; NaN at either end.
+        Number of samples of each dwell, and its share of the range; NaN for either end.
     way, least : float
-        The way, radians, and the least sine of a transmission angle.
+        The range, radians, and the minimum sine of a transmission angle.
     scores : float, shape (m,)
-        Added to: infinite for what is no start.
+        Added to: infinite for unsuitable starts.
     begins, ends : int and float, shape (m, k)
-        Filled: first step of each dwell, and its share of the way.
+        Filled: first step of each dwell, and its share of the range.
     """
     course, sines = np.empty(CYCLE), np.empty((CYCLE, LEGS))
     nowhere, no_pins = np.empty(0), np.empty((0, LEGS), np.complex128)
@@ -133,7 +135,7 @@ def judge_triads(
             scores[i] = np.inf
             continue
         low, span = course.min(), course.max() - course.min()
-        # What swings by half a turn may as well go all round.
+        # An output that swings by half a turn may as well turn through.
         if not (span < math.pi and abs(math.log(span / way)) < WAY_APART):
             scores[i] = np.inf
             continue
@@ -143,7 +145,7 @@ def judge_triads(
 
 
 def _standing(shape: Real, begins: Real) -> Real:
-    """A shape with its pins where the first dwell begins, and with the angles at which the dwells do."""
+    """Return a shape with its pins at the begin of the first dwell, and with the angles at which the dwells begin."""
     (b, d, e), stood = over_a_turn(shape[None], begins[None, :1], CYCLE).pins[0, 0], shape.copy()
     for at, pin in ((B, b), (D, d), (E, e)):
         stood[at], stood[at + 1] = pin.real, pin.imag
@@ -152,7 +154,7 @@ def _standing(shape: Real, begins: Real) -> Real:
 
 
 def warm_up() -> None:
-    """Load the kernels."""
+    """Compile or load the kernels."""
     shapes = drawn(np.random.default_rng(0), 64, 1)
     begins, ends = np.zeros((64, 1), np.int64), np.zeros((64, 1))
     judge_triads(shapes, np.array([5]), np.zeros(1), 1.0, 0.4, np.zeros(64), begins, ends)

@@ -1,4 +1,4 @@
-"""Stephenson II sixbars driven through the turn of their crank, in compiled loops.
+"""Drive Stephenson II sixbars through the turn of their crank, in compiled loops.
 
 Link 4 hangs on three legs: the links 3 (A–B) and 5 (C–D) on the crank O2 A C, and the output O4–E on the ground. With
 its inner pins q_k, its outer ones j_k and the leg's length l_k the place of link 4, B and its direction γ, is that at
@@ -7,9 +7,9 @@ which
     |q_k − j_k|² = l_k²,  k = 1, 2, 3.
 
 It is followed from step to step by Newton's method, so that no dyad of the mechanism has to close by itself: links
-3 and 5 may swing to and fro beside the crank as they like. The turn is no motion where a sine of a transmission angle
-vanishes or changes its sign at a step, or where link 4 is not back where it began. Between the steps the verification
-looks.
+3 and 5 may swing relative to the crank in any way. The turn is no motion if a sine of a transmission angle vanishes
+or changes its sign at a step, or if link 4 does not return to its first place. Verification later checks between the
+steps.
 """
 
 from __future__ import annotations
@@ -26,27 +26,29 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 FIXED, C, B, D, E, SHORTEST, BEGIN = 0, 1, 3, 5, 7, 9, 10
-"""Where a shape holds its numbers, by the first of each: distance of O4 from O2; C in the frame of the crank, from O2
-and with the real axis to A; B, D and E where the first dwell begins, with O4 on the real axis; the least distance of
-two pins of a link; and the angle of the crank where the first dwell begins, with those of the others after it."""
+"""Index of the first number of each part of a shape: distance of O4 from O2; C in the frame of the crank, from O2 and
+with the real axis to A; B, D and E at the begin of the first dwell, with O4 on the real axis; the minimum distance of
+two pins of a link; and the angle of the crank at the begin of the first dwell, followed by those of the others."""
 
 LEGS = 3
 
 NEWTON, SETTLED, MOST_TURNED = 12, 1e-12, 0.5
-"""Steps at most, the last of them as a share of the sixbar's size, and the most that link 4 turns in one, radians."""
+"""Maximum number of Newton steps, the last of them as a share of the sixbar's size, and maximum rotation of link 4 in
+one step, radians."""
 
 SWEPT = 0.7
-"""Radians that link 4 turns at most between two steps of the crank."""
+"""Maximum rotation of link 4 between two steps of the crank, radians."""
 
 BACK = 1e-6
-"""How far link 4 may be from its first place after a turn, as a share of the size and in radians."""
+"""Maximum distance of link 4 from its first place after a turn, as a share of the size and in radians."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _settled(outer: Complex, legs: Real, inner: Complex, pose: Real, work: Real) -> bool:
-    """Link 4 where its three legs have their lengths, near a place (x and y of B, γ), which is moved there.
+    """Move link 4 near a place (x and y of B, γ) to where its three legs have their lengths; return whether that
+    converged.
 
-    ``inner``: its pins in its own frame, the first of them B, its origin; ``work`` (4, LEGS): to be written over.
+    ``inner``: its pins in its own frame, the first of them B, its origin; ``work`` (4, LEGS): scratch.
     """
     f, px, py, moment = work
     size = 1.0 + legs.max()
@@ -58,7 +60,7 @@ def _settled(outer: Complex, legs: Real, inner: Complex, pose: Real, work: Real)
             py[k] = pose[1] + arm.imag - outer[k].imag
             moment[k] = arm.real * py[k] - arm.imag * px[k]
             f[k] = 0.5 * (px[k] * px[k] + py[k] * py[k] - legs[k] * legs[k])
-        # Cramer's rule; the first pin is the origin, so that the first row has no moment.
+        # Cramer's rule; the first pin is the origin of link 4, so that the first row has no moment.
         one = py[1] * moment[2] - moment[1] * py[2]
         two = px[1] * moment[2] - moment[1] * px[2]
         lack = f[1] * moment[2] - moment[1] * f[2]
@@ -69,6 +71,7 @@ def _settled(outer: Complex, legs: Real, inner: Complex, pose: Real, work: Real)
         rotated = (rotated + f[0] * (px[1] * py[2] - py[1] * px[2])) / determinant
         if not math.isfinite(rotated):
             return False
+        # A limited rotation keeps Newton's method on the branch on which it started.
         share = min(1.0, MOST_TURNED / max(abs(rotated), MOST_TURNED))
         pose[0] -= share * x
         pose[1] -= share * y
@@ -80,19 +83,19 @@ def _settled(outer: Complex, legs: Real, inner: Complex, pose: Real, work: Real)
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def turned(shape: Real, at: Real, least: float, pins: Complex, course: Real, sines: Real) -> bool:
-    """Drive a sixbar through a turn; whether it goes through it as one that transmits.
+    """Drive a sixbar through a turn; return whether it completes the turn and transmits force throughout.
 
     Parameters
     ----------
     shape : float, shape (BEGIN + ...,)
     at : float, shape (n,)
-        Angles of the crank at which link 4 is wanted beside the steps of the turn.
+        Further crank angles, radians, at which link 4 is required, in addition to the steps of the turn.
     least : float
-        Sine of a transmission angle at and below which it is given up.
+        Sine of a transmission angle at and below which the sixbar is discarded.
     pins : complex, shape (n, LEGS)
         Filled: B, D and E there.
     course : float, shape (N,)
-        Filled: the angle of the output from where the first dwell begins, at N even steps of the turn from there on.
+        Filled: the output's angle from the begin of the first dwell, at N equal steps of the turn from there on.
     sines : float, shape (N, LEGS)
         Filled: magnitudes of the sines of the transmission angles there, of output, link 3 and link 5.
     """
@@ -100,6 +103,7 @@ def turned(shape: Real, at: Real, least: float, pins: Complex, course: Real, sin
     crank, c, o4 = complex(math.cos(begin), math.sin(begin)), complex(shape[C], shape[C + 1]), complex(shape[FIXED])
     outer = np.array([crank, c * crank, o4])
     b, d, e = complex(shape[B], shape[B + 1]), complex(shape[D], shape[D + 1]), complex(shape[E], shape[E + 1])
+    # Links 4 and the output need a length.
     if not (abs(d - b) > 0.0 and abs(e - o4) > 0.0):
         return False
     carried = np.array([b, d, e])
@@ -113,6 +117,7 @@ def turned(shape: Real, at: Real, least: float, pins: Complex, course: Real, sin
         outer[0], outer[1] = crank, c * crank
         if n > 0:
             for j in range(3):
+                # Predict the pose by linear extrapolation.
                 pose[j] = 2.0 * poses[n - 1, j] - poses[n - 2, j] if n > 1 else poses[0, j]
             if not _settled(outer, legs, inner, pose, work) or abs(pose[2] - poses[n - 1, 2]) > SWEPT:
                 return False
@@ -124,6 +129,7 @@ def turned(shape: Real, at: Real, least: float, pins: Complex, course: Real, sin
             _, sine = slant_at(leg, e, o4, outer[0], b, outer[1], d)
             if n == 0 and leg == 0:
                 hand = sine
+            # All legs share the sign of the sine, which changes at a toggle.
             if not (abs(sine) > least and sine * hand > 0.0):
                 return False
             if n < steps:
@@ -134,10 +140,12 @@ def turned(shape: Real, at: Real, least: float, pins: Complex, course: Real, sin
     whole = poses[steps] - poses[0]
     whole[2] -= 2.0 * math.pi * round(whole[2] / (2.0 * math.pi))
     whole[:2] /= 1.0 + legs.max()
+    # A triad may close its turn in another assembly, or only after several turns.
     if not np.abs(whole).sum() < BACK:
         return False
     for n in range(len(at)):
         share = (at[n] - begin) / (2.0 * math.pi)
+        # Start Newton's method from the interpolated pose of the neighbouring steps.
         share = (share - math.floor(share)) * steps
         before = min(int(share), steps - 1)
         for j in range(3):
@@ -154,7 +162,7 @@ def turned(shape: Real, at: Real, least: float, pins: Complex, course: Real, sin
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def each_turned(shapes: Real, at: Real, pins: Complex, course: Real, sines: Real) -> None:
-    """:func:`turned` for shapes (m, ...); NaN where one does not go through its turn."""
+    """Apply :func:`turned` to shapes (m, ...); NaN where one does not complete its turn."""
     for i in range(len(shapes)):
         if not turned(shapes[i], at[i], 0.0, pins[i], course[i], sines[i]):
             pins[i], course[i], sines[i] = np.nan, np.nan, np.nan

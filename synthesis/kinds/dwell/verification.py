@@ -1,7 +1,7 @@
-"""Verification of a dwell sixbar: the crank is driven through a whole turn, and the output's rests are looked for.
+"""Verify a dwell sixbar: drive the crank through a full turn, and find the output's rests.
 
-A dwell is where the output moves least while the crank turns by the demanded angle; of two, one is looked for near each
-end of the output's way, and those with stated places near these. Nothing is known of when they should come.
+A dwell is where the output moves least while the crank turns by the required angle; two equal ones are searched near
+the ends of the output's range, those with given places near these. The times of dwells within the turn are free.
 """
 
 from __future__ import annotations
@@ -32,35 +32,35 @@ from synthesis.proof.rebuilt import rebuilt
 Real = NDArray[np.float64]
 
 GRID = 2880
-"""Crank angles of the turn: every eighth of a degree."""
+"""Number of crank angles of the turn: every eighth of a degree."""
 
 WAY_MET = 1e-6
-"""How far swing or stroke may be from the demanded one, as a share of it."""
+"""Maximum relative error of swing or stroke."""
 
 CLOSED = 1e-9
-"""How far a joint may be from its place after a turn, as a share of the mechanism's size."""
+"""Maximum distance of a joint from its place after a turn, as a share of the mechanism's size."""
 
 NO_TOGGLE = 1e-6
-"""The least sine of a transmission angle at which the mechanism still moves one way."""
+"""Minimum sine of a transmission angle at which the mechanism still moves in a defined direction."""
 
 SLIDERS = "dwell_slider", "dwell_watt_slider"
 """Types whose output slides."""
 
 
 def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign | None:
-    """Drive a sixbar through a turn of its crank and measure the dwells that a problem asks for.
+    """Drive a sixbar through a turn of its crank and measure the dwells that a problem requests.
 
     Parameters
     ----------
     problem : DwellProblem
-        What was asked.
+        The problem.
     design : DwellMechanism
         Dimensions.
 
     Returns
     -------
     DwellDesign or None
-        None where the dimensions are no mechanism whose crank turns through.
+        None if the dimensions are no mechanism whose crank turns through.
     """
     mechanism = rebuilt(design)
     if mechanism is None:
@@ -69,6 +69,7 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
         here = holding_reference(mechanism, branches(mechanism))
     except MechanismError:
         return None
+    # The crank must turn through, and the linkage must repeat after one turn.
     if here is None or not here.full or cycle_on(mechanism, here) != FULL_TURN:
         return None
     inputs = float(mechanism.reference_input) + np.linspace(0.0, FULL_TURN, GRID + 1)
@@ -88,8 +89,10 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
     low, high = extremes_of(mechanism, inputs, values, output)
     way = high - low
     transmission = least_angles(partial(drive, mechanism, order=0), inputs, motion)
+    # At a toggle the next position would be a matter of chance.
     if not min(transmission.values()) > NO_TOGGLE:
         return None
+    # An output that does not return has turned through instead of swinging.
     if turned > 0.5 * way:
         return None
 
@@ -110,7 +113,7 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
         places,
         barker=barker_within(mechanism),
         same_branch=closed,
-        visits_in_order=closed,  # a turn has one order
+        visits_in_order=closed,  # one direction of the crank has one order
         full_rotation=closed,
         used=(float(inputs[0]), float(inputs[-1])),
     )
@@ -171,6 +174,7 @@ def _checks(
     for rest, wanted, resting in zip(targets, problem.wanted, found, strict=True):
         checks.append(at_most(f"dwell_{rest.index + 1}", rest.jitter, problem.allowed, OUTPUT))
         if wanted.place is None:
+            # A dwell without a place may lie at either end.
             checks.append(at_most(f"dwell_{rest.index + 1}_at_end", rest.off_end, END))
         else:
             checks.append(at_most(f"dwell_{rest.index + 1}_at_place", abs(resting.share - wanted.place), END))
@@ -181,7 +185,7 @@ def _checks(
 
 
 def _apart(problem: DwellProblem, found: list[Resting]) -> bool:
-    """Whether no rest begins before another that came before it has ended."""
+    """Return whether no rest begins before another one has ended."""
     timed = [(rest.begin, math.radians(wanted.angle)) for rest, wanted in zip(found, problem.wanted, strict=True)]
     for pair in combinations(timed, 2):
         for (begin, wide), (other, _) in (pair, pair[::-1]):
@@ -191,7 +195,7 @@ def _apart(problem: DwellProblem, found: list[Resting]) -> bool:
 
 
 def _peak(mechanism: Mechanism, inputs: Real, motion: MechanismMotion, order: int, *, slides: bool) -> float:
-    """The greatest magnitude of the output's derivative of an order, between the inputs of a grid as at them."""
+    """Return the maximum magnitude of the output's derivative of an order, at the inputs of a grid and between them."""
 
     def magnitude(motion: MechanismMotion) -> Real:
         return np.asarray(np.abs((motion.slides["D"] if slides else motion.angles["output"])[order]))

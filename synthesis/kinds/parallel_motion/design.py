@@ -1,4 +1,4 @@
-"""Answers to problems of parallel motion."""
+"""Results of parallel motion problems."""
 
 from __future__ import annotations
 
@@ -38,26 +38,26 @@ class ParallelMotionMechanism(Answer):
 
 
 class ParallelMotionMetrics(LinkageMetrics):
-    """What is measured of a parallel motion beside what is of any linkage.
+    """Measured properties of a parallel motion, in addition to those of any linkage.
 
-    Lengths of the links count the input arm, the guide and the body; residuals are those of the path's points.
+    Lengths of the links include the input arm, the guide and the body; residuals are those of the path's points.
     """
 
     base: Literal["source", "left_cognate", "right_cognate", "path"] = Field(
-        description="The fourbar that the sixbar is made of."
+        description="The fourbar from which the sixbar is built."
     )
-    input_side: Literal["input", "output"] = Field(description="Which of its fixed pivots the input turns about.")
-    rotation: Angle = Field(description="The greatest rotation of the body, degrees: rounding.")
-    translation: Point = Field(description="From P to Q, constant.")
-    curve_distance: Length | None = Field(description="Greatest distance of P from the given curve; null for a path.")
+    input_side: Literal["input", "output"] = Field(description="The side of the fourbar whose pivot carries the input.")
+    rotation: Angle = Field(description="Maximum rotation of the body, degrees: rounding.")
+    translation: Point = Field(description="Vector from P to Q, constant.")
+    curve_distance: Length | None = Field(description="Maximum distance of P from the given curve; null for a path.")
     input_range: tuple[Angle, Angle] = Field(description="Input angles between which it was driven, degrees.")
 
 
 class ParallelMotionDesign(Answer):
-    """A sixbar for parallel motion with the proof of what it does."""
+    """A sixbar for parallel motion with its verification."""
 
     mechanism: ParallelMotionMechanism
-    targets: list[Target] = Field(description="The points of the path; empty where a linkage was given.")
+    targets: list[Target] = Field(description="The points of the path; empty if a linkage was given.")
     verification: Verification
     metrics: ParallelMotionMetrics
     layout: Layout | None = LAYOUT

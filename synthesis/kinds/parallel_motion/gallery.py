@@ -1,4 +1,4 @@
-"""Its examples as a person looks for them, in their order."""
+"""Examples of parallel motion for the gallery."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parallel motion: a body carried along a coupler curve without turning."""
+"""Problems of parallel motion: a body carried along a coupler curve without turning."""
 
 from __future__ import annotations
 
@@ -23,17 +23,18 @@ from synthesis.model.stated_linkage import (
 from synthesis.model.statement import ROUNDED_OFF, Contradiction, Degrees, Statement
 
 AT_PIN = 1e-6
-"""P this near to A or B, as a share of the coupler, is on it: there is no cognate, and P runs on a circle."""
+"""Distance of P from A or B, as a share of the coupler, below which P is on the pin: it has no cognate, and P runs on a
+circle."""
 
 
 PIVOTS = frozenset({"O2", "O4", "A", "B"})
 
 PINS = ({"O2", "O4"}, {"O2", "A"}, {"A", "B"}, {"O4", "B"})
-"""Joints of the links of a fourbar, as a skeleton must have them; P may stand on the coupler too."""
+"""Joints of the links of a fourbar in a skeleton; the coupler may also contain P."""
 
 
 class SourceLinkage(Statement):
-    """The fourbar whose coupler curve is to be followed: by its dimensions, or as an answer has it."""
+    """The fourbar whose coupler curve is to be followed: by its dimensions, or in the form of an answer."""
 
     type: Literal["fourbar"] = "fourbar"
     fixed_pivots: StatedPivots
@@ -44,12 +45,12 @@ class SourceLinkage(Statement):
     )
     reference_input_angle: Degrees | None = Field(
         default=None,
-        description="Input angle of the first position, absolute, degrees; by default the skeleton's, or one that "
-        "there is.",
+        description="Input angle of the first position, absolute, degrees; by default the skeleton's, or any possible "
+        "one.",
     )
     reference_body_angle: Degrees | None = Field(default=None, description=BODY)
     skeleton: StatedSkeleton | None = Field(
-        default=None, description="In the first position; its joints must stand as the dimensions say."
+        default=None, description="In the first position; its joints must agree with the dimensions."
     )
 
     @model_validator(mode="before")
@@ -58,13 +59,13 @@ class SourceLinkage(Statement):
         if isinstance(stated, dict) and stated.get("type", "fourbar") != "fourbar":
             raise PydanticCustomError(
                 "no_fourbar",
-                "only a fourbar has the cognates that guide the body; of another mechanism state the path of its point",
+                "only a fourbar has the cognates that guide the body; for another mechanism give the path of its point",
             )
         return stated
 
     @property
     def reference(self) -> float | None:
-        """The input angle of the first position, degrees: the stated one, or that of the skeleton."""
+        """The input angle of the first position, degrees: the given one, or that of the skeleton."""
         if self.reference_input_angle is not None or self.skeleton is None:
             return self.reference_input_angle
         o2, a = (complex(*self.skeleton.joints[name]) for name in ("O2", "A"))
@@ -72,13 +73,14 @@ class SourceLinkage(Statement):
 
     @property
     def joints(self) -> dict[str, complex]:
-        """Where the joints are in the first position, of which an angle must be known.
+        """The joints in the first position, whose input angle must be known.
 
-        B is the nearest there is to both circles where they miss one another.
+        If the circles of coupler and output miss one another, B is the point nearest to both.
         """
         assert self.reference is not None
         o2, o4 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
         a = o2 + cmath.rect(self.links.input, math.radians(self.reference))
+        # B is at the intersection of two circles about A and O4, on the side that the assembly gives.
         reach, b, c = abs(o4 - a), self.links.coupler, self.links.output
         along = (b * b - c * c + reach * reach) / (2.0 * reach) if reach else 0.0
         across = math.sqrt(max(b * b - along * along, 0.0)) * (1.0 if self.assembly == "open" else -1.0)
@@ -90,7 +92,7 @@ class SourceLinkage(Statement):
 class ParallelMotionProblem(LinkageProblem):
     """Parallel motion: a Watt I sixbar that carries a link along a coupler curve without turning it.
 
-    The curve is that of a fourbar (`linkage`), or of the fourbars that a problem of path generation finds (`path`). Two
+    The curve is that of a fourbar (`linkage`), or of the fourbars that a path generation problem finds (`path`). Two
     cognates of a fourbar trace one curve; one of them, moved to the other's pivot and joined to its crank, guides a
     second point of the body along the same curve, so that the body translates.
     """
@@ -115,23 +117,24 @@ class ParallelMotionProblem(LinkageProblem):
     kind: Literal["parallel_motion"]
     linkage: SourceLinkage | None = None
     path: PathProblem | None = Field(
-        default=None, description="A problem of path generation; what it finds is made into sixbars."
+        default=None, description="A path generation problem; sixbars are built from the fourbars that it finds."
     )
     include_cognates: Annotated[bool, Field(strict=True)] = Field(
         default=True,
-        description="Also make sixbars of the cognates of `linkage`, and with the output link as the input.",
+        description="Also build sixbars from the cognates of `linkage`, and with the output link as the input.",
     )
 
     def contradictions(self) -> list[Contradiction]:
-        """No curve, or two; a point that has no cognate; lengths that make no linkage."""
+        """Return contradictory requests: no curve or two, a point without a cognate, lengths that form no linkage."""
         found = list(self.contradicting_demands())
         if (self.linkage is None) == (self.path is None):
-            found.append(Contradiction("/linkage", "state either a linkage or a path"))
+            found.append(Contradiction("/linkage", "give either a linkage or a path"))
         if self.path is not None:
             found += [fault._replace(path=f"/path{fault.path}") for fault in self.path.contradictions()]
+            # Both describe the finished mechanism.
             for name in ("layout", "space"):
                 if getattr(self.path, name) is not None:
-                    detail = "it is the sixbar that is built, not the fourbar: state it beside the path"
+                    detail = "the sixbar is built, not the fourbar; give this next to the path"
                     found.append(Contradiction(f"/path/{name}", detail))
         if self.linkage is not None:
             found += _faults(self.linkage)
@@ -145,30 +148,31 @@ def _faults(linkage: SourceLinkage) -> list[Contradiction]:
     lengths = sorted((ground, links.input, links.coupler, links.output))
     if ground == 0.0:
         found.append(
-            Contradiction("/linkage/fixed_pivots/output", "equal to the input's pivot; no ground link is left")
+            Contradiction("/linkage/fixed_pivots/output", "equal to the input's pivot; the ground link has no length")
         )
     elif lengths[3] >= sum(lengths[:3]):
-        found.append(Contradiction("/linkage/links", "one link is longer than the others together can reach"))
+        found.append(Contradiction("/linkage/links", "one link is at least as long as the others together"))
     if links.ground is not None and abs(links.ground - ground) > AGREES * max(ground, links.ground):
         detail = f"the fixed pivots give {ground:.9g}; leave the field out or correct it"
         found.append(Contradiction("/linkage/links/ground", detail))
     far = max(map(abs, (*linkage.fixed_pivots.input, *linkage.fixed_pivots.output)))
     if min(lengths[0], point.distance or lengths[0]) < ROUNDED_OFF * far and ground > 0.0:
-        detail = "too short beside the coordinates of the pivots; move the origin nearer"
+        detail = "too short relative to the coordinates of the pivots; move the origin nearer"
         found.append(Contradiction("/linkage/links", detail))
     if min(point.distance, abs(point.vector - links.coupler)) <= AT_PIN * links.coupler:
-        detail = "on a pin of the coupler it runs on a circle and has no cognate; a parallelogram carries a body there"
+        detail = "on a pin of the coupler P runs on a circle and has no cognate; a parallelogram carries a body there"
         found.append(Contradiction("/linkage/coupler_point", detail))
     return found or [*_reference_faults(linkage), *_skeleton_faults(linkage)]
 
 
 def _reference_faults(linkage: SourceLinkage) -> list[Contradiction]:
-    """An input angle at which coupler and output do not meet."""
+    """Return an error if coupler and output do not meet at the given input angle."""
     if linkage.reference_input_angle is None:
         return []
     joints, links = linkage.joints, linkage.links
     reach = abs(joints["O4"] - joints["A"])
     low, high = abs(links.coupler - links.output), links.coupler + links.output
+    # Triangle A B O4 closes, up to the rounding of printed dimensions.
     if (1.0 - AGREES) * low <= reach <= (1.0 + AGREES) * high:
         return []
     detail = "the linkage cannot be assembled at this input angle; leave it out or correct it"
@@ -176,10 +180,11 @@ def _reference_faults(linkage: SourceLinkage) -> list[Contradiction]:
 
 
 def _skeleton_faults(linkage: SourceLinkage) -> list[Contradiction]:
-    """A skeleton that is not the fourbar's, or whose joints stand elsewhere."""
+    """Return an error if the skeleton is not the fourbar's, or its joints disagree with the dimensions."""
     skeleton = linkage.skeleton
     if skeleton is None:
         return []
+    # P may be listed on the coupler or left out.
     shape = {frozenset(link.joints) - {"P"} for link in skeleton.links}
     if shape != set(map(frozenset, PINS)) or skeleton.slides or skeleton.gears or not skeleton.joints.keys() >= PIVOTS:
         detail = "not that of a fourbar with the links O2–O4, O2–A, A–B–P and O4–B; leave it out"

@@ -1,4 +1,5 @@
-"""Parallel motion: sixbars from a fourbar, its cognates, or the fourbars of a path problem, and their verification."""
+"""Build sixbars for parallel motion from a fourbar, its cognates, or the fourbars of a path problem, and verify
+them."""
 
 from __future__ import annotations
 
@@ -26,14 +27,14 @@ Base = Literal["source", "left_cognate", "right_cognate", "path"]
 InputSide = Literal["input", "output"]
 
 PATH_SHARE = 0.9
-"""Share of the work that a path problem is."""
+"""Share of the progress assigned to a path problem."""
 
 REASONS = DEFECTS | {"translates": "rotation", "on_curve": "deviation"}
-"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
+"""Reasons of rejections by failed check; other checks name their own reason."""
 
 
 class _Fourbar(NamedTuple):
-    """A fourbar that traces the curve, as it stands at the first position."""
+    """A fourbar that traces the curve, in its first position."""
 
     base: Base
     input_side: InputSide
@@ -45,6 +46,7 @@ def solve_parallel_motion(problem: ParallelMotionProblem, progress: Progress) ->
     if problem.path is not None:
         found = solve_path(problem.path, part_of(progress, 0.0, PATH_SHARE))
         mechanisms = [design.mechanism for design in found.designs]
+        # Sixbars and slider-cranks have no cognates of this kind.
         fourbars = list(_of_path([one for one in mechanisms if isinstance(one, FourbarMechanism)]))
     else:
         assert problem.linkage is not None
@@ -63,7 +65,7 @@ def solve_parallel_motion(problem: ParallelMotionProblem, progress: Progress) ->
 
 
 def warm_up() -> None:
-    """Load the kernels by the fourbar of the example."""
+    """Compile or load the kernels by solving the example."""
     extra = ParallelMotionProblem.model_config["json_schema_extra"]
     assert isinstance(extra, dict)
     examples = extra["examples"]
@@ -72,12 +74,12 @@ def warm_up() -> None:
 
 
 def _ranked(rank_by: str, designs: list[ParallelMotionDesign]) -> list[ParallelMotionDesign]:
-    """What is as good keeps its order: the given fourbar, then its cognates."""
+    """Rank designs; equally good ones keep their order: the given fourbar, then its cognates."""
     return ranked(designs, rank_by, {"accuracy": lambda design: design.metrics.rms_residual}, ties=lambda design: 0.0)
 
 
 def _of_linkage(given: SourceLinkage, *, cognates_too: bool) -> Iterator[_Fourbar]:
-    """The given fourbar and both cognates, each with either fixed pivot as the input's."""
+    """Yield the given fourbar and both cognates, each with either fixed pivot as the input's."""
     stated = given.model_dump(exclude={"skeleton", "reference_body_angle"}, exclude_none=True)
     try:
         mechanism = GivenFourbar.model_validate({**stated, "reference_input_angle": given.reference}).mechanism()
@@ -87,11 +89,13 @@ def _of_linkage(given: SourceLinkage, *, cognates_too: bool) -> Iterator[_Fourba
     yield _Fourbar("source", "input", joints)
     if not cognates_too:
         return
+    # Either fixed pivot can carry the input; the sixbars differ, the curve does not.
     yield _Fourbar("source", "output", _reversed(joints))
     linkage, angle, side = _as_linkage(joints)
     pair = cognates(linkage)
     names: tuple[Base, Base] = ("left_cognate", "right_cognate")
     for name, cognate in zip(names, pair, strict=True):
+        # All cognates are shown in the position in which P is at the same place.
         stands = cognate.configuration(angle, side)
         at = positions(cognate.linkage, float(stands.input_angle), int(stands.assembly))
         own = FourbarConfiguration(
@@ -116,12 +120,12 @@ def _of_path(mechanisms: list[FourbarMechanism]) -> Iterator[_Fourbar]:
 
 
 def _reversed(joints: FourbarConfiguration) -> FourbarConfiguration:
-    """The same with the output link as the input."""
+    """Return the fourbar with the output link as the input."""
     return FourbarConfiguration(joints.o4, joints.b, joints.a, joints.o2, joints.p)
 
 
 def _as_linkage(joints: FourbarConfiguration) -> tuple[Fourbar, float, int]:
-    """The analysis core's value of a fourbar that stands so, its input angle and its assembly."""
+    """Return the analysis core's value of a fourbar with these joints, its input angle and its assembly."""
     o2, a, b, o4, p = joints
     coupler = b - a
     linkage = Fourbar(o2, o4, abs(a - o2), abs(coupler), abs(b - o4), (p - a) / coupler * abs(coupler))
@@ -130,7 +134,7 @@ def _as_linkage(joints: FourbarConfiguration) -> tuple[Fourbar, float, int]:
 
 
 def _sixbar(joints: FourbarConfiguration) -> ParallelMotionMechanism:
-    """The fourbar with pin C on its input, the guide C–Q and the body P–Q."""
+    """Build the sixbar: the fourbar with pin C on its input, the guide C–Q and the body P–Q."""
     o2, a, b, o4, p = joints
     linkage, angle, _ = _as_linkage(joints)
     made = parallel_motion(linkage)
@@ -168,10 +172,10 @@ def _summary(problem: ParallelMotionProblem, sifting: Sifting[ParallelMotionDesi
         reasons = sifting.listed() or "no fourbar"
         return f"None of {counted(sifting.candidates, 'sixbar')} carries the body along the curve ({reasons})."
     best, passed = _ranked(problem.rank_by, sifting.passed)[0].metrics, len(sifting.passed)
-    goes = "" if best.full_rotation else ", driven to and fro along a part of the curve"
+    goes = "" if best.full_rotation else " (driven back and forth along a part of the curve)"
     return (
         f"{grouped(passed)} of {counted(sifting.candidates, 'sixbar')} {agreeing(passed, 'carries', 'carry')} the "
-        "body along the curve without turning it; the first "
-        f"transmits force at {best.min_transmission_angle:.1f}° at least{goes}, from Q at ({best.translation[0]:.6g}, "
-        f"{best.translation[1]:.6g}) of P."
+        "body along the curve without turning it. Best design: minimum transmission angle "
+        f"{best.min_transmission_angle:.1f}°{goes}, driven at Q = ({best.translation[0]:.6g}, "
+        f"{best.translation[1]:.6g}) relative to P."
     )

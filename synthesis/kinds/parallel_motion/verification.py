@@ -1,6 +1,6 @@
-"""Verification of a parallel motion: the sixbar is driven from its skeleton, and the body's rotation is measured.
+"""Verify a parallel motion: drive the sixbar from its skeleton, and measure the body's rotation.
 
-P is held against the given fourbar without driving that: a point is on its curve where the coupler, laid with A on the
+P is compared with the given fourbar without driving that: a point is on its curve if the coupler, placed with A on the
 input's circle and P on the point, has B at the output's length from O4.
 """
 
@@ -41,20 +41,21 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 TRANSLATES = 1e-9
-"""Most that the body may turn, radians, and most that P may be off the curve, as a share of the curve's size."""
+"""Maximum rotation of the body, radians, and maximum distance of P from the curve, as a share of the curve's size."""
 
 FAR = 64.0 * float(np.finfo(np.float64).eps)
-"""What rounding adds to that, as a share of the largest coordinate over the body's length or the curve's size."""
+"""Allowance for rounding in addition, as a share of the largest coordinate over the body's length or the curve's
+size."""
 
 NO_TOGGLE = 1e-6
-"""The least sine of a transmission angle at which the mechanism still moves one way."""
+"""Minimum sine of a transmission angle at which the mechanism still moves in a defined direction."""
 
 WITHIN = 0.01
-"""An input between toggles is driven up to this share of its range from each."""
+"""Share of its range, at each toggle, that an input between toggles leaves out."""
 
 
 class _Path(NamedTuple):
-    """What verification of the fourbar itself says, where the points of a path are asked for."""
+    """Verification results of the fourbar itself, for problems with a path."""
 
     checks: list[Check]
     targets: list[Target]
@@ -73,16 +74,16 @@ def verify_parallel_motion(
     Parameters
     ----------
     problem : ParallelMotionProblem
-        What was asked.
+        The problem.
     design : ParallelMotionMechanism
         Dimensions.
     base, input_side
-        What the design is called in its metrics.
+        Origin of the design, as reported in its metrics.
 
     Returns
     -------
     ParallelMotionDesign or None
-        None where the dimensions are no mechanism that can be driven.
+        None if the mechanism cannot be driven.
     """
     mechanism = rebuilt(design)
     if mechanism is None:
@@ -103,6 +104,7 @@ def verify_parallel_motion(
     joints = np.concatenate([jet[0] for jet in motion.joints.values()])
     reach = float(np.abs(joints).max())
     body = motion.angles["body"][0]
+    # Angles modulo a full turn.
     rotation = float(np.abs(np.angle(np.exp(1j * (body - body[0])))).max())
     transmission = least_angles(partial(drive, mechanism, order=0), inputs, motion)
     off_curve = None if problem.linkage is None else float(_off_curve(problem.linkage, p).max())
@@ -140,7 +142,7 @@ def verify_parallel_motion(
     if path is not None:
         checks += path.checks
     pivots = fixed_pivots(mechanism), moving_pivots(mechanism)
-    # What the path demands as well as the body's motion is told once: as failed, where either is.
+    # Checks that both the path and the sixbar contain are reported once, as failed if either fails.
     own = {check.name: check for check in constraint_checks(problem.constraints, measures, *pivots)}
     checks = [check for check in checks if not check.passed or check.name not in own]
     checks += [check for name, check in own.items() if name not in {check.name for check in checks}]
@@ -153,7 +155,7 @@ def verify_parallel_motion(
 
 
 def _path(problem: ParallelMotionProblem, configuration: FourbarConfiguration) -> _Path | None:
-    """The fourbar of the sixbar, driven past the points of the path that is asked for."""
+    """Drive the fourbar of the sixbar past the points of the requested path."""
     if problem.path is None:
         return None
     driven = verify_path(problem.path, fourbar_mechanism(configuration))
@@ -165,12 +167,12 @@ def _path(problem: ParallelMotionProblem, configuration: FourbarConfiguration) -
 
 
 def _kept(path: _Path, name: str) -> bool:
-    """Whether a check of the path, where it is demanded, was passed."""
+    """Return whether a check of the path passed, or is not part of it."""
     return all(check.passed for check in path.checks if check.name == name)
 
 
 def _inputs(mechanism: Mechanism, rotation: float | None, *, turns: bool) -> Real:
-    """Inputs of the range: a whole turn, the path's rotation, or nearly from toggle to toggle."""
+    """Return the inputs of the range: a full turn, the path's rotation, or nearly from toggle to toggle."""
     at = float(mechanism.reference_input)
     if turns:
         return turn_from(at)
@@ -181,22 +183,26 @@ def _inputs(mechanism: Mechanism, rotation: float | None, *, turns: bool) -> Rea
         {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B"), "output": ("O4", "B")},
         "input",
     )
+    # The toggles are those of the fourbar; the guide and the body follow.
     low, high = cycle_of(fourbar)
     spare = WITHIN * (high - low)
     return np.asarray(np.linspace(low + spare, high - spare, GRID))
 
 
 def _off_curve(linkage: SourceLinkage, points: Complex) -> Real:
-    """How far points are off the coupler curve of a fourbar: by how much B misses the output's circle, nearly."""
+    """Return the approximate distance of points from a fourbar's coupler curve: B's distance from the output's
+    circle."""
     o2, o4 = complex(*linkage.fixed_pivots.input), complex(*linkage.fixed_pivots.output)
     a, b, c = linkage.links.input, linkage.links.coupler, linkage.links.output
     arm = linkage.coupler_point.distance * np.exp(1j * math.radians(linkage.coupler_point.angle))
     reach = points - o2
+    # A point on the input's pivot has no direction from it.
     f = np.maximum(np.abs(reach), np.finfo(np.float64).tiny)
     cosine = np.clip((a * a + f * f - abs(arm) ** 2) / (2.0 * a * f), -1.0, 1.0)
     misses = []
     for side in (1.0, -1.0):
         pin = o2 + a * reach / f * (cosine + 1j * side * np.sqrt(1.0 - cosine**2))
         turned = (points - pin) / arm
+        # Either assembly of the coupler may pass the point.
         misses.append(np.abs(np.abs(pin + b * turned - o4) - c))
     return np.asarray(np.minimum(*misses))

@@ -30,7 +30,7 @@ def _warm_up() -> None:
 
 
 def _brief(problem: PathProblem) -> bool:
-    """Points with crank angles are positions, and a harmonic fit beyond five; free ones are searched for."""
+    """Return whether the problem is solved in a moment: points with crank angles need no search for their timing."""
     return problem.prescribed
 
 

@@ -1,7 +1,7 @@
-"""Which point of a curve belongs to which demanded point, when the order is kept: dynamic programming over samples.
+"""Assign samples of a curve to the required points in their order, by dynamic programming.
 
-The least sum of squared distances over all ways to go along the samples without turning back is found row by row: the
-best way to have met point k at sample j or before is the best of the ways before it.
+Among all monotone assignments of points to samples the one with the minimum sum of squared distances is built row by
+row: the best assignment that reaches point k at sample j or earlier extends the best one of the points before it.
 """
 
 from __future__ import annotations
@@ -19,10 +19,11 @@ Whole = NDArray[np.int64]
 def assign(
     squares: Real, first: int, length: int, way: int, totals: Real, back: NDArray[np.int16], chosen: Whole, bound: float
 ) -> float:
-    """Samples for points from sample ``first`` on, ``length`` of them, going ``way`` (±1) round; the least sum.
+    """Assign to each point one of ``length`` samples from sample ``first`` on, in order, and return the minimum sum.
 
-    ``squares`` (points, samples) are squared distances. ``chosen`` gets steps from the first sample, which do not fall.
-    Returns infinity, and chooses nothing, as soon as the sum is known to be above ``bound``.
+    ``way`` (±1) is the direction along the closed sequence of samples. ``squares`` (points, samples) are squared
+    distances. ``chosen`` receives, for each point, the number of steps from the first sample; it never decreases.
+    Returns infinity, and leaves ``chosen`` unset, as soon as the sum is known to exceed ``bound``.
     """
     n, count = squares.shape
     for row in range(n):
@@ -34,6 +35,8 @@ def assign(
             elif totals[k] < best:
                 best, at = totals[k], k
             total = best + here[j]
+            # totals[k] becomes the minimum for points 0..row with point ``row`` at sample k; back[row, k] remembers
+            # the previous k.
             totals[k] = total
             least = min(least, total)
             back[row, k] = at
@@ -42,6 +45,7 @@ def assign(
                 j = 0
             elif j < 0:
                 j = count - 1
+        # Sums only grow from row to row, so that the search can stop here.
         if least > bound:
             return np.inf
     k = int(np.argmin(totals[:length]))
@@ -55,9 +59,9 @@ def assign(
 
 @njit(cache=True, nogil=True)
 def pool(values: Real, weights: Real, blocks: Whole) -> int:
-    """Values that do not fall, nearest to the given ones in the weighed squares (pool adjacent violators), in place.
+    """Replace values in place by the nearest non-decreasing ones in weighted least squares (pool adjacent violators).
 
-    ``blocks`` gets the number of the block that each belongs to; returns how many there are.
+    ``blocks`` receives for each value the number of its block of equal values; returns the number of blocks.
     """
     n = values.size
     mean, load, begin = np.empty(n), np.empty(n), np.empty(n + 1, np.int64)
@@ -65,8 +69,10 @@ def pool(values: Real, weights: Real, blocks: Whole) -> int:
     for k in range(n):
         mean[count], load[count], begin[count] = values[k], weights[k], k
         count += 1
+        # Merge a block with its predecessor while the order is violated; the weighted mean is optimal for both.
         while count > 1 and mean[count - 2] >= mean[count - 1]:
             total = load[count - 2] + load[count - 1]
+            # The merged block may violate the order with its new predecessor, hence the loop.
             mean[count - 2] = (mean[count - 2] * load[count - 2] + mean[count - 1] * load[count - 1]) / total
             load[count - 2] = total
             count -= 1

@@ -1,11 +1,11 @@
-"""How far a traced curve goes from the course of the points that it is to draw, over the whole way.
+"""Measure how far a traced curve strays from the course of the points that it must draw, over the whole used range.
 
-A linkage that passes all points may whip out between two of them. Over the way that is used (a whole turn for a closed
-curve, from the first point to the last for an open one) every place of the traced curve is compared with the course:
+A linkage that passes all points may whip out between two of them. Over the used range (a full turn for a closed curve,
+from the first point to the last for an open one) every place on the traced curve is compared with the course:
 
 * with the straight lines through the points, which gives the distance;
-* with these lines and what a curve may bulge from them, :data:`BULGE` of their lengths, and the miss at the points
-  themselves, which gives the excursion: what no curve that the points tell of would do;
+* with these lines, widened by the bulge that a curve may have between points (:data:`BULGE` of their lengths) and by
+  the miss at the points themselves, which gives the excursion: the part that the points do not justify;
 * where points have tolerances, with the lines, each as wide as the smooth curve through the points bulges from it.
 """
 
@@ -26,30 +26,31 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 CURVE_STEPS = 1440
-"""Inputs at which the curve is compared with the target: a quarter of a degree of a full turn."""
+"""Number of input steps at which the curve is compared with the target: a quarter of a degree for a full turn."""
 
 BULGE = 0.25
-"""A curve may bulge between two points by this share of their distance, as an arc of a hundred degrees does; what goes
+"""A curve may bulge between two points by this share of their distance, as an arc of a hundred degrees does. Anything
 beyond is an excursion that the points do not show."""
 
 STEP, HALVINGS = 0.01, 40
-"""Inputs are put between two whose places are farther apart than this share of the curve's size, so many times at most:
-near a change point a linkage runs over much of its curve in next to no time."""
+"""Longest step between neighbouring places, as a share of the curve's size, and the maximum number of bisections of an
+input step to reach it: near a change point a linkage runs over much of its curve in a tiny range of its input."""
 
 SMOOTH_PLACES, SMOOTH_LOOKS = 33, 5
-"""Places between two points at which the smooth curve's distance from the straight line is looked for, and how often it
-is looked for again, sixteen times as closely, about the greatest."""
+"""Number of places between two points at which the smooth curve's distance from the straight line is evaluated, and
+number of passes, each sixteen times finer, around the maximum."""
 
 
 class Astray(NamedTuple):
-    """How far a traced curve goes from the lines through the points: at most, and beyond what the points allow."""
+    """Deviation of a traced curve from the lines through the points: maximum distance, and excursion beyond the
+    allowance."""
 
     curve_distance: float
     excursion: float
 
 
 class Course(NamedTuple):
-    """Straight lines from point to point: where each starts, its vector, and what is allowed off it, shapes (n,)."""
+    """Straight lines from point to point: start, vector, and allowed deviation of each, shapes (n,)."""
 
     starts: Complex
     sides: Complex
@@ -57,23 +58,28 @@ class Course(NamedTuple):
 
 
 def course_of(points: Complex, closed: bool, missed: float) -> Course:
-    """The lines through points, that miss them by ``missed`` and bulge by :data:`BULGE` allowed; closed or a chain."""
+    """Return the lines through points that are missed by ``missed``; they may bulge by :data:`BULGE`. Closed, or a
+    chain."""
     starts = points if closed else points[:-1]
     sides = (np.roll(points, -1) if closed else points[1:]) - starts
     return Course(starts, sides, missed + BULGE * np.abs(sides))
 
 
 def tolerated_course(points: Complex, closed: bool, tolerances: Real) -> tuple[Course, Real]:
-    """The lines through points with what the smooth curve through them bulges allowed, and the lines' tolerances.
+    """Return the lines through points, with the bulge of the smooth curve through them allowed, and the lines'
+    tolerances.
 
-    The smooth curve is the cubic spline over the chords; no bulge is above :data:`BULGE`. A line has the greater of the
-    tolerances at its ends.
+    The smooth curve is the cubic spline over the chords; no bulge exceeds :data:`BULGE`. A line has the larger of the
+    tolerances at its two ends.
     """
+    # Tolerances already allow for the miss at the points themselves.
     lines = course_of(points, closed, 0.0)
     whole = np.append(points, points[0]) if closed else points
+    # Repeated points would give the spline equal knots.
     knots, first = np.unique(np.concatenate([[0.0], np.cumsum(np.abs(np.diff(whole)))]), return_index=True)
     corners = whole[first]
     if closed:
+        # A periodic spline requires bitwise equal ends.
         corners[-1] = corners[0]
     spline = CubicSpline(knots, corners, bc_type="periodic" if closed else "not-a-knot")
     lengths = np.abs(lines.sides)
@@ -86,7 +92,8 @@ def tolerated_course(points: Complex, closed: bool, tolerances: Real) -> tuple[C
 def astray(
     place: Callable[[Real], Complex], used: tuple[float, float], points: Complex, closed: bool, missed: float
 ) -> Astray:
-    """The farthest that a point goes from the polygon through the points, between two inputs.
+    """Return the maximum distance of a point from the polygon through the points, and its excursion, between two
+    inputs.
 
     Parameters
     ----------
@@ -99,7 +106,7 @@ def astray(
     closed : bool
         Whether the last point is joined to the first.
     missed : float
-        By how much the points are missed at most, which is all that is known where nothing else can be reached.
+        Maximum distance by which the points are missed; the only measure left if the linkage has no position at all.
 
     Returns
     -------
@@ -118,6 +125,7 @@ def astray(
 
     at, farthest = near(0, off)
     _, excursion = near(1, beyond)
+    # The place of maximum distance is often that of the maximum excursion too, between two samples of the latter.
     _, there = distances(place(np.array([at])), course)
     return Astray(farthest, max(excursion, float(there[0])))
 
@@ -125,16 +133,19 @@ def astray(
 def both_ways(
     place: Callable[[Real], Complex], used: tuple[float, float], points: Complex, closed: bool, misses: Real
 ) -> float:
-    """Root mean square of the points' distances from a curve, and of the curve's from the lines through the points.
+    """Return the root mean square of the points' distances from a curve and of the curve's from the lines through the
+    points.
 
-    Parameters are those of :func:`astray`, and the points' distances. The curve counts by its length, each way as much
-    as the other.
+    Parameters are those of :func:`astray`, and the points' distances. The curve is weighted by its length; both
+    directions count equally.
     """
     _, places = followed(place, *used)
     off, _ = distances(places, course_of(points, closed, 0.0))
     steps = np.abs(np.diff(places))
     known = np.isfinite(steps)
+    # Trapezoidal rule over the arc length of the curve.
     squares = 0.5 * (off[1:] ** 2 + off[:-1] ** 2)
+    # The smallest positive number keeps a curve of no length from dividing by zero.
     back = float((squares[known] * steps[known]).sum() / max(float(steps[known].sum()), math.ulp(0.0)))
     return math.sqrt(0.5 * (float(np.mean(misses**2)) + back))
 
@@ -142,7 +153,7 @@ def both_ways(
 def tolerance_used(
     place: Callable[[Real], Complex], used: tuple[float, float], points: Complex, closed: bool, tolerances: Real
 ) -> float:
-    """The greatest share of its tolerance that a traced curve uses anywhere; see :func:`tolerated_course`.
+    """Return the maximum share of its tolerance that a traced curve uses anywhere; see :func:`tolerated_course`.
 
     Parameters are those of :func:`astray`, and the tolerances of the points, shape (n,).
     """
@@ -157,13 +168,14 @@ def tolerance_used(
 
 
 def followed(place: Callable[[Real], Complex], low: float, high: float) -> tuple[Real, Complex]:
-    """Inputs, rising, and the places there, none farther from the next than :data:`STEP` where there is a way between.
+    """Return increasing inputs and the places there, refined until no step exceeds :data:`STEP` of the curve's size.
 
-    NaN where there is no position.
+    NaN where the linkage has no position.
     """
     inputs = np.linspace(low, high, CURVE_STEPS + 1)
     places = place(inputs)
     known = places[~np.isnan(places)]
+    # The diagonal of the traced curve measures its size; without any position nothing is refined.
     longest = STEP * math.hypot(np.ptp(known.real), np.ptp(known.imag)) if len(known) else 0.0
     for _ in range(HALVINGS):
         wide = np.flatnonzero(np.abs(np.diff(places)) > longest)
@@ -177,8 +189,10 @@ def followed(place: Callable[[Real], Complex], low: float, high: float) -> tuple
 
 
 def distances(places: Complex, course: Course) -> tuple[Real, Real]:
-    """Distances of places from the lines of a course; and what they are beyond what is allowed off the line for which
-    this is least, at least 0. NaN for no place."""
+    """Return the distances of places from the lines of a course, and their excess over the allowance, at least 0.
+
+    The excess is the minimum over all lines. NaN where there is no place.
+    """
     unit = np.ones(len(course.starts))
     off = _shares(places, course.starts, course.sides, np.zeros(len(course.starts)), unit)
     return off, _shares(places, course.starts, course.sides, course.allowed, unit)
@@ -186,7 +200,7 @@ def distances(places: Complex, course: Course) -> tuple[Real, Real]:
 
 @njit(cache=True, nogil=True)
 def _off(place: complex, start: complex, side: complex) -> float:
-    """Distance of a place from a line."""
+    """Return the distance of a place from a line segment."""
     gap = place - start
     square = side.real * side.real + side.imag * side.imag
     along = gap.real * side.real + gap.imag * side.imag
@@ -196,7 +210,8 @@ def _off(place: complex, start: complex, side: complex) -> float:
 
 
 def _bulges(smooth: CubicSpline, begin: Real, lengths: Real, lines: Course) -> Real:
-    """The greatest distance of the smooth curve from each line that it goes over; it begins at a parameter for each."""
+    """Return the maximum distance of the smooth curve from each line that it spans; ``begin`` is its parameter at
+    each."""
     low, high = np.zeros(len(begin)), np.ones(len(begin))
     found = np.zeros(len(begin))
     for _ in range(SMOOTH_LOOKS):
@@ -207,13 +222,14 @@ def _bulges(smooth: CubicSpline, begin: Real, lengths: Real, lines: Course) -> R
             (high - low) / (SMOOTH_PLACES - 1),
         )
         found = np.maximum(found, off.max(axis=1))
+        # Zoom in on the two steps around the maximum.
         low, high = np.maximum(best - step, 0.0), np.minimum(best + step, 1.0)
     return found
 
 
 @njit(cache=True, nogil=True)
 def _offs(places: Complex, starts: Complex, sides: Complex) -> Real:
-    """Distances of places from their lines, shape (lines, places)."""
+    """Return the distances of places from their lines, shape (lines, places)."""
     out = np.empty(places.shape)
     for k in range(len(starts)):
         for n in range(places.shape[1]):
@@ -223,7 +239,7 @@ def _offs(places: Complex, starts: Complex, sides: Complex) -> Real:
 
 @njit(cache=True, nogil=True)
 def _shares(places: Complex, starts: Complex, sides: Complex, allowed: Real, widths: Real) -> Real:
-    """Of each place the least over all lines of its distance beyond what is allowed, over the line's width."""
+    """Return for each place the minimum over all lines of its distance beyond the allowance, over the line's width."""
     out = np.empty(len(places))
     for i in range(len(places)):
         if math.isnan(places[i].real) or math.isnan(places[i].imag):

@@ -1,10 +1,10 @@
-"""Which type of linkage guides the point: the simplest that is sound and near, others beside it where they are better.
+"""Choose the type of linkage that guides the point: the simplest one that is sound and near, and better ones after it.
 
-Simpler types are looked for first: fourbars, slider-cranks, geared fivebars, then all sixbars together. A linkage that
-meets all demands stands alone where it transmits force well enough (:func:`~synthesis.outcome.simplest.transmits`) and
-is near: its error is at most :data:`NEAR` of the task's size, or within the tolerances that are stated. Otherwise the
-next types are looked for. They are offered beside it where their error is at most :data:`HALF` of the least that it
-has, or where they alone are sound.
+Simpler types are searched first: fourbars, slider-cranks, geared fivebars, then all sixbars together. A linkage that
+satisfies all constraints is the only answer if it transmits force well enough
+(:func:`~synthesis.outcome.simplest.transmits`) and is near: its error is at most :data:`NEAR` of the task's size, or
+within the given tolerances. Otherwise the next types are searched. They are listed next to it if their error is at most
+:data:`HALF` of its minimum error, or if only they are sound.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from synthesis.outcome.simplest import HALF, as_one, offered_beside, passing, to
 Solve = Callable[[PathProblem, Progress], PathResult]
 
 NEAR = 1e-3
-"""Error, as a share of the task's size, at which no better linkage is looked for."""
+"""Error, as a share of the task's size, below which no more complex type is searched."""
 
 
 def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> PathResult:
-    """The answer of the types that a problem states.
+    """Solve a problem for each of the types that it names, simplest first, and combine the results.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> Path
     of_one : callable
         Solves for one of the types with one closure, as without that field.
     progress : callable
-        Told how far the work is.
+        Receives the share of the work done.
     """
     stages: list[Simple | Literal["sixbar"]] = [*simple_of(problem.mechanisms)]
     if problem.sixbars:
@@ -49,31 +49,33 @@ def solve_types(problem: PathProblem, of_one: Solve, progress: Progress) -> Path
         found = solve_sixbars(problem, part) if name == "sixbar" else of_one(problem.of_type(name), part)
         result = found if result is None else joined(problem, result, found, before, name)
         before.append(name)
+        # A sound and accurate simple linkage ends the search: designers prefer fewer links.
         if any(_stands_alone(problem, design) for design in passing(result.designs)):
             break
     assert result is not None
-    told = "" if problem.listed_later else best_sixbar(problem, result.designs)
+    text = "" if problem.listed_later else best_sixbar(problem, result.designs)
     if problem.mechanisms == "auto" and not problem.sixbars:
-        told = f" {not_looked_for(lacking(problem))}"
+        text = f" {not_looked_for(lacking(problem))}"
     elif problem.mechanisms != "auto":
         named = looked_for(problem.mechanisms, SIXBARS, lacking(problem))
-        told += f" {told_of_unclassed(named, beyond_unclassed(problem))}".rstrip()
-    return result.model_copy(update={"summary": f"{result.summary}{told}"})
+        text += f" {told_of_unclassed(named, beyond_unclassed(problem))}".rstrip()
+    return result.model_copy(update={"summary": f"{result.summary}{text}"})
 
 
 def _stands_alone(problem: PathProblem, design: PathDesign) -> bool:
-    """Whether a linkage that meets all demands is sound and near enough."""
+    """Return whether a linkage that satisfies all constraints is sound and near enough to end the search."""
     near = problem.tolerances is not None or error_of(design, problem) <= NEAR * problem.task_size
     return near and transmits(problem, design)
 
 
 def joined(problem: PathProblem, simple: PathResult, found: PathResult, before: list[str], name: str) -> PathResult:
-    """The answer of simpler linkages and that of others as one; what passed and is not offered counts as outranked.
+    """Combine the results of simpler linkages and of another type; passed designs that are not listed count as
+    outranked.
 
     Parameters
     ----------
     problem : PathProblem
-        As it is stated.
+        The problem as requested.
     simple, found : PathResult
         The answers.
     before, name : list of str and str
@@ -83,21 +85,25 @@ def joined(problem: PathProblem, simple: PathResult, found: PathResult, before: 
     sound = [design for design in plain if transmits(problem, design)]
     first, other = " or ".join(NAMES[one] for one in before), NAMES[name]
     if not plain:
-        told = f"No {first} was found that meets all demands; " + (f"{other}s do." if better else f"nor was a {other}.")
+        text = f"No {first} was found that satisfies all constraints; "
+        text += f"{other}s do." if better else f"nor was a {other}."
     elif not sound and (alone := [design for design in better if transmits(problem, design)]):
+        # Only the complex type has sound designs: list these alone.
         better = alone
-        told = f"No {first} that was found is sound; {other}s are"
+        text = f"No {first} that was found is sound; sound {other}s were found"
     elif not sound and all(map(meets_the_points, plain)):
+        # Exact designs have no error to halve, so that a more complex type without force transmission gains nothing.
         better = []
-        told = f"No {first} that was found is sound, and no {other} is."
+        text = f"No {first} that was found is sound, and no {other} is."
     else:
         least = least_error(sound or plain, problem)
+        # More links must pay off by at least half the error.
         better = [design for design in better if error_of(design, problem) <= HALF * least]
-        told = f"The error of the best {first} is {least:.3g} {problem.length_unit}"
-        told += f"; {other}s have at most half of it" if better else f", and no {other} that was found has half of it."
+        text = f"The error of the best {first} is {least:.3g} {problem.length_unit}"
+        text += f"; {other}s have at most half of it" if better else f", and no {other} that was found has half of it."
     order = order_of(problem)
     offered = offered_beside(problem.max_designs, (sound or plain) if better else plain, better, order)
     of_second = [design for design in offered if any(design is one for one in better)]
     if plain and better:
-        told += told_of_offered(problem, len(offered), len(of_second))
-    return as_one(problem.max_designs, (simple, found), offered, len(of_second), told, order)
+        text += told_of_offered(problem, len(offered), len(of_second))
+    return as_one(problem.max_designs, (simple, found), offered, len(of_second), text, order)

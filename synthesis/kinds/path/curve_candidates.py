@@ -1,4 +1,4 @@
-"""Linkages drawn at random, whose curves are compared with a target: evenly spread shapes of one family.
+"""Draw random linkages whose curves are compared with a target: evenly spread shapes of one family.
 
 Shapes are drawn by the logarithms of lengths relative to the crank, from Sobol's sequence, with O2 at the origin and
 the ground line or slide along the real axis. Each comes with the range of crank angles over which it moves.
@@ -18,13 +18,14 @@ from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, FOURBAR, SLIDER_CRAN
 Real = NDArray[np.float64]
 
 MAX_CYCLE = 60
-"""Turns of the crank that are followed for a geared fivebar; gear ratios of more teeth than this come round later."""
+"""Maximum number of crank turns followed for a geared fivebar; gear ratios with larger denominators close later than
+this."""
 
 RATIO_TOLERANCE = 1e-9
-"""A gear ratio is taken for a fraction that it differs from by less than this."""
+"""A gear ratio counts as a fraction if it differs from it by less than this."""
 
 SWEPT_SHARE = 0.999
-"""Share of the range between two toggles that is swept: at the toggles themselves the derivatives have no bound."""
+"""Share of the range between two toggles that is swept: at the toggles themselves the derivatives are unbounded."""
 
 
 class Draw(NamedTuple):
@@ -37,13 +38,16 @@ class Draw(NamedTuple):
 
 
 def draw(family: int, count: int, ratio: float, seed: int) -> Draw:
-    """Linkages of a family with O2 at the origin and shapes spread evenly in the logarithms of their lengths."""
+    """Draw linkages of a family with O2 at the origin and shapes spread evenly in the logarithms of their lengths."""
     m = UNKNOWNS[family]
+    # Sobol's points are evenly spread only in powers of two.
     u = qmc.Sobol(m, seed=seed).random_base2(max(0, math.ceil(math.log2(count))))[:count]
     x = np.zeros((count, m))
     begin, end = np.zeros(count), np.full(count, 2.0 * math.pi)
     sign = np.ones(count)
     if family in (CRANK_ROCKER, DOUBLE_CRANK):
+        # Unknowns 4 to 6 are logarithms of the slack by which the shortest link stays shortest: the crank turns by
+        # construction.
         x[:, 4:7] = np.log(0.05) + u[:, 2:5] * np.log(12.0 / 0.05)
         coupler = 1.0 + 0.5 * (np.exp(x[:, 4]) + np.exp(x[:, 5]))
         _point(x, u, coupler)
@@ -54,6 +58,7 @@ def draw(family: int, count: int, ratio: float, seed: int) -> Draw:
         begin, end = _fourbar_range(lengths)
     elif family == SLIDER_CRANK:
         x[:, 4] = np.log(0.05) + u[:, 2] * np.log(12.0 / 0.05)
+        # Offset of the slide, from −1.5 to 1.5 times the slack of the coupler over the crank.
         x[:, 5] = 3.0 * (u[:, 3] - 0.5)
         _point(x, u, 1.0 + np.exp(x[:, 4]))
     elif family == SLIDER_ROCKER:
@@ -63,9 +68,11 @@ def draw(family: int, count: int, ratio: float, seed: int) -> Draw:
         begin, end = _slider_range(np.exp(x[:, 4]), x[:, 5])
     else:
         x[:, 4:8] = np.log(0.3) + u[:, 2:6] * np.log(8.0 / 0.3)
+        # Lengths are relative to the first crank, of unit length.
         x[:, 4] = 0.0
         distance = np.exp(np.log(0.2) + u[:, 6] * np.log(8.0 / 0.2))
         x[:, 2] = distance
+        # Phase of the second crank.
         x[:, 8] = 2.0 * math.pi * u[:, 7]
         _point(x, u, np.exp(x[:, 5]))
         end = np.full(count, cycle_of(ratio))
@@ -73,7 +80,7 @@ def draw(family: int, count: int, ratio: float, seed: int) -> Draw:
 
 
 def cycle_of(ratio: float) -> float:
-    """The crank's rotation after which a geared fivebar stands as at first, radians; one turn for other linkages."""
+    """Return the crank's rotation after which a geared fivebar repeats itself, radians; one turn for other linkages."""
     turns = 1
     while turns < MAX_CYCLE and abs(ratio * turns - round(ratio * turns)) > RATIO_TOLERANCE:
         turns += 1
@@ -81,20 +88,22 @@ def cycle_of(ratio: float) -> float:
 
 
 def _point(x: Real, u: Real, coupler: Real) -> None:
-    """Coupler points about the coupler's middle, most within a few couplers of it."""
+    """Place coupler points around the coupler's middle, most within a few coupler lengths of it, in place."""
     reach = coupler * np.exp(np.log(0.03) + u[:, 0] * np.log(4.0 / 0.03))
     point = 0.5 * coupler + reach * np.exp(2j * math.pi * u[:, 1])
     x[:, -2], x[:, -1] = point.real, point.imag
 
 
 def _fourbar_range(lengths: Real) -> tuple[Real, Real]:
-    """The crank's range from the ground line (γ = 0): the whole turn, or from toggle to toggle on the upper side."""
+    """Return the crank's range from the ground line (γ = 0): a full turn, or from toggle to toggle on the upper
+    side."""
     d, a, b, c = lengths.T
     most = (a * a + d * d - (b + c) ** 2) / (2.0 * a * d)
     least = (a * a + d * d - (b - c) ** 2) / (2.0 * a * d)
     # The crank turns where cos θ lies between: |A O4| between |b − c| and b + c.
     low, high = np.arccos(np.clip(least, -1.0, 1.0)), np.arccos(np.clip(most, -1.0, 1.0))
     turns = (most <= -1.0) & (least >= 1.0)
+    # A crank that cannot turn through swings across the ground line on one of its two sides.
     through_zero, through_pi = (least >= 1.0) & ~turns, (most <= -1.0) & ~turns
     begin = np.where(turns, 0.0, np.where(through_zero, -high, low))
     end = np.where(turns, 2.0 * np.pi, np.where(through_pi, 2.0 * np.pi - low, high))
@@ -103,7 +112,7 @@ def _fourbar_range(lengths: Real) -> tuple[Real, Real]:
 
 
 def _slider_range(coupler: Real, offset: Real) -> tuple[Real, Real]:
-    """The crank's range from the slide's direction (σ = 0, crank of length one)."""
+    """Return the crank's range from the slide's direction (σ = 0, crank of length one)."""
     low, high = offset - coupler, offset + coupler
     turns = (low <= -1.0) & (high >= 1.0)
     bottom, top = np.arcsin(np.clip(low, -1.0, 1.0)), np.arcsin(np.clip(high, -1.0, 1.0))

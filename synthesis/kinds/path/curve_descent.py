@@ -29,40 +29,40 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 FIRST_DAMPING, DAMPING_DECREASE, DAMPING_INCREASE = 1e-2, 0.2, 5.0
-"""Marquardt's damping: at first, and its factors after an accepted and after a refused step."""
+"""Marquardt's damping: the initial value, and its factors after an accepted and after a refused step."""
 
 MIN_DAMPING, MAX_DAMPING = 1e-12, 1e10
-"""Least damping, and that above which the descent has stalled."""
+"""Minimum damping, and the value above which the descent has stalled."""
 
 MIN_CURVATURE, MIN_TURN_CURVATURE = 1e-14, 1e-12
-"""Added to the diagonals of A and, times the point's weight, of D: an unknown without influence stays where it is. Task
-units: both diagonals are sums of squared distances in them."""
+"""Added to the diagonals of A and, times the point's weight, of D, so that an unknown without influence stays in place.
+Task units: both diagonals are sums of squared distances in them."""
 
 MAX_TURN_STEP, MAX_LOG_STEP = 0.4, 1.0
-"""Greatest change of a crank angle (radians) and of a logarithm in one step: beyond it the linear model fails."""
+"""Maximum change of a crank angle (radians) and of a logarithm in one step: beyond it the linear model fails."""
 
 COST_TOLERANCE = 1e-12
-"""The descent has converged when the relative decrease of the cost is below this in two steps in turn."""
+"""The descent has converged when the relative decrease of the cost is below this in two consecutive steps."""
 
 ZERO_COST = 1e-28
-"""Cost, in squared task sizes, that is rounding alone."""
+"""Cost, in squared task sizes, that consists of rounding alone."""
 
 LENGTH_WEIGHT = 4.0
 """Weight of the relative excess of a length over the longest allowed. It only guides the search: answers are
-checked."""
+verified."""
 
 UNLIMITED_PIVOTS = np.array([[-np.inf, np.inf]] * 4)
-"""Bounds of fixed pivots, shape (4, 2), where nothing is demanded of them."""
+"""Bounds of fixed pivots, shape (4, 2), for problems that do not constrain them."""
 
 UNLIMITED_LENGTH = 1e300
-"""Longest link where none is stated; finite, as the excess is a difference of ratios to it."""
+"""Longest link for problems without a limit; finite, because the excess is a difference of ratios to it."""
 
 PORTION = 5
 """Number of starts that a thread takes at a time: some milliseconds of work."""
 
 CYCLE_CHECKS, MIN_SINE = 48, 0.05
-"""Crank positions a cycle at which a geared fivebar must not jam, and the least sine of its transmission angle there:
-it is not to jam between them either."""
+"""Number of crank positions per cycle at which a geared fivebar must not jam, and the minimum sine of its transmission
+angle there: a margin, so that it does not jam between them either."""
 
 
 class Descent(NamedTuple):
@@ -75,7 +75,7 @@ class Descent(NamedTuple):
 
 @njit(**OPTIONS)
 def _excess(lengths: Real, m: int, x: Real, longest: float) -> float:
-    """Squared excess of links and coupler arm over the longest allowed length, in its shares."""
+    """Return the squared relative excess of links and coupler arm over the longest allowed length."""
     total = 0.0
     for k in range(len(lengths)):
         over = abs(lengths[k]) / longest - 1.0
@@ -89,7 +89,7 @@ def _excess(lengths: Real, m: int, x: Real, longest: float) -> float:
 
 @njit(**OPTIONS)
 def _transmission_sine(x: Real, lengths: Real, sign: float, ratio: float, theta: float) -> float:
-    """Sine of the angle between the couplers of a geared fivebar, at least 0; 0 where it does not close."""
+    """Return the sine of the angle between the couplers of a geared fivebar, at least 0; 0 where it does not close."""
     closes, _, along = place(GEARED_FIVEBAR, x, lengths, sign, ratio, theta)
     if not closes:
         return 0.0
@@ -101,7 +101,7 @@ def _transmission_sine(x: Real, lengths: Real, sign: float, ratio: float, theta:
 
 @njit(**OPTIONS)
 def jams(x: Real, lengths: Real, sign: float, ratio: float, cycle: float) -> bool:
-    """Whether a geared fivebar jams, or nearly does, somewhere in a cycle of its crank (radians)."""
+    """Return whether a geared fivebar jams, or nearly so, somewhere in a cycle of its crank (radians)."""
     for k in range(CYCLE_CHECKS):
         if _transmission_sine(x, lengths, sign, ratio, cycle * k / CYCLE_CHECKS) < MIN_SINE:
             return True
@@ -120,6 +120,7 @@ def _cost(
     weights: Real,
     cycle: float,
 ) -> float:
+    """Return the weighted sum of squared distances at the crank angles; infinite if the linkage does not close."""
     total = 0.0
     if family == GEARED_FIVEBAR and cycle > 0.0 and jams(x, lengths, sign, ratio, cycle):
         return math.inf
@@ -134,8 +135,10 @@ def _cost(
 
 @njit(**OPTIONS)
 def pivots_off(family: int, x: Real, lengths: Real, chart: Real, within: Real, off: Real, slopes: Real) -> float:
-    """Sum of squared distances of the fixed pivots from their limits; ``off`` (4,) gets each coordinate's distance, and
-    ``slopes`` (4, m) its derivatives by the unknowns."""
+    """Return the sum of squared distances of the fixed pivots from their limits.
+
+    ``off`` (4,) receives the signed distance of each coordinate, ``slopes`` (4, m) its derivatives by the unknowns.
+    """
     off[:] = 0.0
     slopes[:] = 0.0
     places = np.empty(4)
@@ -144,6 +147,8 @@ def pivots_off(family: int, x: Real, lengths: Real, chart: Real, within: Real, o
     if family <= FOURBAR:
         cosine, sine = math.cos(x[2]), math.sin(x[2])
         places[2], places[3] = x[0] + lengths[0] * cosine, x[1] + lengths[0] * sine
+        # O4 = O2 + ground · (cos, sin): it moves with O2, with the ground's direction, and with all lengths of the
+        # chart.
         slopes[2, 2], slopes[3, 2] = -lengths[0] * sine, lengths[0] * cosine
         for k in range(4):
             slopes[2, 3 + k], slopes[3, 3 + k] = chart[0, k] * cosine, chart[0, k] * sine
@@ -155,6 +160,7 @@ def pivots_off(family: int, x: Real, lengths: Real, chart: Real, within: Real, o
         known = 4
     slopes[0, 0], slopes[1, 1] = 1.0, 1.0
     total = 0.0
+    # A slider has one fixed pivot, so that only the first two coordinates are known.
     for k in range(known):
         off[k] = min(0.0, places[k] - within[k, 0]) + max(0.0, places[k] - within[k, 1])
         total += off[k] * off[k]
@@ -163,13 +169,13 @@ def pivots_off(family: int, x: Real, lengths: Real, chart: Real, within: Real, o
 
 @njit(**OPTIONS)
 def _first_log(family: int) -> int:
-    """Index of the first unknown that stands for a length."""
+    """Return the index of the first unknown that represents a length."""
     return 4 if family == GEARED_FIVEBAR else 3
 
 
 @njit(**OPTIONS)
 def links_of(family: int) -> int:
-    """Number of unknowns that stand for lengths."""
+    """Return the number of unknowns that represent lengths."""
     return 4 if family <= FOURBAR or family == GEARED_FIVEBAR else 3
 
 
@@ -178,7 +184,7 @@ def _normal_equations(
     family: int, x: Real, lengths: Real, chart: Real, sign: float, ratio: float, theta: Real, points: Complex,
     weights: Real, slopes: Complex, a: Real, g: Real, c: Real, d: Real, h: Real,
 ) -> None:  # fmt: skip
-    """A (its lower triangle), g, and C, D, h of the crank angles, of the points alone."""
+    """Compute A (its lower triangle), g, and the blocks C, D, h of the crank angles, for the points alone."""
     m, n = len(x), len(points)
     a[:] = 0.0
     g[:] = 0.0
@@ -212,6 +218,7 @@ def _add_guides(
         over = abs(lengths[k]) / longest - 1.0
         if over > 0.0:
             for j in range(count):
+                # A chart may give a negative length; the excess is that of its absolute value.
                 s = chart[k, j] * (1.0 if lengths[k] > 0.0 else -1.0) / longest
                 g[logs + j] += guide * over * s
                 for i in range(j + 1):
@@ -229,13 +236,16 @@ def _add_guides(
 def _eliminated(
     a: Real, g: Real, c: Real, d: Real, h: Real, weights: Real, damping: float, work: Real, step: Real
 ) -> bool:
-    """The damped step δx by Schur's complement of the crank angles, into ``step``; False where there is none."""
+    """Compute the damped step δx into ``step`` by Schur's complement of the crank angles; False if the matrix is
+    singular."""
     m, n = len(g), len(h)
     work[:] = a
     for j in range(m):
+        # Marquardt's scaling by the diagonal makes the step independent of the units of the unknowns.
         work[j, j] = a[j, j] * (1.0 + damping) + MIN_CURVATURE
         step[j] = -g[j]
     for i in range(n):
+        # D is diagonal: each crank angle is eliminated by its own scalar equation.
         inverse = 1.0 / (d[i] * (1.0 + damping) + MIN_TURN_CURVATURE * weights[i])
         for j in range(m):
             cij = c[i, j] * inverse
@@ -251,9 +261,9 @@ def _move(
     family: int, x: Real, theta: Real, c: Real, d: Real, h: Real, weights: Real, damping: float, step: Real,
     x_new: Real, theta_new: Real,
 ) -> None:  # fmt: skip
-    """Linkage and crank angles after the step, which is cut to :data:`MAX_LOG_STEP` and :data:`MAX_TURN_STEP`.
+    """Apply the step, limited to :data:`MAX_LOG_STEP` and :data:`MAX_TURN_STEP`, to linkage and crank angles.
 
-    The linkage's step is shortened as a whole, so that it keeps its direction; angles are cut one by one.
+    The linkage's step is shortened as a whole, so that it keeps its direction; angles are limited one by one.
     """
     m, n, logs, count = len(x), len(theta), _first_log(family), links_of(family)
     shrink = 1.0
@@ -267,6 +277,7 @@ def _move(
         turn = -h[i]
         for j in range(m):
             turn -= c[i, j] * step[j]
+        # Back substitution of the eliminated angles, with the linkage's step as it was shortened.
         turn *= shrink / (d[i] * (1.0 + damping) + MIN_TURN_CURVATURE * weights[i])
         theta_new[i] = theta[i] + min(max(turn, -MAX_TURN_STEP), MAX_TURN_STEP)
 
@@ -285,7 +296,7 @@ def _descend(
     within: Real,
     iterations: int,
 ) -> float:
-    """Descend in place; returns the sum of squared distances, infinite where the start does not close."""
+    """Descend in place; return the sum of squared distances, infinite if the start does not close."""
     m, n = len(x), len(points)
     count = links_of(family)
     lengths, chart = np.zeros(4), np.zeros((4, 4))
@@ -295,11 +306,13 @@ def _descend(
     work, step = np.empty((m, m)), np.empty(m)
     x_new, theta_new = np.empty(m), np.empty(n)
     natural(family, x, lengths, chart)
+    # Starts that do not close cannot be improved by Newton-like steps and are given up at once.
     distance: float = _cost(family, x, lengths, sign, ratio, theta, points, weights, cycle)
     if not distance < math.inf:
         return math.inf
     guide = LENGTH_WEIGHT * LENGTH_WEIGHT
     off, off_slopes = np.zeros(4), np.zeros((4, m))
+    # Pivot limits are part of the reported distance, the length penalty only of the cost that guides the descent.
     distance += pivots_off(family, x, lengths, chart, within, off, off_slopes)
     cost = distance + guide * _excess(lengths[:count], m, x, longest)
     damping, idle = FIRST_DAMPING, 0
@@ -310,6 +323,7 @@ def _descend(
         _add_guides(family, x, lengths, chart, longest, off, off_slopes, a, g)
         accepted = False
         while damping < MAX_DAMPING:
+            # More damping makes the matrix positive definite and shortens a refused step.
             if not _eliminated(a, g, c, d, h, weights, damping, work, step):
                 damping *= DAMPING_INCREASE
                 continue
@@ -328,8 +342,10 @@ def _descend(
         x[:] = x_new
         theta[:] = theta_new
         cost, distance = cost_new, distance_new
+        # Decrease damping by less than refused steps increase it: near a toggle the linear model fails again at once.
         damping = max(damping * DAMPING_DECREASE, MIN_DAMPING)
         idle = idle + 1 if gain <= COST_TOLERANCE * cost else 0
+        # One idle step may be a short one after heavy damping; two in a row mean convergence.
         if idle >= 2 or cost <= ZERO_COST:
             break
     return distance
@@ -368,29 +384,29 @@ def descend(
     within: Real | None = None,
     iterations: int = 60,
 ) -> Descent:
-    """Descend from every start to the least sum of squared distances of the points from the curve.
+    """Minimize the sum of squared distances of the points from the curve, from every start.
 
     Parameters
     ----------
     family : int
-        Of :mod:`synthesis.fit.chart`.
+        A family of :mod:`synthesis.fit.chart`.
     x, sign, theta : float, shapes (n, m), (n,), (n, points)
-        Starts: unknowns, assembly signs, crank angles at the points.
+        Starts: unknowns, assembly signs, crank angles at the points, radians.
     points : complex, shape (points,)
         In task sizes.
     ratio : float
         Gear ratio, for geared fivebars.
     weights : float, shape (points,), optional
-        Of the squared distances.
+        Weights of the squared distances.
     longest : float
-        Longest link; what is longer adds to the cost by :data:`LENGTH_WEIGHT`.
+        Longest link; the excess of longer ones adds to the cost by :data:`LENGTH_WEIGHT`.
     cycle : float
-        For geared fivebars: the crank's full cycle, over which it must not jam; 0 where it need not go round.
+        For geared fivebars: the crank's full cycle, over which it must not jam; 0 if it need not turn through.
     within : float, shape (4, 2), optional
-        Least and greatest x and y of O2, then of the other fixed pivot. The distance from these bounds is a residual
+        Minimum and maximum x and y of O2, then of the other fixed pivot. The distance from these bounds is a residual
         like that of a point, so that a cost of zero means that they hold. Slider-cranks do not use the last two rows.
     iterations : int
-        Greatest number of accepted steps.
+        Maximum number of accepted steps.
     """
     x, theta = np.array(x, np.float64), np.array(theta, np.float64)
     w = np.ones(len(points)) if weights is None else np.ascontiguousarray(weights, np.float64)

@@ -1,4 +1,4 @@
-"""The families of fourbars whose curves are compared with a path, and how a member of one stands."""
+"""Families of fourbars whose curves are compared with a path, and the joints of a member."""
 
 from __future__ import annotations
 
@@ -16,19 +16,21 @@ Real = NDArray[np.float64]
 
 
 def families_of(problem: PathProblem) -> list[int]:
-    """The families that may hold an answer."""
+    """Return the families of :mod:`synthesis.fit.chart` that may contain an answer."""
     grashof = problem.constraints.grashof
     if grashof == "crank_rocker":
         return [CRANK_ROCKER]
     if grashof == "double_crank":
         return [DOUBLE_CRANK]
     if problem.closed or problem.constraints.full_rotation:
+        # Only these families have an input that turns through, which a closed curve requires.
         return [CRANK_ROCKER, DOUBLE_CRANK]
     return [FOURBAR] if grashof in ("double_rocker", "non_grashof") else [CRANK_ROCKER, FOURBAR]
 
 
 def joints_of(family: int, x: Real, sign: float, theta: float) -> tuple[bool, FourbarConfiguration]:
-    """Whether a member closes, away from a toggle, where the crank stands at ``theta``; and its joints there."""
+    """Return whether a member closes, away from a toggle, with its crank at ``theta`` (radians); and its joints
+    there."""
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     natural(family, x, lengths, chart)
     closes, p, unit = place(family, x, lengths, sign, 0.0, theta)

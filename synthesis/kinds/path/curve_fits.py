@@ -1,11 +1,12 @@
-"""Fits of a whole curve: what a linkage misses, its cognates as fits of the same curve, and fits under demands.
+"""Fits of a whole curve: their errors, their cognates as fits of the same curve, and fits under constraints.
 
-Demands steer from the start. A fit that breaks one is brought into it by multipliers, from several sides:
+Constraints guide the search from the start. A fit that violates one is led to satisfy it by multipliers, from several
+starting points:
 
 * from every free fit and its cognates, which draw the same curve with other pivots, links and transmission angles:
-  where one of them keeps all demands, these cost nothing;
-* from members of the shape library that keep what their shape alone decides, by descents under the demands at once;
-* along the demand on the transmission angle, which is raised in steps from what the free fit has.
+  if one of them satisfies all constraints, these cost nothing;
+* from members of the shape library that satisfy the constraints on shape alone, by constrained descents;
+* along the constraint on the transmission angle, which is raised in steps from the value of the free fit.
 """
 
 from __future__ import annotations
@@ -34,34 +35,37 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 CURVE_SAMPLES = 121
-"""Places on a fit's curve at which excursions between the points are looked for."""
+"""Number of places on a fit's curve at which excursions between the points are measured."""
 
 THINNED = 120
-"""More points than this are thinned where demands are met, and all of them taken for the fits that are offered."""
+"""Maximum number of points used in constrained descents; denser targets are thinned, and the final fits use all
+points."""
 
 SAME_FIT = 1e-4
-"""Fits whose joints agree to this share of the curve's size are one."""
+"""Fits whose joints agree to this share of the curve's size are duplicates."""
 
 MAX_HELD = 20
-"""Fits and cognates of them that are brought under demands: of all the least in error and violation together."""
+"""Maximum number of fits and cognates that are led to satisfy the constraints: those with the least error and
+violation."""
 
 COSTS_NOTHING, MAX_EASY = 1.001, 7
-"""Where the nearest fit that keeps all demands is within the first factor of the nearest without them, so many others
-are brought under the demands, for choice among them."""
+"""If the nearest feasible fit is within the first factor of the nearest free one, only the second number of others is
+led to satisfy the constraints, to offer a choice."""
 
 MAX_SOFT, SOFT_STEPS = 12, 30
-"""Ends of descents from the shape library under demands that are brought to keep them; steps of these descents."""
+"""Maximum number of ends of soft descents from the shape library that are led to satisfy all constraints, and the
+number of steps of these descents."""
 
 LADDER = (0.34, 0.67)
-"""Shares of a demanded transmission angle that fits are brought to on the way there."""
+"""Shares of a required transmission angle at which fits stop on their way to it."""
 
 MAX_CLIMBING = 6
-"""Free fits, the nearest, that climb the ladder."""
+"""Maximum number of free fits, the nearest, that climb the ladder."""
 
 
 class Fit(NamedTuple):
-    """A linkage fitted to a target: family, unknowns (m,), assembly, crank angles at all fitted points, and its error
-    in the target's unit, what goes astray between the points included."""
+    """A linkage fitted to a target: family, unknowns (m,), assembly, crank angles at all fitted points (radians), and
+    its error in the target's unit, excursions between the points included."""
 
     family: int
     x: Real
@@ -71,15 +75,16 @@ class Fit(NamedTuple):
 
 
 def thinning(target: Target) -> slice:
-    """The fitted points that are looked at first: all, unless they are many."""
+    """Return the slice of fitted points used first: all, unless they are many."""
     return slice(None, None, math.ceil(len(target.fitted) / THINNED))
 
 
 def fit_of(target: Target, family: int, x: Real, sign: float, theta: Real) -> Fit:
-    """A fit with its error at the target's own points and between them."""
+    """Build a fit and compute its error at the target's own points and between them."""
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     natural(family, x, lengths, chart)
     count = len(target.points)
+    # The first ``count`` angles belong to the target's own points; the fill points in between carry no error.
     end = theta[0] + 2.0 * math.pi if target.closed else theta[count - 1]
     at = np.concatenate([theta[:count], np.linspace(theta[0], end, CURVE_SAMPLES)])
     places, along = np.empty(len(at), np.complex128), np.empty(len(at), np.complex128)
@@ -91,17 +96,18 @@ def fit_of(target: Target, family: int, x: Real, sign: float, theta: Real) -> Fi
 
 
 def configuration(fit: Fit) -> FourbarConfiguration:
-    """The joints at the first point, in the target's unit."""
+    """Return the joints at the first point, in the target's unit."""
     return joints_of(fit.family, fit.x, fit.sign, float(fit.theta[0]))[1]
 
 
 def that_differ(fits: list[Fit], count: int) -> list[Fit]:
-    """The first fits, at most ``count``, that differ in some joint."""
+    """Return the first fits, at most ``count``, that differ in some joint."""
     return [fits[k] for k in distinct([configuration(fit) for fit in fits], count, SAME_FIT)]
 
 
 def with_cognates(joints: FourbarConfiguration) -> list[FourbarConfiguration]:
-    """A fourbar and its two cognates (Roberts), each with either fixed pivot as the input's, in one configuration.
+    """Return a fourbar and its two cognates (Roberts), each with either fixed pivot as the input's, in one
+    configuration.
 
     With ζ = (P − A)/(B − A) the third pivot is O2 + ζ (O4 − O2), and O2 A P A′ is a parallelogram (Norton, Sec. 3.7).
     """
@@ -109,10 +115,11 @@ def with_cognates(joints: FourbarConfiguration) -> list[FourbarConfiguration]:
 
 
 def _cognates(o2: Any, a: Any, b: Any, o4: Any, p: Any) -> list[tuple[Any, ...]]:
-    """The same for joints in one configuration or several, as arrays."""
+    """Return the cognates of joints in one configuration, or in several as arrays."""
     cognates = []
     for start, pin, other, far in ((o2, a, b, o4), (o4, b, a, o2)):
         cognates.append((start, pin, other, far, p))
+        # With P on a pin of the coupler two cognates collapse.
         if np.any(np.abs(p - pin) == 0.0) or np.any(np.abs(other - pin) == 0.0):
             continue
         zeta = (p - pin) / (other - pin)
@@ -125,7 +132,7 @@ def _cognates(o2: Any, a: Any, b: Any, o4: Any, p: Any) -> list[tuple[Any, ...]]
 
 
 def cognate_fits(fit: Fit, families: Iterable[int]) -> list[Fit]:
-    """The cognates of a fit, from either pivot, that belong to one of the families; they have its error."""
+    """Return the cognates of a fit, from either pivot, that belong to one of the families; they share its error."""
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     natural(fit.family, fit.x, lengths, chart)
     p, along = np.empty(len(fit.theta), np.complex128), np.empty(len(fit.theta), np.complex128)
@@ -143,9 +150,9 @@ def cognate_fits(fit: Fit, families: Iterable[int]) -> list[Fit]:
 
 
 def _charted(joints: tuple[Complex, ...], families: Iterable[int], error: float) -> Fit | None:
-    """A linkage in configurations along a curve, shape (points,) each joint, as a fit; None where it is of no family.
+    """Express a linkage, given by its joints along a curve, shape (points,) each, as a fit.
 
-    It must keep its assembly all along.
+    Returns None if it belongs to none of the families, or changes its assembly along the curve.
     """
     o2, a, b, o4, p = joints
     lengths = np.abs(np.array([o4[0] - o2[0], a[0] - o2[0], b[0] - a[0], b[0] - o4[0]]))
@@ -156,6 +163,7 @@ def _charted(joints: tuple[Complex, ...], families: Iterable[int], error: float)
     x[0], x[1], x[2] = o2[0].real, o2[0].imag, np.angle(o4[0] - o2[0])
     at = (p[0] - a[0]) * np.exp(-1j * np.angle(b[0] - a[0]))
     x[POINT], x[POINT + 1] = at.real, at.imag
+    # The families of Grashof linkages are numbered by their shortest link; FOURBAR covers the rest.
     shortest = int(np.argmin(lengths))
     for family in families:
         if family not in (shortest, FOURBAR) or not from_lengths(lengths, family, 0.0, x):
@@ -172,26 +180,28 @@ def fits_within(
     setting: Real,
     count: int,
 ) -> list[Fit]:
-    """Fits that keep all demands, the nearest first, at most ``count`` of them that differ.
+    """Find fits that satisfy all constraints: at most ``count`` distinct ones, the nearest first.
 
     Parameters
     ----------
     target : Target
-        What is drawn.
+        The curve to draw.
     free : list of Fit
-        Fits without the demands, the nearest first.
+        Fits without the constraints, the nearest first.
     starts : callable
-        Gives members of the shape library from which descents go under the demands; asked where these cost accuracy.
+        Returns members of the shape library as starts of constrained descents; called if constraints cost accuracy.
     families : list of int
-        To which an answer may belong.
+        Families to which an answer may belong.
     setting : float
-        The demands: :func:`synthesis.kinds.path.curve_limits.curve_setting`.
+        The constraints: :func:`synthesis.kinds.path.curve_limits.curve_setting`.
     count : int
-        How many are wanted.
+        Maximum number of fits.
     """
+    # Cognates share the curve and its error but have other pivots, lengths and transmission angles.
     variants = [one for fit in free for one in (fit, *cognate_fits(fit, families))]
     lost = np.array([broken(one.family, one.x, one.theta, one.sign, setting) for one in variants])
     kept = [one for one, much in zip(variants, lost, strict=True) if much == 0.0]
+    # Error and violation are both in the target's unit; a fit that needs little change is the best start.
     order = np.argsort([math.hypot(one.error, much) for one, much in zip(variants, lost, strict=True)], kind="stable")
     near = that_differ([variants[k] for k in order if lost[k] > 0.0], MAX_HELD)
     if kept and min(fit.error for fit in kept) <= COSTS_NOTHING * free[0].error:
@@ -201,6 +211,8 @@ def fits_within(
     held: list[Fit | None] = [None] * len(near)
     climbing = set()
     if math.isfinite(setting[COSINE]):
+        # Only a required transmission angle can be raised in steps, and only the nearest fits are worth the extra
+        # descents.
         climbing = set(np.argsort([one.error for one in near], kind="stable")[:MAX_CLIMBING].tolist())
 
     def work(some: slice) -> None:
@@ -211,27 +223,29 @@ def fits_within(
     found = [*kept, *(fit for fit in held if fit is not None)]
     chosen = that_differ(sorted(found, key=lambda fit: fit.error), count)
     if thinning(target).step > 1:
+        # Free fits already used all points.
         whole = {id(fit) for fit in kept}
         chosen = [fit if id(fit) in whole else _polished(target, fit, setting) for fit in chosen]
     return chosen
 
 
 def _polished(target: Target, fit: Fit, setting: Real) -> Fit:
-    """A fit to a part of the points that keeps demands, brought to all points."""
+    """Refit a constrained fit of thinned points to all points; keep it if that fails."""
     return held_fit(target, fit, setting, thin=slice(None)) or fit
 
 
 def held_fit(
     target: Target, fit: Fit, setting: Real, *, climbing: bool = False, thin: slice | None = None
 ) -> Fit | None:
-    """The fit nearest to one that keeps all demands; None where none was reached.
+    """Find the fit nearest to one that satisfies all constraints; return None if the descent fails.
 
-    ``climbing``: it is brought to parts of the demanded transmission angle first; ``thin`` tells which of the points
-    are fitted, by default those of :func:`thinning`.
+    ``climbing``: pass through parts of the required transmission angle first. ``thin``: the slice of points to fit, by
+    default that of :func:`thinning`.
     """
     part = thinning(target) if thin is None else thin
     x, theta = fit.x, fit.theta[part]
     angle = math.acos(min(setting[COSINE], 1.0)) if climbing else 0.0
+    # Large angles are hard to reach in one descent: the multipliers would grow before the linkage has moved.
     for share in (*(LADDER if climbing else ()), 1.0):
         demanded = setting.copy()
         if share < 1.0:
@@ -244,19 +258,20 @@ def held_fit(
 
 
 def at_all_points(target: Target, theta: Real, part: slice | NDArray[np.int64]) -> Real:
-    """Crank angles at all fitted points, from those at a part of them."""
+    """Interpolate crank angles at all fitted points from those at a part of them."""
     every = np.arange(len(target.fitted))
     at = every[part]
     if len(at) == len(every):
         return theta
     if target.closed:
+        # Close the cycle, so that angles behind the last thinned point are interpolated too.
         theta = np.append(theta, theta[0] + math.copysign(2.0 * math.pi, theta[-1] - theta[0]))
         at = np.append(at, len(every))
     return np.interp(every, at, theta)
 
 
 def _softly(target: Target, starts: list[Starts], setting: Real) -> list[Fit]:
-    """Fits at equal steps along the target from the shape library, the demands weighing in from the first step."""
+    """Fit at equal steps along the target from the shape library, with constraints as penalties from the first step."""
     found: list[tuple[float, Fit]] = []
     for some in starts:
         if not len(some.x):

@@ -1,8 +1,8 @@
-"""Least squares of a traced curve under a problem's demands: the fit of points, each at its own crank angle.
+"""Least squares of a traced curve under a problem's constraints: each point is fitted at its own crank angle.
 
 A curve's points are fitted like any others (:mod:`synthesis.kinds.path.point_rows`), unordered and weighted, each at
-the nearest place on the curve, so that the demands of :mod:`synthesis.fit.demands` steer them by multipliers as they
-steer fits of points. The start is the fit without demands.
+the nearest place on the curve, so that multipliers enforce the constraints of :mod:`synthesis.fit.demands` as they do
+in fits of points. The start is the fit without constraints.
 """
 
 from __future__ import annotations
@@ -54,33 +54,36 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 LENGTH_TOLERANCE = 1e-9
-"""Relative excess of a length that is rounding: cognates repeat a curve to some roundings."""
+"""Relative excess of a length that is rounding: cognates repeat a curve only up to a few roundings."""
 
 SOFT_WEIGHT, SOFT_TOLERANCE = 10.0, 1e-4
-"""Weight of demands, in the target's unit, in descents from the shape library, and the tolerance of these."""
+"""Weight of constraints, in the target's unit, in descents from the shape library, and the tolerance of these
+descents."""
 
 PORTION = 4
 """Number of such descents that a thread takes at a time."""
 
 
 def curve_setting(problem: PathProblem, centre: complex, size: float) -> Real:
-    """A problem's demands on curves, in the target's unit about its centre, for any family and assembly.
+    """Return a problem's constraints on curves, in the target's unit about its centre, for any family and assembly.
 
-    What keeps fits of points away from very short links and from change points is left out: it is no demand.
+    The margins that keep fits of points away from very short links and change points are left out: they are no
+    constraints.
     """
     setting = setting_of(problem, centre, size, sign=1.0, family=FOURBAR)
     lengths = problem.constraints.link_length
     setting[LINKS] = 0.0 if lengths is None else lengths.min / size * (1.0 + LIMIT_MARGIN)
     setting[LINKS + 1] = problem.longest_link / size * (1.0 - LIMIT_MARGIN)
+    # A curve has no timing, and its nearest places follow in order by themselves.
     setting[CHANGE_POINT] = setting[TIMED] = setting[ORDERED] = 0.0
     setting[WHOLE] = problem.closed or problem.constraints.full_rotation
     return setting
 
 
 def pivot_limits(problem: PathProblem, centre: complex, size: float) -> Real:
-    """Least and greatest x and y of O2, then of the other fixed pivot, shape (4, 2), in the task's unit.
+    """Return the minimum and maximum x and y of O2, then of the other fixed pivot, shape (4, 2), in the task's unit.
 
-    Where a coordinate is given both are it.
+    A given coordinate has equal bounds.
     """
     setting = setting_of(problem, centre, size, sign=1.0, family=FOURBAR)
     within = setting[BOXES : BOXES + 8].reshape(4, 2)
@@ -89,7 +92,7 @@ def pivot_limits(problem: PathProblem, centre: complex, size: float) -> Real:
 
 
 def usable(setting: Real, degrees: float, ratio: float) -> Real:
-    """The same with a least transmission angle and a greatest link ratio."""
+    """Return a copy of the setting with a minimum transmission angle (degrees) and a maximum link ratio."""
     stated = setting.copy()
     stated[COSINE] = math.cos(math.radians(degrees))
     stated[RATIO] = min(stated[RATIO], ratio)
@@ -97,7 +100,7 @@ def usable(setting: Real, degrees: float, ratio: float) -> Real:
 
 
 def bounds_places(setting: Real) -> bool:
-    """Whether it matters to the demands where a linkage stands, and how large it is, beyond its longest link."""
+    """Return whether the constraints depend on where a linkage stands and how large it is, beyond its longest link."""
     boxes = np.concatenate(
         [setting[BOXES : BOXES + 8], setting[MOVING : MOVING + 4], setting[POINT_BOX : POINT_BOX + 4]]
     )
@@ -105,7 +108,8 @@ def bounds_places(setting: Real) -> bool:
 
 
 def lengths_kept(setting: Real, links: tuple[float, float, float, float]) -> bool:
-    """Whether lengths, in the target's unit, are within their limits."""
+    """Return whether lengths, in the target's unit, are within their limits."""
+    # Both bounds may be off by a rounding, hence twice the tolerance.
     slack = 1.0 + 2.0 * LENGTH_TOLERANCE
     short, long = min(links), max(links)
     least, most, ratio = setting[LINKS], setting[LINKS + 1], setting[RATIO]
@@ -113,7 +117,7 @@ def lengths_kept(setting: Real, links: tuple[float, float, float, float]) -> boo
 
 
 class Held(NamedTuple):
-    """A fit that keeps all demands: unknowns (m,), crank angles (points,), and its weighted sum of squares."""
+    """A fit that satisfies all constraints: unknowns (m,), crank angles (points,), and its weighted sum of squares."""
 
     x: Real
     theta: Real
@@ -123,24 +127,25 @@ class Held(NamedTuple):
 def descend_within(
     family: int, x: Real, theta: Real, sign: float, points: Complex, weights: Real, setting: Real
 ) -> Held | None:
-    """The fit nearest to a given one that keeps all demands; None where none was reached.
+    """Find the fit nearest to a given one that satisfies all constraints; return None if the descent fails.
 
     Parameters
     ----------
     family : int
         A family of fourbars.
     x, theta : float, shapes (m,), (points,)
-        The fit to begin with, and its crank angles at the points.
+        The fit to start from, and its crank angles at the points, radians.
     sign : float
         Assembly.
     points, weights : complex and float, shape (points,)
-        What is fitted, in the target's unit.
+        The points to fit, in the target's unit, and their weights.
     setting : float
         See :func:`curve_setting`.
     """
     demanded = _demanded(family, sign, setting)
     n, x = len(points), np.array(x)
     state = np.zeros(3 * n + limits_of(demanded))
+    # The residuals measure crank angles from the ground line, which x[2] turns.
     state[:n] = theta - x[2]
     status, cost = held(x, _rows(points, weights), demanded, state)
     if status in (Status.IMPOSSIBLE, Status.INFEASIBLE):
@@ -151,11 +156,13 @@ def descend_within(
 def descend_softly(
     family: int, x: Real, theta: Real, sign: Real, points: Complex, setting: Real, steps: int
 ) -> Descent:
-    """Ends of some steps from every start, shapes (n, m), (n, points), (n,), with demands as weighted residuals."""
+    """Descend a few steps from every start with constraints as weighted residuals; return the ends, shapes (n, m), (n,
+    points), (n,)."""
     n, limits = len(points), limits_of(setting)
     starts, states = np.array(x), np.zeros((len(x), 3 * n + limits))
     states[:, :n] = theta - starts[:, 2, None]
     multipliers = np.zeros(limits + 1)
+    # All multipliers stay 0: the constraints act only through their penalty weight, the last entry.
     multipliers[limits] = SOFT_WEIGHT
     costs, statuses = np.full(len(x), math.inf), np.zeros(len(x), np.int64)
     rows, most = _rows(points, np.ones(n)), 2 * n + limits
@@ -174,23 +181,24 @@ def descend_softly(
 
 
 def broken(family: int, x: Real, theta: Real, sign: float, setting: Real) -> float:
-    """By how much a fit breaks the demand that it breaks most, in the units of margins; 0 where it keeps all.
+    """Return the largest violation of any constraint by a fit, in the units of margins; 0 if it satisfies all.
 
-    The order of points is one of them: what counts is the crank's greatest step back, or what it turns beyond a turn.
+    The order of points is one of them: its violation is the crank's largest step back, or its excess over a full turn.
     """
     worst = float(all_broken(family, x[None], theta[None], np.array([sign]), setting)[0])
     if setting[ORDERED] > 0.0 and len(theta) > 1:
         steps = np.diff(theta) * math.copysign(1.0, theta[-1] - theta[0])
         worst = max(worst, -float(steps.min()), abs(float(theta[-1] - theta[0])) - 2.0 * math.pi)
+    # Limits were tightened by this margin, so that a smaller violation still satisfies the client's limits.
     return worst if worst > LIMIT_MARGIN else 0.0
 
 
 @njit(cache=True, nogil=True)
 def all_broken(family: int, x: Real, theta: Real, sign: Real, setting: Real) -> Real:
-    """By how much each of many linkages, shape (n, m), breaks the demand that it breaks most, but for the order.
+    """Return the largest constraint violation of each of many linkages, shape (n, m), except for the order of points.
 
-    ``theta``, shape (n, points), are crank angles at the points; a linkage that does not close there breaks none by its
-    moving pivots. One that does not close on its way keeps no room.
+    ``theta``, shape (n, points), are crank angles at the points; a linkage that does not close there violates nothing
+    by its moving pivots. One that does not close over its range violates the workspace infinitely.
     """
     lengths, slopes, still = np.empty(4), np.empty((4, 4)), np.zeros(x.shape[1])
     values, gradients = np.empty(LIMITS), np.empty((LIMITS, x.shape[1]))
@@ -206,6 +214,7 @@ def all_broken(family: int, x: Real, theta: Real, sign: Real, setting: Real) -> 
         margins(x[i], lengths, slopes, ends, still, stated, values, gradients)
         for k in range(LIMITS):
             if values[k] < np.inf:
+                # The last margins are equations, violated on both sides; the others only where they are negative.
                 worst[i] = max(worst[i], abs(values[k]) if k >= LIMITS - EQUATIONS else -values[k])
         if roomy > 0:
             turns_through = setting[WHOLE] > 0.0
@@ -215,11 +224,12 @@ def all_broken(family: int, x: Real, theta: Real, sign: Real, setting: Real) -> 
 
 
 def shapes_kept(family: int, x: Real, setting: Real) -> NDArray[np.bool_]:
-    """Which of many linkages (n, m), of any size and place, keep the demands that their shape alone decides.
+    """Return which of many linkages (n, m), of any size and place, satisfy the constraints that depend on shape alone.
 
-    These are the link ratio and, where the crank turns through, the transmission angle.
+    These are the link ratio and, if the crank turns through, the transmission angle.
     """
     shape = np.full(SETTING, math.inf)
+    # Infinite limits switch off everything that depends on size and place.
     shape[FAMILY], shape[SIGN], shape[WHOLE], shape[LINKS] = family, 1.0, setting[WHOLE], 0.0
     shape[CHANGE_POINT], shape[GIVEN : GIVEN + 4] = 0.0, math.nan
     shape[RATIO] = setting[RATIO]
@@ -230,6 +240,7 @@ def shapes_kept(family: int, x: Real, setting: Real) -> NDArray[np.bool_]:
 
 @njit(cache=True, nogil=True)
 def _all_kept(family: int, x: Real, setting: Real) -> NDArray[np.bool_]:
+    """Return the mask (n,) of linkages whose margins are all non-negative."""
     lengths, slopes = np.empty(4), np.empty((4, 4))
     values, gradients = np.empty(LIMITS), np.empty((LIMITS, x.shape[1]))
     kept, still = np.empty(len(x), np.bool_), np.zeros(x.shape[1])
@@ -241,7 +252,10 @@ def _all_kept(family: int, x: Real, setting: Real) -> NDArray[np.bool_]:
 
 
 def _demanded(family: int, sign: float, setting: Real) -> Real:
-    """Demands of one family and assembly; fits under them run to change points, where no crank would turn through."""
+    """Return the constraints of one family and assembly, with a minimum distance from change points.
+
+    Constrained fits run to change points, at which no crank would turn through.
+    """
     demanded = setting.copy()
     demanded[FAMILY], demanded[SIGN], demanded[CHANGE_POINT] = family, sign, MIN_GRASHOF
     return demanded

@@ -2,15 +2,15 @@
 
 1. *Shape.* Some ten thousand linkages are drawn, and their curves compared with the target with position, size and
    rotation removed (:mod:`synthesis.kinds.path.curve_shapes`).
-2. *Refinement.* The most alike, placed on the target, go to least squares of the true distance
-   (:mod:`synthesis.kinds.path.curve_descent`), at first at equal steps along the target, then at its own points.
-3. *Limits.* Where a demand is broken the descent is repeated under it (:mod:`synthesis.kinds.path.curve_limits`).
+2. *Refinement.* The most similar ones, placed on the target, go to least squares of the true distance
+   (:mod:`synthesis.kinds.path.curve_descent`), first at equal steps along the target, then at its own points.
+3. *Limits.* If a constraint is violated the descent is repeated under it (:mod:`synthesis.kinds.path.curve_limits`).
 4. Every linkage is offered with its cognates, which draw the same curve, from either fixed pivot, and verified.
 
-Where fixed pivots are given the shape alone says little, as size and place are not free: linkages are then fitted to
-points along the target, from many starts (:mod:`synthesis.kinds.path.point_fit`), and verified as the others.
+If fixed pivots are given the shape alone says little, because size and place are not free: linkages are then fitted to
+points along the target, from many starts (:mod:`synthesis.kinds.path.point_fit`), and verified like the others.
 
-A closed curve is to be drawn by a crank that turns through; the families of linkages are written so that it does. A
+A closed curve must be drawn by a crank that turns through; the families of linkages are parametrized so that it does. A
 stroke may be drawn by any link, between its toggles.
 """
 
@@ -84,42 +84,44 @@ DRAWN = {
     (DOUBLE_CRANK, False): 4096,
     (FOURBAR, False): 8192,
 }
-"""Linkages drawn, by family and whether the target is closed; an open one is compared with 216 windows of each."""
+"""Number of linkages drawn, by family and whether the target is closed; an open one is compared with 216 windows of
+each."""
 
 MAX_FOLLOWED = 150
-"""Starts of a family that are refined at equal steps along the target."""
+"""Maximum number of starts of a family that are refined at equal steps along the target."""
 
 MAX_REFINED = 20
-"""Of these, the best that are refined at the target's own points."""
+"""Maximum number of these, the best, that are refined at the target's own points."""
 
 ROUGH_STEPS, FINE_STEPS = 30, 300
-"""Steps of these refinements at most."""
+"""Maximum number of steps of these two refinements."""
 
 ALL = 60
-"""Where points were thinned at first: steps with all of them at most."""
+"""Maximum number of steps with all points, after a refinement with thinned ones."""
 
 MAX_COST_RATIO, SHAPE_ERROR = 100.0, 1e-3
-"""Linkages whose sum of squares at equal steps is this many times the least are given up; below the second, a share of
-the size at every point, that sum says nothing, as the steps lie on straight lines between the points."""
+"""Linkages whose sum of squares at equal steps exceeds the minimum by this factor are dropped. Below the second number,
+a share of the size at every point, the sum is not decisive, because the steps lie on straight lines between the points.
+"""
 
 MAX_FREE = 14
-"""Refined linkages of a family, all different, that go on."""
+"""Maximum number of distinct refined linkages of a family that go on."""
 
 MAX_SUITED = 60
-"""Linkages of a family that keep what their shape decides of the demands, and are fitted under these at once."""
+"""Maximum number of linkages of a family that satisfy the constraints on shape and start constrained fits."""
 
 USABLE, MAX_USABLE = (20.0, 30.0, 40.0), 3
-"""Transmission angles, degrees, with which designs are offered beside the nearest where none is demanded, and how many
-with each: fits tend to change points, where it vanishes."""
+"""Transmission angles, degrees, for which designs are offered next to the nearest one if none is required, and the
+maximum number with each: free fits tend to change points, where the transmission angle vanishes."""
 
 MAX_OFFERED = 10
-"""Linkages, each with its cognates, that are verified."""
+"""Maximum number of linkages, each with its cognates, that are verified."""
 
 SAME_DESIGN = 1e-4
-"""Designs whose joints agree to this share of the curve's size are one and the same: fits of different accuracy."""
+"""Designs whose joints agree to this share of the curve's size are duplicates: fits of different accuracy."""
 
 MIN_LINK = 1e-7
-"""Links shorter than this share of the curve's size are no links."""
+"""Linkages with a link shorter than this share of the curve's size are degenerate."""
 
 
 def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
@@ -132,6 +134,7 @@ def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
         reported(linkages, progress, (0.8, 1.0), "{done} of {all} linkages verified"),
         partial(_verified, problem, target, setting),
     )
+    # Sound but inaccurate designs are counted as rejected instead of silently dropped.
     sifting.withdraw(near_the_nearest(sifting.passed, problem), FAR)
     progress(1.0, "verified")
     return PathResult(
@@ -146,7 +149,8 @@ def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
 
 
 def fitted_by_shape(problem: PathProblem, progress: Progress) -> list[FourbarConfiguration]:
-    """Linkages whose whole curves are near the course of a problem's points, cognates included; not yet driven."""
+    """Return linkages whose whole curves are near the course of a problem's points, cognates included; not yet
+    driven."""
     target = Target(problem)
     setting = curve_setting(problem, target.centre, target.size)
     linkages, _ = _drawing(problem, target, setting, progress)
@@ -156,10 +160,10 @@ def fitted_by_shape(problem: PathProblem, progress: Progress) -> list[FourbarCon
 def stanced_by_points(
     problem: PathProblem, candidates: Sequence[Candidate], task: PointTask
 ) -> list[FourbarConfiguration]:
-    """Fits of a problem's points brought to its stance, in the problem's coordinates; not yet driven."""
+    """Lead fits of a problem's points to its stance; return them in the problem's coordinates, not yet driven."""
     target = Target(problem)
     if len(target.points) < len(problem.points):
-        return []  # the first point once more as the last: fits of the whole curve take that for one
+        return []  # the last point repeats the first, and fits of a whole curve merge the two
     begun = [as_fit(candidate, task, target) for candidate in candidates]
     setting = curve_setting(problem, target.centre, target.size)
     ended = fits_in_stance(problem, target, begun, families_of(problem), setting)
@@ -169,8 +173,9 @@ def stanced_by_points(
 def _drawing(
     problem: PathProblem, target: Target, setting: Real, progress: Progress
 ) -> tuple[list[FourbarConfiguration], CurveSweep | None]:
-    """Linkages that are to be driven, in the target's unit, and what was compared for them."""
+    """Return the linkages to be driven, in the target's unit, and the account of the curves compared for them."""
     sought = searched(problem)
+    # Given pivots fix place and size, which the comparison of shapes ignores: fit points instead.
     if sought.fixed_pivots.given():
         return _at_given_pivots(sought, target, progress), None
     candidates, sweep = _alike(problem, target, setting, progress)
@@ -178,12 +183,12 @@ def _drawing(
 
 
 def _in_place(target: Target, joints: FourbarConfiguration) -> FourbarConfiguration:
-    """A linkage in the problem's coordinates."""
+    """Return a linkage in the problem's coordinates."""
     return FourbarConfiguration(*(target.centre + target.size * joint for joint in joints))
 
 
 def _alike(problem: PathProblem, target: Target, setting: Real, progress: Progress) -> tuple[list[Fit], CurveSweep]:
-    """The linkages in the running of those whose curves have the target's shape."""
+    """Find the linkages whose curves have the target's shape and whose error is near the minimum."""
     families = families_of(problem)
     longest = float(setting[LINKS + 1])
     free: list[Fit] = []
@@ -194,6 +199,7 @@ def _alike(problem: PathProblem, target: Target, setting: Real, progress: Progre
         count = DRAWN[family, problem.closed]
 
         def told(share: float, n: int = n, count: int = count) -> None:
+            # Comparing takes about 70 % of a family's time, refinement the rest.
             fraction = (n + 0.7 * share) / len(families)
             progress(0.6 * fraction, f"{round(count * share)} of {count} linkages compared")
 
@@ -216,12 +222,15 @@ def _alike(problem: PathProblem, target: Target, setting: Real, progress: Progre
                 def lost(x: Real, theta: Real, sign: Real, family: int = one.family) -> Real:
                     return all_broken(family, x, theta, sign, zoned(demands))
 
+                # Shapes that are less similar may lie where the constraints on place require them.
                 chosen.append(most_alike(one, MAX_SUITED, longest, kept, lost))
         return chosen
 
     asked = fits_within(target, free, partial(suited, setting), families, setting, MAX_OFFERED)
     traded: list[Fit] = []
     if problem.rank_by != "accuracy" and not math.isfinite(setting[COSINE]):
+        # Without a required transmission angle accuracy alone would lead to change points, so usable linkages compete
+        # as well.
         for k, degrees in enumerate(USABLE):
             progress(0.65 + 0.1 * k / len(USABLE), f"fitting with a transmission angle of {degrees:g}°")
             demands = usable(setting, degrees, MOST_UNEVEN)
@@ -236,10 +245,10 @@ def _alike(problem: PathProblem, target: Target, setting: Real, progress: Progre
 
 
 def _at_given_pivots(problem: PathProblem, target: Target, progress: Progress) -> list[FourbarConfiguration]:
-    """Linkages with fixed pivots where they are demanded, fitted to points along the target; in the target's unit.
+    """Fit linkages with given fixed pivots to points along the target; return them in the target's unit.
 
-    They are fitted to the target's own points, and where these are not many to equal steps too: between points that lie
-    far apart the nearest linkages may go far astray.
+    They are fitted to the target's own points and, if these are few, to equal steps too: between distant points the
+    nearest linkages may stray far.
     """
     lengths = problem.constraints.link_length or LengthLimits()
     demands = problem.constraints.model_copy(
@@ -257,6 +266,7 @@ def _at_given_pivots(problem: PathProblem, target: Target, progress: Progress) -
             joints = configuration_of(candidate, task)
             if joints is not None:
                 linkages.append(FourbarConfiguration(*((joint - target.centre) / target.size for joint in joints)))
+                # Only fits at the target's own points have crank angles there, as the stance needs.
                 begun += [as_fit(candidate, task, target)] if along is target.points else []
     if problem.stance is not None:
         setting = curve_setting(problem, target.centre, target.size)
@@ -267,7 +277,7 @@ def _at_given_pivots(problem: PathProblem, target: Target, progress: Progress) -
 
 
 def warm_up() -> None:
-    """Load the compiled kernels on a small circle, closed and open."""
+    """Compile or load the kernels, on a small circle, closed and open."""
     circle = np.exp(2j * np.pi * np.arange(SHAPE_POINTS) / SHAPE_POINTS)
     stated = {"points": [{"x": z.real, "y": z.imag} for z in circle]}
     problem = PathProblem.model_validate({"kind": "path", "method": "curve_match", **stated})
@@ -280,9 +290,10 @@ def warm_up() -> None:
 
 
 def _free_fits(target: Target, starts: Starts, longest: float, least: float) -> tuple[list[Fit], float]:
-    """The starts' linkages after least squares without demands, the nearest first, and the least cost at equal steps.
+    """Refine the starts by least squares without constraints; return the fits, nearest first, and the minimum cost so
+    far.
 
-    ``least`` is that of earlier families; links longer than ``longest`` cost something.
+    ``least`` is the minimum cost at equal steps of earlier families; links longer than ``longest`` are penalized.
     """
     if not len(starts.x):
         return [], least
@@ -290,6 +301,7 @@ def _free_fits(target: Target, starts: Starts, longest: float, least: float) -> 
     rough = descend(family, starts.x, starts.sign, starts.theta, target.steps, longest=longest, iterations=ROUGH_STEPS)
     least = min(least, float(rough.cost.min()))
     best = np.argsort(rough.cost, kind="stable")[:MAX_REFINED]
+    # The minimum over all families counts, so that a family without good shapes costs no refinement.
     best = best[rough.cost[best] <= MAX_COST_RATIO * max(least, SHAPE_POINTS * SHAPE_ERROR**2)]
     if not len(best):
         return [], least
@@ -309,6 +321,7 @@ def _free_fits(target: Target, starts: Starts, longest: float, least: float) -> 
     order = [k for k in np.argsort(fine.cost, kind="stable") if math.isfinite(fine.cost[k])]
     joints = [joints_of(family, fine.x[k], float(signs[k]), float(fine.theta[k, 0]))[1] for k in order]
     order = [order[k] for k in distinct(joints, MAX_FREE, SAME_FIT)]
+    # Thinned descents found the minimum; a few steps with all points remove the thinning error.
     if len(fine.theta[0]) < len(target.fitted):
         fine = _at_all_points(target, family, fine, signs, thin, longest, order)
     fits = [fit_of(target, family, fine.x[k], float(signs[k]), fine.theta[k]) for k in order]
@@ -318,7 +331,7 @@ def _free_fits(target: Target, starts: Starts, longest: float, least: float) -> 
 def _at_all_points(
     target: Target, family: int, thinned: Descent, sign: Real, thin: slice, longest: float, rows: list[int]
 ) -> Descent:
-    """Descents from a part of the points go on with all of them."""
+    """Continue descents from a part of the points with all of them."""
     x, cost = thinned.x.copy(), thinned.cost.copy()
     theta = np.empty((len(x), len(target.fitted)))
     for k in rows:
@@ -331,10 +344,11 @@ def _at_all_points(
 
 
 def _running(fits: list[Fit], traded: list[Fit]) -> list[Fit]:
-    """Fits with an error near the least, the nearest first, each once."""
+    """Return the distinct fits with an error near the minimum, nearest first."""
     ordered = sorted([*fits, *traded], key=lambda fit: fit.error)
     if not ordered:
         return []
+    # Verification is the slowest step: only fits that could still be the answer take part.
     worst = max(ordered[0].error / NEAREST_SHARE, ERROR_TOLERANCE)
     return that_differ([fit for fit in ordered if fit.error <= worst], len(ordered))
 
@@ -342,12 +356,13 @@ def _running(fits: list[Fit], traded: list[Fit]) -> list[Fit]:
 def _verified(
     problem: PathProblem, target: Target, setting: Real, joints: FourbarConfiguration
 ) -> PathDesign | str | None:
-    """A linkage in the target's unit, driven and measured; or why it is not driven."""
+    """Drive and measure a linkage given in the target's unit; return its design, or the reason for its rejection."""
     links = joints.lengths
     if min(links) < MIN_LINK:
         return "degenerate"
     if not lengths_kept(setting, links):
         return "link_length"
+    # Grashof's condition: no link of such a fourbar turns through.
     if problem.closed and 2.0 * (max(links) + min(links)) > sum(links) * (1.0 + ERROR_TOLERANCE):
         return "full_rotation"
     drawn = _in_place(target, joints)
@@ -359,26 +374,26 @@ def _verified(
 
 
 def _summary(problem: PathProblem, sifting: Sifting[PathDesign], sweep: CurveSweep | None) -> str:
-    satisfy = f"{agreeing(sifting.accepted, 'satisfies', 'satisfy')} all demands"
+    satisfy = f"{agreeing(sifting.accepted, 'satisfies', 'satisfy')} all constraints"
     counts = f"{grouped(sifting.accepted)} of {grouped(sifting.candidates)}"
     if sweep is None:
         text = (
-            f"Linkages on the given pivots were fitted to points along the curve from many starts; {counts} {satisfy}."
+            f"Linkages on the given pivots were fitted to points along the curve from many starts. {counts} {satisfy}."
         )
     else:
         text = (
-            f"{grouped(sweep.curves)} curves of {counted(sweep.linkages, 'linkage')} were compared with the target, "
-            f"{grouped(sweep.refined)} refined; {counts} designs, cognates included, {satisfy}."
+            f"{grouped(sweep.curves)} curves of {counted(sweep.linkages, 'linkage')} were compared with the target and "
+            f"{grouped(sweep.refined)} of them refined. {counts} designs, cognates included, {satisfy}."
         )
     if sifting.passed:
         ordered = ranked_by_nearness(sifting.passed, problem)
         best = ordered[0].metrics
         unit = problem.length_unit
-        text += f" The best draws it with an rms distance of {best.rms_distance:.3g} {unit}, "
-        text += f"at most {best.max_distance:.3g}.{choice(ordered, problem)}"
+        text += f" The best draws the curve with an rms distance of {best.rms_distance:.3g} {unit} "
+        text += f"and a maximum distance of {best.max_distance:.3g}.{choice(ordered, problem)}"
         if sweep is not None:
             text += (
-                " Cognates draw the same curve, and quality chose among them: pivots near the curve, force "
-                "transmission, even links."
+                " Cognates draw the same curve; the one with pivots near the curve, good force transmission and even "
+                "links comes first."
             )
     return text + sifting.reasons()

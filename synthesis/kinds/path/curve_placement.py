@@ -1,8 +1,8 @@
-"""Where a matched curve is put: what of its position, rotation and size is free goes into pivots and lengths demanded.
+"""Place a matched curve: its free position, rotation and size are used to meet given pivots and lengths.
 
-Tracing a shape somewhere is tracing it anywhere: a linkage is moved, turned and sized with its curve. With everything
-free both fixed pivots can be given, as z → αz + β is known from two points. With the position free one pivot can, or a
-region for pivots; with the size free the limits of link lengths and of the coupler point are met by scale.
+A linkage can be moved, rotated and scaled together with its curve. If everything is free both fixed pivots can be
+given, because z → αz + β is known from two points. If the position is free one pivot can be given, or a region for
+pivots; if the size is free, scaling satisfies the limits of link lengths and of the coupler point.
 """
 
 from __future__ import annotations
@@ -15,11 +15,12 @@ from synthesis.model.linkage_statement import Region
 from synthesis.model.linkages import FourbarConfiguration, to_point
 
 ROUNDING = 1e-9
-"""Share of a limit's range that rounding may take: cognates repeat a curve to some roundings."""
+"""Share of a limit's range reserved for rounding: cognates repeat a curve only up to a few roundings."""
 
 
 def searched(problem: PathProblem) -> PathProblem:
-    """The problem as the shape is searched for: without the demands that placing the curve will meet, or change."""
+    """Return the problem of the shape search: without the constraints that placing the curve will satisfy, or
+    change."""
     free = set(problem.placement_free)
     demands: dict[str, object] = {}
     limits: dict[str, object] = {}
@@ -35,14 +36,16 @@ def searched(problem: PathProblem) -> PathProblem:
 
 
 def placement_of(problem: PathProblem, joints: FourbarConfiguration) -> tuple[complex, complex]:
-    """α and β of z → αz + β that bring a linkage and its curve to the demands; 1 and 0 where nothing is free."""
+    """Return α and β of z → αz + β that move a linkage and its curve to satisfy the constraints; 1 and 0 if nothing is
+    free."""
     free = set(problem.placement_free)
     both = _both_pivots(problem)
     if both is not None:
         alpha = (both[1] - both[0]) / (joints.o4 - joints.o2)
         return alpha, both[0] - alpha * joints.o2
+    # Rotation is used only together with everything else, for two given pivots.
     alpha = complex(_scale(problem, joints)) if "size" in free else 1.0 + 0j
-    # Sized about its own first point, where it was drawn.
+    # Scale about the curve's own first point, so that the curve stays where it was drawn.
     beta = (1.0 - alpha) * joints.p
     if "position" in free:
         o2, o4 = alpha * joints.o2 + beta, alpha * joints.o4 + beta
@@ -56,7 +59,7 @@ def placement_of(problem: PathProblem, joints: FourbarConfiguration) -> tuple[co
 
 
 def moved(problem: PathProblem, alpha: complex, beta: complex) -> PathProblem:
-    """The problem with its curve under z → αz + β; tolerances are sized with it."""
+    """Return the problem with its curve mapped by z → αz + β; tolerances are scaled with it."""
     points = []
     for point in problem.points:
         z = alpha * point.point + beta
@@ -66,7 +69,7 @@ def moved(problem: PathProblem, alpha: complex, beta: complex) -> PathProblem:
 
 
 def placed(problem: PathProblem, design: PathDesign) -> PathProblem:
-    """The problem with its curve where a design traces it."""
+    """Return the problem with its curve at the place where a design traces it."""
     at = design.placement
     if at is None:
         return problem
@@ -75,7 +78,8 @@ def placed(problem: PathProblem, design: PathDesign) -> PathProblem:
 
 
 def stated(alpha: complex, beta: complex) -> CurvePlacement | None:
-    """A placement as an answer tells it; None for a curve that stays where it was drawn."""
+    """Return the placement for the answer; None for a curve that stays where it was drawn."""
+    # Exact comparison: the unplaced case sets these very values.
     if alpha == 1.0 and beta == 0.0:
         return None
     return CurvePlacement(
@@ -84,7 +88,7 @@ def stated(alpha: complex, beta: complex) -> CurvePlacement | None:
 
 
 def _both_pivots(problem: PathProblem) -> tuple[complex, complex] | None:
-    """Both given pivots, where the curve may go wherever they ask."""
+    """Return both given pivots if position, rotation and size of the curve are all free."""
     if set(problem.placement_free) != {"position", "rotation", "size"} or problem.fixed_pivots.given() != 4:
         return None
     pair = [complex(*map(float, pivot)) for pivot in _whole(problem).values()]
@@ -92,7 +96,7 @@ def _both_pivots(problem: PathProblem) -> tuple[complex, complex] | None:
 
 
 def _one_pivot(problem: PathProblem) -> tuple[str, complex] | None:
-    """The side and place of the one pivot that is given whole."""
+    """Return the side and place of the only pivot that is given by both coordinates."""
     whole = _whole(problem)
     if len(whole) != 1 or problem.fixed_pivots.given() != 2:
         return None
@@ -101,6 +105,7 @@ def _one_pivot(problem: PathProblem) -> tuple[str, complex] | None:
 
 
 def _whole(problem: PathProblem) -> dict[str, tuple[float, float]]:
+    """Return the pivots that are given by both coordinates, by side."""
     pivots = {}
     for side, pivot in (("input", problem.fixed_pivots.input), ("output", problem.fixed_pivots.output)):
         if pivot is not None and pivot[0] is not None and pivot[1] is not None:
@@ -109,7 +114,7 @@ def _whole(problem: PathProblem) -> dict[str, tuple[float, float]]:
 
 
 def _scale(problem: PathProblem, joints: FourbarConfiguration) -> float:
-    """The size nearest to 1 at which links and coupler point are within their limits; 1 where there is none."""
+    """Return the scale nearest to 1 at which links and coupler point are within their limits; 1 if there is none."""
     least, most = 0.0, math.inf
     limit = problem.constraints.link_length
     if limit is not None:
@@ -122,17 +127,19 @@ def _scale(problem: PathProblem, joints: FourbarConfiguration) -> float:
         for coordinate, interval in ((local.real, box.along), (local.imag, box.across)):
             if interval is not None:
                 smallest, largest = _scales_into(coordinate, interval)
+                # All limits must hold at one scale: intersect their intervals.
                 least, most = max(least, smallest), min(most, largest)
     return min(max(1.0, least), most) if least <= most else 1.0
 
 
 def _scales_into(coordinate: float, interval: tuple[float, float]) -> tuple[float, float]:
-    """The least and greatest factor that bring a coordinate into an interval; the least is greater where none does.
+    """Return the minimum and maximum factor that scale a coordinate into an interval; minimum > maximum if none does.
 
-    The interval is drawn in by :data:`ROUNDING`, so that what rounding leaves lies inside.
+    The interval is shrunk by :data:`ROUNDING`, so that rounded results lie inside.
     """
     low, high = interval
     if coordinate < 0.0:
+        # A positive coordinate keeps the order of the bounds under division.
         coordinate, low, high = -coordinate, -high, -low
     margin = ROUNDING * min(high - low, max(abs(low), abs(high)))
     if coordinate == 0.0:
@@ -141,7 +148,7 @@ def _scales_into(coordinate: float, interval: tuple[float, float]) -> tuple[floa
 
 
 def _into(region: Region | None, pivots: list[complex]) -> complex:
-    """The shortest shift that brings pivots into a region, where they fit into it."""
+    """Return the shortest shift that moves pivots into a region, if they fit into it."""
     if region is None:
         return 0j
     shift = []
@@ -150,6 +157,6 @@ def _into(region: Region | None, pivots: list[complex]) -> complex:
         ([pivot.imag for pivot in pivots], region.y),
     ):
         below, above = low - min(values), high - max(values)
-        # Inside where the shift lies between the two.
+        # Every shift between the two bounds puts all pivots inside; if they do not fit, centre them.
         shift.append(min(max(0.0, below), above) if below <= above else 0.5 * (below + above))
     return complex(*shift)

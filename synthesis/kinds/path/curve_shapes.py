@@ -1,14 +1,14 @@
-"""Which of many coupler curves have the shape of a given one: sweep, resample by arc length, compare, place.
+"""Find the coupler curves that have the shape of a given one: sweep, resample by arc length, compare, place.
 
 Shapes are compared with position, size and rotation removed. A curve is N points at equal distances along it, less its
-centroid, of unit norm. The likeness of two closed ones is
+centroid, of unit norm. The similarity of two closed curves is
 
     ρ = max over s and direction of |Σⱼ z̄ⱼ tⱼ₊ₛ| ≤ 1,
 
-because √(1 − ρ²) is the norm of the difference that the best similarity transformation leaves. The sums for all s are
-one inverse transform of the product of Fourier descriptors (Zahn & Roskies 1972, doi:10.1109/TC.1972.5008949).
-Mirror images count as alike: the mirrored linkage has the mirrored curve. An open stroke has a first and a last point
-and needs no shift; it is compared with windows of every candidate, of several lengths and at several places along it.
+because √(1 − ρ²) is the norm of the difference left by the best similarity transformation. The sums for all s are one
+inverse transform of the product of Fourier descriptors (Zahn & Roskies 1972, doi:10.1109/TC.1972.5008949). Mirror
+images count as similar: the mirrored linkage has the mirrored curve. An open stroke has a first and a last point and
+needs no shift; it is compared with windows of every candidate, of several lengths and at several places along it.
 
 Candidates are drawn at run time (:mod:`synthesis.kinds.path.curve_candidates`) and swept by the compiled kernel.
 """
@@ -38,28 +38,29 @@ Complex = NDArray[np.complex128]
 Mask = NDArray[np.bool_]
 
 SWEEP_STEPS = 96
-"""Crank positions a candidate is swept at, before it is resampled."""
+"""Number of crank positions at which a candidate is swept, before it is resampled."""
 
 CHUNK = 2048
-"""Number of candidates that are compared at a time: their curves fit into the processor's cache."""
+"""Number of candidates compared at a time: their curves fit into the processor's cache."""
 
 WINDOW_LENGTHS = (1.0, 0.85, 0.7, 0.58, 0.47, 0.38, 0.3, 0.22, 0.15)
-"""Shares of a closed curve's length that are compared with an open stroke."""
+"""Shares of a curve's length that are compared with an open stroke."""
 
 WINDOW_STARTS = 24
-"""Places along the curve at which a window begins."""
+"""Number of places along the curve at which a window begins."""
 
 WINDOW_POINTS = 24
-"""Points in which a window is compared with a stroke: half of a shape's, as there are so many windows."""
+"""Number of points at which a window is compared with a stroke: half of a shape's, because there are many windows."""
 
 SAME_START = 0.12
 """Starts whose pivots agree to this share of the task's size lead to the same linkage; only the first is followed."""
 
 OVERSUPPLY = 6
-"""The most alike candidates are often nearly equal: so many times the wanted number are sifted for different ones."""
+"""The most similar candidates are often nearly equal: this multiple of the requested number is searched for distinct
+ones."""
 
 WIDELY = 8
-"""So many times more are sifted where it matters too where they come to lie."""
+"""Further multiple that is searched if the place of the candidates matters too."""
 
 MAX_OVERSIZE = 2.0
 """Starts with links at most this many times too long are still followed: most shrink in the descent."""
@@ -69,18 +70,18 @@ WHOLE_TURN = 1e-12
 
 
 class Starts(NamedTuple):
-    """Linkages of one family placed on the target, most alike first.
+    """Linkages of one family placed on the target, most similar first.
 
     Attributes
     ----------
     family : int
     x, sign : float, shapes (n, m), (n,)
     theta : float, shape (n, SHAPE_POINTS)
-        Crank angles at the target's shape points.
+        Crank angles at the target's shape points, radians.
     unlike : float, shape (n,)
-        √(1 − ρ²).
+        Dissimilarity √(1 − ρ²).
     swept : int
-        Curves that were compared: candidates, or windows of them.
+        Number of curves compared: candidates, or windows of them.
     """
 
     family: int
@@ -93,7 +94,7 @@ class Starts(NamedTuple):
 
 @njit(**OPTIONS)
 def _resample(curves: Complex, closed: bool, shapes: Complex) -> None:
-    """Equal steps along every curve."""
+    """Resample every curve at equal steps of arc length, into ``shapes``."""
     n, steps = curves.shape
     count = shapes.shape[1]
     pieces = steps if closed else steps - 1
@@ -116,9 +117,11 @@ def _resample(curves: Complex, closed: bool, shapes: Complex) -> None:
 def _windows(
     curves: Complex, ring: bool, lengths: Real, starts: int, target: Complex, best: Real, where: NDArray[np.int64]
 ) -> None:
-    """The window of each curve (equal steps) most like an open target, forth or back, itself or mirrored.
+    """Find the window of each curve (equal steps) most similar to an open target, forward or backward, itself or
+    mirrored.
 
-    ``best`` is ρ, ``where`` (n, 3): length, start, and the manner: 0 forth, 1 back, +2 mirrored.
+    ``best`` receives ρ, ``where`` (n, 3) the indices of length and start, and the manner: 0 forward, 1 backward, +2
+    mirrored.
     """
     n, count = curves.shape
     points = len(target)
@@ -131,6 +134,7 @@ def _windows(
                 if ring:
                     begin = s / starts
                 elif size >= 1.0:
+                    # The whole of an open curve is a single window.
                     if s > 0:
                         break
                     begin = 0.0
@@ -141,12 +145,14 @@ def _windows(
                     at = begin + size * j / (points - 1)
                     at *= count if ring else count - 1
                     k = int(at)
+                    # The last point of an open curve has no successor; interpolate from the interval before it.
                     if not ring and k >= count - 1:
                         k = count - 2
                     left, right = curves[i, k % count], curves[i, (k + 1) % count]
                     window[j] = left + (at - k) * (right - left)
                     middle += window[j]
                 middle /= points
+                # Correlations with the target: forward and backward; f1, b1 those of the mirrored window.
                 f0, f1, b0, b1 = 0j, 0j, 0j, 0j
                 for j in range(points):
                     w = window[j] - middle
@@ -167,28 +173,32 @@ def _windows(
 
 
 class Likeness(NamedTuple):
-    """Candidates of a chunk: ρ, shape (n,), and where the target lies on them, shape (n, 3): see :func:`_windows`."""
+    """Similarity of the candidates of a chunk: ρ, shape (n,), and the target's place on them, shape (n, 3): see
+    :func:`_windows`."""
 
     rho: Real
     where: NDArray[np.int64]
 
 
 def alike_closed(curves: Complex, target: Complex) -> Likeness:
-    """Closed curves against a closed target, over all shifts, both directions and the mirror image."""
+    """Compare closed curves with a closed target, over all shifts, both directions and the mirror image."""
     shapes = np.empty((len(curves), SHAPE_POINTS), np.complex128)
     _resample(curves, True, shapes)
+    # Centring and normalization remove position and size; |Σ| ignores the rotation.
     shapes -= shapes.mean(axis=1, keepdims=True)
     norms = np.linalg.norm(shapes, axis=1)
     shapes /= np.where(norms > 0.0, norms, np.inf)[:, None]
+    # Single precision suffices to rank shapes and is faster.
     descriptors = fft.fft(shapes.astype(np.complex64), axis=1)
     rho, where = np.full(len(curves), -1.0), np.zeros((len(curves), 3), np.int64)
     for manner in range(4):
         asked = target[::-1] if manner % 2 else target
         if manner >= 2:
-            # The mirrored candidate z̄ against t has the |Σ| of z against t̄.
+            # The mirrored candidate z̄ compared with t has the same |Σ| as z compared with t̄.
             asked = asked.conj()
         product = fft.ifft(fft.fft(asked).astype(np.complex64) * descriptors.conj(), axis=1)
         sizes = np.abs(product)
+        # The shift with the largest correlation aligns the starting points of the two curves.
         shift = sizes.argmax(axis=1)
         greatest = sizes[np.arange(len(curves)), shift]
         better = greatest > rho
@@ -198,7 +208,7 @@ def alike_closed(curves: Complex, target: Complex) -> Likeness:
 
 
 def alike_open(curves: Complex, ring: bool, target: Complex) -> Likeness:
-    """Windows of curves against an open target; ``ring`` where the curves close."""
+    """Compare windows of curves with an open target; ``ring`` if the curves close."""
     shapes = np.empty((len(curves), SWEEP_STEPS), np.complex128)
     _resample(curves, ring, shapes)
     rho, where = np.empty(len(curves)), np.zeros((len(curves), 3), np.int64)
@@ -209,9 +219,9 @@ def alike_open(curves: Complex, ring: bool, target: Complex) -> Likeness:
 
 
 class Compared(NamedTuple):
-    """Candidates of one family that were compared with a target: how like each is, and where the target lies on it.
+    """Candidates of one family compared with a target: the similarity of each, and the target's place on it.
 
-    The target (equal steps, in its own unit) and whether it is closed stand beside them.
+    Includes the target (equal steps, in its own unit) and whether it is closed.
     """
 
     family: int
@@ -235,7 +245,7 @@ def alike(
     seed: int = 0,
     progress: Callable[[float], None] | None = None,
 ) -> Starts:
-    """The ``keep`` most alike, as :func:`most_alike`, of candidates compared as by :func:`compared`."""
+    """Return the ``keep`` most similar candidates, as :func:`most_alike`, of those compared as by :func:`compared`."""
     return most_alike(compared(family, target, closed, count, ratio=ratio, seed=seed, progress=progress), keep, longest)
 
 
@@ -249,22 +259,22 @@ def compared(
     seed: int = 0,
     progress: Callable[[float], None] | None = None,
 ) -> Compared:
-    """Candidates of a family whose curves were compared with the target.
+    """Draw candidates of a family and compare their curves with the target.
 
     Parameters
     ----------
     family : int
-        Of :mod:`synthesis.fit.chart`.
+        A family of :mod:`synthesis.fit.chart`.
     target : complex, shape (SHAPE_POINTS,)
         Equal steps along the target.
     closed : bool
         Whether it is a closed curve; an open one is compared with windows of the candidates.
     count : int
-        How many candidates are drawn.
+        Number of candidates to draw.
     ratio : float
         Gear ratio.
     seed : int
-        Of the draw.
+        Seed of the draw.
     progress : callable, optional
         Called with the share done.
     """
@@ -279,6 +289,7 @@ def compared(
         curves, _, good, rings = _swept(drawn, family, slice(first, min(first + CHUNK, count)), ratio)
         compared = []
         for ring in (True, False):
+            # Curves of cranks that do not turn through cannot match a closed target.
             chosen = np.flatnonzero(good & (rings == ring))
             if (ring or not closed) and len(chosen):
                 some = curves[chosen]
@@ -305,25 +316,27 @@ def most_alike(
     suited: Mask | None = None,
     lost: Callable[[Real, Real, Real], Real] | None = None,
 ) -> Starts:
-    """The candidates whose curves are most like the target, placed on it.
+    """Select the candidates whose curves are most similar to the target, and place them on it.
 
     Parameters
     ----------
     of : Compared
         The candidates.
     keep : int
-        How many at most come back.
+        Maximum number returned.
     longest : float
-        Longest link, in the target's units, of what is kept.
+        Longest link, in the target's units, of the linkages kept.
     suited : bool, shape (candidates,), optional
         Which of the candidates may be chosen.
     lost : callable, optional
-        Tells, of candidates on the target (x, theta, sign), how far each is from where it is wanted, shape (n,), in the
-        target's unit. Then :data:`WIDELY` as many are placed, and those come first that are least unlike and away.
+        Returns, for candidates on the target (x, theta, sign), the distance of each from its required place, shape
+        (n,), in the target's unit. Then :data:`WIDELY` times the number is placed, ordered by dissimilarity and
+        distance together.
     """
     family, drawn, target = of.family, of.drawn, of.target
     rho = of.likeness.rho if suited is None else np.where(suited, of.likeness.rho, -1.0)
     order = np.argsort(-rho, kind="stable")[: OVERSUPPLY * keep * (1 if lost is None else WIDELY)]
+    # Candidates that jam or do not close keep ρ = −1.
     order = order[rho[order] > 0.0]
     x, theta, sign = _placed(family, drawn, order, of.likeness.where[order], target, of.closed, of.ratio)
     if lost is not None:
@@ -334,13 +347,14 @@ def most_alike(
 
 
 def _unlike(rho: Real) -> Real:
-    """What the best similarity transformation leaves of the difference of curves of unit norm."""
+    """Return the difference that the best similarity transformation leaves between curves of unit norm."""
     return np.asarray(np.sqrt(np.maximum(0.0, 1.0 - rho**2)))
 
 
 def _swept(drawn: Draw, family: int, rows: Any, ratio: float) -> tuple[Complex, Real, Mask, Mask]:
-    """P and θ over the crank's range of each candidate; which do not jam; and which come round."""
+    """Return P and θ over the crank's range of each candidate, which of them do not jam, and which close."""
     x, sign, begin, end = drawn.x[rows], drawn.sign[rows], drawn.begin[rows], drawn.end[rows]
+    # A geared fivebar repeats only after several turns of its crank.
     turn = cycle_of(ratio) if family == GEARED_FIVEBAR else 2.0 * math.pi
     rings = end - begin >= turn * (1.0 - WHOLE_TURN)
     curves, theta = np.empty((len(x), SWEEP_STEPS), np.complex128), np.empty((len(x), SWEEP_STEPS))
@@ -358,7 +372,8 @@ def _placed(
     closed: bool,
     ratio: float,
 ) -> tuple[Real, Real, Real]:
-    """The candidates moved, turned, sized and mirrored onto the target; crank angles at its points; signs."""
+    """Move, rotate, scale and mirror candidates onto the target; return unknowns, crank angles at its points, and
+    signs."""
     curves, theta, _, rings = _swept(drawn, family, order, ratio)
     x, sign = drawn.x[order].copy(), drawn.sign[order].copy()
     at = np.empty((len(order), SHAPE_POINTS))
@@ -385,7 +400,7 @@ def _place_each(
     sign: Real,
     at: Real,
 ) -> None:
-    """Every candidate put on the target in place; ``at`` gets the crank angles at its points."""
+    """Put every candidate on the target in place; ``at`` receives the crank angles at its points."""
     middle = target.mean()
     for i in range(len(x)):
         z, angles, mirrored = laid(curves[i], theta[i], rings[i], cycles[i], where[i], windows, closed, len(target))
@@ -394,6 +409,7 @@ def _place_each(
         here = z.mean()
         alpha = turned_onto(z, here, target)
         _move(family, x[i], ratio, alpha, middle - alpha * here)
+        # Rotating a linkage adds the rotation to its crank angles.
         at[i] = angles + cmath.phase(alpha)
 
 
@@ -408,9 +424,9 @@ def laid(
     closed: bool,
     count: int,
 ) -> tuple[Complex, Real, bool]:
-    """Places of one curve and crank angles there, ``count`` of them, as they are compared with a target's points.
+    """Return ``count`` places of one curve and the crank angles there, matched to a target's points.
 
-    ``where`` is a row of :class:`Likeness`. The third answer tells whether the curve was mirrored in the real axis.
+    ``where`` is a row of :class:`Likeness`. The third result is true if the curve was mirrored in the real axis.
     """
     place, start, manner = np.arange(count), where[1], where[2]
     if closed:
@@ -429,7 +445,7 @@ def laid(
 
 @njit(cache=True, nogil=True)
 def turned_onto(z: Complex, here: complex, target: Complex) -> complex:
-    """The factor by which places about their middle come nearest to a target."""
+    """Return the factor that brings places about their centroid ``here`` nearest to a target in least squares."""
     likeness, norm = 0j, 0.0
     for k in range(len(z)):
         about = z[k] - here
@@ -440,7 +456,7 @@ def turned_onto(z: Complex, here: complex, target: Complex) -> complex:
 
 @njit(cache=True, nogil=True)
 def _at_shares(curve: Complex, theta: Real, ring: bool, cycle: float, share: Real) -> tuple[Complex, Real]:
-    """Points and crank angles at shares of a curve's length; of a ring, beyond its end too."""
+    """Interpolate points and crank angles at shares of a curve's length; of a closed curve also beyond its end."""
     count = len(curve) + 1 if ring else len(curve)
     points, angles, along = np.empty(count, np.complex128), np.empty(count), np.zeros(count)
     points[: len(curve)], angles[: len(curve)] = curve, theta
@@ -449,6 +465,7 @@ def _at_shares(curve: Complex, theta: Real, ring: bool, cycle: float, share: Rea
     for k in range(1, count):
         along[k] = along[k - 1] + abs(points[k] - points[k - 1])
     along /= along[-1]
+    # Beyond a full turn the place repeats while the crank angle continues to grow.
     turns = np.floor(share) if ring else np.zeros(len(share))
     inside = share - turns
     z = np.interp(inside, along, points.real) + 1j * np.interp(inside, along, points.imag)
@@ -457,7 +474,7 @@ def _at_shares(curve: Complex, theta: Real, ring: bool, cycle: float, share: Rea
 
 @njit(cache=True, nogil=True)
 def _mirror(family: int, x: Real, sign: Real, i: int) -> None:
-    """The linkage mirrored in the real axis, in place; crank angles change sign with it."""
+    """Mirror the linkage in the real axis, in place; crank angles change sign with it."""
     x[1] = -x[1]
     x[-1] = -x[-1]
     if family == GEARED_FIVEBAR:
@@ -467,12 +484,13 @@ def _mirror(family: int, x: Real, sign: Real, i: int) -> None:
     if family in (SLIDER_CRANK, SLIDER_ROCKER):
         x[5] = -x[5]
     else:
+        # A slider's assembly is contained in its offset, all others change theirs.
         sign[i] = -sign[i]
 
 
 @njit(cache=True, nogil=True)
 def _move(family: int, x: Real, ratio: float, alpha: complex, beta: complex) -> None:
-    """The linkage under z → αz + β, in place; crank angles grow by the phase of α."""
+    """Map the linkage by z → αz + β, in place; crank angles grow by the phase of α."""
     size, turn = abs(alpha), cmath.phase(alpha)
     o2 = alpha * complex(x[0], x[1]) + beta
     x[0], x[1] = o2.real, o2.imag
@@ -480,6 +498,7 @@ def _move(family: int, x: Real, ratio: float, alpha: complex, beta: complex) -> 
         o5 = alpha * complex(x[2], x[3]) + beta
         x[2], x[3] = o5.real, o5.imag
         x[4:8] += math.log(size)
+        # The second crank's phase absorbs the difference of both cranks' rotation.
         x[8] += (1.0 - ratio) * turn
     else:
         x[2] += turn
@@ -492,20 +511,22 @@ def _move(family: int, x: Real, ratio: float, alpha: complex, beta: complex) -> 
 
 
 def _different(x: Real, theta: Real, size: float, longest: float, family: int, keep: int) -> NDArray[np.int64]:
-    """Rows that are not near one another, nor far too large, at most ``keep`` of them."""
+    """Return at most ``keep`` rows that are not near one another, nor far too large."""
     rows, marks = _marked(x, theta, longest, family)
     return np.asarray(rows[distinct(marks, keep, SAME_START * size)])
 
 
 @njit(cache=True, nogil=True)
 def _marked(x: Real, theta: Real, longest: float, family: int) -> tuple[NDArray[np.int64], Real]:
-    """Rows that are not far too large, and what tells each from others: O2, A and the other lengths."""
+    """Return the rows that are not far too large, and coordinates that distinguish them: O2, A and the other
+    lengths."""
     lengths, chart = np.empty(4), np.empty((4, 4))
     rows, marks, count = np.empty(len(x), np.int64), np.empty((len(x), 8)), 0
     shift = 0 if family == GEARED_FIVEBAR else 1
     for i in range(len(x)):
         lengths[:] = 0.0
         natural(family, x[i], lengths, chart)
+        # The arm from the pin to P counts as a length, too: it is a link of the finished part.
         if max(np.abs(lengths).max(), math.hypot(x[i, -2], x[i, -1])) > MAX_OVERSIZE * longest:
             continue
         crank = lengths[0 if family > FOURBAR else 1]

@@ -1,4 +1,4 @@
-"""The curve that is asked for, as shapes and fits see it: equal steps along it, and crank angles at its points."""
+"""Represent the target curve for shape comparison and fits: equal steps along it, and crank angles at its points."""
 
 from __future__ import annotations
 
@@ -14,29 +14,31 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 SHAPE_POINTS = 48
-"""Points of a shape: descriptors up to the 24th, far more than coupler curves have."""
+"""Number of points of a shape: descriptors up to the 24th, far more than coupler curves have."""
 
 FEW_POINTS, FILL = 12, 0.1
-"""Fewer points than this say little of a curve. Where it is to be matched the lines between them count too, with this
-share of the weight; where its points are to be met a smooth curve is laid through them."""
+"""Targets with fewer points than this define a curve poorly. If the curve is to be matched, the lines between the
+points count too, with this share of the weight; if the points are to be met, a smooth curve is laid through them."""
 
 DENSE = 24
-"""Points from which on their polyline tells the curve between them."""
+"""Number of points from which on their polyline represents the curve between them."""
 
 SMOOTH_POINTS = 240
-"""Points of that smooth curve."""
+"""Number of points of that smooth curve."""
 
 
 class Target:
-    """The target, moved to the origin and scaled to a unit diagonal of the box around it.
+    """The target curve, moved to the origin and scaled to a unit diagonal of the box around it.
 
-    Where points have tolerances the squares of their distances weigh as the inverse squares of these, 1 for the least.
+    If points have tolerances, their squared distances are weighted by the inverse squares of these, with 1 for the
+    smallest.
     """
 
     def __init__(self, problem: PathProblem) -> None:
         given = np.array([point.point for point in problem.points])
         widths = np.ones(len(given)) if problem.tolerances is None else problem.tolerances
         if problem.closed and len(given) > 3 and given[-1] == given[0]:
+            # A closed curve may repeat its first point as the last; it counts once.
             given, widths = given[:-1], widths[:-1]
         self.closed = problem.closed
         self.centre = complex(0.5 * (given.real.min() + given.real.max()), 0.5 * (given.imag.min() + given.imag.max()))
@@ -45,19 +47,20 @@ class Target:
         self.steps, self.places = equal_steps(self.points, self.closed, SHAPE_POINTS)
         few = len(given) < FEW_POINTS
         self.fitted = np.concatenate([self.points, self.steps]) if few else self.points
+        # The fill points together weigh a fixed share of the given points, whatever their number.
         fill = FILL * len(given) / SHAPE_POINTS
         self.weights = np.concatenate([(widths.min() / widths) ** 2, np.full(SHAPE_POINTS if few else 0, fill)])
 
     def angles(self, theta: Real) -> Real:
-        """Crank angles at the points to be fitted, from those at equal steps along the target."""
+        """Return crank angles at the points to be fitted, from those at equal steps along the target."""
         at = angles_at(self.places, theta, self.closed, 2.0 * math.pi)
         return np.concatenate([at, theta]) if len(self.fitted) > len(self.points) else at
 
 
 def equal_steps(points: Complex, closed: bool, count: int) -> tuple[Complex, Real]:
-    """Points at equal distances along a polyline, and the places of its corners along it as shares of its length.
+    """Return points at equal distances along a polyline, and the places of its corners as shares of its length.
 
-    A closed one does not repeat its first point, in ``points`` or in the answer. The length must not be zero.
+    A closed polyline does not repeat its first point, in ``points`` or in the result. Its length must not be zero.
     """
     whole = np.concatenate([points, points[:1]]) if closed else points
     along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(whole)))])
@@ -66,17 +69,19 @@ def equal_steps(points: Complex, closed: bool, count: int) -> tuple[Complex, Rea
 
 
 def smooth_steps(points: Complex, closed: bool) -> tuple[Complex, Real]:
-    """Equal steps along a curve through the points, and the points' places on it as shares of its length.
+    """Return equal steps along a curve through the points, and the points' places on it as shares of its length.
 
-    The curve is a cubic spline over the chords through few points, straight lines between many. Repeated points have
+    The curve is a cubic spline over the chords through few points, straight lines between many. Repeated points share
     one place.
     """
+    # Dense polylines need no spline, which could overshoot at corners.
     if len(points) >= FEW_POINTS:
         return equal_steps(points, closed, SHAPE_POINTS)
     whole = np.append(points, points[0]) if closed else points
     chords = np.abs(np.diff(whole))
     corners = np.concatenate([[0.0], np.cumsum(chords)])
     knots, first = np.unique(corners, return_index=True)
+    # The knots are included so that the curve passes exactly through the points.
     dense = np.union1d(np.linspace(0.0, corners[-1], SMOOTH_POINTS), knots)
     spline = CubicSpline(knots, whole[first], bc_type="periodic" if closed else "not-a-knot")
     curve = np.asarray(spline(dense), np.complex128)
@@ -87,9 +92,9 @@ def smooth_steps(points: Complex, closed: bool) -> tuple[Complex, Real]:
 
 
 def angles_at(places: Real, theta: Real, closed: bool, cycle: float) -> Real:
-    """Crank angles at places along the target (shares of its length), from those at its equal steps.
+    """Interpolate crank angles at places along the target (shares of its length) from those at its equal steps.
 
-    Once round a closed target the crank makes a cycle (radians), onward or backward as the steps tell.
+    Around a closed target the crank turns by one cycle (radians), forward or backward as the steps show.
     """
     shares = np.linspace(0.0, 1.0, SHAPE_POINTS, endpoint=not closed)
     if closed:

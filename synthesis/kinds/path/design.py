@@ -1,4 +1,4 @@
-"""Answers to problems of path generation."""
+"""Results of path generation problems."""
 
 from __future__ import annotations
 
@@ -12,47 +12,47 @@ from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, Link
 
 
 class CognateTriples(Answer):
-    """What was computed of the 1442 triples of cognate fourbars through nine points, in all rounds together."""
+    """Account of the 1442 triples of cognate fourbars through nine points, over all rounds."""
 
-    rounds: int = Field(description="Sets of nine points that were solved; 1 where nine were given.")
-    computed: int = Field(description="Triples found, real and complex; 1442 a round where none is missing.")
+    rounds: int = Field(description="Sets of nine points that were solved; 1 if nine were given.")
+    computed: int = Field(description="Triples found, real and complex; 1442 per round if none is missing.")
     real: int
-    on_one_circuit: int = Field(description="Real triples with all demanded points on one circuit.")
-    largest_residual: float = Field(description="Of the equations, with points of unit mean distance.")
+    on_one_circuit: int = Field(description="Real triples with all required points on one circuit.")
+    largest_residual: float = Field(description="Largest residual of the equations, with points of unit mean distance.")
     closed_under_conjugation: bool = Field(description="Whether complex solutions come in pairs, as they must.")
 
 
 class PathMetrics(LinkageMetrics):
     """Measured properties of a linkage that guides a point, with its errors in length units."""
 
-    sum_of_squares: Area = Field(description="Of the distances of P from the points, length units squared.")
+    sum_of_squares: Area = Field(description="Sum of squared distances of P from the points, length units squared.")
     rms_distance: Length = Field(description="Root mean square of these distances, length units.")
-    max_distance: Length = Field(description="The largest of them, length units.")
+    max_distance: Length = Field(description="Largest of these distances, length units.")
     curve_distance: Length | None = optional(
-        "For fits: the largest distance of the traced curve from the straight lines through the points, over a whole "
-        "turn where these are closed, else from the first point to the last; length units."
+        "For fits: the largest distance of the traced curve from the straight lines through the points, over a full "
+        "turn if these are closed, else from the first point to the last; length units."
     )
     excursion: Length | None = optional(
-        "For fits: how much farther the traced curve goes from these lines than max_distance and what a curve may "
-        "bulge between points, a quarter of their distance; length units."
+        "For fits: how far the traced curve strays from these lines beyond max_distance and the bulge that a curve may "
+        "have between points, a quarter of their distance; length units."
     )
     both_way_rms: Length | None = optional(
-        "For fits by sixbars to 24 points and more: root mean square of the points' distances from the curve and of "
-        "the curve's, by its length, from the straight lines through the points; length units."
+        "For fits by sixbars to 24 points or more: root mean square of the points' distances from the curve and of "
+        "the curve's, weighted by its length, from the straight lines through the points; length units."
     )
     stance_flatness: Length | None = optional(
-        "Of a stance: height across its line of the band in which P stays from its first point to its last; length "
-        "units."
+        "Height, across the stance line, of the band in which P stays from the first point of a stance to its last; "
+        "length units."
     )
     stance_speed_deviation: float | None = optional(
-        "Of a stance: how much the speed of P along its line differs at most from its mean, as a share of that, while "
-        "the input turns evenly."
+        "Largest deviation of P's speed along the stance line from its mean, as a share of the mean, at constant "
+        "input speed."
     )
-    stance_rotation: Angle | None = optional("Of a stance: rotation of the input during it, degrees.")
+    stance_rotation: Angle | None = optional("Rotation of the input during the stance, degrees.")
 
 
 class CurvePlacement(Answer):
-    """Where a matched curve is traced, if not where it was drawn: sized and turned about the origin, then shifted."""
+    """Where a matched curve is traced, if not where it was drawn: scaled and rotated about the origin, then shifted."""
 
     size: float
     rotation: Angle = Field(description="Degrees.")
@@ -60,7 +60,7 @@ class CurvePlacement(Answer):
 
 
 class PathCognate(Answer):
-    """Another fourbar that traces the same curve (Roberts and Chebyshev), measured where the design meets its targets.
+    """Another fourbar that traces the same curve (Roberts and Chebyshev), measured at the design's targets.
 
     The left cognate shares the input's fixed pivot with the design, the right one the output's.
     """
@@ -77,43 +77,45 @@ class PathCognate(Answer):
 
 
 class PathDesign(LinkageDesign):
-    """A linkage that guides a point, with the proof of what it does."""
+    """A linkage that guides a point, with its verification."""
 
     metrics: PathMetrics
-    placement: CurvePlacement | None = optional("For a curve whose place was left free; what is measured, is there.")
+    placement: CurvePlacement | None = optional("For a curve with a free place; the metrics refer to this placement.")
     cognates: list[PathCognate] = Field(default=[], description="The two other fourbars of the same curve.")
-    point_link: str | None = optional("Of a sixbar: the link that P is on, by its name in the skeleton.")
-    cognate_choice: str = Field(default="", description="What speaks for the design or for a cognate of it.")
+    point_link: str | None = optional("The link of a sixbar that carries P, by its name in the skeleton.")
+    cognate_choice: str = Field(default="", description="Comparison of the design with its cognates.")
 
 
 class GivenPivotSolutions(Answer):
-    """What was computed of the 36 fourbars through five points on two given fixed pivots."""
+    """Account of the 36 fourbars through five points on two given fixed pivots."""
 
-    computed: int = Field(description="Solutions found, real and complex; 36 where none is missing.")
+    computed: int = Field(description="Solutions found, real and complex; 36 if none is missing.")
     real: int
-    on_one_circuit: int = Field(description="Real ones with all demanded points on one circuit.")
-    largest_residual: float = Field(description="Of the equations, with points and pivots of unit mean distance.")
+    on_one_circuit: int = Field(description="Real solutions with all required points on one circuit.")
+    largest_residual: float = Field(
+        description="Largest residual of the equations, with points and pivots of unit mean distance."
+    )
 
 
 class FamilySearch(Answer):
-    """What was looked at of the fourbars through fewer than nine points."""
+    """Account of the search of the fourbars through fewer than nine points."""
 
-    followed: int = Field(description="Linkages that were brought to the points by least squares.")
-    met: int = Field(description="Of these, the ones that came to meet all points, and the pivots that are demanded.")
+    followed: int = Field(description="Linkages that were fitted to the points by least squares.")
+    met: int = Field(description="Those of them that meet all points and the required pivots exactly.")
 
 
 class TimedDyads(Answer):
-    """What was computed of the fourbars through five points at their crank angles; for both directions, if asked."""
+    """Account of the fourbars through five points at their crank angles; for both directions, if requested."""
 
-    inputs: int = Field(description="Real input dyads: four at most for each direction.")
-    fourbars: int = Field(description="Real fourbars: twelve at most for each direction.")
+    inputs: int = Field(description="Real input dyads: at most four for each direction.")
+    fourbars: int = Field(description="Real fourbars: at most twelve for each direction.")
     sliders: int = Field(description="Dyads with a pivot at infinity.")
 
 
 class CurveSweep(Answer):
-    """What a match of whole curves has looked at."""
+    """Account of a match of whole curves."""
 
-    linkages: int = Field(description="Linkages that were drawn.")
+    linkages: int = Field(description="Random linkages that were generated.")
     curves: int = Field(description="Curves, or parts of curves, whose shape was compared with the target's.")
     refined: int = Field(description="Linkages that were refined by least squares.")
 
@@ -122,9 +124,9 @@ class PathResult(LinkageResult[PathDesign]):
     """Linkages whose coupler point goes through the points."""
 
     triples: CognateTriples | None = optional(
-        "For up to nine points of free timing; left out where other methods were used."
+        "For up to nine points of free timing; left out if other methods were used."
     )
     sweep: CurveSweep | None = optional("For curves that are matched as a whole.")
     given_pivots: GivenPivotSolutions | None = optional("For five points on two given fixed pivots.")
-    family: FamilySearch | None = optional("For fewer than nine points with demands.")
+    family: FamilySearch | None = optional("For fewer than nine points with constraints.")
     timed: TimedDyads | None = optional("For five points at their crank angles.")

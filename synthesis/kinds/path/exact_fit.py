@@ -1,9 +1,9 @@
 """Fourbars that meet fewer points than they can exactly: random members of the family, within limits.
 
 Fewer points than a fourbar can meet leave a family of linkages. Descents from random starts
-(:mod:`synthesis.kinds.path.point_fit`) end at random members of it that keep all limits, given pivots included. Most
-random members are poor linkages; therefore the first rounds add limits to the client's, on the transmission angle, the
-link ratio and the longest link, and relax them from round to round.
+(:mod:`synthesis.kinds.path.point_fit`) end at random members of it that satisfy all limits, given pivots included. Most
+random members are poor linkages; therefore the first rounds add limits on the transmission angle, the link ratio and
+the longest link to the client's, and relax them from round to round.
 """
 
 from __future__ import annotations
@@ -23,24 +23,26 @@ ROUNDS = (Usable(45.0, 6.0, 6.0), Usable(25.0, 12.0, 12.0), Usable(12.0, 20.0, 2
 """Limits added to the client's in each round, the strictest first."""
 
 MAX_REFINED = 40
-"""Greatest number of linkages that are refined and verified in a round."""
+"""Maximum number of linkages that are refined and verified in a round."""
 
 EXACT_TOLERANCE = 1e-11
 """Root mean square distance, in task sizes, up to which a linkage counts as a member of the family."""
 
 
 def exact_fits(problem: PathProblem, progress: Progress) -> list[PathDesign | None]:
-    """Linkages through all points, verified; None for one that could not be driven.
+    """Find linkages through all points and verify them; None for one that could not be driven.
 
-    Rounds go on until as many designs are sound as are wanted.
+    Rounds continue until enough designs satisfy all constraints.
     """
     task = point_task(problem)
     rng = np.random.default_rng(problem.seed)
     designs: list[PathDesign | None] = []
     sound = 0
+    # Strict limits first: they find the good linkages while the family is large, and are dropped when it is empty.
     for n, usable in enumerate(ROUNDS):
         part = part_of(progress, n / len(ROUNDS), (n + 1) / len(ROUNDS))
         for candidate in fitted(problem, task, rng, part, finalists=MAX_REFINED, usable=usable):
+            # A minimum with a positive error is a fit, not a member of the family.
             if math.sqrt(2.0 * candidate.cost / len(task.rows)) > EXACT_TOLERANCE:
                 continue
             mechanism = mechanism_of(candidate, task)

@@ -1,9 +1,9 @@
-"""Fourbars through three to eight points in a room: members of the family that have their pivots in their zones.
+"""Fourbars through three to eight points in a workspace: members of the family that have their pivots in their zones.
 
-Linkages are drawn in the zones, and those that come nearest to the points are brought to them, the zones weighing in.
-The best are then held within all demands, the motion through the room only where that is not kept by itself. Where none
-comes to keep everything, fits of points (:mod:`synthesis.kinds.path.point_fit`), which perturb what comes nearest, are
-searched for some that miss nothing.
+Linkages are drawn in the zones, and those nearest to the points are fitted to them, with the zones as penalties. The
+best are then led to satisfy all constraints; the motion through the workspace is constrained only if it does not fit by
+itself. If no candidate satisfies everything, fits of points (:mod:`synthesis.kinds.path.point_fit`), which perturb the
+nearest ones, are searched for some that miss nothing.
 """
 
 from __future__ import annotations
@@ -31,34 +31,36 @@ COST_TOLERANCE = 1e-22
 """Cost, in squared task sizes, at which a descent has reached a member of the family."""
 
 FOLLOWED, STEPS = 400, 80
-"""Linkages of a family, drawn in a room, that are brought to the points in a round, and steps by which."""
+"""Number of linkages of a family, drawn in a workspace, that are fitted to the points in a round, and steps of each
+fit."""
 
 HELD, MOVED, AT_ONCE = 64, 16, 8
-"""Of these, the best that are brought to keep all but the room's motion; of the results, those that lack least of the
-room, which are moved into it; and how many of them at a time."""
+"""Maximum numbers: of these, the best, that are led to satisfy all constraints except the workspace along the motion;
+of the results, those with the smallest workspace violation, that are moved into it; and how many of these at a time."""
 
 HOPELESS = 0.3
-"""What a member lacks of the room, in task sizes, with which it is not moved."""
+"""Workspace violation of a member, in task sizes, beyond which it is not moved."""
 
 ENOUGH, SOME = 12, 3
-"""Members beyond which no others are looked for, at once and in another round."""
+"""Number of members that end the search: within a round, and before another round."""
 
 PORTION = 2
-"""Linkages that a thread takes at a time."""
+"""Number of linkages that a thread takes at a time."""
 
 FIRST_PART = 0.3
-"""Share of the progress that draws count for."""
+"""Share of the progress assigned to random draws."""
 
 
 class MembersInRoom(NamedTuple):
-    """Linkages through all points that keep all demands, in the problem's coordinates, and how many were followed."""
+    """Linkages through all points that satisfy all constraints, in the problem's coordinates, and the number of fits
+    tried."""
 
     members: list[FourbarConfiguration]
     brought: int
 
 
 def members_in_room(problem: PathProblem, progress: Progress) -> MembersInRoom:
-    """Members of the family of three to eight points that fit into a room; not yet driven."""
+    """Find members of the family of three to eight points that fit into a workspace; not yet driven."""
     given = np.array([point.point for point in problem.points])
     centre, size = complex(given.mean()), problem.task_size
     points = (given - centre) / size
@@ -66,14 +68,15 @@ def members_in_room(problem: PathProblem, progress: Progress) -> MembersInRoom:
     brought = 0
     families = families_of(problem)
     for turn in range(problem.rounds):
+        # Further rounds cost as much as the first one, and a few members are enough to choose from.
         if len(found) >= SOME:
             break
         for n, family in enumerate(families):
             if len(found) >= ENOUGH:
                 break
             done = (turn + n / len(families)) / problem.rounds
-            told = f"round {turn + 1} of {problem.rounds}: {len(found)} linkages meet all points"
-            progress(FIRST_PART * done, told)
+            message = f"round {turn + 1} of {problem.rounds}: {len(found)} linkages meet all points"
+            progress(FIRST_PART * done, message)
             rng = np.random.default_rng([problem.seed, turn, n])
             setting = setting_of(problem, centre, size, sign=1.0, family=family)
             starts = room_starts(problem, points, centre, size, family, rng, FOLLOWED)
@@ -82,7 +85,7 @@ def members_in_room(problem: PathProblem, progress: Progress) -> MembersInRoom:
                 _, joints = joints_of(family, one.x, sign, float(one.theta[0]))
                 found.append(FourbarConfiguration(*(centre + size * joint for joint in joints)))
     if not found and problem.method == "exact":
-        # The method "auto" has the points fitted anyhow.
+        # Method "auto" falls back to such fits by itself.
         task = point_task(problem)
         candidates = fitted(problem, task, np.random.default_rng(problem.seed), part_of(progress, FIRST_PART, 0.6))
         brought += len(candidates)
@@ -92,15 +95,17 @@ def members_in_room(problem: PathProblem, progress: Progress) -> MembersInRoom:
 
 
 def _held(starts: RoomStarts, points: Complex, setting: Real, family: int) -> list[tuple[float, Held]]:
-    """Members that keep all demands, with their assemblies, until there are enough."""
+    """Find members that satisfy all constraints, with their assemblies, until there are enough."""
     if not len(starts.x):
         return []
     cheap = zoned(setting)
     ends = descend_softly(family, starts.x, starts.theta, starts.sign, points, cheap, STEPS)
     chosen = [int(k) for k in np.argsort(ends.cost, kind="stable")[:HELD] if math.isfinite(ends.cost[k])]
     on_points = _brought(family, [(ends.x[k], ends.theta[k], float(starts.sign[k])) for k in chosen], points, cheap)
+    # The sweep through the workspace is expensive, so that it is evaluated only once per member.
     lost = [broken(family, one.x, one.theta, sign, setting) for sign, one in on_points]
     members = [on_points[n] for n in range(len(lost)) if lost[n] == 0.0]
+    # Members far outside would need another shape, which moving along the family seldom gives.
     away = [n for n in np.argsort(lost, kind="stable")[:MOVED] if 0.0 < lost[n] <= HOPELESS]
     for first in range(0, len(away), AT_ONCE):
         if len(members) >= ENOUGH:
@@ -113,7 +118,7 @@ def _held(starts: RoomStarts, points: Complex, setting: Real, family: int) -> li
 def _brought(
     family: int, fits: list[tuple[Real, Real, float]], points: Complex, setting: Real
 ) -> list[tuple[float, Held]]:
-    """Members of the family that fits (unknowns, crank angles, assembly) lead to within a setting."""
+    """Lead fits (unknowns, crank angles, assembly) to members of the family within a setting."""
     found: list[Held | None] = [None] * len(fits)
     weights = np.ones(len(points))
 

@@ -1,14 +1,14 @@
-"""Fourbars through three to eight points under demands, which leave freedom: a search of the family.
+"""Fourbars through three to eight points under constraints: a search of the continuous family that they leave.
 
 Fourbars through fewer than nine points form a continuous family. Its members are sought near a smooth curve through the
-points: some ten thousand linkages of the demanded class are compared with that curve, as for whole curves. The most
-alike go to least squares at the points alone, with the distances from given pivots and regions as further residuals,
-until the cost is zero: each start leads to the nearest member of the family.
+points: some ten thousand linkages of the required class are compared with that curve, as for whole curves. The most
+similar ones go to least squares at the points alone, with the distances from given pivots and regions as further
+residuals, until the cost is zero: each start leads to the nearest member of the family.
 
-The other demands (transmission angle, lengths, order, places of P and of the moving pivots) are kept by few of these
-members, or by none. Therefore the ones that break them least are moved along the family: they descend again, with zero
-distances from the points as the aim and all demands held by multipliers, so that what is left of the freedom goes into
-the demands. All members that differ are driven. Where a room is demanded, pivots are drawn in it instead
+Few of these members, or none, satisfy the other constraints (transmission angle, lengths, order, places of P and of the
+moving pivots). Therefore the members with the smallest violations are moved along the family: they descend again, with
+zero distances from the points as the aim and all constraints enforced by multipliers, so that the remaining freedom
+goes into the constraints. All distinct members are driven. If a workspace is given, pivots are drawn in it instead
 (:mod:`synthesis.kinds.path.family_in_room`).
 """
 
@@ -43,49 +43,49 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 DRAWN = 6144
-"""Number of linkages of each class drawn in a round; windows of their curves are compared with a smooth curve
-through the points."""
+"""Number of linkages of each class drawn in a round; windows of their curves are compared with a smooth curve through
+the points."""
 
 MAX_FOLLOWED = 220
-"""Greatest number of the most alike that go to least squares."""
+"""Maximum number of the most similar linkages that go to least squares."""
 
 MAX_STEPS = 150
-"""Greatest number of steps of least squares; most members are reached in some twenty."""
+"""Maximum number of steps of least squares; most members are reached in some twenty."""
 
 MAX_LINK = 12.0
-"""Longest link, in task sizes, where no limit is stated."""
+"""Longest link, in task sizes, if no limit is given."""
 
 SAME_DESIGN = 1e-3
 """Members whose joints agree to this share of the task's size are offered once: the family is continuous."""
 
 MIN_LINK = 1e-6
-"""Links shorter than this share of the task's size are no links."""
+"""Linkages with a link shorter than this share of the task's size are degenerate."""
 
 MAX_DRIVEN = 160
-"""Greatest number of members that are driven."""
+"""Maximum number of members that are driven."""
 
 ENOUGH = 24
-"""Members that keep all demands, beyond which no others are moved to keep them."""
+"""Number of feasible members beyond which no others are moved."""
 
 MAX_MOVED = 32
-"""Greatest number of linkages of a class that are moved in a round, those that break demands least."""
+"""Maximum number of linkages of a class that are moved in a round, those with the smallest violations."""
 
 ENOUGH_IN_ROOM = 2
-"""In a room: members that are verified for each design that is asked for."""
+"""Number of members verified in a workspace for each requested design."""
 
 PORTION = 2
 """Number of linkages to be moved that a thread takes at a time."""
 
 
 class Member(NamedTuple):
-    """A linkage through all points, in the problem's coordinates, and by how much it breaks a demand: 0 for none."""
+    """A linkage through all points, in the problem's coordinates, and its largest constraint violation: 0 for none."""
 
     joints: FourbarConfiguration
     broken: float
 
 
 def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
-    """Solve a problem of three to eight points with demands."""
+    """Solve a problem of three to eight points with constraints."""
     if bounded(problem):
         found = members_in_room(problem, progress)
         return _answer(problem, [Member(joints, 0.0) for joints in found.members], found.brought, progress)
@@ -95,6 +95,7 @@ def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
     within = pivot_limits(problem, centre, size)
     limit = problem.constraints.link_length
     longest = MAX_LINK if limit is None or limit.max is None else limit.max / size
+    # A few points do not define a shape; the spline through them is a plausible curve to compare with.
     smooth, places = smooth_steps(points, closed=False)
     families = families_of(problem)
     members: list[Member] = []
@@ -124,7 +125,10 @@ def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
                 lost[k] = broken(family, ends.x[k], ends.theta[k], signs[k], setting)
             on_family = ends.cost <= COST_TOLERANCE
             members += [met(family, ends.x[k], ends.theta[k], signs[k], lost[k]) for k in np.flatnonzero(on_family)]
+            # Moving is expensive and only needed while feasible members are scarce.
             if sum(member.broken == 0.0 for member in members) < ENOUGH:
+                # Feasible members need no move; the others are ordered by violation and distance from the points
+                # together.
                 away = np.where(on_family & (lost == 0.0), math.inf, np.hypot(lost, np.sqrt(ends.cost)))
                 moved = _moved(family, ends, signs, away, points, setting)
                 members += [met(family, one.x, one.theta, signs[k], 0.0) for k, one in moved]
@@ -134,9 +138,9 @@ def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
 def _moved(
     family: int, ends: Descent, signs: list[float], away: Real, points: Complex, setting: Real
 ) -> list[tuple[int, Held]]:
-    """Members that keep all demands, and the rows of the ends of descents that they were moved from.
+    """Move linkages along the family until they satisfy all constraints; return them with the rows of their starts.
 
-    ``away``, shape (n,), is how far an end is from being one; infinite where it is not to be moved.
+    ``away``, shape (n,), is the distance of an end from feasibility; infinite for one that is not to be moved.
     """
     order = np.argsort(away, kind="stable")[:MAX_MOVED]
     chosen = [int(k) for k in order if math.isfinite(away[k])]
@@ -152,7 +156,7 @@ def _moved(
 
 
 def _answer(problem: PathProblem, members: list[Member], brought: int, progress: Progress) -> PathResult:
-    """Drive the members that differ, and put those first that are asked for."""
+    """Drive the distinct members, rank them, and build the result."""
     size = problem.task_size
 
     def verified(member: Member) -> PathDesign | str | None:
@@ -160,26 +164,27 @@ def _answer(problem: PathProblem, members: list[Member], brought: int, progress:
             return "degenerate"
         return verify_path(problem, fourbar_mechanism(member.joints))
 
+    # Feasible members first: they must not be lost as duplicates of infeasible ones.
     ordered = sorted(members, key=lambda member: member.broken > 0.0)
     driven = [ordered[k] for k in distinct([member.joints for member in ordered], MAX_DRIVEN, SAME_DESIGN * size)]
     sifting = Sifting[PathDesign](problem)
-    # The sweep of a room takes longer than all else that is verified.
+    # Sweeping a workspace takes longer than all other checks together.
     enough = ENOUGH_IN_ROOM * problem.max_designs if bounded(problem) else None
-    # Limits on forces are broken by many, as far as a fit sees, and these are driven where there are no others.
+    # Force limits are violated by many fits, as far as their residuals show; drive these only if there are no others.
     sound = [one for one in driven if one.broken == 0.0] if problem.constraints.of_forces else driven
     sifting.sift(reported(sound, progress, (0.6, 1.0), "{done} of {all} linkages driven"), verified, enough)
     if len(sound) < len(driven) and len(sifting.passed) < problem.max_designs:
         sifting.sift((one for one in driven if one.broken > 0.0), verified, problem.max_designs)
     progress(1.0, "verified")
     text = (
-        f"{counted(brought, 'linkage')} near a curve through the points {agreeing(brought, 'was', 'were')} brought to "
-        f"them, {grouped(len(ordered))} of them exactly and with the pivots where they are asked for; "
-        f"{grouped(sifting.accepted)} of {grouped(len(driven))} that differ "
-        f"{agreeing(sifting.accepted, 'satisfies', 'satisfy')} all demands."
+        f"{counted(brought, 'start')} near a curve through the points {agreeing(brought, 'was', 'were')} fitted; "
+        f"{grouped(len(ordered))} reached all points exactly, with the required pivots. "
+        f"{grouped(sifting.accepted)} of {grouped(len(driven))} distinct linkages "
+        f"{agreeing(sifting.accepted, 'satisfies', 'satisfy')} all constraints."
     )
     text += sifting.reasons()
     if not sifting.accepted:
-        text += " None was found; others may exist."
+        text += " None was found; some may still exist."
     return PathResult(
         designs=sifting.designs(partial(ranked, rank_by=problem.rank_by)),
         search=sifting.search("family_search"),

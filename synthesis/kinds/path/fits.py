@@ -1,8 +1,8 @@
-"""Points that are fitted: linkages by least squares, each driven over its whole way, those first that come nearest.
+"""Fit points: linkages by least squares, each driven over its used range, the nearest first.
 
-Least squares looks at the points alone, and a linkage that is nearest there may go anywhere between them. Where the
-nearest do (:mod:`synthesis.kinds.path.nearness`), linkages whose whole curves have the shape of the points' course are
-fitted too (:mod:`synthesis.kinds.path.curve_match`). Where a start is stated, the fit descends from that alone.
+Least squares evaluates the points alone, and a linkage that is nearest there may go anywhere between them. If the
+nearest ones do (:mod:`synthesis.kinds.path.nearness`), linkages whose whole curves have the shape of the points' course
+are fitted too (:mod:`synthesis.kinds.path.curve_match`). If a start is given, the fit descends from it alone.
 """
 
 from __future__ import annotations
@@ -23,16 +23,18 @@ from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import reported
 
 MIN_DRIVEN = 12
-"""Linkages that are verified at least, however few are wanted."""
+"""Minimum number of linkages that are verified, even if fewer designs are requested."""
 
 STRAYS = 1.5
-"""The nearest designs go astray where the least error over the whole way is so many times that at the points alone."""
+"""The nearest designs stray if the minimum error over the used range exceeds that at the points alone by this
+factor."""
 
 FIRST_PART = 0.6
-"""Share of the progress that fits of the points alone count for."""
+"""Share of the progress assigned to fits of the points alone."""
 
 SAME_FIT = 1e-3
-"""Fits whose joints agree to this share of the task's size are one: a flat minimum is known to no more digits."""
+"""Fits whose joints agree to this share of the task's size are duplicates: a flat minimum is known to no more
+digits."""
 
 
 def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
@@ -55,14 +57,17 @@ def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
     fits.sift(
         reported(minima, first, (0.9, 1.0), "driving linkage {next} of {all}"),
         verified,
+        # Twice the requested number, because some of the nearest will be dropped for straying between the points.
         enough=max(2 * problem.max_designs, MIN_DRIVEN),
     )
     if problem.stance is not None:
         fits.sift(stanced_by_points(problem, minima, task), driven)
+    # Prescribed crank angles leave no freedom for a curve of another shape.
     if problem.start is None and not problem.prescribed and fits.astray():
         linkages = fitted_by_shape(problem, second)
         fits.sift(reported(linkages, second, (0.8, 1.0), "driving linkage {next} of {all}"), driven)
     kept = steady(fits.passed, problem)
+    # For an open curve the points alone may be what the client means.
     if fits.passed and not problem.closed and (nearest := _nearest(fits.passed)) not in kept:
         kept.append(nearest)
     fits.withdraw(kept, FAR)
@@ -71,20 +76,22 @@ def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
 
 
 class _Fits(Harvest):
-    """What becomes of the fits."""
+    """The verified fits, their selection, order and summary."""
 
     def astray(self) -> bool:
-        """Whether no design that passes comes as near over its whole way as the nearest does at the points."""
+        """Return whether no passed design comes as near over its used range as the nearest does at the points."""
         least = min((design.metrics.rms_distance for design in self.passed), default=0.0)
         nearest = max(least, ERROR_TOLERANCE * self.problem.task_size)
         return least_error(self.passed, self.problem) > STRAYS * nearest
 
     def different(self, designs: list[PathDesign]) -> list[PathDesign]:
-        """Nearest first unless another order is asked for or points have tolerances: then quality decides.
+        """Return distinct designs, nearest first unless another order is requested or points have tolerances (then by
+        quality).
 
-        What comes nearest at the points alone is always among those returned, last where it goes astray between them:
-        points that lie far apart say little of the way from one to the next.
+        The design nearest at the points alone is always among those returned, last if it strays between them: distant
+        points say little about the curve between them.
         """
+        # Within tolerances all designs are near enough.
         if self.problem.tolerances is not None:
             return ranked(super().different(designs), self.problem.rank_by)
 
@@ -97,35 +104,38 @@ class _Fits(Harvest):
         if len(shown) > 1 and passed:
             nearest, limit = _nearest(passed), NEARER * ERROR_TOLERANCE * self.problem.task_size
             if _nearest(shown).metrics.rms_distance > max(NEARER * nearest.metrics.rms_distance, limit):
+                # The last of the shown designs makes room for the nearest.
                 shown = [*shown[: self.problem.max_designs - 1], nearest]
         return [*shown, *(design for design in order if design not in shown)]
 
     def summary(self) -> str:
-        """The answer in words."""
+        """Describe the result in words."""
         n, unit = len(self.problem.points), self.problem.length_unit
         timing = "at their crank angles" if self.problem.prescribed else "in order"
         if self.passed:
             best = min(self.passed, key=lambda design: error_of(design, self.problem)).metrics
             passed, of = len(self.passed), counted(self.candidates, "fitted linkage")
             text = (
-                f"{grouped(passed)} of {of} {agreeing(passed, 'satisfies', 'satisfy')} all demands; the best passes "
-                "the "
-                f"{n} points {timing} with a root-mean-square distance of {best.rms_distance:.4g} {unit} and at most "
-                f"{best.max_distance:.4g} {unit} (sum of squares {best.sum_of_squares:.6g} {unit}²)."
+                f"{grouped(passed)} of {of} {agreeing(passed, 'satisfies', 'satisfy')} all constraints. The best "
+                f"passes the {n} points {timing} with a root-mean-square distance of {best.rms_distance:.4g} {unit} "
+                f"and a maximum of {best.max_distance:.4g} {unit} (sum of squares {best.sum_of_squares:.6g} {unit}²)."
             )
             if best.excursion:
-                text += f" Between the points it goes {best.excursion:.4g} {unit} farther than these tell."
+                text += f" Between the given points the curve strays by up to {best.excursion:.4g} {unit}."
             if self.rejected[FAR]:
                 others = counted(self.rejected[FAR], "other is", "others are")
                 text += f" {others} near the points, but far from their course between them."
         else:
             rejected = self.listed() or "none"
-            text = f"None of {counted(self.candidates, 'fitted linkage')} satisfies all demands (rejected: {rejected})."
+            text = (
+                f"None of {counted(self.candidates, 'fitted linkage')} satisfies all constraints "
+                f"(rejected: {rejected})."
+            )
         if self.problem.start is not None:
-            return text + " Least squares descends from the start that is stated; elsewhere a nearer linkage may exist."
-        return text + " Least squares descends from many starts; a nearer linkage may exist that none of them leads to."
+            return text + " Least squares descended from the given start; a nearer linkage may exist elsewhere."
+        return text + " Least squares descended from many starts; a nearer linkage may exist that none of them reaches."
 
 
 def _nearest(designs: list[PathDesign]) -> PathDesign:
-    """The design that comes nearest at the points."""
+    """Return the design nearest at the points."""
     return min(designs, key=lambda design: design.metrics.sum_of_squares)

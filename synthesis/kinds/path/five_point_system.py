@@ -23,23 +23,25 @@ from synthesis.numerics.elimination import factor, solve
 Complex = NDArray[np.complex128]
 
 SOLUTIONS = 36
-"""Solutions for general points and pivots."""
+"""Number of solutions for general points and pivots."""
 
 UNKNOWNS, PARAMETERS, SCRATCH = 8, 12, 72
-"""x₁, x̄₁, x₂, x̄₂, s₁…s₄; δ₁…δ₄, their conjugates, a₁, ā₁, a₂, ā₂; and what the system needs to work with."""
+"""Number of unknowns x₁, x̄₁, x₂, x̄₂, s₁…s₄; of parameters δ₁…δ₄, their conjugates, a₁, ā₁, a₂, ā₂; size of the
+workspace."""
 
 UNDERFLOW = 1e-300
-"""Added to the size of s, which scales a column: a coupler that does not turn leaves the column as it is, zero."""
+"""Added to the size of s, which scales a column: a coupler that does not turn leaves the column zero instead of
+dividing by zero."""
 
 GROUPS = np.array([0, 0, 0, 0, 1, 1, 1, 1], np.int64)
-"""The vectors share a scale, and the turns do."""
+"""Scale group of each unknown: the vectors share a scale, and the rotations share another."""
 
 
 @njit(SYSTEM, cache=True, nogil=True)
 def five_point_system(
     y: Complex, low: Complex, p: Complex, p_low: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
 ) -> int:
-    """The system, of the type that the continuation follows."""
+    """Compute Newton's step and the tangent of the system, in the form that the continuation follows."""
     matrix = work[:64].reshape((8, 8))
     pivots = work[64:72].view(np.int64)
     matrix[:] = 0.0
@@ -57,6 +59,7 @@ def five_point_system(
             matrix[row, 4 + j] = by_alpha * x + by_beta * x_bar * slope
             newton[row] = -(alpha * beta + (x - a) * beta + (x_bar - a_bar) * alpha)
             tangent[row] = -(by_alpha * dp[j] + by_beta * dp[4 + j] - dp[8 + k] * beta - dp[9 + k] * alpha)
+    # A singular matrix makes the continuation shorten its step.
     if not factor(matrix, pivots):
         return 0
     solve(matrix, pivots, newton)
@@ -65,7 +68,7 @@ def five_point_system(
 
 
 def residuals(y: Complex, p: Complex) -> NDArray[np.float64]:
-    """Largest |αβ + rβ + r̄α| of each solution, shape (...), for y of shape (..., 8)."""
+    """Return the largest |αβ + rβ + r̄α| of each solution, shape (...), for y of shape (..., 8)."""
     s = y[..., 4:]
     s_back = -s / (1.0 + s)
     largest = np.zeros(y.shape[:-1])
@@ -78,7 +81,8 @@ def residuals(y: Complex, p: Complex) -> NDArray[np.float64]:
 
 
 def conditions(y: Complex, p: Complex) -> NDArray[np.float64]:
-    """Condition of the Jacobian at each solution, rows and columns scaled to their size: shape (solutions,)."""
+    """Return the condition of the Jacobian at each solution, rows and columns scaled to their size: shape
+    (solutions,)."""
     jacobian = np.zeros((len(y), UNKNOWNS, UNKNOWNS), np.complex128)
     s = y[:, 4:]
     back = 1.0 / (1.0 + s)
@@ -95,7 +99,9 @@ def conditions(y: Complex, p: Complex) -> NDArray[np.float64]:
         jacobian[:, rows, 4 + j] = by_alpha * x + by_beta * x_bar * slope
     vectors = np.abs(y[:, :4]).max(axis=1)[:, None]
     sizes = np.concatenate([np.repeat(vectors, 4, axis=1), np.abs(s) + UNDERFLOW], axis=1)
+    # Scale columns by their unknowns, so that large linkages do not appear singular.
     jacobian *= sizes[:, None, :]
+    # Without this scaling the condition would measure the units of the rows, not nearness to a double solution.
     norms = np.abs(jacobian).max(axis=2)
     jacobian /= np.where(norms > 0.0, norms, 1.0)[:, :, None]
     return np.asarray(np.linalg.cond(jacobian))

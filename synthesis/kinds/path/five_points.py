@@ -1,8 +1,8 @@
 """All fourbars on two given fixed pivots whose coupler point goes through five points.
 
 The 36 solutions of general complex parameters are followed to the points and pivots of the problem
-(:mod:`synthesis.kinds.path.five_point_system`). Where 36 different ones arrive, with the complex conjugate of each and
-none nearly singular, these are all there are. Cognates stand on other pivots and are no answers here.
+(:mod:`synthesis.kinds.path.five_point_system`). If 36 different ones arrive, with the complex conjugate of each and
+none nearly singular, there are no others. Cognates stand on other pivots and are no answers here.
 """
 
 from __future__ import annotations
@@ -29,19 +29,20 @@ from synthesis.numerics.continuation import CONVERGED, REACHED, follow, refine
 Complex = NDArray[np.complex128]
 
 BEND = 2.0
-"""Size of the random bend of the parameters' way, in sizes of the problem."""
+"""Size of the random bend of the parameters' path, in sizes of the problem."""
 
 FIRST_TOLERANCE, LATER_TOLERANCE = 5e-3, 1e-3
-"""Relative error of the prediction that a step may have: on the first way, and where that has lost a path."""
+"""Relative error of the prediction that a step may have: in the first run, and in later ones, after a path was lost."""
 
 WAYS = 4
-"""Ways along which the solutions are followed, until all have arrived."""
+"""Maximum number of runs, each along another path of the parameters, until all solutions have arrived."""
 
 RESIDUAL = 1e-9
-"""Of the equations, in squares of the problem's size, at an end point that counts."""
+"""Maximum residual of the equations at an accepted end point, in squares of the problem's size."""
 
 SAME, REAL = 1e-6, 1e-6
-"""Solutions are the same, and real, where they agree to this share of their size (with their conjugate)."""
+"""Relative difference below which two solutions are the same, and below which one is real (compared with its
+conjugate)."""
 
 NEARLY_SINGULAR = 1e9
 """Condition above which the last digits of the points decide how many solutions are real: some may be missed."""
@@ -53,7 +54,7 @@ class FivePoints(NamedTuple):
     Attributes
     ----------
     found : int
-        Solutions, real and complex; 36 for general points.
+        Number of solutions, real and complex; 36 for general points.
     linkages : list of FourbarConfiguration
         The real ones, in the first position.
     complete : bool
@@ -69,7 +70,7 @@ class FivePoints(NamedTuple):
 
 
 def five_points(points: Complex, o2: complex, o4: complex, rng: np.random.Generator) -> FivePoints:
-    """All fourbars on O2 and O4 through five points.
+    """Compute all fourbars on O2 and O4 through five points.
 
     Parameters
     ----------
@@ -82,6 +83,7 @@ def five_points(points: Complex, o2: complex, o4: complex, rng: np.random.Genera
     """
     moved = np.asarray(points[1:] - points[0], np.complex128)
     pivots = np.array([o2, o4]) - points[0]
+    # Unit size keeps residuals and tolerances independent of the client's units.
     size = float(np.sqrt(np.mean(np.abs(np.concatenate([moved, pivots])) ** 2)))
     moved, pivots = moved / size, pivots / size
     p = np.concatenate([moved, moved.conj(), np.stack([pivots, pivots.conj()], axis=1).ravel()])
@@ -93,6 +95,7 @@ def five_points(points: Complex, o2: complex, o4: complex, rng: np.random.Genera
         ends = follow(five_point_system, GROUPS, SCRATCH, begun.y, begun.p, p, bend, tolerance=tolerance)
         arrived = ends.y[(ends.status == REACHED) & np.isfinite(ends.y).all(axis=1)]
         arrived = arrived[residuals(arrived, p) <= RESIDUAL * np.maximum(1.0, np.abs(arrived[:, :4]).max(axis=1)) ** 2]
+        # Conjugates of solutions for real points are solutions too, so that one of a pair suffices.
         y = _distinct(np.concatenate([y, arrived, _conjugate(arrived)]), p)
         if len(y) >= SOLUTIONS:
             break
@@ -100,18 +103,19 @@ def five_points(points: Complex, o2: complex, o4: complex, rng: np.random.Genera
         FourbarConfiguration(o2, points[0] + size * complex(x), points[0] + size * complex(z), o4, complex(points[0]))
         for x, z in _real(y, p)
     ]
+    # A nearly double solution may hide a pair of real ones.
     sound = len(y) == SOLUTIONS and bool((conditions(y, p) < NEARLY_SINGULAR).all())
     return FivePoints(len(y), linkages, sound, float(residuals(y, p).max(initial=0.0)))
 
 
 def _conjugate(y: Complex) -> Complex:
-    """The complex conjugates of solutions for real points: the parts of each vector change places."""
+    """Return the complex conjugates of solutions for real points: the parts of each vector are exchanged."""
     s = y[..., 4:].conj()
     return np.concatenate([y[..., [1, 0, 3, 2]].conj(), -s / (1.0 + s)], axis=-1)
 
 
 def _distinct(y: Complex, p: Complex) -> Complex:
-    """Solutions of the system, each once; conjugates that are no solutions are dropped."""
+    """Return each solution of the system once; conjugates that are no solutions are dropped."""
     good = y[residuals(y, p) <= RESIDUAL * np.maximum(1.0, np.abs(y[:, :4]).max(axis=1, initial=0.0)) ** 2]
     kept: list[int] = []
     for n in range(len(good)):
@@ -123,9 +127,10 @@ def _distinct(y: Complex, p: Complex) -> Complex:
 
 
 def _real(y: Complex, p: Complex) -> list[tuple[complex, complex]]:
-    """Moving pivots x₁, x₂ of the real solutions, refined as real ones."""
+    """Return the moving pivots x₁, x₂ of the real solutions, refined as real ones."""
     apart = np.abs(y - _conjugate(y)).max(axis=1)
     near = y[apart <= REAL * np.abs(y).max(axis=1)].copy()
+    # Project onto the real solutions, so that Newton's method stays among them if one is near.
     near = 0.5 * (near + _conjugate(near))
     near, _, moved = refine(five_point_system, GROUPS, SCRATCH, near, np.zeros_like(near), p)
     near = near[moved < CONVERGED]

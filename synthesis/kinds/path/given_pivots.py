@@ -15,11 +15,11 @@ from synthesis.model.linkages import to_complex
 from synthesis.outcome.sifting import reported
 
 FIVE, BOTH_PIVOTS = 5, 4
-"""Points, and given coordinates of fixed pivots, that leave no freedom and are solved completely."""
+"""Numbers of points, and of given coordinates of fixed pivots, that leave no freedom and are solved completely."""
 
 
 def all_are_found(problem: PathProblem) -> bool:
-    """Whether a problem is of the sort that is solved here."""
+    """Return whether this module can solve a problem completely."""
     exact = not (problem.fitted or problem.prescribed)
     return exact and len(problem.points) == FIVE and problem.fixed_pivots.given() == BOTH_PIVOTS
 
@@ -38,12 +38,13 @@ def solve_given_pivots(problem: PathProblem, progress: Progress) -> PathResult:
     for joints in reported(solved.linkages, progress, (0.5, 1.0), "{done} of {all} real linkages verified"):
         on_one_circuit += harvest.drive(joints)
     progress(1.0, "verified")
+    # A solution that rounding kept from being driven might have been a design.
     complete = solved.complete and not harvest.unproven
     text = (
         f"{solved.found} of {SOLUTIONS} solutions on these pivots were computed; "
         f"{counted(len(solved.linkages), 'is real', 'are real')}, {on_one_circuit} of these "
         f"{agreeing(on_one_circuit, 'has', 'have')} all points on one circuit, and "
-        f"{counted(len(harvest.passed), 'satisfies', 'satisfy')} all demands."
+        f"{counted(len(harvest.passed), 'satisfies', 'satisfy')} all constraints."
     )
     text += harvest.reasons() + harvest.proof(complete=complete)
     result = harvest.result("five_point_continuation", complete=complete, summary=text)

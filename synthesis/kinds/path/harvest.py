@@ -1,4 +1,4 @@
-"""What becomes of linkages that were found: verified designs, why others were rejected, and the answer made of them."""
+"""Collect the results of a search: verified designs, reasons for rejections, and the answer built from them."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from synthesis.outcome.ranking import distinct, ranked
 from synthesis.outcome.sifting import DEFECTS, LENGTHS, NUMERICAL, Sifting
 
 SAME_DESIGN = 1e-6
-"""Designs whose joints agree to this share of the task's size are one and the same."""
+"""Designs whose joints agree to this share of the task's size are duplicates."""
 
 APART = 0.05
-"""The same where there is a family of them: nearer ones are variants of one design."""
+"""Minimum separation of designs of a continuous family, as a share of the task's size: nearer ones are variants."""
 
 SHORTEST_LINK = 1e-9
-"""Links shorter than this share of the longest are no links."""
+"""Linkages with a link shorter than this share of the longest are degenerate."""
 
 _OF_DIMENSIONS = frozenset(
     (
@@ -26,11 +26,11 @@ _OF_DIMENSIONS = frozenset(
         "fixed_pivot_region", "input_pivot_region", "moving_pivot_region", "fixed_pivots",
     )
 )  # fmt: skip
-"""Checks of dimensions alone: a design that breaks one is refuted, however badly rounding lets it be driven."""
+"""Names of checks of dimensions alone: a design that fails one is refuted, however inaccurately it can be driven."""
 
 
 class Harvest(Sifting[PathDesign]):
-    """Designs that satisfy all demands of a problem, those that do not, and the reasons; what is alike is one."""
+    """Designs that satisfy all constraints of a problem, those that do not, and the reasons; duplicates are merged."""
 
     def __init__(self, problem: PathProblem, *, apart: float = SAME_DESIGN) -> None:
         super().__init__(problem, DEFECTS | LENGTHS)
@@ -38,20 +38,26 @@ class Harvest(Sifting[PathDesign]):
 
     @property
     def unproven(self) -> bool:
-        """Whether solutions were rejected although nothing was measured that speaks against them.
+        """Whether solutions were rejected only because of rounding, without any measurement against them.
 
-        Then none of what was found may be called all there is.
+        The designs found may then not be called all solutions.
         """
         return bool(NUMERICAL & self.rejected.keys())
 
     def reason_of(self, broken: Sequence[str]) -> str:
-        """Rounding can keep a solution from being shown to reach its points: that says nothing against it."""
+        """Return the reason of a rejection from the failed checks.
+
+        Rounding can prevent a solution from reaching its points, which says nothing against it; checks of dimensions
+        are preferred as the reason.
+        """
+        # Checks of dimensions do not depend on the driven motion and therefore remain valid.
         if broken[0] == "reaches_targets":
             broken = [name for name in broken if name in _OF_DIMENSIONS] or broken
         return super().reason_of(broken)
 
     def drive(self, joints: FourbarConfiguration) -> bool:
-        """Verify a fourbar; returns whether it has all points on one circuit."""
+        """Verify a fourbar; return whether it has all points on one circuit."""
+        # The analysis core could not drive it.
         if not joints.has_no_link_below(SHORTEST_LINK):
             self.reject("degenerate")
             return False
@@ -62,7 +68,7 @@ class Harvest(Sifting[PathDesign]):
         )
 
     def proof(self, *, complete: bool) -> str:
-        """What an empty answer means, as a sentence of the summary; empty where there are designs."""
+        """Describe in a sentence of the summary the meaning of an empty result; empty if there are designs."""
         if self.passed:
             return ""
         if not complete:
@@ -71,7 +77,7 @@ class Harvest(Sifting[PathDesign]):
         return f" These are all fourbars, so {none}."
 
     def result(self, method: str, *, complete: bool, summary: str) -> PathResult:
-        """The answer."""
+        """Build the result."""
         return PathResult(
             designs=self.designs(self.ordered, self.different),
             search=self.search(method, complete=complete),
@@ -79,16 +85,17 @@ class Harvest(Sifting[PathDesign]):
         )
 
     def ordered(self, designs: list[PathDesign]) -> list[PathDesign]:
-        """Designs in the order asked for."""
+        """Return designs in the requested order."""
         return ranked(designs, self.problem.rank_by)
 
     def different(self, designs: list[PathDesign]) -> list[PathDesign]:
-        """Designs, each once."""
+        """Return designs without duplicates."""
         return that_differ(designs, len(designs), self.apart * self.problem.task_size)
 
 
 def that_differ(designs: list[PathDesign], count: int, apart: float) -> list[PathDesign]:
-    """The first designs, at most ``count``, of which each has some joint ``apart`` from where all before have it."""
+    """Return the first designs, at most ``count``, with some joint at least ``apart`` from its place in all earlier
+    ones."""
     names = ("O2", "A", "B", "O4")
     joints = [[complex(*design.mechanism.skeleton.joints[name]) for name in names] for design in designs]
     return [designs[n] for n in distinct(joints, count, apart)]

@@ -1,4 +1,4 @@
-"""Fits of points brought to where all demands hold, those of a room included."""
+"""Lead fits of points to satisfy all constraints, those of a workspace included."""
 
 from __future__ import annotations
 
@@ -16,22 +16,23 @@ from synthesis.numerics.status import Status
 Real = NDArray[np.float64]
 
 ROUNDS, STEPS = 8, 80
-"""Descents in a room, and steps of each, at most: its margins take thirty times as long as all other demands."""
+"""Maximum number of descents in a workspace, and of steps of each: its margins take thirty times as long as all other
+constraints."""
 
 
 def held(x: Real, rows: Real, setting: Real, state: Real) -> tuple[Status, float]:
-    """Descend in place to a minimum at which all demands of a setting hold; returns the status, and the cost there.
+    """Descend in place to a minimum that satisfies all constraints of a setting; return the status, and the cost there.
 
     Parameters
     ----------
     x : float64, shape (unknowns,)
-        A fit; changed.
+        A fit; changed in place.
     rows : float64, shape (points, 4)
-        Of :func:`synthesis.kinds.path.point_rows.path_rows`.
+        Points as for :func:`synthesis.kinds.path.point_rows.path_rows`.
     setting : float64
-        Of :func:`synthesis.kinds.path.limits.setting_of`.
+        Constraints from :func:`synthesis.kinds.path.limits.setting_of`.
     state : float64, shape (3 points + limits,)
-        With the crank angles first; changed.
+        Crank angles first; changed in place.
     """
     limits, roomy = limits_of(setting), int(margins_of(setting[SETTING:]))
     rounds, steps = (ROUNDS, STEPS) if roomy else (MAX_ROUNDS, MAX_STEPS)

@@ -1,9 +1,10 @@
-"""Residuals of a Stephenson II that guides a point along a curve, both ways, and its demands as margins.
+"""Residuals of a Stephenson II that guides a point along a curve, in both directions, and its constraints as margins.
 
 The unknowns and the motion are those of :mod:`synthesis.fit.inverted_curve`; the rows of points, the way back, and the
 margins of lengths, their ratios and the box are those of other sixbars (:mod:`synthesis.kinds.path.sixbar_rows`), in
-the same places. Instead of the cosines of two dyads it is that of the triad, at the leg with the least transmission
-angle, which is kept from above and from below. What turns over on its way is refused: its input would turn back.
+the same places. Instead of the cosines of two dyads, the cosine of the triad at the leg with the minimum transmission
+angle is bounded from above and from below. Linkages that turn over within the cycle are refused: their input would turn
+back.
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ Complex = NDArray[np.complex128]
 
 @njit(**OPTIONS)
 def _settled(x: Real, lengths: Real, setting: Real, z: complex, angle: float) -> float:
-    """The angle of link 3 brought nearer to where P is nearest to z; NaN beyond a toggle."""
+    """Move the angle of link 3 towards the place where P is nearest to z; NaN beyond a toggle."""
     sign, side, carrier = setting[SIGN], setting[SIDE], int(setting[CARRIER])
     for _ in range(SETTLING):
         closes, p, moved = inverted_velocity(x, lengths, sign, carrier, side, angle)
@@ -68,8 +69,11 @@ def _settled(x: Real, lengths: Real, setting: Real, z: complex, angle: float) ->
 
 @njit(**OPTIONS)
 def _of_links(x: Real, lengths: Real, chart: Real, setting: Real, multipliers: Real, values: Real, rows: Real) -> int:
-    """Margins of lengths and ratios, as those of a Stephenson III on the input; the number of the next margin."""
+    """Compute margins of lengths and ratios, as those of a Stephenson III on the input; return the number of the next
+    margin."""
     here, stated = x.copy(), setting.copy()
+    # The input is the ground of the inverted chain, so that place and direction, and all boxes of the frame, are
+    # neutralized.
     here[:3] = 0.0
     stated[CARRIER], stated[HOLDER], stated[COSINE] = COUPLER, GROUND, np.inf
     for edge in range(8):
@@ -88,7 +92,7 @@ def _of_links(x: Real, lengths: Real, chart: Real, setting: Real, multipliers: R
 
 @njit(**OPTIONS)
 def _of_pivots(x: Real, setting: Real, values: Real, rows: Real) -> None:
-    """Margins of the boxes and the given coordinates of O2 and O4, into a fourbar's places."""
+    """Compute margins of the boxes and the given coordinates of O2 and O4, into a fourbar's places."""
     first = len(values) - LIMITS
     ground, cosine, sine = math.exp(x[DYAD + 1]), math.cos(x[2]), math.sin(x[2])
     by = np.zeros(UNKNOWNS)
@@ -118,15 +122,17 @@ def _of_pivots(x: Real, setting: Real, values: Real, rows: Real) -> None:
 def inverted_rows(
     x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
 ) -> int:
-    """Rows for the descent of :mod:`synthesis.numerics.levenberg`; −1 where it does not close, or turns over.
+    """Compute rows for the descent of :mod:`synthesis.numerics.levenberg`; −1 if the linkage does not close, or turns
+    over.
 
-    ``points`` (n, 4): x and y, nothing, and the square root of the weight. ``state``: angles of link 3 at the points,
+    ``points`` (n, 4): x and y, unused, and the square root of the weight. ``state``: angles of link 3 at the points,
     then margins.
     """
     n = len(points)
     lengths, chart = np.empty(4), np.zeros((4, 4))
     natural(int(setting[FAMILY]), x, lengths, chart)
     sign, side, carrier = setting[SIGN], setting[SIDE], int(setting[CARRIER])
+    # Logarithms of lengths beyond this overflow in their products.
     if not (np.abs(x[3:7]).max() < 30.0 and max(abs(x[DYAD]), abs(x[DYAD + 1])) < 30.0):
         return -1
     turns, slopes = np.zeros((3, UNKNOWNS + 1)), np.empty(UNKNOWNS + 1, np.complex128)
@@ -145,6 +151,7 @@ def inverted_rows(
         m += 2
     steps, limits = int(setting[STEPS]), margins_of(setting)
     values, gradients = state[n:], np.empty((limits, UNKNOWNS))
+    # Margins without a limit stay infinite and never become active.
     values[:] = np.inf
     first = _of_links(x, lengths, chart, setting, multipliers, values, gradients)
     _of_pivots(x, setting, values, gradients)
@@ -153,9 +160,11 @@ def inverted_rows(
         angle, back = 2.0 * math.pi * k / steps, setting[BACK] > 0.0
         number = first + AT_STEP * k
         closes, cosine, sine = inverted_joints(x, lengths, sign, carrier, side, angle, places)
+        # A sign change of the sine between two steps means that the triad has passed a toggle.
         if not closes or hand * sine < 0.0:
             return -1
         hand = sine
+        # |cos| is bounded by two one-sided margins, which are smooth.
         values[number], values[number + 1] = setting[COSINE] - cosine, setting[COSINE] + cosine
         loaded = values[number] < multipliers[number] / weight or values[number + 1] < multipliers[number + 1] / weight
         pressed = False
@@ -166,6 +175,7 @@ def inverted_rows(
                 at = places[joint].real if edge < 2 else places[joint].imag
                 values[number + 2 + edge] = min(values[number + 2 + edge], toward * (at - limit))
             pressed |= values[number + 2 + edge] < multipliers[number + 2 + edge] / weight
+        # Derivatives are expensive, and needed only for margins that bear a load.
         if not (loaded or back or pressed):
             continue
         inverted_slopes(x, lengths, chart, sign, carrier, side, angle, turns, joints, by)
@@ -178,6 +188,7 @@ def inverted_rows(
             limit, toward = setting[ROOM + edge], 1.0 if edge % 2 == 0 else -1.0
             for joint in range(SHOWN):
                 at = places[joint].real if edge < 2 else places[joint].imag
+                # Only the joint that is nearest to the edge determines the margin.
                 if toward * (at - limit) > values[number + 2 + edge]:
                     continue
                 seen_from_ground(x, joint, turns, joints, by, slopes)

@@ -1,9 +1,10 @@
-"""Stephenson II sixbars drawn at random, swept and placed on a target, for :mod:`synthesis.kinds.path.sixbar_shapes`.
+"""Draw random Stephenson II sixbars, sweep them and place them on a target, for
+:mod:`synthesis.kinds.path.sixbar_shapes`.
 
-Seen from the input link (:mod:`synthesis.fit.inverted_curve`) the pin C of link 4 goes round the input's fixed pivot D
-once while link 3 turns once, so that the input turns once beside the ground. So D is drawn within the curve of C, then
-lengths of output and ground of several that are tried, the first with which the output is pushed at
-:data:`~synthesis.kinds.path.sixbar_shapes.LEAST_ANGLE` and more over the whole turn.
+Seen from the input link (:mod:`synthesis.fit.inverted_curve`) the pin C of link 4 goes around the input's fixed pivot D
+once while link 3 turns once, so that the input turns once relative to the ground. So D is drawn within the curve of C;
+then several pairs of lengths of output and ground are tried, and the first with a transmission angle of the output of
+at least :data:`~synthesis.kinds.path.sixbar_shapes.LEAST_ANGLE` over the full turn is taken.
 """
 
 from __future__ import annotations
@@ -25,15 +26,15 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 ASIDE = 0.6
-"""How far D is drawn from the middle of C's curve at most, as a share of its mean distance from there."""
+"""Maximum distance of D from the middle of C's curve, as a share of the curve's mean distance from there."""
 
 
 def drawn(family: int, carrier: int, count: int, tried: int, rng: np.random.Generator) -> tuple[Real, Real, Real]:
-    """Unknowns, signs, and lengths to be tried (count, tried, 2); D is a direction and share still."""
+    """Draw unknowns, signs, and lengths to be tried (count, tried, 2); D is still a relative direction and distance."""
     x = np.zeros((count, UNKNOWNS))
     x[:, 3:7] = draw(family, count, 0.0, int(rng.integers(2**31))).x[:, 3:7]
     half = 0.5 * np.exp(x[:, 4:7])
-    # Of a crank-rocker link 3 is shortest, of a double-crank the input; their length is 1.
+    # Link 3 is the shortest link of a crank-rocker, the input that of a double-crank; their length is 1.
     coupler, rocker = 1.0 + half[:, 0] + half[:, 1], 1.0 + half[:, 0] + half[:, 2]
     crank = np.ones(count) if family == CRANK_ROCKER else 1.0 + half[:, 1] + half[:, 2]
     for at, size in ((C, coupler), (P, {CRANK: crank, COUPLER: coupler}.get(carrier, rocker))):
@@ -51,7 +52,7 @@ def swept(
     family: int, carrier: int, least_angle: float, x: Real, signs: Real, tried: Real, curves: Complex,
     good: NDArray[np.bool_],
 ) -> None:  # fmt: skip
-    """D is placed, lengths of output and ground are chosen among those tried, and all is swept."""
+    """Place D, choose lengths of output and ground among those tried, and sweep the sixbars."""
     n, steps = curves.shape
     lengths, chart = np.empty(4), np.zeros((4, 4))
     places, shown, pin = np.empty(6, np.complex128), np.empty(SHOWN, np.complex128), np.empty(steps, np.complex128)
@@ -60,6 +61,7 @@ def swept(
         good[i] = False
         natural(family, x[i], lengths, chart)
         aside = complex(x[i, D], x[i, D + 1])
+        # Lengths of e²⁰ close the dyad anywhere; only the fourbar's pins matter here.
         x[i, DYAD] = x[i, DYAD + 1] = 20.0
         for k in range(steps):
             joints(x[i], lengths, signs[i, 0], COUPLER, 0, 1.0, 2.0 * math.pi * k / steps, places)
@@ -70,12 +72,14 @@ def swept(
         around = 0.0
         for k in range(steps):
             around += cmath.phase((pin[(k + 1) % steps] - pivot) / (pin[k] - pivot))
+        # The winding number of C's curve around D must be one.
         if abs(abs(around) - 2.0 * math.pi) > 1.0:
             continue
         far = np.abs(pin - pivot)
         least, greatest = far.min(), far.max()
         for t in range(tried.shape[1]):
             first, second = greatest * tried[i, t, 0], greatest * tried[i, t, 1]
+            # The dyad must close at every distance of C from D.
             if abs(first - second) >= least or first + second <= greatest:
                 continue
             x[i, DYAD], x[i, DYAD + 1] = math.log(first), math.log(second)
@@ -83,6 +87,7 @@ def swept(
             for k in range(steps):
                 angle = 2.0 * math.pi * k / steps
                 closes, cosine, sine = inverted_joints(x[i], lengths, signs[i, 0], carrier, signs[i, 1], angle, shown)
+                # Too close to a toggle, or the triad has changed its assembly.
                 if not (closes and abs(cosine) <= most and hand * sine >= 0.0):
                     sound = False
                     break
@@ -97,7 +102,8 @@ def place_each(
     family: int, carrier: int, windows: Real, where: NDArray[np.int64], target: Complex, closed: bool, x: Real,
     signs: Real, at: Real, marks: Complex,
 ) -> None:  # fmt: skip
-    """Every sixbar put on the target in place; angles of link 3 at its points, and the joints at the first."""
+    """Put every sixbar on the target in place; return angles of link 3 at its points, and the joints at the first, in
+    ``marks``."""
     lengths, chart = np.empty(4), np.zeros((4, 4))
     curve, theta = np.empty(SWEEP_STEPS, np.complex128), np.empty(SWEEP_STEPS)
     middle, places = target.mean(), np.empty(SHOWN, np.complex128)
@@ -108,6 +114,7 @@ def place_each(
             inverted_joints(x[i], lengths, signs[i, 0], carrier, signs[i, 1], theta[k], places)
             curve[k] = places[POINT]
         z, angles, mirrored = laid(curve, theta, True, 2.0 * math.pi, where[i], windows, closed, len(target))
+        # Mirroring in the real axis flips every ordinate and both assemblies.
         if mirrored:
             for k in (1, 2, C + 1, D + 1, P + 1):
                 x[i, k] = -x[i, k]
@@ -123,7 +130,7 @@ def place_each(
 
 @njit(cache=True, nogil=True)
 def _moved(alpha: complex, beta: complex, x: Real) -> None:
-    """A sixbar under z → αz + β, in place; the angles of link 3 beside the input stay."""
+    """Map a sixbar by z → αz + β, in place; the angles of link 3 relative to the input stay."""
     size = abs(alpha)
     o2 = alpha * complex(x[0], x[1]) + beta
     x[0], x[1] = o2.real, o2.imag

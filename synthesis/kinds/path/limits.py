@@ -1,4 +1,4 @@
-"""A client's limits on a fourbar that guides a point, as demands of a fit (:mod:`synthesis.fit.demands`).
+"""Pack a client's limits on a fourbar that guides a point as constraints of a fit (:mod:`synthesis.fit.demands`).
 
 Limits are in task coordinates, and tightened by a margin, so that a fit that ends on a limit meets it after rounding.
 """
@@ -35,23 +35,23 @@ from synthesis.model.linkage_statement import Region
 Real = NDArray[np.float64]
 
 TIMED, PHASED, ORDERED = range(DEMANDS, DEMANDS + 3)
-"""Places in a setting behind the demands: whether timing is prescribed, what crank angles are measured from, whether
-points are met in order."""
+"""Indices in a setting behind the constraints: whether timing is prescribed, the line from which crank angles are
+measured, and whether points are met in order."""
 
 SETTING = DEMANDS + 3
-"""Numbers of a setting; behind them stands the room (:mod:`synthesis.fit.room`), if there is one."""
+"""Number of values of a setting; the packed workspace (:mod:`synthesis.fit.room`), if any, follows them."""
 
 FREE, ABSOLUTE, GROUND_LINE = range(3)
 """The line from which prescribed crank angles are measured."""
 
 MAX_LINK = 50.0
-"""Longest link, in task sizes, where the client states none: without a limit fits run off to sliders."""
+"""Longest link, in task sizes, if the client gives none: without a limit fits run off to sliders."""
 
 MIN_LINK = 1e-4
 """Shortest link, in task sizes; a shorter one could not be drawn, let alone be built."""
 
 MIN_GRASHOF = 1e-6
-"""Least of s₁, s₂, s₃ as a share of all links together: nearer to a change point a linkage counts as one."""
+"""Minimum of s₁, s₂, s₃ as a share of all links together: nearer to a change point a linkage counts as one."""
 
 LIMIT_WEIGHT = 1e3
 """Weight of limits, in task units, in the first descent of :func:`synthesis.numerics.augmented_lagrangian.hold`."""
@@ -61,11 +61,12 @@ LIMIT_MARGIN = 1e-10
 
 
 REGION_MARGIN = 1e-7
-"""Regions are aimed at with this margin, a share of the task's size, so that a pivot on their edge is in them."""
+"""Margin by which regions are shrunk, a share of the task's size, so that a pivot on their edge is inside after
+rounding."""
 
 
 class Usable(NamedTuple):
-    """Limits of a usable linkage where the client states none: least transmission angle (degrees), greatest link ratio,
+    """Limits of a usable linkage if the client gives none: minimum transmission angle (degrees), maximum link ratio,
     and longest link (task sizes)."""
 
     transmission: float
@@ -76,7 +77,8 @@ class Usable(NamedTuple):
 def setting_of(
     problem: PathProblem, origin: complex, size: float, *, sign: float, family: int, usable: Usable | None = None
 ) -> Real:
-    """A problem's limits for one class of fourbars and one assembly, with ``origin`` at 0 and ``size`` at 1."""
+    """Pack a problem's limits for one class of fourbars and one assembly, with ``origin`` at 0 and ``size`` at 1."""
+    # All lengths are divided by the task's size; angles and ratios stay.
     limits = problem.constraints
     out = np.full(SETTING, math.inf)
     out[FAMILY], out[SIGN], out[WHOLE] = family, sign, problem.closed
@@ -88,6 +90,7 @@ def setting_of(
         least = max(limits.link_length.min / size, MIN_LINK)
         most = MAX_LINK if limits.link_length.max is None else limits.link_length.max / size
     if usable is not None:
+        # Twice the client's shortest link keeps the range of lengths from becoming empty.
         most = min(most, max(usable.longest, 2.0 * least))
         out[RATIO] = usable.ratio
         out[COSINE] = math.cos(math.radians(usable.transmission))
@@ -104,6 +107,7 @@ def setting_of(
     if limits.min_transmission_angle is not None:
         out[COSINE] = min(out[COSINE], math.cos(math.radians(limits.min_transmission_angle)) * (1.0 - LIMIT_MARGIN))
     out[MOVING : MOVING + 4] = _box([limits.moving_pivot_region], origin, size)
+    # NaN marks a coordinate that is not given.
     out[GIVEN : GIVEN + 4] = math.nan
     for k, pivot in enumerate((problem.fixed_pivots.input, problem.fixed_pivots.output)):
         x, y = pivot or (None, None)
@@ -115,24 +119,26 @@ def setting_of(
 
 
 def room_of(problem: PathProblem, origin: complex, size: float) -> Real:
-    """What is held along the motion, with ``origin`` at 0 and ``size`` at 1: the room, and limits on forces."""
+    """Pack the constraints along the motion, with ``origin`` at 0 and ``size`` at 1: the workspace, and limits on
+    forces."""
     limits = problem.constraints.of_forces
     forces = packed_forces(problem.dynamics, limits, problem.length_unit, origin, size)
     return packed(problem.space, origin, size, forces=forces)
 
 
 def zoned(setting: Real) -> Real:
-    """A setting whose room is the zones of pivots alone, which cost no motion: for descents in great number."""
+    """Return a setting whose workspace consists of the pivots' zones alone: they need no motion, for descents in great
+    number."""
     return np.concatenate([setting[:SETTING], zones_alone(setting[SETTING:])])
 
 
 def limits_of(setting: Real) -> int:
-    """How many margins a setting has: those of its room first, and then those of the demands."""
+    """Return the number of margins of a setting: those of its workspace first, then those of the constraints."""
     return int(margins_of(setting[SETTING:])) + LIMITS
 
 
 def _box(regions: list[Region | None], origin: complex, size: float) -> tuple[float, float, float, float]:
-    """The box common to all regions that are stated, drawn in by a margin: least and greatest x, least and greatest y.
+    """Return the box common to all given regions, shrunk by a margin: minimum and maximum x, minimum and maximum y.
 
     A narrow one keeps half of its width.
     """
@@ -145,5 +151,6 @@ def _box(regions: list[Region | None], origin: complex, size: float) -> tuple[fl
 
 
 def _drawn_in(low: float, high: float) -> tuple[float, float]:
+    """Shrink an interval by the margin of regions, or by a quarter of its width on each side if that is less."""
     margin = min(REGION_MARGIN, 0.25 * (high - low))
     return low + margin, high - margin

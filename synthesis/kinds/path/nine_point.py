@@ -1,11 +1,11 @@
 """All fourbars whose coupler point goes through nine points: every one of the 1442 cognate triples, real and complex.
 
-The orbits of the start are followed to the problem's points (:mod:`synthesis.kinds.path.nine_point_system`). What is
-reached is checked as a whole: residuals, that no two paths ended in one orbit (one of them has then jumped), and that
-with every orbit its complex conjugate is there, as real points demand. Paths that were lost, mostly to linkages of 10⁴
-and more times the size of the data, are followed again in smaller steps, in higher precision and from the other members
-of their orbit; what is still missing is looked for along other ways, on which every orbit ends elsewhere. What cannot
-be found is said: nothing is complete without all 1442.
+The orbits of the start are followed to the problem's points (:mod:`synthesis.kinds.path.nine_point_system`). The end
+points are checked as a whole: residuals, that no two paths ended in one orbit (one of them has then jumped), and that
+the complex conjugate of every orbit is present, as real points require. Lost paths, mostly to linkages of 10⁴ or more
+times the size of the data, are followed again in smaller steps, in higher precision and from the other members of their
+orbit; orbits still missing are searched along other parameter paths, on which every orbit ends elsewhere. The result
+reports orbits that were not found: nothing is complete without all 1442.
 """
 
 from __future__ import annotations
@@ -37,63 +37,64 @@ Complex = NDArray[np.complex128]
 Mask = NDArray[np.bool_]
 
 RESIDUAL = 1e-8
-"""Greatest residual of a solution, with points of unit mean distance from the first one."""
+"""Maximum residual of a solution, with points of unit mean distance from the first one."""
 
 SAME_ORBIT = 1e-4
-"""Orbits whose keys agree to this share count as the same. An end point far out has lost many digits, while 1442 keys
-of three complex numbers are hardly ever so near to one another."""
+"""Orbits whose keys agree to this share count as the same. A distant end point has lost many digits, but two of 1442
+keys of three complex numbers are hardly ever this close."""
 
 REAL = 1e-6
-"""A solution whose conjugate vectors differ by less than this share from conjugates may be real; Newton then decides
-with vectors that are."""
+"""A solution whose vectors differ by less than this share from conjugate pairs may be real; Newton's method then
+decides, starting from exact pairs."""
 
 BEND = 0.5
-"""Size of the random bend of the way, beside points of unit distance."""
+"""Size of the random bend of the parameters' path, relative to points of unit distance."""
 
 WAYS = 4
-"""Whole runs at most; the first finds all orbits, or all but some of 1442, in general problems."""
+"""Maximum number of runs; in general problems the first finds all 1442 orbits, or all but some."""
 
 SPECIAL = 0.1
-"""Where more than this share of the paths does not end, the points are special (on a conic, say) and have fewer
-solutions; repeating the run would find the same."""
+"""If more than this share of the paths does not end, the points are special (on a conic, say) and have fewer solutions;
+repeating the run would find the same."""
 
 NEARLY_SINGULAR, FEW = 1e10, 0.01
-"""Of general points at most one in a thousand solutions has a condition above 1e10. Where more than a hundredth have,
-the points are special, and the numbers of solutions and of real ones depend on their last digits."""
+"""For general points at most one solution in a thousand has a condition above 1e10. If more than a hundredth have, the
+points are special, and the numbers of solutions and of real ones depend on their last digits."""
 
 FIRST_TOLERANCE, RETRY_TOLERANCE, LAST_TOLERANCE = 5e-3, 1e-3, 1e-5
-"""Relative error of the prediction that a step may have: at first, from each of three cognates, and from them again."""
+"""Relative error of the prediction that a step may have: in the first run, from each of three cognates, and from them
+again."""
 
 PORTION = 96
-"""Paths between two reports of progress."""
+"""Number of paths between two progress reports."""
 
 STEPS = 2000
-"""Greatest number of steps of a path. Almost all need less than 300; lost ones are better followed from a cognate."""
+"""Maximum number of steps of a path. Almost all need less than 300; lost ones are better followed from a cognate."""
 
 
 class Triples(NamedTuple):
-    """What is known of the fourbars through nine points.
+    """The fourbars found through nine points.
 
     Attributes
     ----------
     y, low : complex, shape (found, 16)
-        One solution of each orbit that was found, and what it has rounded off, for points relative to the first and of
-        unit mean square distance from it.
+        One solution of each orbit found, and the low-order part that rounding cut off, for points relative to the first
+        and of unit mean square distance from it.
     p : complex, shape (16,)
         The points, relative and scaled, and their conjugates.
     real : complex, shape (triples, 3, 4)
         Fixed and moving pivot of the first dyad, fixed and moving pivot of the second, in the first position and in the
         problem's own coordinates: three cognates for each real orbit.
     lost : int
-        Orbits missing from 1442.
+        Number of orbits missing from 1442.
     retried : int
-        Paths that had to be followed again.
+        Number of paths that had to be followed again.
     largest_residual : float
         Over all orbits found.
     self_conjugate : bool
         Whether the conjugate of every orbit is among them.
     nearly_singular : int
-        Orbits whose condition is above :data:`NEARLY_SINGULAR`.
+        Number of orbits whose condition exceeds :data:`NEARLY_SINGULAR`.
     """
 
     y: Complex
@@ -108,30 +109,30 @@ class Triples(NamedTuple):
 
     @property
     def complete(self) -> bool:
-        """Whether these are all, and would be with the points' last digits changed."""
+        """Whether these are all triples, and would be so if the points' last digits changed."""
         return self.lost == 0 and self.self_conjugate and self.nearly_singular <= FEW * ORBITS
 
 
 def all_triples(
     points: Complex, rng: np.random.Generator, progress: Callable[[float], None], threads: int = 1
 ) -> Triples:
-    """All cognate triples of fourbars through nine points.
+    """Compute all cognate triples of fourbars through nine points.
 
     Parameters
     ----------
     points : complex, shape (9,)
         The points, distinct.
     rng : Generator
-        Draws the ways along which the parameters move.
+        Draws the paths along which the parameters move.
     progress : callable
-        Told the share of the paths that are done.
+        Receives the share of the paths followed.
     threads : int
-        Paths followed side by side.
+        Number of paths followed in parallel.
 
     Returns
     -------
     Triples
-        ``lost`` is 0 when all 1442 are there.
+        ``lost`` is 0 if all 1442 were found.
     """
     moved = np.asarray(points[1:] - points[0], np.complex128)
     size = float(np.sqrt(np.mean(np.abs(moved) ** 2)))
@@ -140,7 +141,9 @@ def all_triples(
     retried = 0
     for way in range(WAYS):
         bend = BEND * (rng.normal(size=(PARAMETERS, 2)) @ np.array([1.0, 1.0j]))
+        # Another random bend of the same start: orbits lost on one path usually arrive on another.
         retried += _run(orbits, bend, threads, _part(progress, way))
+        # Special points have fewer solutions, which another run cannot add.
         if orbits.missing == 0 or orbits.missing > SPECIAL * ORBITS:
             break
     progress(1.0)
@@ -162,7 +165,7 @@ def _part(progress: Callable[[float], None], way: int) -> Callable[[float], None
 
 
 def conjugate(y: Complex) -> Complex:
-    """The complex conjugates of solutions for real points: the parts of each vector change places."""
+    """Return the complex conjugates of solutions for real points: the parts of each vector are exchanged."""
     s = y[..., 8:].conj()
     return np.concatenate([_mirrored(y), -s / (1.0 + s)], axis=-1)
 
@@ -172,7 +175,7 @@ def _mirrored(y: Complex) -> Complex:
 
 
 class _Orbits:
-    """The orbits found so far, each once."""
+    """The set of distinct orbits found."""
 
     def __init__(self, p: Complex) -> None:
         self.p = p
@@ -185,12 +188,13 @@ class _Orbits:
         return ORBITS - len(self.y)
 
     def begin_way(self) -> None:
-        """From now on ends are those of another way."""
+        """Start a new run: its ends are compared with one another afresh."""
         self._on_way = Known(3, SAME_ORBIT)
 
     def add(self, y: Complex, low: Complex) -> Mask:
-        """Add those ends of a way that are sound; tells which are, of several of one orbit the first."""
+        """Add the sound ends of a run; return their mask, true only for the first of several in one orbit."""
         sound = self._sound(y, low)
+        # Two paths of one run in one orbit: one of them has jumped, and its own orbit is still missing.
         sound[sound] = self._on_way.add(orbit_keys(y[sound], self.p, low[sound]))
         self._join(y[sound], low[sound])
         return sound
@@ -204,22 +208,23 @@ class _Orbits:
         self.y, self.low = np.concatenate([self.y, y[new]]), np.concatenate([self.low, low[new]])
 
     def holds(self, y: Complex) -> bool:
-        """Whether all these solutions are known."""
+        """Return whether all these solutions are known."""
         return bool(self._known.holds(orbit_keys(y, self.p)).all())
 
     def add_conjugates(self) -> None:
-        """Add the conjugate of every orbit where it is missing."""
+        """Add the conjugate of every orbit that lacks it."""
         mirrored = conjugate(self.y)
         alone = ~self._known.holds(orbit_keys(mirrored, self.p))
         if alone.any():
             low = np.concatenate([_mirrored(self.low[alone]), np.zeros((np.count_nonzero(alone), 8))], axis=-1)
+            # The conjugate of an inaccurate end need not satisfy the equations to rounding.
             y, low, moved = refine(nine_point_system_extended, GROUPS, SCRATCH, mirrored[alone], low, self.p)
             kept = (moved < CONVERGED) & self._sound(y, low)
             self._join(y[kept], low[kept])
 
 
 def _run(orbits: _Orbits, bend: Complex, threads: int, progress: Callable[[float], None]) -> int:
-    """Follow all orbits along one way and add what they reach; returns how many had to be followed again."""
+    """Follow all orbits along one parameter path and add the ends; return the number that had to be followed again."""
     begun = nine_point_start()
     orbits.begin_way()
     lost: list[int] = []
@@ -228,12 +233,14 @@ def _run(orbits: _Orbits, bend: Complex, threads: int, progress: Callable[[float
         sound = _follow(orbits, begun.y[some], begun.p, bend, FIRST_TOLERANCE, threads)
         lost += [int(n) for n in some[~sound]]
         progress(0.8 * (first + len(some)) / ORBITS)
+        # Give up early on special points; half a portion of slack avoids a decision on too few paths.
         if len(lost) > 0.5 * PORTION + SPECIAL * ORBITS:
             return len(lost)
     orbits.add_conjugates()
     for attempt in range(6):
         if orbits.missing == 0:
             break
+        # Another cognate of the same orbit takes another, often easier path.
         members = cognates(begun.y[lost], begun.p)[:, attempt % 3]
         tolerance = RETRY_TOLERANCE if attempt < 3 else LAST_TOLERANCE
         _follow(orbits, members, begun.p, bend, tolerance, threads, again=True)
@@ -245,8 +252,8 @@ def _run(orbits: _Orbits, bend: Complex, threads: int, progress: Callable[[float
 def _follow(
     orbits: _Orbits, y: Complex, begun: Complex, bend: Complex, tolerance: float, threads: int, *, again: bool = False
 ) -> Mask:
-    """Follow solutions of the start to the problem, those that were lost in twice the precision; tells which of them
-    have a sound end of their own."""
+    """Follow solutions of the start to the problem, lost ones in twice the precision; return which have a sound end of
+    their own."""
     ends = follow(
         nine_point_system_extended if again else nine_point_system,
         GROUPS,
@@ -261,19 +268,20 @@ def _follow(
         precise=again,
     )
     sound = np.asarray((ends.status == REACHED) & np.isfinite(ends.y).all(axis=-1))
-    # Refined, so that the keys of ill-conditioned solutions have digits to tell them by.
+    # Refine, so that the keys of ill-conditioned solutions have enough digits to distinguish them.
     y, low, _ = refine(nine_point_system_extended, GROUPS, SCRATCH, ends.y[sound], ends.low[sound], orbits.p)
     sound[sound] = orbits.add(y, low)
     return sound
 
 
 def _real_linkages(orbits: _Orbits) -> Complex:
-    """Pivots of the real orbits' three cognates, in scaled coordinates: shape (triples, 3, 4)."""
+    """Return the pivots of the real orbits' three cognates, in scaled coordinates: shape (triples, 3, 4)."""
     y = orbits.y
     if not len(y):
         return np.empty((0, 3, 4), np.complex128)
     apart = np.abs(y[:, :8:2] - y[:, 1:8:2].conj()).max(axis=-1)
     near = y[apart <= REAL * np.abs(y[:, :8]).max(axis=-1)].copy()
+    # Project onto conjugate pairs; Newton's method stays among them if a real solution is near.
     near[:, :8:2] = 0.5 * (near[:, :8:2] + near[:, 1:8:2].conj())
     near[:, 1:8:2] = near[:, :8:2].conj()
     near, low, moved = refine(nine_point_system_extended, GROUPS, SCRATCH, near, np.zeros_like(near), orbits.p)

@@ -10,12 +10,12 @@ by θⱼ the link has moved by α = δⱼ + x sⱼ, β = δ̄ⱼ + x̄ s̄ⱼ an
 with s = θ − 1 and s̄ = 1/θ − 1 (Wampler, Morgan & Sommese 1992, doi:10.1115/1.2916909, in other letters). These are 16
 equations for y = (x₁, x̄₁, r₁, r̄₁, x₂, x̄₂, r₂, r̄₂, s₁ … s₈) and the parameters p = (δ₁ … δ₈, δ̄₁ … δ̄₈). Since sⱼ stands
 in two of them only, it is eliminated from each pair of linearized equations, and eight remain to be solved. Couplers of
-large linkages hardly turn, which s tells with all its digits where θ would have lost them.
+large linkages hardly turn; s represents this with all its digits, which θ would lose.
 
-Exchanging the dyads and going over to one of the two cognates (Roberts 1875) gives the same coupler curve, so that
+Exchanging the dyads and changing to one of the two cognates (Roberts 1875) gives the same coupler curve, so that
 solutions come in orbits of six; there are 8652 = 6 · 1442 for general parameters. In the three cognates the coupler
-turns as the coupler, the first or the second link of one of them does. Symmetric functions of these three rotations are
-the orbit's own, and are of ordinary size however large the linkage is.
+turns like the coupler, the first or the second link of one of them. Symmetric functions of these three rotations
+identify the orbit, and are of ordinary size however large the linkage is.
 """
 
 from __future__ import annotations
@@ -36,41 +36,42 @@ Complex = NDArray[np.complex128]
 UNKNOWNS, PARAMETERS, POINTS = 16, 16, 8
 
 ORBITS = 1442
-"""Cognate triples through nine general points, real and complex (Wampler, Morgan & Sommese 1992)."""
+"""Number of cognate triples through nine general points, real and complex (Wampler, Morgan & Sommese 1992)."""
 
 GROUPS = np.array([0] * 4 + [1] * 4 + [2] * 8)
-"""The vectors of a dyad share a scale, and so do the rotations."""
+"""Scale group of each unknown: the vectors of a dyad share a scale, and so do the rotations."""
 
 OPTIONS: Any = {"cache": True, "nogil": True, "error_model": "numpy"}
-"""How the kernels are compiled: vectors for the eight points, with fused multiplications and no exceptions."""
+"""Compiler options of the kernels: vectors for the eight points, with fused multiplications and no exceptions."""
 
 LANES = 8
-"""Numbers side by side in the scratch, one for each point; the imaginary parts stand LANES after the real ones."""
+"""Numbers per quantity in the workspace, one for each point; imaginary parts follow LANES after the real ones."""
 
 PAIR = 2 * LANES
 
 S, TURN_BACK, S_BACK, DELTA, DELTA_BAR, STEP, STEP_BAR = range(0, 7 * PAIR, PAIR)
-"""Where rotations, parameters and their changes stand in the scratch."""
+"""Offsets in the workspace of rotations, parameters and their changes."""
 
 ALPHA_1, BETA_1, GAP_1, ALPHA_2, BETA_2, GAP_2 = range(7 * PAIR, 13 * PAIR, PAIR)
-"""And what follows from them."""
+"""Offsets of the quantities derived from them."""
 
 COLUMNS, ROWS = 13 * PAIR, 23 * PAIR
-"""Ten columns of the equations without the rotations, right sides last, and six of those that give the rotations."""
+"""Offsets of ten columns of the equations without the rotations, right sides last, and of the six that give the
+rotations."""
 
 FIRST = 29 * PAIR
-"""Number of the first vector of the dyad that gives the rotation."""
+"""Offset of the index of the first vector of the dyad that gives the rotation."""
 
 MATRIX = (29 * PAIR + LANES) // 2
-"""The equations as rows, in complex numbers of the scratch."""
+"""Offset of the equations as rows, in complex numbers of the workspace."""
 
 SCRATCH = MATRIX + 80
 
 APART = 1e-9
-"""Dyads closer than this share of their size are one and the same: no linkage, and not counted among the 1442."""
+"""Minimum separation of two dyads, as a share of their size: nearer ones are no linkage, and not among the 1442."""
 
 _WEIGHTS = np.exp(1j * np.arange(1, 9) ** 2)
-"""Some directions of no meaning, by which eight rotations are summed up to one number."""
+"""Arbitrary directions that combine eight rotations into one number."""
 
 
 @njit(**OPTIONS)
@@ -91,7 +92,7 @@ def _inverse(z: complex) -> complex:
 
 @njit(**OPTIONS)
 def _spread(y: Complex, p: Complex, dp: Complex, w: Any, points: int) -> None:
-    """Rotations and parameters side by side."""
+    """Copy rotations and parameters into the workspace, as vectors over the points."""
     for j in range(points):
         _put(w, S + j, y[8 + j])
         _put(w, DELTA + j, p[j])
@@ -102,9 +103,9 @@ def _spread(y: Complex, p: Complex, dp: Complex, w: Any, points: int) -> None:
 
 @njit(**OPTIONS)
 def _differences(y: Complex, w: Any, points: int) -> None:
-    """α, β and the gaps of the equations at all points.
+    """Compute α, β and the residuals of the equations at all points.
 
-    The number of points is an argument so that loops over it are not unrolled, but run in vectors.
+    The number of points is an argument so that loops over it are vectorized instead of unrolled.
     """
     x_1, c_1, r_1, d_1, x_2, c_2, r_2, d_2 = y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7]
     for j in range(points):
@@ -126,23 +127,24 @@ def _differences(y: Complex, w: Any, points: int) -> None:
 
 @njit(**OPTIONS)
 def _equations(y: Complex, w: Any, points: int) -> None:
-    """The equations of each point without its rotation, and those that give the rotation."""
+    """Compute the equations of each point with its rotation eliminated, and those that give the rotation."""
     x_1, c_1, r_1, d_1, x_2, c_2, r_2, d_2 = y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7]
     for j in range(points):
         s, back, s_back = _get(w, S + j), _get(w, TURN_BACK + j), _get(w, S_BACK + j)
         alpha_1, beta_1, gap_1 = _get(w, ALPHA_1 + j), _get(w, BETA_1 + j), _get(w, GAP_1 + j)
         alpha_2, beta_2, gap_2 = _get(w, ALPHA_2 + j), _get(w, BETA_2 + j), _get(w, GAP_2 + j)
         step, step_bar = _get(w, STEP + j), _get(w, STEP_BAR + j)
-        # by α and by β
+        # Derivatives by α and by β.
         by_alpha_1, by_beta_1 = beta_1 + d_1, alpha_1 + r_1
         by_alpha_2, by_beta_2 = beta_2 + d_2, alpha_2 + r_2
-        # by θ
+        # Derivatives by θ.
         square = back * back
         by_turn_1 = by_alpha_1 * x_1 - by_beta_1 * c_1 * square
         by_turn_2 = by_alpha_2 * x_2 - by_beta_2 * c_2 * square
         size_1 = by_turn_1.real * by_turn_1.real + by_turn_1.imag * by_turn_1.imag
         size_2 = by_turn_2.real * by_turn_2.real + by_turn_2.imag * by_turn_2.imag
         share = 1.0 / math.sqrt(size_1 + size_2)
+        # This unit combination of the pair cancels the rotation's column; scaling keeps it well conditioned.
         to_1, to_2 = by_turn_2 * share, -by_turn_1 * share
         moved_1 = by_alpha_1 * step + by_beta_1 * step_bar
         moved_2 = by_alpha_2 * step + by_beta_2 * step_bar
@@ -158,8 +160,9 @@ def _equations(y: Complex, w: Any, points: int) -> None:
         _put(w, COLUMNS + 7 * PAIR + j, to_2 * alpha_2)
         _put(w, COLUMNS + 8 * PAIR + j, -(to_1 * gap_1 + to_2 * gap_2))
         _put(w, COLUMNS + 9 * PAIR + j, -(to_1 * moved_1 + to_2 * moved_2))
-        # θ comes back from the equation in which it counts more
+        # Recover θ from the equation with the larger derivative by it: the other could divide by almost zero.
         one = size_1 >= size_2
+        # The row of θ is divided by its own coefficient once, here.
         inverse = -_inverse(by_turn_1 if one else by_turn_2)
         _put(w, ROWS + j, (by_x_1 if one else by_x_2) * inverse)
         _put(w, ROWS + PAIR + j, (by_c_1 if one else by_c_2) * inverse)
@@ -172,7 +175,7 @@ def _equations(y: Complex, w: Any, points: int) -> None:
 
 @njit(**OPTIONS)
 def _solve(y: Complex, newton: Complex, tangent: Complex, work: Complex, points: int) -> int:
-    """Newton's step and the tangent, from α, β of both dyads at each point and from the gaps of the equations there."""
+    """Compute Newton's step and the tangent from α, β of both dyads and the residuals at each point."""
     w = work.view(np.float64)
     _equations(y, w, points)
     matrix = work[MATRIX : MATRIX + 80].reshape((8, 10))
@@ -190,6 +193,7 @@ def _solve(y: Complex, newton: Complex, tangent: Complex, work: Complex, points:
             by = _get(w, ROWS + PAIR * k + j)
             step += by * newton[first + k]
             slope += by * tangent[first + k]
+        # Back substitution: rotations follow from the eight vectors.
         newton[8 + j], tangent[8 + j] = step, slope
     return 1
 
@@ -198,7 +202,7 @@ def _solve(y: Complex, newton: Complex, tangent: Complex, work: Complex, points:
 def nine_point_system(
     y: Complex, low: Complex, p: Complex, p_low: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
 ) -> int:
-    """The system, of the type that the continuation follows, in ordinary precision."""
+    """Compute Newton's step and the tangent in ordinary precision, in the form that the continuation follows."""
     points = p.size // 2
     w = work.view(np.float64)
     _spread(y, p, dp, w, points)
@@ -210,9 +214,9 @@ def nine_point_system(
 def nine_point_system_extended(
     y: Complex, low: Complex, p: Complex, p_low: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
 ) -> int:
-    """The system with its residuals in twice the precision, for solutions that ordinary rounding would lose.
+    """Compute the same with residuals in twice the precision, for solutions that ordinary rounding would lose.
 
-    Newton's method converges to the digits of its residuals; its matrix needs no more than some right ones.
+    Newton's method converges to the precision of its residuals; its matrix needs only a few correct digits.
     """
     points = p.size // 2
     w = work.view(np.float64)
@@ -241,21 +245,22 @@ def nine_point_system_extended(
 
 
 def is_linkage(y: Complex) -> NDArray[np.bool_]:
-    """Whether the two dyads of a solution differ: shape (...), for y of shape (..., 16).
+    """Return whether the two dyads of a solution differ: shape (...), for y of shape (..., 16).
 
-    They must differ in both isotropic coordinates. Where they agree in one the system has whole curves of solutions, to
-    which paths come that have lost their way.
+    They must differ in both isotropic coordinates. If they agree in one, the system has whole curves of solutions, on
+    which lost paths end.
     """
     differ = np.ones(y.shape[:-1], np.bool_)
     for half in ([0, 2], [1, 3]):
         first, second = y[..., half], y[..., [k + 4 for k in half]]
         size = np.maximum(np.abs(first), np.abs(second)).max(axis=-1)
+        # Both halves must differ: see above.
         differ &= np.abs(first - second).max(axis=-1) > APART * size
     return differ
 
 
 def residuals(y: Complex, p: Complex, low: Complex | None = None) -> NDArray[np.float64]:
-    """Largest |αβ + rβ + r̄α| of each solution y (+ low), shape (...), for y of shape (..., 16)."""
+    """Return the largest |αβ + rβ + r̄α| of each solution y (+ low), shape (...), for y of shape (..., 16)."""
     exact = y if low is None else y.astype(np.clongdouble) + low
     s = exact[..., 8:]
     s_back = -s / (1.0 + s)
@@ -268,7 +273,8 @@ def residuals(y: Complex, p: Complex, low: Complex | None = None) -> NDArray[np.
 
 
 def conditions(y: Complex, p: Complex) -> NDArray[np.float64]:
-    """Condition of the Jacobian at each solution, unknowns and equations scaled to their size: shape (solutions,)."""
+    """Return the condition of the Jacobian at each solution, unknowns and equations scaled to their size: shape
+    (solutions,)."""
     jacobian = np.zeros((len(y), 16, UNKNOWNS), np.complex128)
     s = y[:, 8:]
     s_back = -s / (1.0 + s)
@@ -286,14 +292,14 @@ def conditions(y: Complex, p: Complex) -> NDArray[np.float64]:
 
 
 def rotations(y: Any, p: Complex) -> Complex:
-    """Rotations, less 1, of coupler, first and second link at the points: shape (..., 3, 8)."""
+    """Return the rotations, minus 1, of coupler, first and second link at the points: shape (..., 3, 8)."""
     s = y[..., 8:]
     links = [(p[:8] + y[..., k, None] * s) / y[..., k + 2, None] for k in (0, 4)]
     return np.asarray(np.stack([s, *links], axis=-2))
 
 
 def orbit_keys(y: Complex, p: Complex, low: Complex | None = None) -> Complex:
-    """What the six solutions y (+ low) of an orbit have in common and no others have: shape (..., 3)."""
+    """Return invariants shared by the six solutions y (+ low) of an orbit and by no others: shape (..., 3)."""
     exact = y if low is None else y.astype(np.clongdouble) + low
     first, second, third = np.moveaxis(rotations(exact, p).astype(np.complex128), -2, 0)
     sums = first + second + third
@@ -302,12 +308,13 @@ def orbit_keys(y: Complex, p: Complex, low: Complex | None = None) -> Complex:
 
 
 def exchanged(y: Complex) -> Complex:
-    """The solutions with their dyads exchanged."""
+    """Return the solutions with their dyads exchanged."""
     return np.concatenate([y[..., 4:8], y[..., :4], y[..., 8:]], axis=-1)
 
 
 def cognate(y: Complex, p: Complex) -> Complex:
-    """The cognates that share the first fixed pivot: their first dyad stands on it, their second on the third pivot.
+    """Return the cognates that share the first fixed pivot: their first dyad stands on it, their second on the third
+    pivot.
 
     With P at 0 and κ = −x₁/(x₂ − x₁) their moving pivots are q = −r₁ and q(1 − κ), their links −x₁ and κ r₂, and their
     coupler turns as the first link did (Roberts' construction).
@@ -319,5 +326,5 @@ def cognate(y: Complex, p: Complex) -> Complex:
 
 
 def cognates(y: Complex, p: Complex) -> Complex:
-    """The three members of each orbit that differ by more than the order of their dyads: shape (..., 3, 16)."""
+    """Return the three members of each orbit that differ by more than the order of their dyads: shape (..., 3, 16)."""
     return np.stack([y, cognate(y, p), cognate(exchanged(y), p)], axis=-2)

@@ -1,13 +1,13 @@
 """Slider-cranks and geared fivebars that guide a point: exactly, by least squares, or along a whole curve.
 
-The same search serves all three: shapes of many linkages are compared with a curve through the points, the most alike
-go to least squares at the points with the crank angle at each as an unknown, and what comes out is driven. At most as
+The same search serves all three: shapes of many linkages are compared with a curve through the points, the most similar
+go to least squares at the points with the crank angle at each as an unknown, and the results are driven. At most as
 many points as a linkage has dimensions are met exactly (eight by a slider-crank, eleven by a geared fivebar of given
-ratio); the freedom that fewer leave goes into the demands and the ranking.
+ratio); the freedom that fewer points leave goes into the constraints and the ranking.
 
-A geared fivebar of ratio +1 that draws the curve of a fourbar is known from it (Norton, Sec. 3.7 and Fig. 3-28):
-O2 A P A′ and O4 B P B′ are parallelograms, the cranks O2 A′ and O4 B′ turn with the fourbar's coupler, and P is the pin
-of the couplers A′ P and B′ P. For whole curves these cognates of the fourbar answers are offered too.
+A geared fivebar of ratio +1 that draws the curve of a fourbar is known from it (Norton, Sec. 3.7 and Fig. 3-28): O2 A P
+A′ and O4 B P B′ are parallelograms, the cranks O2 A′ and O4 B′ turn with the fourbar's coupler, and P is the pin of the
+couplers A′ P and B′ P. For whole curves these cognates of the best fourbars are offered too.
 """
 
 from __future__ import annotations
@@ -54,48 +54,51 @@ Complex = NDArray[np.complex128]
 Mechanism = SliderCrankMechanism | GearedFivebarMechanism
 
 CLOSED_DRAWN, OPEN_DRAWN = 49152, 8192
-"""Linkages that are drawn of a family: for a closed curve, and for a stroke, which is compared with parts of each."""
+"""Number of linkages of a family drawn for a closed curve, and for a stroke, which is compared with parts of each
+curve."""
 
 MAX_FOLLOWED, MAX_REFINED, MAX_DRIVEN = 150, 24, 16
-"""The most alike that are brought to the points; the best of them that are refined; and those that are driven."""
+"""Maximum numbers: of similar linkages that are fitted to the points; of the best of them that are refined; and of
+those that are driven."""
 
 KICKS, KICKED, COPIES, KICK, SPREAD = 4, 24, 8, 0.3, 0.8
 """Perturbation of the best for exact points: number of rounds, of linkages, of copies of each; standard deviation of
-their numbers' change, and of its logarithm: some are small and some are great."""
+the change of their unknowns, and of its logarithm: some changes are small and some are large."""
 
 ELSEWHERE = 0.4
-"""That of what is no logarithm of a length, as a share."""
+"""Share of that standard deviation for unknowns that are not logarithms of lengths."""
 
 MANY_FOLLOWED = 600
-"""The most alike that are brought to points that none of the first few meets."""
+"""Maximum number of similar linkages fitted if none of the first few meets the points."""
 
 ROUGH_STEPS, KICKED_STEPS, MAX_STEPS = 40, 150, 250
-"""Steps of least squares at most: of all that are followed, of perturbed copies, and of the best."""
+"""Maximum number of least-squares steps: of all followed linkages, of perturbed copies, and of the best."""
 
 COST_TOLERANCE = 1e-22
 """Sum of squared distances, in squares of the task's size, at which exact points count as met."""
 
 RATIOS = (1.0, -1.0, 2.0, -2.0)
-"""Gear ratios that are tried where none is given."""
+"""Gear ratios that are tried if none is given."""
 
 SAME_DESIGN = 1e-4
-"""Designs whose joints agree to this share of the task's size are one."""
+"""Designs whose joints agree to this share of the task's size are duplicates."""
 
 MAX_COGNATES = 3
-"""Fourbars whose geared cognates are offered, each with up to three."""
+"""Maximum number of fourbars whose geared cognates are offered, each with up to three."""
 
 NO_CHANGE_POINT, MARGIN = 3.0, 0.01
-"""Degrees of transmission angle that every slider-crank has whose crank turns through, and beyond what is demanded."""
+"""Minimum transmission angle, degrees, of every slider-crank whose crank turns through, and the margin added to a
+required one."""
 
 MIN_LINK = 1e-6
-"""Links shorter than this share of the task's size are no links."""
+"""Linkages with a link shorter than this share of the task's size are degenerate."""
 
 _Fit = tuple[tuple[bool, float], Mechanism]
-"""Whether other demands fail and the sum of squares, by which fits are ordered, and the linkage."""
+"""Sort key of a fit (whether other constraints fail, and the sum of squares), and the linkage."""
 
 
 class _Search(NamedTuple):
-    """What is searched for.
+    """The problem of a search, and the coordinates in which it is solved.
 
     Attributes
     ----------
@@ -103,7 +106,7 @@ class _Search(NamedTuple):
     tasks : list of tuple
         Family and gear ratio.
     centre, size : complex, float
-        The points' middle, and the unit of what is fitted.
+        The points' centroid, and the unit of the fits, in length units.
     """
 
     problem: PathProblem
@@ -118,14 +121,17 @@ def solve_other(problem: PathProblem, progress: Progress) -> PathResult:
     turns = problem.closed or problem.constraints.full_rotation
     tasks: list[tuple[int, float]]
     if problem.mechanism == "slider_crank":
+        # The crank of a slider-rocker does not turn through.
         tasks = [(SLIDER_CRANK, 0.0)] if turns else [(SLIDER_CRANK, 0.0), (SLIDER_ROCKER, 0.0)]
     else:
         tasks = [(GEARED_FIVEBAR, ratio) for ratio in (RATIOS if problem.gear_ratio is None else (problem.gear_ratio,))]
     search = _Search(problem, tasks, complex(given.mean()), problem.task_size)
     drawn = CLOSED_DRAWN if problem.closed else OPEN_DRAWN
+    # Four gear ratios would take four times as long; half the draws each are enough.
     few = drawn // (1 if len(tasks) < 3 else 2)
     fits = _fits(search, few, MAX_FOLLOWED, 0, part_of(progress, 0.0, 0.7 if problem.fitted else 0.35))
     if not (fits or problem.fitted) and problem.gear_ratio is not None:
+        # No exact member found: try once more with many more starts and another seed.
         fits = _fits(search, CLOSED_DRAWN, MANY_FOLLOWED, 1, part_of(progress, 0.35, 0.7))
     fits.sort(key=lambda fit: fit[0])
     mechanisms = _different([mechanism for _, mechanism in fits], search.size)
@@ -135,9 +141,10 @@ def solve_other(problem: PathProblem, progress: Progress) -> PathResult:
 
 
 def _fits(search: _Search, drawn: int, followed: int, again: int, progress: Progress) -> list[_Fit]:
-    """Linkages brought to the points; exact points are met by all.
+    """Fit linkages to the points; exact points are met by all linkages returned.
 
-    So many are ``drawn`` of each family, and the most alike ``followed``; ``again`` counts the draws.
+    ``drawn`` linkages of each family are generated, and the ``followed`` most similar ones fitted; ``again`` counts the
+    repetitions and changes the seed.
     """
     problem, tasks, centre, size = search
     points = (np.array([point.point for point in problem.points]) - centre) / size
@@ -165,11 +172,13 @@ def _fits(search: _Search, drawn: int, followed: int, again: int, progress: Prog
         if not len(starts.x):
             continue
         cycle = cycle_of(ratio) if family == GEARED_FIVEBAR else 0.0
+        # Slider-cranks repeat after one turn; their cycle of 0 only switches off the jam check.
         span = cycle or 2.0 * math.pi
         theta = np.array([angles_at(places, angles, problem.closed, span) for angles in starts.theta])
         settings: dict[str, Any] = {"ratio": ratio, "longest": longest, "cycle": cycle, "within": within}
         rough = descend(family, starts.x, starts.sign, theta, points, iterations=ROUGH_STEPS, **settings)
         begun = _Begun(rough.x, starts.sign, rough.theta, rough.cost)
+        # Geared fivebars have so many dimensions that most descents to exact points end in local minima.
         if family == GEARED_FIVEBAR and not problem.fitted:
             begun = _kicked(begun, points, settings, rng)
         best = np.argsort(begun.cost, kind="stable")[: MAX_REFINED if problem.fitted else None]
@@ -179,7 +188,7 @@ def _fits(search: _Search, drawn: int, followed: int, again: int, progress: Prog
         fine = descend(
             family, begun.x[best], begun.sign[best], begun.theta[best], points, iterations=MAX_STEPS, **settings
         )
-        # A rocker transmits as it may: where an angle is demanded, what is held to it goes first.
+        # No angle is enforced for a rocker: if one is required, linkages that satisfy it come first.
         sign, arrived = begun.sign[best], np.full(len(best), problem.constraints.min_transmission_angle is None)
         if problem.stance is not None or (problem.fitted and (family == SLIDER_CRANK or np.isfinite(within).any())):
             fine, sign, arrived = _held(search, family, fine, sign, points, settings)
@@ -194,7 +203,10 @@ def _fits(search: _Search, drawn: int, followed: int, again: int, progress: Prog
 
 
 def _least_angles(problem: PathProblem) -> list[float]:
-    """Degrees that slider-cranks are held to: those stated; else what keeps from change points, and what is usable."""
+    """Return the minimum transmission angles, degrees, to enforce on slider-cranks.
+
+    The required angle if given; otherwise one that avoids change points, and a usable one.
+    """
     stated = problem.constraints.min_transmission_angle
     if stated is not None:
         return [stated + MARGIN]
@@ -204,14 +216,15 @@ def _least_angles(problem: PathProblem) -> list[float]:
 def _held(
     search: _Search, family: int, fits: Descent, sign: Real, points: Complex, settings: dict[str, Any]
 ) -> tuple[Descent, Real, NDArray[np.bool_]]:
-    """Fits brought to the stance, to where fixed pivots must lie and to a transmission angle, which may be several.
+    """Lead fits to the stance, to their required fixed pivots and to one or more transmission angles.
 
-    A descent weighs how far pivots are off beside how far points are, which exact points make nothing of and fits do.
+    In a descent the distances of pivots and points trade against each other; both vanish for exact points, but not for
+    fits.
 
     Returns
     -------
     tuple
-        All ends of all angles, their assembly signs, and which came there; the others are as they were.
+        All ends for all angles, their assembly signs, and the mask of successful ones; the others are unchanged.
     """
     problem = search.problem
     if problem.stance is None:
@@ -222,12 +235,14 @@ def _held(
     within = settings["within"]
     given = np.flatnonzero(within[:, 0] == within[:, 1])
     angles = _least_angles(problem) if family == SLIDER_CRANK else [0.0]
+    # Every fit is tried with every angle; the better ones are selected after verification.
     cosines = np.repeat(np.cos(np.radians(angles)), len(sign))
     x, theta, cost = (np.concatenate([column] * len(angles)) for column in fits)
     signs, arrived = np.tile(sign, len(angles)), np.zeros(len(cost), np.bool_)
 
     def work(some: slice) -> None:
         for k in range(*some.indices(len(x))):
+            # Fits that already satisfy the constraints need no further descent.
             if problem.stance is None and _keeps(family, x[k], within, float(cosines[k])):
                 arrived[k] = True
             elif math.isfinite(cost[k]):
@@ -236,6 +251,7 @@ def _held(
                 )
                 if end is not None:
                     x[k], theta[k], cost[k], arrived[k] = end.x, end.theta, 2.0 * end.cost, True
+                    # The multipliers meet given coordinates only up to their tolerance; set them exactly.
                     x[k, given] = within[given, 0]
 
     in_portions(work, len(x), 1)
@@ -243,7 +259,8 @@ def _held(
 
 
 def _keeps(family: int, x: Real, within: Real, cosine: float) -> bool:
-    """Whether fixed pivots of a fit lie where they must, and a slider-crank has the least transmission angle."""
+    """Return whether the fixed pivots of a fit satisfy their limits, and a slider-crank its minimum transmission
+    angle."""
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     natural(family, x, lengths, chart)
     off, slopes = np.zeros(4), np.zeros((4, len(x)))
@@ -252,7 +269,8 @@ def _keeps(family: int, x: Real, within: Real, cosine: float) -> bool:
 
 
 class _Begun(NamedTuple):
-    """Linkages on their way: unknowns (n, m), assembly signs (n,), crank angles (n, points), sums of squares (n,)."""
+    """Linkages during the search: unknowns (n, m), assembly signs (n,), crank angles (n, points), sums of squares
+    (n,)."""
 
     x: Real
     sign: Real
@@ -261,7 +279,7 @@ class _Begun(NamedTuple):
 
 
 def _kicked(ends: _Begun, points: Complex, settings: dict[str, Any], rng: np.random.Generator) -> _Begun:
-    """Ends of descents of geared fivebars, and of those from perturbed copies of the best, until enough meet points.
+    """Perturb the best geared fivebars and descend again, until enough meet the points; return old and new ends.
 
     Places and angles are in the points' unit and in radians; logarithms of lengths are changed the most.
     """
@@ -286,7 +304,7 @@ def _kicked(ends: _Begun, points: Complex, settings: dict[str, Any], rng: np.ran
 
 
 def _from_fourbars(problem: PathProblem, progress: Progress) -> list[Mechanism]:
-    """The geared fivebars that draw the curves of the best fourbars."""
+    """Return the geared fivebars that draw the curves of the best fourbars."""
     asked = problem.model_copy(
         update={"mechanism": "fourbar", "gear_ratio": None, "max_designs": MAX_COGNATES, "layout": None, "stance": None}
     )
@@ -299,9 +317,10 @@ def _from_fourbars(problem: PathProblem, progress: Progress) -> list[Mechanism]:
 
 
 def cognate_fivebars(joints: FourbarConfiguration) -> list[GearedFivebarMechanism]:
-    """The geared fivebars of ratio +1 that draw a fourbar's coupler curve, in its configuration."""
+    """Return the geared fivebars of ratio +1 that draw a fourbar's coupler curve, in its configuration."""
     fivebars = []
     for o2, a, b, o4, p in with_cognates(joints):
+        # O2 A P A′ and O4 B P B′ are parallelograms, so that both cranks turn with the fourbar's coupler.
         mechanism = geared_fivebar_mechanism(o2, o2 + p - a, p, o4 + p - b, o4, p, 1.0, cmath.phase(p - a))
         if mechanism is not None:
             fivebars.append(mechanism)
@@ -311,15 +330,16 @@ def cognate_fivebars(joints: FourbarConfiguration) -> list[GearedFivebarMechanis
 def geared_fivebar_mechanism(
     o2: complex, a: complex, c: complex, b: complex, o5: complex, p: complex, ratio: float, input_angle: float
 ) -> GearedFivebarMechanism | None:
-    """Dimensions of the geared fivebar whose joints stand as given; None where a link has no length.
+    """Return the dimensions of the geared fivebar with the given joints; None if a link has no length.
 
-    ``input_angle`` is the crank's, radians; its full turns count where the gear ratio is no whole number.
+    ``input_angle`` is the crank's, radians; its full turns count if the gear ratio is not an integer.
     """
     ground, coupler = o5 - o2, c - a
     if min(abs(ground), abs(a - o2), abs(coupler), abs(c - b), abs(b - o5)) == 0.0:
         return None
     along = cmath.phase(ground)
     point = (p - a) / (coupler / abs(coupler))
+    # Angles are measured from the ground line, so that the phase does not depend on the place in the plane.
     phase = cmath.phase(b - o5) - along - ratio * (input_angle - along)
     joints = {"O2": o2, "O5": o5, "A": a, "B": b, "C": c, "P": p}
     return GearedFivebarMechanism(
@@ -349,7 +369,8 @@ def geared_fivebar_mechanism(
 def _mechanism(
     family: int, x: Real, sign: float, ratio: float, theta: float, centre: complex, size: float
 ) -> Mechanism | None:
-    """Dimensions of a fit, in the problem's own coordinates; None where a link has no length to speak of."""
+    """Return the dimensions of a fit, in the problem's own coordinates; None if a link is shorter than
+    :data:`MIN_LINK`."""
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     natural(family, x, lengths, chart)
     closes, p, unit = place(family, x, lengths, sign, ratio, theta)
@@ -373,13 +394,13 @@ def _mechanism(
 
 
 def _different(mechanisms: list[Mechanism], size: float) -> list[Mechanism]:
-    """Those that differ in some joint, in their order, no more than are driven."""
+    """Return the first distinct mechanisms, at most :data:`MAX_DRIVEN`."""
     joints = [[to_complex(joint) for joint in mechanism.skeleton.joints.values()] for mechanism in mechanisms]
     return [mechanisms[n] for n in distinct(joints, MAX_DRIVEN, SAME_DESIGN * size)]
 
 
 def _answer(problem: PathProblem, mechanisms: list[Mechanism], progress: Progress) -> PathResult:
-    """Drive the mechanisms, and rank what passes."""
+    """Drive the mechanisms, rank the ones that pass, and build the result."""
     in_rank = order_of(problem)
     sifting = Sifting[PathDesign](problem)
     sifting.sift(
@@ -391,13 +412,13 @@ def _answer(problem: PathProblem, mechanisms: list[Mechanism], progress: Progres
     name = problem.mechanism.replace("_", "-" if problem.mechanism == "slider_crank" else " ")
     fitted = counted(sifting.candidates, f"{name} that was", f"{name}s that were")
     satisfy = agreeing(sifting.accepted, "satisfies", "satisfy")
-    text = f"{grouped(sifting.accepted)} of {fitted} fitted {satisfy} all demands."
+    text = f"{grouped(sifting.accepted)} of {fitted} fitted {satisfy} all constraints."
     if sifting.passed and problem.fitted:
         best = in_rank(sifting.passed)[0].metrics
         text += f" The best one's rms distance is {best.rms_distance:.3g} {problem.length_unit}."
     text += sifting.reasons()
     if not sifting.passed:
-        text += " None was found; others may exist."
+        text += " None was found; some may still exist."
     method = "curve_match" if problem.matched else "least_squares" if problem.fitted else "family_search"
     return PathResult(
         designs=sifting.designs(in_rank),

@@ -1,15 +1,15 @@
-"""Where a driven fourbar's coupler point meets demanded points, or comes nearest to them: three ways of asking.
+"""Find where a driven fourbar's coupler point passes the required points, or comes nearest to them, in three ways.
 
-*At the points*, where they are to be met exactly and timing is free: the pin A lies on the crank's circle and at the
-coupler point's distance from the demanded point, two places, of which the output link excludes one as a rule. They
+*At the points*, if they are to be met exactly and timing is free: the pin A lies on the crank's circle and at the
+coupler point's distance from the required point; of these two places the output link usually excludes one. They
 give the input angles to which the linkage is driven, in both assemblies. A curve may pass a point twice: the passage on
 the first target's circuit counts.
 
-*At the crank angles*, where these are prescribed: the first is the reference's, the others follow it.
+*At the crank angles*, if these are prescribed: the first is the reference's, the others follow it.
 
-*Nearest, in order*, where points are fitted and timing is free: the input is looked for at which P comes nearest to
-each point, all in the order of the points within one turn of the input. On a grid this is a monotone assignment, for
-which dynamic programming finds the least sum of squares; the grid is then refined around the best run, again and again.
+*Nearest, in order*, if points are fitted and timing is free: the input is searched at which P comes nearest to each
+point, all in the order of the points within one turn of the input. On a grid this is a monotone assignment, for
+which dynamic programming finds the minimum sum of squares; the grid is then refined repeatedly around the best run.
 """
 
 from __future__ import annotations
@@ -30,37 +30,38 @@ Complex = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
 MET = 1e-9
-"""Distance, as a share of the task's size, up to which places count as alike where one circuit is to be chosen."""
+"""Distance, as a share of the task's size, up to which places count as equal when a circuit is chosen."""
 
 ROUNDED = 1e-11
-"""Misses above this share of the task's size may be those of the arc cosine by which inputs are found."""
+"""Misses above this share of the task's size may stem from the arc cosine by which inputs are found."""
 
 POLISHED, DIFFERENCE = 4, 1e-7
-"""Steps by which such inputs are polished, and the difference, radians, that their slope is measured over."""
+"""Number of Newton steps that polish such inputs, and the difference, radians, over which their slope is measured."""
 
 GRID = 360
-"""Inputs of the first pass in a full turn: one degree."""
+"""Number of inputs of the first pass in a full turn: one degree."""
 
 STRIDE = 5
 """A crank's first input is tried at every fifth input of the grid: the refinements move it by more than that."""
 
 SPREAD = 17
-"""Inputs for each target in one refinement, over the two steps around the best of the last."""
+"""Number of inputs for each target in one refinement, over the two steps around the previous optimum."""
 
 REFINEMENT = 0.25
-"""Step of a refinement as a share of the last: so coarse that targets that hold each other back can move together."""
+"""Step of a refinement as a share of the previous one: coarse enough that targets that block each other can move
+together."""
 
 REFINEMENTS = 24
 """Number of refinements: 4²⁴ times finer than the grid, 1e-17 of a turn."""
 
 OUT_OF_REACH = 1e30
-"""A squared distance where there is no position: never taken where there is another."""
+"""Squared distance assigned to inputs without a position: large enough never to be chosen if there is another."""
 
 
 class Passages(NamedTuple):
-    """The linkage as it passes the points: input angles, assembly signs, joints A, B and P, and the misses.
+    """A linkage as it passes the points: input angles, assembly signs, joints A, B and P, and the misses.
 
-    ``run`` tells that the angles are one run of the input from the first target, and not angles modulo full turns.
+    ``run`` is true if the angles are one run of the input from the first target, not angles modulo full turns.
     """
 
     angles: Real
@@ -73,15 +74,18 @@ class Passages(NamedTuple):
 
 
 def at_points(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
-    """Where P passes each point, on the reference's circuit if it can be; None where no crank angle brings it near."""
+    """Return where P passes each point, on the reference's circuit if possible; None if no crank angle brings it
+    near."""
     linkage = fourbar.linkage
     reference = positions(linkage, fourbar.reference, fourbar.assembly)
     if not reference.valid:
         return None
     reach = points - linkage.input_pivot
+    # Triangle O2 A P: crank, coupler arm, and distance of the point from O2.
     a, r, f = float(linkage.input), abs(complex(linkage.coupler_point)), np.abs(reach)
     with np.errstate(divide="ignore", invalid="ignore"):
         lean = np.arccos(np.clip((a * a + f * f - r * r) / (2.0 * a * f), -1.0, 1.0))
+    # Two places of A, each in both assemblies.
     angles = np.angle(reach) + np.stack([lean, lean, -lean, -lean])
     assemblies = np.array([1, -1, 1, -1])
     signs = np.broadcast_to(assemblies[:, None], angles.shape)
@@ -90,13 +94,15 @@ def at_points(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
     at = positions(linkage, angles, assemblies)
     misses = np.where(at.valid, np.abs(at.p - points), np.inf)
     here = same_circuit(linkage, fourbar.reference, fourbar.assembly, angles, signs)
-    # The first target is met by the reference configuration itself, or not at all.
+    # Only the reference configuration itself may meet the first target.
     first = abs(complex(reference.p) - points[0])
     good = misses <= np.maximum(4.0 * misses.min(axis=0), MET * np.abs(points - points[0]).max())
+    # Prefer passages that are near and on the reference's circuit, then near ones, then any.
     best = np.where(good & here, 0.0, np.where(good, 1.0, 2.0)).argmin(axis=0), np.arange(len(points))
     if not np.isfinite(misses[best]).all():
         return None
     inputs, assembly = angles[best], np.array(signs[best])
+    # Where the crank points at the target the arc cosine loses half of its digits.
     if misses[best].max() > ROUNDED * np.abs(points - points[0]).max():
         inputs = _closer(fourbar, points, inputs, assembly)
         at = positions(linkage, inputs[:, None], assembly)
@@ -110,9 +116,9 @@ def at_points(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
 
 
 def _closer(fourbar: DrivenFourbar, points: Complex, inputs: Real, signs: Whole) -> Real:
-    """Inputs at which P is nearer to the points: Newton's steps along its path, each taken where it brings P nearer.
+    """Move inputs by Newton's method along P's path, accepting each step only if it brings P nearer to its point.
 
-    An arc cosine leaves half of the digits where the crank points at the target.
+    An arc cosine leaves half of the digits if the crank points at the target.
     """
 
     def place(angles: Real) -> Complex:
@@ -127,14 +133,15 @@ def _closer(fourbar: DrivenFourbar, points: Complex, inputs: Real, signs: Whole)
             step = (slope.conj() * (points - best)).real / (slope.real**2 + slope.imag**2)
         tried = inputs + np.where(np.isfinite(step), step, 0.0)
         there = place(tried)
-        # Not a number is never nearer.
+        # Comparisons with NaN are false, so that a step beyond a toggle is rejected.
         nearer = np.abs(there - points) < np.abs(best - points)
         inputs, best = np.where(nearer, tried, inputs), np.where(nearer, there, best)
     return inputs
 
 
 def at_angles(fourbar: DrivenFourbar, points: Complex, turns: Real, *, both: bool) -> Passages | None:
-    """Where P is when the input has turned by ``turns`` (radians) from its reference; None where it cannot turn so.
+    """Return where P is after the input has turned by ``turns`` (radians) from its reference; None if it cannot turn
+    so.
 
     With ``both`` a point that the other assembly meets, and the reference's does not, counts as met there.
     """
@@ -145,7 +152,7 @@ def at_angles(fourbar: DrivenFourbar, points: Complex, turns: Real, *, both: boo
     signs = np.array([fourbar.assembly, -fourbar.assembly])
     at = positions(fourbar.linkage, angles, signs)
     misses = np.where(at.valid, np.abs(at.p - points), np.inf)
-    # The first target is met by the reference itself.
+    # The reference itself meets the first target, not its mirrored assembly.
     misses[1, 0] = np.inf
     best = misses.argmin(axis=0), np.arange(len(points))
     if not np.all(np.isfinite(misses[best])):
@@ -154,17 +161,18 @@ def at_angles(fourbar: DrivenFourbar, points: Complex, turns: Real, *, both: boo
 
 
 def in_order(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
-    """Where P comes nearest to the points one after the other, the input turning one way on the reference's branch.
+    """Return where P comes nearest to the points one after the other, the input turning in one direction on its branch.
 
-    Of all ways to do so the one with the least sum of squared distances, within one turn of the input.
+    The sum of squared distances within one turn of the input is minimal.
     """
     low, high = _branch(fourbar)
+    # A crank's branch has no ends: runs may begin anywhere on it.
     period = math.tau if full_rotation(fourbar.linkage) else None
     return _driven(fourbar, points, ordered_run(_place(fourbar), points, low, high, period), run=True)
 
 
 def nearest(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
-    """Where P comes nearest to each point, in any order, on the reference's branch."""
+    """Return where P comes nearest to each point, in any order, on the reference's branch."""
     low, high = _branch(fourbar)
     step = (high - low) / GRID
     grid = np.linspace(low, high, GRID + 1)
@@ -189,18 +197,19 @@ def _driven(fourbar: DrivenFourbar, points: Complex, angles: Real, *, run: bool)
 
 
 def _branch(fourbar: DrivenFourbar) -> tuple[float, float]:
-    """The input's range on the reference's branch, half a turn to either side for a crank."""
+    """Return the input's range on the reference's branch, half a turn to either side for a crank."""
     at = fourbar.reference
     if full_rotation(fourbar.linkage):
         return at - math.pi, at + math.pi
     toggles = toggle_angles(fourbar.linkage)
+    # The nearest toggle in either direction bounds the branch.
     above = np.remainder(toggles - at, math.tau)
     below = np.remainder(at - toggles, math.tau)
     return at - float(below.min()), at + float(above.min())
 
 
 def _place(fourbar: DrivenFourbar) -> Callable[[Real], Complex]:
-    """P at inputs of any shape on the reference's assembly; NaN where there is no position."""
+    """Return the function of P at inputs of any shape on the reference's assembly; NaN where it has no position."""
 
     def place(inputs: Real) -> Complex:
         at = positions(fourbar.linkage, inputs.ravel(), fourbar.assembly)
@@ -210,7 +219,7 @@ def _place(fourbar: DrivenFourbar) -> Callable[[Real], Complex]:
 
 
 def _squares(fourbar: DrivenFourbar, points: Complex, inputs: Real) -> Real:
-    """Squared distances at inputs of shape (n, m) from points (n,); infinite where there is no position."""
+    """Return squared distances at inputs of shape (n, m) from points (n,); infinite where there is no position."""
     return _gaps(_place(fourbar)(inputs), points)
 
 
@@ -222,19 +231,20 @@ def _gaps(places: Complex, points: Complex) -> Real:
 def ordered_run(
     place: Callable[[Real], Complex], points: Complex, low: float, high: float, period: float | None
 ) -> Real:
-    """The run of the input, turning one way or the other, with the least sum of squared distances.
+    """Find the run of the input, in either direction, with the minimum sum of squared distances.
 
     Parameters
     ----------
     place : callable
         P at inputs of any shape; NaN where there is no position.
     points : complex, shape (n,)
-        What is to be met, in order.
+        The points to meet, in order.
     low, high : float
-        The branch's inputs; ``high - low`` is the period where there is one.
+        Input range of the branch, radians; ``high - low`` is the period if there is one.
     period : float or None
-        Rotation after which P is where it was, for an input that turns through.
+        Rotation after which P repeats its motion, radians, for an input that turns through.
     """
+    # A geared fivebar's cycle comprises several turns of its input.
     count = GRID * max(1, round((high - low) / math.tau))
     grid = np.linspace(low, high, count + 1)
     path = place(grid)
@@ -266,7 +276,7 @@ def _refined(
     way: float,
     run: Real,
 ) -> tuple[Real, float]:
-    """A run on the grid, refined, and its sum of squared distances."""
+    """Refine a run on the grid; return it with its sum of squared distances."""
     step = (high - low) / (GRID * max(1, round((high - low) / math.tau)))
     longest = math.inf if period is None else period
     for _ in range(REFINEMENTS):
@@ -274,6 +284,7 @@ def _refined(
         if period is None:
             tried = np.clip(tried, low, high)
         squares = np.minimum(_gaps(place(tried), points), OUT_OF_REACH)
+        # A decreasing run is an increasing one of the negated inputs.
         run = way * _chosen(squares, way * tried, longest)
         step *= REFINEMENT
     return run, float(_gaps(place(run[:, None]), points).sum())
@@ -283,15 +294,16 @@ def _refined(
 def _least(
     squares: Real, first: int, count: int, bound: float, totals: Real, back: NDArray[np.int32], chosen: Whole
 ) -> float:
-    """The least sum over columns that do not fall from row to row: ``count`` of them from ``first``.
+    """Find the minimum sum over non-decreasing columns from row to row, among ``count`` columns from ``first``.
 
-    Infinite, and nothing chosen, as soon as no sum below ``bound`` is left.
+    Returns infinity, and leaves ``chosen`` unset, as soon as no sum below ``bound`` is left.
     """
     rows = len(squares)
     for k in range(count):
         totals[0, k] = squares[0, first + k]
     for row in range(1, rows):
         before, now = totals[(row - 1) % 2], totals[row % 2]
+        # Two rows of totals suffice, because the choices are kept in ``back``.
         best, at = np.inf, 0
         for k in range(count):
             if before[k] < best:
@@ -314,7 +326,7 @@ def _least(
 
 @njit(cache=True, nogil=True)
 def _along(squares: Real) -> tuple[Whole, float]:
-    """Columns that do not fall from row to row, with the least sum, and that sum."""
+    """Return non-decreasing columns with the minimum sum, and that sum."""
     rows, columns = squares.shape
     chosen = np.empty(rows, np.int64)
     back = np.empty((rows, columns), np.int32)
@@ -323,9 +335,9 @@ def _along(squares: Real) -> tuple[Whole, float]:
 
 @njit(cache=True, nogil=True)
 def _round(squares: Real, bound: float) -> tuple[Whole, float]:
-    """The same for a curve that closes: columns go on beyond the last with the first, over one turn from the start.
+    """Do the same for a closed curve: columns continue beyond the last with the first, over one turn from the start.
 
-    The sum is infinite where none is below ``bound``.
+    The sum is infinite if none is below ``bound``.
     """
     rows, columns = squares.shape
     twice = np.concatenate((squares, squares), axis=1)
@@ -342,7 +354,7 @@ def _round(squares: Real, bound: float) -> tuple[Whole, float]:
 
 @njit(cache=True, nogil=True)
 def _chosen(squares: Real, values: Real, longest: float) -> Real:
-    """One of the values of each row, ascending in each row and not falling from row to row, with the least sum.
+    """Choose one value per row, ascending in each row and not falling from row to row, with the minimum sum.
 
     The last is at most ``longest`` after the first.
     """
@@ -351,6 +363,7 @@ def _chosen(squares: Real, values: Real, longest: float) -> Real:
     back = np.zeros((rows, columns), np.int64)
     totals = np.empty((2, columns))
     overall = np.inf
+    # A limited span depends on the first value, so that each possible first value is tried.
     starts = columns if longest < np.inf else 1
     for start in range(starts):
         for k in range(columns):

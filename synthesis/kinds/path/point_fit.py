@@ -1,8 +1,8 @@
-"""Fourbars fitted to points by least squares: any number of points, with prescribed or free timing, within limits.
+"""Fit fourbars to points by least squares: any number of points, with prescribed or free timing, within limits.
 
-A population of random starts descends in rounds, and only the best go on from one round to the next. The best that
-differ are perturbed and descend again, and are then brought to minima that keep the client's limits to rounding. The
-Grashof class holds by the choice of unknowns (:mod:`synthesis.fit.chart`), and limits are met by multipliers
+A population of random starts descends in rounds, and only the best go on from one round to the next. The best distinct
+ones are perturbed and descend again, and are then led to minima that satisfy the client's limits up to rounding. The
+Grashof class holds by the choice of unknowns (:mod:`synthesis.fit.chart`), and multipliers enforce the limits
 (:mod:`synthesis.fit.demands`): neither is a penalty.
 """
 
@@ -54,18 +54,18 @@ PORTION = 16
 """Number of starts that a thread takes at a time: some milliseconds of work."""
 
 TIMED_STARTS, FREE_STARTS, STARTS_OF_MANY = 6000, 1800, 1300
-"""Number of random starts, over all classes and assemblies: with prescribed timing, where a start has four random
-numbers; with free timing, where it has more; and with free timing and more than :data:`MAX_FEW` points, which take
+"""Number of random starts, over all classes and assemblies: with prescribed timing, for which a start has four random
+numbers; with free timing, for which it has more; and with free timing and more than :data:`MAX_FEW` points, which take
 longer."""
 
 MAX_FEW = 18
-"""Greatest number of points with :data:`FREE_STARTS`."""
+"""Maximum number of points for :data:`FREE_STARTS`."""
 
 IN_ROOM = 300
-"""Starts of a family with their pivots in the zones of a room, beside these."""
+"""Number of additional starts of a family with their pivots in the zones of a workspace."""
 
 TIMED_SHARE = 0.15
-"""Share of the starts with prescribed timing, those whose linear fit is best, that descends."""
+"""Share of the starts with prescribed timing, those with the best linear fit, that descends."""
 
 THINNING = ((1.0, 8, 1e-3), (0.25, 20, 1e-4), (0.06, 80, 1e-6))
 """Rounds of descents: share of the starts that goes on, number of steps, and tolerance."""
@@ -75,31 +75,31 @@ KICKS, KICKED, COPIES, KICK = 3, 24, 6, 0.5
 in the logarithms of lengths."""
 
 SAME_COST = 1e-4
-"""Relative difference below which costs are taken for those of one minimum."""
+"""Relative difference below which costs belong to the same minimum."""
 
 FLIP_KICK = 0.1
-"""That standard deviation for linkages that are turned inside out."""
+"""That standard deviation for linkages with a flipped dyad."""
 
 SPREAD = 0.8
-"""Standard deviation of the logarithm of a perturbation's standard deviation: some are small and some are great."""
+"""Standard deviation of the logarithm of a perturbation's standard deviation: some are small and some are large."""
 
 KICK_THINNING = ((1.0, 10, 1e-3), (0.25, 60, 1e-6))
 """As :data:`THINNING`, after a perturbation."""
 
 MAX_FINALISTS = 24
-"""Minima that are refined within the limits and verified, at most."""
+"""Maximum number of minima that are refined within the limits and verified."""
 
 RETURNS, AGAIN = 1, 10
-"""Perturbation of minima within the limits: number of rounds, and greatest number of results that are refined."""
+"""Perturbation of minima within the limits: number of rounds, and maximum number of results that are refined."""
 
 KEPT = 1e-9
-"""Violation of a room, in task sizes, that is none."""
+"""Violation of a workspace, in task sizes, that counts as none."""
 
 MANY, OF_MANY = 100, 6
-"""With more points than the first, at most so many minima are refined and verified: each takes longer."""
+"""Number of points above which refinement takes longer, and the maximum number of minima then refined and verified."""
 
 MAX_EXPLORED = 48
-"""Greatest number of points in the descents of the population: of more, evenly chosen ones."""
+"""Maximum number of points in the descents of the population: denser targets are thinned evenly."""
 
 SOFT_WEIGHT = 10.0
 """Weight of limits, in task units, in the descents of the population."""
@@ -118,8 +118,8 @@ _FAMILIES = {
 class PointTask(NamedTuple):
     """Points in task coordinates: rows (x, y, crank angle in radians, weight); the origin's place, the unit's length.
 
-    Where points have tolerances a weight is the inverse of one, 1 for the least. ``room`` is what there is for a
-    linkage, packed (:mod:`synthesis.fit.room`).
+    If points have tolerances, a weight is the inverse of one, scaled to 1 for the smallest. ``room`` is the packed
+    workspace (:mod:`synthesis.fit.room`).
     """
 
     rows: Real
@@ -129,8 +129,8 @@ class PointTask(NamedTuple):
 
 
 class Candidate(NamedTuple):
-    """A linkage on its way: unknowns, state (crank angles first), half the sum of squares, how its last descent has
-    ended, its setting, and the crank's direction."""
+    """A linkage during the search: unknowns, state (crank angles first), half the sum of squares, status of its last
+    descent, its setting, and the crank's direction."""
 
     x: Real
     state: Real
@@ -141,12 +141,13 @@ class Candidate(NamedTuple):
 
 
 def point_task(problem: PathProblem) -> PointTask:
-    """The points about their middle, with the task's size as the unit."""
+    """Return the points about their centroid, with the task's size as the unit."""
     z = np.array([point.point for point in problem.points])
     size = problem.task_size
     origin = complex(z[0] + (z - z[0]).mean())
     unit = ((z - z[0]) - (z - z[0]).mean()) / size
     turns = np.array(problem.crank_turns) if problem.prescribed else np.zeros(len(z))
+    # Absolute phases start from the first point's own crank angle.
     if problem.prescribed and problem.crank_phase != "free":
         turns = turns + math.radians(math.remainder(problem.points[0].crank_angle or 0.0, 360.0))
     widths = problem.tolerances
@@ -156,16 +157,17 @@ def point_task(problem: PathProblem) -> PointTask:
 
 
 def families(problem: PathProblem) -> list[int]:
-    """The families of fourbars that are looked for."""
+    """Return the families of fourbars to search."""
     wanted = problem.constraints.grashof
     if wanted != "any":
         return [_FAMILIES[wanted]]
+    # Double rockers and triple rockers cannot turn through.
     turning = problem.constraints.full_rotation or problem.closed
     return [CRANK_ROCKER, DOUBLE_CRANK] if turning else [CRANK_ROCKER, DOUBLE_CRANK, FOURBAR]
 
 
 def warm_up() -> None:
-    """Load the kernels with a handful of starts."""
+    """Compile or load the kernels with a handful of starts."""
     z = np.exp(1j * np.linspace(0.0, 5.0, 6))
     points = [{"x": float(w.real), "y": float(0.7 * w.imag)} for w in z]
     turning = [{**point, "crank_angle": 30.0 * k} for k, point in enumerate(points)]
@@ -196,8 +198,10 @@ def fitted(
     finalists: int = MAX_FINALISTS,
     usable: Usable | None = None,
 ) -> list[Candidate]:
-    """Minima within the limits, least first: ``finalists`` of them at most, within limits of our own too if stated."""
+    """Find minima within the limits, nearest first: at most ``finalists``, within additional limits if ``usable`` is
+    given."""
     thinned = _thinned(task)
+    # Free timing finds the direction of the crank by itself.
     ways = (1, -1) if problem.prescribed and problem.crank_direction == "either" else (1,)
     cases = [(way, family, sign) for way in ways for family in families(problem) for sign in (1.0, -1.0)]
     settings = [
@@ -218,7 +222,7 @@ def fitted(
         progress(0.4 + 0.2 * kick / KICKS, "perturbing the best fits")
         bases = [_different(_best(population, 4 * KICKED), KICKED) for population in populations]
         for n, (way, _, sign) in enumerate(cases):
-            # Next to each case stands the same with the other assembly.
+            # Cases alternate in the assembly, so that the neighbour is the same case with the other assembly.
             pair = bases[n], bases[n + 1 if sign > 0.0 else n - 1]
             rows = _directed(thinned.rows, way)
             populations[n] = _joined([populations[n], _kicked(problem, pair, rows, settings[n], rng)])
@@ -231,8 +235,9 @@ def fitted(
     most = finalists if len(task.rows) <= MANY else OF_MANY
     minima = _all_held(_distinct(pool, most), task, thinned, lambda share: progress(0.6 + 0.2 * share, "refining fits"))
     for _ in range(RETURNS if thinned is task else 0):
-        # A minimum that lies on a limit may be left by a perturbation, which no descent within the limits would find.
+        # A perturbation may leave a minimum on a limit for a better one that no descent within the limits would find.
         again: list[Candidate] = []
+        # The minima of this case, and those of the other assembly, which may be flipped into it.
         for n, (way, family, sign) in enumerate(cases):
             progress(0.8 + 0.1 * n / len(cases), "perturbing the best fits")
             held = _population_of(minima, (way, family, sign)), _population_of(minima, (way, family, -sign))
@@ -247,9 +252,9 @@ def fitted(
 
 
 def descended_from(start: FourbarConfiguration, problem: PathProblem, task: PointTask) -> list[Candidate]:
-    """The minima within the limits that a linkage leads to, least first; a class that is asked for is put on first.
+    """Descend from a given linkage to minima within the limits, nearest first; it is put into the required class first.
 
-    Where any class will do, the descent may leave that of the start: there is one minimum then.
+    If any class is allowed, the descent may leave that of the start: there is one minimum then.
     """
     thinned, rows = _thinned(task), _thinned(task).rows
     joints = [(joint - task.origin) / task.size for joint in start]
@@ -266,6 +271,7 @@ def descended_from(start: FourbarConfiguration, problem: PathProblem, task: Poin
         x[:2], x[2] = (o2.real, o2.imag), math.atan2(ground.imag, ground.real)
         x[POINT:] = arm.real, arm.imag
         angles[:] = float(np.angle((a - o2) / ground))
+        # The given linkage cannot be moved into this class.
         if not from_lengths(lengths, family, CLASS_MARGIN, x):
             continue
         population.costs[0] = reassign(x, rows, setting, angles)
@@ -280,7 +286,7 @@ def descended_from(start: FourbarConfiguration, problem: PathProblem, task: Poin
 def _all_held(
     chosen: list[Candidate], task: PointTask, thinned: PointTask, report: Callable[[float], None]
 ) -> list[Candidate]:
-    """Candidates brought to minima within their limits, without those that cannot be."""
+    """Lead candidates to minima within their limits; drop those that fail."""
     minima: list[Candidate | None] = [None] * len(chosen)
 
     def work(some: slice) -> None:
@@ -292,7 +298,7 @@ def _all_held(
 
 
 def _population_of(minima: list[Candidate], case: tuple[int, int, float]) -> _Population:
-    """The best distinct ones of a case: the crank's direction, the family and the assembly."""
+    """Return the best distinct candidates of a case: the crank's direction, the family and the assembly."""
     way, family, sign = case
     own = [c for c in minima if c.way == way and c.setting[FAMILY] == family and c.setting[SIGN] == sign]
     own.sort(key=lambda candidate: candidate.cost)
@@ -303,7 +309,7 @@ def _population_of(minima: list[Candidate], case: tuple[int, int, float]) -> _Po
 
 
 def _thinned(task: PointTask) -> PointTask:
-    """The task with at most :data:`MAX_EXPLORED` of its points."""
+    """Return the task with at most :data:`MAX_EXPLORED` of its points."""
     n = len(task.rows)
     if n <= MAX_EXPLORED:
         return task
@@ -311,6 +317,7 @@ def _thinned(task: PointTask) -> PointTask:
 
 
 def _directed(rows: Real, way: int) -> Real:
+    """Return the rows with the signs of the crank angles reversed if ``way`` is negative."""
     return rows if way > 0 else rows * np.array([1.0, 1.0, -1.0, 1.0])
 
 
@@ -322,7 +329,8 @@ def _descended(
     rng: np.random.Generator,
     drawn: RoomStarts | None = None,
 ) -> _Population:
-    """The population of one class and assembly after its descents from random starts, and from those in a room."""
+    """Generate and descend the population of one class and assembly, from random starts and from those in a
+    workspace."""
     n = len(rows)
     free = FREE_STARTS if n <= MAX_FEW else STARTS_OF_MANY
     count = (TIMED_STARTS if problem.prescribed else free) // cases
@@ -341,17 +349,19 @@ def _descended(
             free_starts(draws[some], places, rows, setting, population.starts[some], runs[some], population.costs[some])
 
         in_portions(begin, count, PORTION)
+        # The first n state entries of a start are its crank angles.
         population.states[:, :n] = runs
         if drawn is not None:
             population = _joined([population, _in_room(drawn, n, setting)])
     for share, steps, tolerance in THINNING:
+        # Successive halving: most starts are hopeless after a few steps.
         population = _best(population, max(math.ceil(share * count), 1))
         _descend(population, rows, setting, steps, tolerance)
     return population
 
 
 def _in_room(drawn: RoomStarts, points: int, setting: Real) -> _Population:
-    """Starts that were drawn in a room, of one assembly."""
+    """Return the starts of one assembly that were drawn in a workspace."""
     own = drawn.sign == setting[SIGN]
     population = _empty(int(own.sum()), drawn.x.shape[1], points, limits_of(setting))
     population.starts[:] = drawn.x[own]
@@ -362,7 +372,8 @@ def _in_room(drawn: RoomStarts, points: int, setting: Real) -> _Population:
 def _kicked(
     problem: PathProblem, bases: tuple[_Population, _Population], rows: Real, setting: Real, rng: np.random.Generator
 ) -> _Population:
-    """Ends of descents from perturbed copies of the best of a case, and from those of its other assembly inside out."""
+    """Descend from perturbed copies of the best of a case, and from flipped copies of the best of its other
+    assembly."""
     n, sign = len(rows), float(setting[SIGN])
     parts = []
     for flip, base, its_sign, copies in (
@@ -371,6 +382,7 @@ def _kicked(
         (OUTPUT, bases[1], -sign, 1),
         (COUPLER, bases[1], -sign, 1),
     ):
+        # Flipping a dyad changes the crank angles, which prescribed timing fixes.
         if not len(base.costs) or (problem.prescribed and flip != SAME):
             continue
         size = len(base.costs) * copies
@@ -389,8 +401,8 @@ def _kicked(
 
 
 class _Population(NamedTuple):
-    """Starts that descend together: unknowns (k, unknowns), states (k, 3 points + limits), costs (k,), and how the last
-    descent of each has ended (k,)."""
+    """Starts that descend together: unknowns (k, unknowns), states (k, 3 points + limits), costs (k,), and the status
+    of the last descent of each (k,)."""
 
     starts: Real
     states: Real
@@ -412,14 +424,14 @@ def _joined(populations: list[_Population]) -> _Population:
 
 
 def _best(population: _Population, count: int) -> _Population:
-    """The best of them, copies."""
+    """Return copies of the best members with finite costs."""
     kept = np.argsort(population.costs, kind="stable")[:count]
     kept = kept[np.isfinite(population.costs[kept])]
     return _Population._make(column[kept] for column in population)
 
 
 def _different(population: _Population, count: int) -> _Population:
-    """Those, best first, whose cost is not that of the one before: they have not come to the same minimum."""
+    """Drop members whose cost equals the previous one's (same minimum); best first."""
     kept = np.flatnonzero(np.diff(population.costs, prepend=-1.0) > SAME_COST * population.costs)[:count]
     return _Population._make(column[kept] for column in population)
 
@@ -429,6 +441,7 @@ def _descend(population: _Population, rows: Real, setting: Real, steps: int, tol
         return
     limits = limits_of(setting)
     multipliers = np.zeros(limits + 1)
+    # Zero multipliers with a moderate weight: the limits guide the population without stopping it.
     multipliers[limits] = SOFT_WEIGHT
     most = 2 * len(rows) + limits
 
@@ -441,12 +454,12 @@ def _descend(population: _Population, rows: Real, setting: Real, steps: int, tol
 
 
 def _distinct(pool: list[Candidate], count: int) -> list[Candidate]:
-    """The best candidates that differ."""
+    """Return the best distinct candidates."""
     return [pool[n] for n in distinct([_joints(candidate) for candidate in pool], count, SAME_FIT)]
 
 
 def _joints(candidate: Candidate) -> Complex:
-    """O2, A, B, O4 and P at the first point, in task coordinates; NaN beyond a toggle."""
+    """Return O2, A, B, O4 and P at the first point, in task coordinates; NaN beyond a toggle."""
     x, setting = candidate.x, candidate.setting
     theta = float(candidate.state[0] + x[2])
     closes, joints = joints_of(int(setting[FAMILY]), x, float(setting[SIGN]), theta)
@@ -454,13 +467,14 @@ def _joints(candidate: Candidate) -> Complex:
 
 
 def _held(candidate: Candidate, task: PointTask, thinned: PointTask) -> Candidate | None:
-    """The minimum within the limits that a candidate leads to, over all points; None where limits cannot be met.
+    """Find the minimum within the limits nearest to a candidate, over all points; None if the limits cannot be met.
 
-    A room is held over the motion only where the minimum without that does not keep it.
+    The workspace along the motion is constrained only if the minimum without it violates it.
     """
     n, few = len(task.rows), len(thinned.rows)
     angles = candidate.state[:n]
     if n > few:
+        # The thinned points were evenly chosen by index.
         angles = np.interp(np.arange(n), np.linspace(0, n - 1, few).round(), candidate.state[:few])
     found = _held_within(candidate, angles, candidate.setting, task)
     if found is None or not len(task.room):
@@ -471,12 +485,12 @@ def _held(candidate: Candidate, task: PointTask, thinned: PointTask) -> Candidat
     if much <= KEPT:
         return found
     kept = _held_within(found, found.state[:n], roomy, task)
-    # What is perturbed together has states of one length.
+    # Members of a population that is perturbed need states of equal length: drop the workspace's margins.
     return kept and kept._replace(state=np.concatenate([kept.state[:n], found.state[n:]]))
 
 
 def _held_within(candidate: Candidate, angles: Real, setting: Real, task: PointTask) -> Candidate | None:
-    """The minimum within a setting that a candidate leads to from crank angles at all points."""
+    """Find the minimum within a setting nearest to a candidate, from crank angles at all points."""
     x, n = candidate.x.copy(), len(task.rows)
     state = np.zeros(3 * n + limits_of(setting))
     state[:n] = angles
@@ -487,7 +501,7 @@ def _held_within(candidate: Candidate, angles: Real, setting: Real, task: PointT
 
 
 def configuration_of(candidate: Candidate, task: PointTask) -> FourbarConfiguration | None:
-    """A candidate in the problem's coordinates, as it stands at the first point."""
+    """Return a candidate's joints at the first point, in the problem's coordinates."""
     joints = _joints(candidate)
     if not np.all(np.isfinite(joints)):
         return None
@@ -495,6 +509,6 @@ def configuration_of(candidate: Candidate, task: PointTask) -> FourbarConfigurat
 
 
 def mechanism_of(candidate: Candidate, task: PointTask) -> FourbarMechanism | None:
-    """A candidate's dimensions in the problem's coordinates."""
+    """Return a candidate's dimensions in the problem's coordinates."""
     configuration = configuration_of(candidate, task)
     return None if configuration is None else fourbar_mechanism(configuration)

@@ -32,32 +32,33 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 PHASE = 9
-"""Index of the crank's phase among the unknowns, behind those of the chart; only where the phase is free."""
+"""Index of the crank's phase among the unknowns, behind those of the chart; only if the phase is free."""
 
 MAX_ABS_LOG = 40.0
-"""Greatest logarithm of a length, in absolute value: beyond it lengths are rounding beside one another."""
+"""Maximum logarithm of a length, in absolute value: beyond it shorter lengths are rounding relative to longer ones."""
 
 DIFFERENCE = 1e-5
-"""Radians over which the curvature of P's path is differenced."""
+"""Angle, radians, over which the curvature of P's path is differenced."""
 
 NEWTON_STEPS = 4
-"""Newton steps of the eliminated angles at each linkage; they start from the angles of the last accepted one."""
+"""Number of Newton steps of the eliminated angles at each linkage; they start from the angles of the last accepted
+one."""
 
 MAX_TURN_STEP = 0.2
-"""Greatest such step, radians."""
+"""Maximum size of such a step, radians."""
 
 TURN_TOLERANCE = 1e-7
 """Newton step, radians, after which the angles have converged: the next would be below rounding."""
 
 MIN_SPEED = 1e-9
-"""Speed of P, task sizes a radian, below which its path has no direction."""
+"""Speed of P, task sizes per radian, below which its path has no direction."""
 
 MIN_DIRECTION = 1e-24
 """Squared length of a direction, task sizes squared, below which nothing is projected along it."""
 
 MIN_CURVATURE, SPEED_SHARE = 1e-12, 0.25
-"""Least second derivative of half the squared distance, absolute (task sizes squared) and as a share of the squared
-speed: the Newton step stays a descent where the curve bends towards the point."""
+"""Minimum second derivative of half the squared distance, absolute (task sizes squared) and as a share of the squared
+speed: the Newton step remains a descent where the curve bends towards the point."""
 
 
 @njit(cache=True, nogil=True)
@@ -79,11 +80,12 @@ def _project(jacobian: Real, first: int, last: int, direction: Real) -> None:
 
 @njit(cache=True, nogil=True)
 def settle(x: Real, lengths: Real, setting: Real, points: Real, angles: Real, blocks: NDArray[np.int64]) -> bool:
-    """Bring crank angles to where P is nearest to the points, in order, from where they are; False beyond a toggle.
+    """Move crank angles to where P is nearest to the points, in order; False beyond a toggle.
 
-    The direction of order is that of the angles as they come: from the first to the last.
+    The direction of the order is that of the given angles: from the first to the last.
     """
     n, sign = len(points), setting[SIGN]
+    # Negating the angles turns a decreasing order into an increasing one.
     way = 1.0 if angles[n - 1] >= angles[0] else -1.0
     ground = unit(x[2])
     values, weights = np.empty(n), np.empty(n)
@@ -93,7 +95,7 @@ def settle(x: Real, lengths: Real, setting: Real, points: Real, angles: Real, bl
             if not good:
                 return False
             square = t.real * t.real + t.imag * t.imag
-            # The second derivative of half the squared distance, its part from the curvature by a difference.
+            # Second derivative of half the squared distance; the curvature's part is a finite difference.
             good, _, ahead = fourbar_velocity(x, lengths, sign, ground, x[2] + angles[k] + DIFFERENCE)
             gx, gy = p.real - points[k, 0], p.imag - points[k, 1]
             curved = square
@@ -102,13 +104,14 @@ def settle(x: Real, lengths: Real, setting: Real, points: Real, angles: Real, bl
             curved = max(curved, SPEED_SHARE * square, MIN_CURVATURE)
             step = -(t.real * gx + t.imag * gy) / curved
             values[k] = way * (angles[k] + min(max(step, -MAX_TURN_STEP), MAX_TURN_STEP))
+            # Pooling minimizes the quadratic model of the weighted squared distances.
             weights[k] = points[k, 3] * points[k, 3] * curved
         if setting[ORDERED] == 0.0:
             blocks[:] = np.arange(n)
         else:
             pool(values, weights, blocks)
         if setting[ORDERED] > 0.0 and values[n - 1] - values[0] > 2.0 * math.pi:
-            # Over a full turn the first and the last would pass each other: they share what is too much.
+            # More than a full turn would let the last point overtake the first: both ends share the excess.
             over = 0.5 * (values[n - 1] - values[0] - 2.0 * math.pi)
             low, high = values[0] + over, values[n - 1] - over
             for k in range(n):
@@ -124,9 +127,9 @@ def settle(x: Real, lengths: Real, setting: Real, points: Real, angles: Real, bl
 
 @njit(cache=True, nogil=True)
 def _end_turn(by: Complex, timed: bool, absolute: bool, turn: Real) -> None:
-    """How the crank angle at the first point, or the last, from the ground line, moves with the unknowns.
+    """Compute the derivatives of the crank angle at the first or last point, from the ground line, by the unknowns.
 
-    With free timing P stays where its way past the point is nearest: what ``by`` moves it along its way is undone.
+    With free timing P stays at its nearest place: the part of its displacement along its path is undone by the angle.
     """
     if timed:
         if absolute:
@@ -144,16 +147,17 @@ def _end_turn(by: Complex, timed: bool, absolute: bool, turn: Real) -> None:
 def path_rows(
     x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
 ) -> int:
-    """Residuals and Jacobian of all points, and of the limits; see :data:`synthesis.numerics.levenberg.ROWS`.
+    """Compute residuals and Jacobian of all points and limits; see :data:`synthesis.numerics.levenberg.ROWS`.
 
     ``points`` are rows (x, y, crank angle, root of the weight); with free timing the third number is not used, and
-    ``state`` has the crank angles from the ground line first; with prescribed timing they are written there. Behind
-    them stands room for two numbers a point, and the limits' margins are the last: those of a room, then the demands'.
+    ``state`` has the crank angles from the ground line first; with prescribed timing they are written there. Two
+    scratch numbers per point follow, and the limits' margins are the last: those of a workspace, then the constraints'.
     """
     n = len(points)
     lengths, slopes, by = np.empty(4), np.empty((4, 4)), np.empty(10, np.complex128)
     turns = np.zeros((2, x.size))
     for i in range(LENGTHS, LENGTHS + 4):
+        # Also rejects NaN.
         if not -MAX_ABS_LOG < x[i] < MAX_ABS_LOG:
             return -1
     natural(int(setting[FAMILY]), x, lengths, slopes)
@@ -176,7 +180,7 @@ def path_rows(
         root = points[k, 3]
         gx, gy = root * (p.real - points[k, 0]), root * (p.imag - points[k, 1])
         tx, ty = root * by[9].real, root * by[9].imag
-        # The crank stands still to the ground line, not in the plane, where crank angles are not absolute.
+        # Unless crank angles are absolute, the crank's angle is fixed relative to the ground line, not to the plane.
         if not absolute:
             by[2] += by[9]
         if k == 0:
@@ -184,9 +188,10 @@ def path_rows(
         if k + 1 == n:
             _end_turn(by, timed, absolute, turns[1])
         if not timed and (k + 1 == n or blocks[k + 1] != blocks[k]) and (k == 0 or blocks[k - 1] != blocks[k]):
-            # Alone at its angle: what lies across the curve is all that is left.
+            # A point with an angle of its own: only the component across the curve remains.
             fast = math.sqrt(tx * tx + ty * ty)
             if fast > MIN_SPEED:
+                # Unit normal of the path.
                 nx, ny = -ty / fast, tx / fast
                 residuals[m] = nx * gx + ny * gy
                 for i in range(9):
@@ -203,6 +208,7 @@ def path_rows(
         else:
             if k == 0 or blocks[k - 1] != blocks[k]:
                 first = m
+            # Collect the direction of a block's common angle, along which its rows are projected.
             state[n + m - first], state[n + m - first + 1] = tx, ty
             if k + 1 == n or blocks[k + 1] != blocks[k]:
                 _project(jacobian, first, m + 2, state[n : n + m + 2 - first])

@@ -6,8 +6,8 @@ For a shape (ratios of lengths) and crank angles φ_k the path is linear in thre
 
 the fixed pivot O2, the ground vector and the coupler point turned with it. With prescribed timing that leaves four
 numbers to draw: three ratios, and the crank's phase. With free timing the angles are drawn too, as a run of the crank
-along the points, and are then improved in alternation: the path that results is sampled, points are assigned to samples
-in order, and the linear problem is solved again.
+along the points, and are then improved in alternation: the resulting path is sampled, points are assigned to samples in
+order, and the linear problem is solved again.
 
 A ``setting`` is one of :func:`synthesis.kinds.path.limits.setting_of`.
 """
@@ -30,48 +30,51 @@ from synthesis.kinds.path.point_rows import PHASE
 Real = NDArray[np.float64]
 
 DRAWS = 12
-"""Random numbers of a start: three or four for the shape, phase, range, direction, and the warp of the run."""
+"""Number of random numbers of a start: three or four for the shape, phase, range, direction, and the warp of the
+run."""
 
 SAMPLES = 96
-"""Samples of a curve to which points are assigned."""
+"""Number of samples of a curve to which points are assigned."""
 
 BEFORE = 4
-"""Samples before a curve's nearest to the first point at which a run may begin."""
+"""Number of samples before the curve's nearest one to the first point at which a run may begin."""
 
 TAIL = 0.2
 """Cubic term of the drawn logarithms of lengths, which gives their distribution long tails: the best linkages often are
 at a limit, with one link far longer than the others or near a change point."""
 
 SAME, OUTPUT, COUPLER, FAR_DYAD = FLIPS = range(4)
-"""How a linkage is turned inside out: not; O4 goes to the other side of B; B to the other side of A; B and O4 both to
-the other sides of A and O2. A fit that has run to the limit of a link's length has found that a slider would be better,
-and beyond the slider there is the link's mirror image."""
+"""Ways to flip a linkage: not at all; O4 to the other side of B; B to the other side of A; B and O4 both to the other
+sides of A and O2. A fit that has run to the limit of a link's length shows that a slider would be better, and beyond
+the slider there is the link's mirror image."""
 
 CLASS_MARGIN = 1e-5
-"""Margin, as a share of all links together, with which a linkage that has left its class is put back into it."""
+"""Margin, as a share of the sum of the links, with which a linkage that has left its class is put back into it."""
 
 MIN_SPREAD = 1e-12
-"""Added to sums of squared unit vectors that divide: a shape that does not move has no best place."""
+"""Added to sums of squared unit vectors used as divisors: a shape that does not move has no best place."""
 
 MIN_SCALE, MAX_SCALE = 1e-9, 1e9
-"""Ground links of a start, in task sizes, beyond which it is a degenerate solution of the linear problem."""
+"""Minimum and maximum ground link of a start, in task sizes; beyond them it is a degenerate solution of the linear
+problem."""
 
 UNREACHABLE = 1e18
-"""Squared distance, task sizes squared, of a sample at which the linkage does not close; finite, as sums of them are
+"""Squared distance, task sizes squared, of a sample at which the linkage does not close; finite, because sums are
 compared."""
 
 MIN_GROUND = 1e-3
-"""Least ground link of a start, in task sizes, where its direction is given."""
+"""Minimum ground link of a start, in task sizes, if its direction is given."""
 
 TURNS = 3
-"""Number of times that angles, and then place and coupler point, are fitted in turn."""
+"""Number of alternations between fitting the angles and fitting place and coupler point."""
 
 
 @njit(cache=True, nogil=True)
 def fitted_place(lengths: Real, sign: float, angles: Real, points: Real, setting: Real, turn: float, x: Real) -> float:
-    """Place, size and coupler point for a shape at crank angles from the ground line; half the sum of squares.
+    """Fit place, size and coupler point of a shape at crank angles from the ground line; return half the sum of
+    squares.
 
-    ``x`` gets the linkage's nine numbers. ``turn`` is the angle of the ground line where crank angles are absolute.
+    ``x`` receives the linkage's nine numbers. ``turn`` is the angle of the ground line for absolute crank angles.
     """
     n = len(points)
     d, a = lengths[0], lengths[1]
@@ -84,6 +87,8 @@ def fitted_place(lengths: Real, sign: float, angles: Real, points: Real, setting
             return np.inf
         crank[k] = pin / d
         target[k] = complex(points[k, 0], points[k, 1])
+    # A given pivot is subtracted instead of the mean; a partly given one counts as free here, and as a constraint
+    # later.
     pivot_given = not (math.isnan(setting[GIVEN]) or math.isnan(setting[GIVEN + 1]))
     ground_given = pivot_given and not (math.isnan(setting[GIVEN + 2]) or math.isnan(setting[GIVEN + 3]))
     mean_crank, mean_coupler, mean_target = 0.0j, 0.0j, 0.0j
@@ -91,6 +96,7 @@ def fitted_place(lengths: Real, sign: float, angles: Real, points: Real, setting
         mean_target = complex(setting[GIVEN], setting[GIVEN + 1])
     else:
         mean_crank, mean_coupler, mean_target = crank.mean(), coupler.mean(), target.mean()
+    # Eliminate the coupler vector first (Gram-Schmidt), then solve for the ground vector alone.
     square, on_crank, on_target = MIN_SPREAD, 0.0j, 0.0j
     for k in range(n):
         e = coupler[k] - mean_coupler
@@ -110,10 +116,12 @@ def fitted_place(lengths: Real, sign: float, angles: Real, points: Real, setting
         ground = complex(setting[GIVEN + 2] - setting[GIVEN], setting[GIVEN + 3] - setting[GIVEN + 1])
     elif setting[TIMED] > 0.0 and setting[PHASED] == ABSOLUTE:
         along = unit(turn)
+        # Absolute crank angles fix the direction of the ground line; only its length is free.
         ground = max((ground * along.conjugate()).real, MIN_GROUND) * along
     size = abs(ground)
     if not MIN_SCALE < size < MAX_SCALE:
         return np.inf
+    # The coupler point follows from the eliminated projection.
     arm = on_target - ground * on_crank
     pivot = mean_target - ground * mean_crank - arm * mean_coupler
     cost = 0.0
@@ -132,8 +140,9 @@ def fitted_place(lengths: Real, sign: float, angles: Real, points: Real, setting
 
 @njit(cache=True, nogil=True)
 def shape(draw: Real, family: int, x: Real, lengths: Real) -> bool:
-    """A random shape of a class; False for one that cannot be assembled."""
+    """Draw a random shape of a class; return False if it cannot be assembled."""
     slopes = np.empty((4, 4))
+    # Charts of Grashof classes contain slacks, which spread more widely than lengths.
     spread = 0.9 if family == FOURBAR else 1.3
     for i in range(4):
         x[LENGTHS + i] = spread * draw[i] * (1.0 + TAIL * draw[i] * draw[i])
@@ -145,7 +154,7 @@ def shape(draw: Real, family: int, x: Real, lengths: Real) -> bool:
 
 @njit(cache=True, nogil=True)
 def timed_starts(draws: Real, points: Real, setting: Real, unknowns: int, starts: Real, costs: Real) -> None:
-    """Starts with prescribed timing, one for each row of draws; infinite costs where there is none."""
+    """Make starts with prescribed timing, one for each row of draws; infinite costs mark failures."""
     n = len(points)
     lengths, angles = np.empty(4), np.empty(n)
     for row in range(len(draws)):
@@ -153,6 +162,7 @@ def timed_starts(draws: Real, points: Real, setting: Real, unknowns: int, starts
         costs[row] = np.inf
         if not shape(draw, int(setting[FAMILY]), x, lengths):
             continue
+        # From the ground line the given angles are complete.
         phase = 0.0 if setting[PHASED] == GROUND_LINE else math.pi * draw[4]
         for k in range(n):
             angles[k] = points[k, 2] + phase
@@ -164,10 +174,10 @@ def timed_starts(draws: Real, points: Real, setting: Real, unknowns: int, starts
 
 @njit(cache=True, nogil=True)
 def free_starts(draws: Real, along: Real, points: Real, setting: Real, starts: Real, runs: Real, costs: Real) -> None:
-    """Starts with free timing: linkages into ``starts``, crank angles from the ground line into ``runs``.
+    """Make starts with free timing: linkages into ``starts``, crank angles from the ground line into ``runs``.
 
-    ``along`` are the points' places along the path that they make, from 0 to the length of the whole as 1, where the
-    way back from the last to the first counts too.
+    ``along`` are the points' places along the path that they form, as shares of its closed length: the way back from
+    the last to the first counts too.
     """
     n = len(points)
     lengths = np.empty(4)
@@ -184,11 +194,12 @@ def free_starts(draws: Real, along: Real, points: Real, setting: Real, starts: R
         share = 0.5 + 0.5 * draw[6]
         angles = runs[row]
         if crank:
-            # All round, the gap between the last point and the first in proportion; or a part of a turn.
+            # A full turn, with the gap between the last point and the first in proportion; or a part of a turn.
             whole = 2.0 * math.pi if setting[WHOLE] > 0.0 or draw[7] > 0.0 else 2.0 * math.pi * share / along[n - 1]
             begin = math.pi * draw[4]
             for k in range(n):
                 s = along[k]
+                # An even run is rarely right: cranks pass some parts of a curve much faster than others.
                 warp = draw[8] * (math.sin(2.0 * math.pi * s + 3.0 * draw[9]) - math.sin(3.0 * draw[9]))
                 angles[k] = begin + way * (whole * s + 0.8 * warp)
         else:
@@ -212,7 +223,8 @@ def free_starts(draws: Real, along: Real, points: Real, setting: Real, starts: R
 
 @njit(cache=True, nogil=True)
 def reassign(x: Real, points: Real, setting: Real, angles: Real) -> float:
-    """Crank angles at which a linkage comes nearest to the points in order, by samples; half the sum of squares."""
+    """Find crank angles at which a linkage comes nearest to the points in order, by samples; return half the sum of
+    squares."""
     n = len(points)
     lengths, slopes = np.empty(4), np.empty((4, 4))
     natural(int(setting[FAMILY]), x, lengths, slopes)
@@ -223,9 +235,10 @@ def reassign(x: Real, points: Real, setting: Real, angles: Real) -> float:
     if not crank:
         begin, width = rocking_range(low, high)
         if low > 0.0 and high < math.pi and math.sin(angles[n // 2]) < 0.0:
-            # Two ranges, on either side of the ground line: the points are on the lower one.
+            # The crank has two ranges, on either side of the ground line; the points are on the lower one.
             begin = -high
         step = width / count
+        # Samples in the middles of their steps avoid the toggles.
         begin += 0.5 * step
     squares = np.empty((n, count))
     for j in range(count):
@@ -252,7 +265,7 @@ def reassign(x: Real, points: Real, setting: Real, angles: Real) -> float:
                 best_chosen[:] = chosen
             continue
         for j in range(count):
-            # A run begins near a place where the curve passes the first point: a few samples before it at the earliest.
+            # A run begins near a place where the curve passes the first point, at most a few samples before it.
             if squares[0, j] <= squares[0, j - 1] and squares[0, j] < squares[0, (j + 1) % count]:
                 first = (j - way * BEFORE) % count
                 least = assign(squares, first, count + 1, way, totals, back, chosen, best)
@@ -265,7 +278,8 @@ def reassign(x: Real, points: Real, setting: Real, angles: Real) -> float:
 
 
 def along(points: Real) -> Real:
-    """Where points stand along the closed polygon that they make, as shares of its length; the last below 1."""
+    """Return the points' places along the closed polygon that they form, as shares of its length; the last is below
+    1."""
     z = points[:, 0] + 1j * points[:, 1]
     chords = np.abs(np.diff(np.append(z, z[0])))
     whole = np.concatenate([[0.0], np.cumsum(chords)])
@@ -284,20 +298,20 @@ def kicked(
     starts: Real,
     costs: Real,
 ) -> None:
-    """Starts near linkages that are known: each with other lengths, and put in place anew at the same crank angles.
+    """Make starts near known linkages: change their lengths, and fit the place again at the same crank angles.
 
     Parameters
     ----------
     bases : float64, shape (k, unknowns)
-        Linkages; taken in turn.
+        Linkages, used cyclically.
     states : float64, shape (starts, points or more)
         Their crank angles, which turn with the ground line.
     sign : float
         Their assembly.
     flip : int
-        One of :data:`FLIPS`: what is turned inside out before.
+        One of :data:`FLIPS`, applied first.
     draws : float64, shape (starts, 4)
-        Changes of the numbers that stand for lengths.
+        Changes of the unknowns that represent lengths.
     points, setting, starts, costs
         As for :func:`free_starts`; the setting's assembly sign is the starts'.
     """
@@ -312,6 +326,7 @@ def kicked(
         natural(family, x, lengths, slopes)
         turned = 0.0
         if flip != SAME:
+            # The linkage is flipped in its configuration at the middle point, which then stays the same.
             phi = states[row, n // 2]
             a = lengths[1] * unit(phi)
             good, coupler = two_bars(lengths[0] - a, lengths[2], lengths[3], sign)

@@ -1,4 +1,4 @@
-"""Path generation: a linkage whose coupler point goes through points, or near them."""
+"""Problems of path generation: a linkage whose coupler point goes through points, or near them."""
 
 from __future__ import annotations
 
@@ -46,20 +46,21 @@ EQUAL_POINTS = 1e-9
 """Points closer than this share of the coordinates' size count as equal."""
 
 EQUAL_ANGLES = 1e-9
-"""Crank angles closer than this, in degrees modulo full turns, are one angle."""
+"""Crank angles closer than this, in degrees modulo full turns, count as equal."""
 
 MAX_EXACT = {"fourbar": 9, "slider_crank": 8, "geared_fivebar": 11}
-"""Points that a linkage can meet exactly, in general: as many as it has dimensions, its gear ratio apart."""
+"""Maximum number of points that a linkage can meet exactly, in general: its number of dimensions without the gear
+ratio."""
 
 MAX_GEAR_TURNS = 60
-"""Turns of the crank within which a geared fivebar must come round, so that its whole motion can be driven."""
+"""Maximum number of crank turns after which a geared fivebar must repeat, so that its whole motion can be driven."""
 
 MAX_POINTS = 1000
-"""Points that are taken; a curve that needs more is oversampled."""
+"""Maximum number of points accepted; a curve that needs more is oversampled."""
 
 MAX_LINK = 5.0
-"""Longest link of a curve match where no limit is stated, in diagonals of the box around the curve: fits without one
-run off to links that are many times longer and bring nothing."""
+"""Longest link of a curve match without a limit, in diagonals of the box around the curve: fits without one run off to
+links that are many times longer without being better."""
 
 
 class PathPoint(Statement):
@@ -72,7 +73,8 @@ class PathPoint(Statement):
     )
     tolerance: PositiveLength | None = Field(
         default=None,
-        description="How far P may pass this point by, and the curve its course beside it; for all points, or none.",
+        description="Maximum distance of P from this point, and of the curve from its course near it; for all points, "
+        "or none.",
     )
 
     @property
@@ -82,27 +84,27 @@ class PathPoint(Statement):
 
 
 class CouplerPointLimits(Statement):
-    """Where P may lie on the coupler: along the line A → B, and across it to the left, from A, in length units."""
+    """Allowed place of P on the coupler: along the line A → B, and across it to the left, from A, in length units."""
 
     along: Annotated[Interval, LENGTH] | None = None
     across: Annotated[Interval, LENGTH] | None = None
 
 
 class PathConstraints(Constraints):
-    """What a usable linkage must satisfy, with limits that tasks of path generation have in addition."""
+    """Constraints on a linkage, including limits specific to path generation."""
 
     input_pivot_region: Region | None = Field(default=None, description="For the input's fixed pivot alone.")
     coupler_point: CouplerPointLimits | None = None
 
 
 class PathPivots(Statement):
-    """Fixed pivots that are given; a pivot, or one of its coordinates, may be left open."""
+    """Given fixed pivots; a pivot, or one of its coordinates, may be left open."""
 
     input: PartialPoint | None = None
     output: PartialPoint | None = None
 
     def given(self) -> int:
-        """How many coordinates are given."""
+        """Return the number of given coordinates."""
         return sum(value is not None for pivot in (self.input, self.output) for value in pivot or ())
 
     @model_validator(mode="after")
@@ -113,13 +115,13 @@ class PathPivots(Statement):
 
 
 class PathProblem(LinkageProblem):
-    """Path generation: a fourbar whose coupler point goes exactly through points, or as near to them as can be.
+    """Path generation: a fourbar whose coupler point goes exactly through points, or as near to them as possible.
 
-    With *free* timing the input angles at the points are free: nine points are as many as a fourbar can meet. For nine
-    every fourbar is computed: all 1442 cognate triples, real and complex, from which the real ones are verified with
-    both cognates and either fixed pivot as the input's. Fewer points leave freedom: it goes into what is demanded,
-    and the ranking. With *prescribed* timing each point has its crank angle: five points
-    can be met exactly, and for five every fourbar is found. More points are fitted by least squares.
+    With *free* timing the input angles at the points are free: a fourbar can meet at most nine points. For nine, every
+    fourbar is computed: all 1442 cognate triples, real and complex, from which the real ones are verified with both
+    cognates and either fixed pivot as the input's. Fewer points leave freedom, which goes into the constraints and the
+    ranking. With *prescribed* timing each point has its crank angle: at most five points can be met exactly, and for
+    five every fourbar is found. More points are fitted by least squares.
     """
 
     model_config = ConfigDict(
@@ -206,26 +208,26 @@ class PathProblem(LinkageProblem):
     )
     crank_phase: Literal["free", "absolute", "ground_line"] = Field(
         default="free",
-        description="What prescribed crank angles are measured from: any line, so that only their differences count; "
+        description="Reference line of prescribed crank angles: any line, so that only their differences count; "
         "the x axis; or the line from the input's fixed pivot to the output's.",
     )
     crank_direction: Literal["as_given", "either"] = Field(
-        default="as_given", description="Whether the crank may turn the other way round than its angles do."
+        default="as_given", description="Whether the crank may also turn in the direction opposite to its angles."
     )
     closed: Flag = Field(
-        default=False, description="The points go all round a closed curve, and the input turns through."
+        default=False, description="The points lie around a closed curve, and the input turns through."
     )
     method: Literal["auto", "exact", "least_squares", "curve_match"] = Field(
         default="auto",
-        description="How the points are met: exactly, with the least sum of the squares of the distances, or, by "
-        "curve_match, as a whole curve (closed) or stroke that is drawn. auto: exactly where so many points can be, "
-        "and by least_squares otherwise, or where nothing meets them exactly.",
+        description="How the points are met: exactly, with the minimum sum of squared distances, or, by curve_match, "
+        "as a whole drawn curve (closed) or stroke. auto: exactly if a linkage can meet that number of points, "
+        "otherwise, or if no linkage does, by least_squares.",
     )
     placement_free: list[Literal["position", "rotation", "size"]] = Field(
         default=[],
         max_length=3,
-        description="For curve_match: what of the drawn curve need not be kept. The linkage is then moved, turned or "
-        "sized with its curve to keep given pivots, regions and limits of lengths.",
+        description="For curve_match: properties of the drawn curve that may change. The linkage is then moved, "
+        "rotated or scaled with its curve to satisfy given pivots, regions and limits of lengths.",
     )
     mechanism: Literal["fourbar", "slider_crank", "geared_fivebar"] = "fourbar"
     gear_ratio: Number | None = Field(
@@ -235,12 +237,12 @@ class PathProblem(LinkageProblem):
     )
     mechanisms: Mechanisms | None = Field(
         default=None,
-        description="The types of linkages that are looked for, in place of mechanism; auto: fourbars, and sixbars "
-        "where no fourbar is sound and near.",
+        description="The types of linkages to search, in place of mechanism; auto: fourbars, and sixbars if no "
+        "fourbar is sound and near.",
     )
     stance: Stance | None = Field(
         default=None,
-        description="For legs: a part of the path that is straight, and gone with constant speed if wanted.",
+        description="For legs: a part of the path that must be straight, optionally at constant speed.",
     )
     start: StartFourbar | None = Field(
         default=None,
@@ -250,25 +252,25 @@ class PathProblem(LinkageProblem):
     constraints: PathConstraints = PathConstraints()
     rounds: Annotated[Count, Field(ge=1, le=20)] = Field(
         default=3,
-        description="For fourbars and fewer than nine points of free timing: how often linkages near them are drawn. "
-        "Other types, sixbars among them, are drawn once, and it changes nothing.",
+        description="For fourbars and fewer than nine points of free timing: number of random samples of linkages near "
+        "them. Other types, including sixbars, are sampled once and ignore this field.",
     )
 
     @property
     def task_size(self) -> float:
-        """The greatest distance between two points, by which tolerances are measured, in length units."""
+        """The maximum distance between two points, relative to which tolerances are measured, in length units."""
         return _greatest_distance(tuple(point.point for point in self.points)) or 1.0
 
     @property
     def sixbars(self) -> tuple[Sixbar, ...]:
-        """The types of sixbars that are looked for; ``auto`` has no Stephenson II."""
+        """The types of sixbars to search; ``auto`` excludes Stephenson II."""
         named = looked_for(self.mechanisms, SIXBARS, lacking(self))
         if self.mechanisms == "auto":
             return tuple(name for name in named if name != UNCLASSED)
         return without_unclassed(named, beyond_unclassed(self))
 
     def of_type(self, name: Simple) -> PathProblem:
-        """The problem of one of the types with one closure, as it is stated without ``mechanisms``."""
+        """Return the problem for one type with a single closure, as requested without ``mechanisms``."""
         ratio = self.gear_ratio if name == "geared_fivebar" else None
         return self.model_copy(update={"mechanisms": None, "mechanism": name, "gear_ratio": ratio})
 
@@ -279,34 +281,38 @@ class PathProblem(LinkageProblem):
 
     @property
     def most_exact(self) -> int:
-        """How many points can be met exactly, in general: as many as there are freedoms for."""
+        """Maximum number of points that can be met exactly, in general: as many as there are degrees of freedom for."""
+        # Every given coordinate takes one degree of freedom; a prescribed point takes two, because its crank angle is
+        # known.
         free = MAX_EXACT[self.mechanism] - self.fixed_pivots.given()
         return (free + (self.crank_phase == "free")) // 2 if self.prescribed else free
 
     @property
     def fitted(self) -> bool:
-        """Whether the points are met as nearly as can be, and not exactly."""
+        """Whether the points are met approximately, not exactly."""
         if self.method == "auto":
+            # Tolerances and a stance make sense for approximate points only.
             return len(self.points) > self.most_exact or self.tolerances is not None or self.stance is not None
         return self.method in ("least_squares", "curve_match")
 
     @property
     def tolerances(self) -> Real | None:
-        """How far the curve may be from each point, shape (points,), in length units; None where nothing is stated."""
+        """Maximum distance of the curve from each point, shape (points,), in length units; None without tolerances."""
         stated = [point.tolerance for point in self.points if point.tolerance is not None]
         return np.array(stated) if len(stated) == len(self.points) else None
 
     @property
     def made(self) -> Made | str:
-        """Places of P, at inputs that are free where the timing is."""
+        """Places of P that a manufactured linkage must reproduce, at free inputs if timing is free; or why it is not
+        supported."""
         if self.mechanism == "geared_fivebar":
-            return "is built for fourbars and slider-cranks, not for geared fivebars"
+            return "supports fourbars and slider-cranks, not geared fivebars"
         if self.placement_free:
-            return "is not built for curves whose place is left open; state no placement_free"
+            return "does not support curves with a free place; leave placement_free out"
         return Made(True, False, not self.prescribed, len(self.points))
 
     def held_to(self, design: Any) -> Held:
-        """The points, with their tolerances, in any direction."""
+        """Return the points and tolerances that a design must keep, in any direction."""
         widths = self.tolerances
         limits = None
         if widths is not None:
@@ -324,7 +330,7 @@ class PathProblem(LinkageProblem):
 
     @property
     def matched(self) -> bool:
-        """Whether the points are a curve that is drawn as a whole."""
+        """Whether the points form a curve to be drawn as a whole."""
         return self.method == "curve_match"
 
     @property
@@ -338,13 +344,15 @@ class PathProblem(LinkageProblem):
 
     @property
     def crank_turns(self) -> list[float]:
-        """Prescribed crank angles as one run of the crank from the first, radians: onward, or backward where shorter.
+        """Prescribed crank angles as one run of the crank from the first, radians: forward, or backward if that is
+        shorter.
 
-        Where the points are not met in order within one turn, the differences as they are given.
+        If the points are not met in order within one turn, the differences as given.
         """
         angles = [point.crank_angle or 0.0 for point in self.points]
         onward = [0.0]
         for one, other in pairwise(angles):
+            # Each step is taken as a positive angle below a full turn, so that the run is monotone.
             onward.append(onward[-1] + _turn(other - one))
         backward = [0.0]
         for one, other in pairwise(angles):
@@ -354,9 +362,11 @@ class PathProblem(LinkageProblem):
         return [math.radians(turn) for turn in run]
 
     def contradictions(self) -> list[Contradiction]:
-        """Equal points, timing that is incomplete or cannot be kept, and demands that exclude one another."""
+        """Return contradictory requests: equal points, incomplete or impossible timing, and constraints that exclude
+        one another."""
         if self.mechanisms is None:
             return self._of_one_type()
+        # Requests are checked for each type, because some apply to one type only.
         types = simple_of(self.mechanisms) or ("fourbar",)
         each = [fault for name in types for fault in self.of_type(name)._of_one_type()]
         return list(dict.fromkeys([*of_types(self), *each]))
@@ -380,7 +390,7 @@ class PathProblem(LinkageProblem):
         if not self.prescribed:
             faults = [
                 Contradiction(
-                    f"/points/{k}/crank_angle", 'timing is free; state "timing": "prescribed", or leave it out'
+                    f"/points/{k}/crank_angle", 'timing is free; set "timing": "prescribed", or leave this out'
                 )
                 for k in given[:1]
             ]
@@ -389,7 +399,7 @@ class PathProblem(LinkageProblem):
                 ("crank_direction", self.crank_direction, "as_given"),
             ):
                 if value != default:
-                    faults.append(Contradiction(f"/{name}", "speaks of prescribed timing; the timing is free"))
+                    faults.append(Contradiction(f"/{name}", "applies to prescribed timing only; the timing is free"))
             return faults
         missing = [k for k in range(len(self.points)) if k not in set(given)]
         if missing:
@@ -397,12 +407,12 @@ class PathProblem(LinkageProblem):
         return [*self._equal_angles(), *self._turns()]
 
     def _equal_angles(self) -> list[Contradiction]:
-        """An exact task cannot have two points at one angle of the crank; a fit wants three angles at least."""
+        """Return points at equal crank angles, for exact tasks; a fit needs at least three different angles."""
         angles = [point.crank_angle or 0.0 for point in self.points]
         if self.fitted:
             different = {round(_turn(angle) / EQUAL_ANGLES) % round(360.0 / EQUAL_ANGLES) for angle in angles}
             if len(different) < 3:
-                return [Contradiction("/points", "prescribed timing needs three different crank angles at least")]
+                return [Contradiction("/points", "prescribed timing needs at least three different crank angles")]
             return []
         return [
             Contradiction(f"/points/{k}/crank_angle", f"equal to that of point {j}; exact points need different angles")
@@ -418,7 +428,7 @@ class PathProblem(LinkageProblem):
             if min(steps) < 0.0 < max(steps) or max(turned) - min(turned) > math.tau * (1.0 + EQUAL_ANGLES):
                 detail = (
                     "the crank angles do not follow one another within one turn; "
-                    'reorder the points, or state "in_order": false'
+                    'reorder the points, or set "in_order": false'
                 )
                 return [Contradiction("/points", detail)]
         return []
@@ -430,7 +440,7 @@ class PathProblem(LinkageProblem):
         if self.fitted:
             different = sum(not equal[k, :k].any() for k in range(len(points)))
             if different < 3:
-                return [Contradiction("/points", f"only {different} of them differ; three different points are needed")]
+                return [Contradiction("/points", f"only {different} of them differ; at least three must differ")]
             return []
         if self.prescribed:
             if equal.all():
@@ -445,14 +455,14 @@ class PathProblem(LinkageProblem):
 
     def _method(self) -> list[Contradiction]:
         if self.placement_free and not (self.matched and self.mechanism == "fourbar"):
-            return [Contradiction("/placement_free", "is for curve_match by fourbars")]
+            return [Contradiction("/placement_free", "applies to curve_match by fourbars only; leave it out")]
         if self.matched:
             if self.prescribed:
-                return [Contradiction("/timing", "a curve that is matched as a whole has no timing; leave it free")]
+                return [Contradiction("/timing", "a curve matched as a whole has no timing; leave it free")]
             return []
         if self.method == "exact" and len(self.points) > self.most_exact:
             timing = "with prescribed timing" if self.prescribed else "with free timing"
-            detail = f"{self.most_exact} points at most can be met exactly {timing} here; fit them by least_squares"
+            detail = f"at most {self.most_exact} points can be met exactly {timing} here; fit them by least_squares"
             return [Contradiction("/method", detail)]
         return []
 
@@ -464,7 +474,7 @@ class PathProblem(LinkageProblem):
             detail = "points that are met exactly have none; fit them by least_squares, or leave the tolerances out"
             return [Contradiction(f"/points/{given[0]}/tolerance", detail)]
         open_ones = sorted(set(range(len(self.points))) - set(given))
-        detail = "missing, though others have one: state it for all points, or for none"
+        detail = "missing, though other points have one; give it for all points, or for none"
         return [Contradiction(f"/points/{k}/tolerance", detail) for k in open_ones[:1]]
 
     def _pivots(self) -> list[Contradiction]:
@@ -485,26 +495,28 @@ class PathProblem(LinkageProblem):
         return faults
 
     def _mechanism(self) -> list[Contradiction]:
-        """What only fourbars can be asked, and the gear ratio."""
+        """Return requests that only fourbars support, and invalid gear ratios."""
         faults = []
         if self.gear_ratio is not None:
             turns = self.gear_ratio * np.arange(1.0, MAX_GEAR_TURNS + 1.0)
             if self.mechanism != "geared_fivebar":
                 faults.append(Contradiction("/gear_ratio", f"a {self.mechanism} has no gears"))
             elif self.gear_ratio == 0.0:
-                faults.append(Contradiction("/gear_ratio", "an output that does not turn makes a fourbar; ask for one"))
+                faults.append(
+                    Contradiction("/gear_ratio", "with an output that does not turn it is a fourbar; request that")
+                )
             elif float(np.abs(turns - np.round(turns)).min()) > EQUAL_ANGLES:
-                detail = f"the gears do not come round within {MAX_GEAR_TURNS} turns; state a ratio of whole teeth"
+                detail = f"the gears do not repeat within {MAX_GEAR_TURNS} turns; give a ratio of small whole numbers"
                 faults.append(Contradiction("/gear_ratio", detail))
         if self.mechanism == "fourbar":
             return faults
         if self.prescribed:
             faults.append(
-                Contradiction("/timing", f"prescribed timing is for fourbars; a {self.mechanism} has it free")
+                Contradiction("/timing", f"only fourbars support prescribed timing; free it for a {self.mechanism}")
             )
         faults += self.constraints.of_another_class((), f"classifies fourbars; a {self.mechanism} has no class")
         if self.constraints.coupler_point is not None:
-            detail = f"says where P lies on a fourbar's coupler; leave it out for a {self.mechanism}"
+            detail = f"limits the place of P on a fourbar's coupler; leave it out for a {self.mechanism}"
             faults.append(Contradiction("/constraints/coupler_point", detail))
         if self.mechanism == "slider_crank" and self.fixed_pivots.output is not None:
             faults.append(Contradiction("/fixed_pivots/output", "a slider-crank has one fixed pivot, the crank's"))
@@ -512,19 +524,19 @@ class PathProblem(LinkageProblem):
 
     def _closed(self) -> list[Contradiction]:
         if self.closed and self.constraints.grashof in ("double_rocker", "non_grashof"):
-            detail = f"the input of a {self.constraints.grashof} linkage does not turn through, as a closed curve asks"
+            detail = f"the input of a {self.constraints.grashof} linkage does not turn through; a closed curve needs it"
             return [Contradiction("/constraints/grashof", detail)]
         return []
 
 
 @lru_cache(maxsize=64)
 def _greatest_distance(points: tuple[complex, ...]) -> float:
-    """Asked for with every linkage that is measured, of the same points."""
+    """Return the maximum distance between two points; cached, because every measured linkage needs it."""
     places = np.array(points)
     return float(np.abs(places[:, None] - places).max())
 
 
 def _turn(degrees: float) -> float:
-    """An angle in [0, 360), one that is 0 to rounding as 0."""
+    """Return an angle in [0, 360) degrees, with 0 for one that is 0 up to rounding."""
     turned = math.fmod(degrees, 360.0) % 360.0
     return 0.0 if 360.0 - turned <= EQUAL_ANGLES else turned

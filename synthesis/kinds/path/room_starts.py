@@ -1,8 +1,7 @@
-"""Fourbars that are drawn where their pivots may lie, with P at the first point: starts of fits in a room.
+"""Draw fourbars with their pivots in the zones of a workspace and P at the first point: starts of fits.
 
-The pivots are drawn in their zones, at the first point; one without a zone is drawn in the box, or else about the
-points. Each linkage is swept, and the points are assigned to its curve in order, so that only those that come near the
-points go on.
+Pivots are drawn in their zones, at the first point; one without a zone is drawn in the box, or else around the points.
+Each linkage is swept, and the points are assigned to its curve in order, so that only linkages near the points go on.
 """
 
 from __future__ import annotations
@@ -28,37 +27,37 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 DRAWN = 16000
-"""Linkages that are drawn of a family."""
+"""Number of linkages drawn per family."""
 
 ABOUT = 1.5
-"""Where nothing says where a pivot may lie: the standard deviation of its distance from the points, in task sizes."""
+"""Standard deviation of the distance from the points, in task sizes, of a pivot with neither zone nor box."""
 
 MOST_POINTS = 16
-"""Points that the curves of drawn linkages are compared with, at most: of more, evenly chosen ones."""
+"""Maximum number of points that the curves of drawn linkages are compared with; more are thinned evenly."""
 
 PORTION = 256
-"""Linkages that a thread takes at a time."""
+"""Number of linkages that a thread takes at a time."""
 
 SAME_START = 0.08
 """Starts whose joints agree to this share of the task's size lead to one linkage."""
 
 
 def bounded(problem: PathProblem) -> bool:
-    """Whether a problem demands something of the room: an empty block demands nothing."""
+    """Return whether a problem constrains the workspace: an empty block constrains nothing."""
     return len(packed(problem.space, 0j, problem.task_size)) > 0
 
 
 class RoomStarts:
-    """Linkages with their pivots in their zones, those first that come nearest to the points.
+    """Linkages with their pivots in their zones, those nearest to the points first.
 
     Attributes
     ----------
     x : float, shape (n, 9)
-        In the family's chart.
+        Unknowns in the family's chart.
     sign : float, shape (n,)
         Assembly.
     theta : float, shape (n, points)
-        Crank angles at the points, absolute.
+        Crank angles at the points, absolute, radians.
     """
 
     def __init__(self, x: Real, sign: Real, theta: Real) -> None:
@@ -75,7 +74,7 @@ def room_starts(
     keep: int,
     drawn: int = DRAWN,
 ) -> RoomStarts:
-    """The ``keep`` linkages of a family that come nearest to points, of many that are drawn in a room.
+    """Draw linkages of a family in a workspace and return the ``keep`` nearest to the points.
 
     Parameters
     ----------
@@ -84,12 +83,12 @@ def room_starts(
     points : complex, shape (n,)
         In task coordinates: ``origin`` at 0, ``size`` at 1.
     origin, size : complex and float
-        Of the task.
+        Origin and unit of the task.
     family : int
         A family of fourbars.
     rng : numpy.random.Generator
     keep, drawn : int
-        How many.
+        Number of linkages returned at most, and drawn.
     """
     assert problem.space is not None
     joints = _joints(problem.space, origin, size, rng, drawn, points)
@@ -105,6 +104,7 @@ def room_starts(
         )
 
     in_portions(work, drawn, PORTION)
+    # Some of the nearest are duplicates; a fourfold number leaves enough distinct ones.
     order = np.argsort(costs, kind="stable")[: 4 * keep]
     order = order[np.isfinite(costs[order])]
     order = order[_apart(joints[order], keep)]
@@ -113,7 +113,7 @@ def room_starts(
 
 
 def _apart(joints: Complex, keep: int) -> NDArray[np.int64]:
-    """Rows of which none has all joints near to those of one before."""
+    """Return rows whose joints are not all near to those of an earlier row."""
     chosen: list[int] = []
     for n, one in enumerate(joints):
         if not chosen or np.abs(joints[chosen] - one).max(axis=1).min() > SAME_START:
@@ -126,7 +126,7 @@ def _apart(joints: Complex, keep: int) -> NDArray[np.int64]:
 def _joints(
     space: Space, origin: complex, size: float, rng: np.random.Generator, count: int, points: Complex
 ) -> Complex:
-    """O2, A, B, O4 in task coordinates, shape (count, 4)."""
+    """Draw O2, A, B, O4 in task coordinates, shape (count, 4)."""
     fixed, moving = space.fixed_pivots, space.moving_pivots
     zones: tuple[Zone | Sequence[Zone] | None, ...] = (
         None if fixed is None else fixed.input,
@@ -146,6 +146,7 @@ def _pivots(
     count: int,
     points: Complex,
 ) -> Complex:
+    """Draw one pivot: in its zones, else in the box, else around the points; task coordinates, shape (count,)."""
     if zones is not None:
         area = zones if isinstance(zones, Zone) else AnyOf(zones)
         return np.asarray((area.sampled(rng, count) - origin) / size)
@@ -168,9 +169,9 @@ def _compared(
     angles: Real,
     costs: Real,
 ) -> None:
-    """Charts of linkages, their crank angles at the points from the ground line, and half the sums of squares.
+    """Compute charts of linkages, their crank angles at the points from the ground line, and half the sums of squares.
 
-    A cost is infinite where a linkage is not of the family.
+    A cost is infinite if a linkage is not of the family.
     """
     lengths, stated = np.empty(4), setting.copy()
     for i in range(len(joints)):
@@ -181,12 +182,14 @@ def _compared(
             continue
         x[i, 0], x[i, 1] = o2.real, o2.imag
         x[i, 2] = math.atan2(ground.imag, ground.real)
+        # P in the coupler's frame, such that it lies at the first point.
         point = (first - a) * bar.conjugate() / lengths[2]
         x[i, POINT], x[i, POINT + 1] = point.real, point.imag
         sign[i] = 1.0 if ((o4 - a).conjugate() * bar).imag > 0.0 else -1.0
         stated[SIGN] = sign[i]
         pin = (a - o2) * ground.conjugate()
         angles[i] = math.atan2(pin.imag, pin.real)
+        # A closed curve needs a crank that turns through, which this family does not guarantee.
         if setting[WHOLE] > 0.0 and family >= FOURBAR:
             continue
         costs[i] = reassign(x[i], points, stated, angles[i])

@@ -1,4 +1,4 @@
-"""Descents of sixbars to a curve on all of their dimensions: softly under the demands at first, then with these held.
+"""Descend from sixbars to a curve on all of their dimensions: with soft constraints first, then with enforced ones.
 
 The rows are those of :mod:`synthesis.kinds.path.sixbar_rows`, or of :mod:`synthesis.kinds.path.inverted_rows`; the
 methods are Levenberg and Marquardt's (:mod:`synthesis.numerics.levenberg`) and multipliers
@@ -42,16 +42,16 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 ROOM_MARGIN = 1e-4
-"""Share of the task's size by which a box is drawn in: a joint may go beyond it between the steps of the crank."""
+"""Share of the task's size by which a box is shrunk: a joint may leave it between the steps of the crank."""
 
 SOFT_WEIGHT, SOFT_TOLERANCE = 10.0, 1e-4
-"""Weight of demands, in the target's unit, where they only steer, and the tolerance of such descents."""
+"""Weight of soft constraints, in the target's unit, and the tolerance of such descents."""
 
 PORTION = 4
-"""Number of descents that a thread takes at a time."""
+"""Number of soft descents that a thread takes at a time."""
 
 ROUNDS, HELD_STEPS = 8, 60
-"""Descents under held demands, with the multipliers renewed after each, and steps of each, at most."""
+"""Maximum number of descents under enforced constraints, with a multiplier update after each, and of steps of each."""
 
 
 class Fits(NamedTuple):
@@ -64,14 +64,14 @@ class Fits(NamedTuple):
     cost: Real
 
     def chosen(self, rows: NDArray[np.int64]) -> Fits:
-        """Some of them."""
+        """Return the fits of some rows."""
         return Fits(self.form, self.x[rows], self.signs[rows], self.theta[rows], self.cost[rows])
 
 
 def sixbar_setting(problem: PathProblem, centre: complex, size: float, degrees: float, ratio: float) -> Real:
-    """A problem's demands on sixbars of any form, in the target's unit about its centre.
+    """Pack a problem's constraints on sixbars of any form, in the target's unit about its centre.
 
-    At least ``degrees`` of transmission angle at both dyads are asked for, and a link ratio of at most ``ratio``.
+    The transmission angle at both dyads must be at least ``degrees``, and the link ratio at most ``ratio``.
     """
     out = np.zeros(SETTING)
     out[:DEMANDS] = curve_setting(problem, centre, size)[:DEMANDS]
@@ -79,6 +79,7 @@ def sixbar_setting(problem: PathProblem, centre: complex, size: float, degrees: 
     out[COSINE] = min(out[COSINE], math.cos(math.radians(degrees)))
     out[RATIO] = min(out[RATIO], ratio)
     out[ROOM : ROOM + 4] = -math.inf, math.inf, -math.inf, math.inf
+    # Only the box is constrained in fits; obstacles are checked on the driven sixbar.
     room = None if problem.space is None else problem.space.box_of_joints(ROOM_MARGIN * size)
     if room is not None:
         within = (np.array(room) - np.repeat([centre.real, centre.imag], 2)) / size
@@ -100,20 +101,20 @@ def descended(
     turns: int = 36,
     tolerance: float = SOFT_TOLERANCE,
 ) -> Fits:
-    """The fits after so many steps of descent under demands that steer but may be broken a little.
+    """Descend a limited number of steps with constraints as penalties, which may remain violated a little.
 
     Parameters
     ----------
     fits : Fits
     points, weights : complex and float, shape (points,)
-        What is fitted, and the weights of the squared distances.
+        The points to fit, and the weights of the squared distances.
     setting : float
-        Of :func:`sixbar_setting`.
+        Constraints from :func:`sixbar_setting`.
     steps : int
-        At most.
+        Maximum number of steps.
     back, turns : int
-        Steps of the crank at which the curve's distance from the points counts too, none where 0; and those at which
-        the transmission angle is held.
+        Number of crank steps at which the curve's distance from the points counts too (0 for none), and number of
+        those at which the transmission angle is constrained.
     """
     rows, stated = _posed(fits.form, points, weights, setting, back, turns)
     limits = margins_of(stated)
@@ -142,9 +143,9 @@ def held(
     fits: Fits, points: Complex, weights: Real, setting: Real, *, back: int, turns: int, rounds: int = ROUNDS,
     steps: int = HELD_STEPS, stance: Real | None = None,
 ) -> Fits:  # fmt: skip
-    """The fits brought to where all demands hold; an infinite cost where they were not brought there.
+    """Lead fits to satisfy all constraints; an infinite cost marks the fits that fail.
 
-    ``stance`` is one of the points' rows, of :func:`synthesis.kinds.path.stance_fit.stance_spec`.
+    ``stance`` describes a stance by the points' rows, see :func:`synthesis.kinds.path.stance_fit.stance_spec`.
     """
     rows, stated = _posed(fits.form, points, weights, setting, back, turns)
     kernel, first, more = (_rows_of(fits.form), 0, 0) if stance is None else (sixbar_stance_rows, STANCE, MARGINS)
@@ -156,10 +157,12 @@ def held(
     def work(some: slice) -> None:
         for k in range(*some.indices(len(x))):
             one, ended = stated.copy(), np.empty(1)
+            # The assembly is part of the setting, and differs from fit to fit.
             one[first + SIGN], one[first + SIDE] = fits.signs[k]
             status = hold(
                 kernel, x[k], rows, one, states[k], most, limits, 4, HELD_WEIGHT, rounds, steps, ended
             )  # fmt: skip
+            # The verification of the driven sixbar decides about small violations.
             if status != Status.IMPOSSIBLE and states[k, len(points) :].min() > -HELD_WITHIN:
                 cost[k] = ended[0]
 
@@ -168,18 +171,19 @@ def held(
 
 
 HELD_WEIGHT, HELD_WITHIN = 100.0, 1e-3
-"""Weight of held demands in the first descent; and by how much, in their own units, one may be missed."""
+"""Weight of enforced constraints in the first descent, and their maximum violation at the end, in their own units."""
 
 
 def _rows_of(form: Form) -> Any:
-    """The kernel of a form's rows."""
+    """Return the residual kernel of a form."""
     return inverted_rows if form.holder == INPUT else sixbar_rows
 
 
 def _posed(form: Form, points: Complex, weights: Real, setting: Real, back: int, turns: int) -> tuple[Real, Real]:
-    """Rows of points, and the setting of a form."""
+    """Return the rows of the points, and the setting of a form."""
     stated = setting.copy()
     stated[FAMILY], stated[CARRIER], stated[HOLDER] = form
     stated[STEPS] = max(back, turns)
+    # Both directions count equally: the steps of the curve share the total weight of the points.
     stated[BACK] = math.sqrt(float(weights.sum()) / back) if back else 0.0
     return np.stack([points.real, points.imag, np.zeros(len(points)), np.sqrt(weights)], axis=1), stated

@@ -1,4 +1,4 @@
-"""A fitted sixbar as an answer: its joints at the first point, in the problem's coordinates."""
+"""Convert a fitted sixbar into an answer: its joints at the first point, in the problem's coordinates."""
 
 from __future__ import annotations
 
@@ -17,24 +17,25 @@ from synthesis.model.sixbars import sixbar_mechanism
 Real = NDArray[np.float64]
 
 MIN_LINK = 1e-6
-"""Pins of one link that are nearer to one another than this share of the task's size make no link."""
+"""Minimum distance of two pins of one link, as a share of the task's size."""
 
 BESIDE_INPUT = {CRANK: "link_3", COUPLER: "link_4", ROCKER: "link_5"}
-"""The links of a Stephenson II that P may be on, by their names in answers."""
+"""Links of a Stephenson II that may carry P, by their names in answers."""
 
 TERNARY = {CRANK: "input", COUPLER: "coupler", ROCKER: "output"}
-"""The links that carry or hold a dyad, by their names in answers."""
+"""Links that carry or hold a dyad, by their names in answers."""
 
 
 def fitted_sixbar(
     kind: str, form: Form, x: Real, signs: Real, theta: float, centre: complex, size: float
 ) -> SixbarMechanism | None:
-    """The sixbar of a fit with its crank at θ; None where it does not close there, or a link has no length.
+    """Return the sixbar of a fit with its crank at θ; None if it does not close there, or a link has no length.
 
     ``centre`` and ``size`` are the origin and the unit of the fit, in the problem's coordinates.
     """
     lengths, places = np.empty(4), np.empty(6, np.complex128)
     natural(form.family, x, lengths, np.empty((4, 4)))
+    # A Stephenson II is solved from its input link outwards, with link 3 as the crank.
     if form.holder == INPUT:
         return _inverted(kind, form, x, lengths, signs, theta, centre, size)
     if not joints(x, lengths, *_assembled(form, signs), theta, places):
@@ -44,6 +45,7 @@ def fitted_sixbar(
     at = dict(zip(("A", "B", "C", "D", "E", "P"), places, strict=True)) | {"O2": o2, "O4": o4}
     links: dict[str, Any] = {"ground": ["O2", "O4"], "input": ["O2", "A"], "coupler": ["A", "B"], "output": ["O4", "B"]}
     if form.holder == GROUND:
+        # A Stephenson III's dyad is held by the ground: its pin D becomes the third pivot.
         at["O6"], at["D"] = at["D"], at.pop("E")
         links["rocker"] = links.pop("output")
         links["ground"].append("O6")
@@ -58,7 +60,7 @@ def fitted_sixbar(
 def _inverted(
     kind: str, form: Form, x: Real, lengths: Real, signs: Real, theta: float, centre: complex, size: float
 ) -> SixbarMechanism | None:
-    """The same of a Stephenson II, with its link 3 at θ beside the input."""
+    """Return the same for a Stephenson II, with its link 3 at θ relative to the input."""
     shown = np.empty(SHOWN, np.complex128)
     if not inverted_joints(x, lengths, float(signs[0]), form.carrier, float(signs[1]), theta, shown)[0]:
         return None
@@ -74,14 +76,16 @@ def _inverted(
 def _made(
     kind: str, at: dict[str, complex], links: dict[str, list[str]], centre: complex, size: float
 ) -> SixbarMechanism | None:
-    """The sixbar as an answer; None where a link has no length."""
+    """Build the sixbar; return None if a link has no length."""
     made = sixbar_mechanism(
         kind,
         {name: complex(centre + size * place) for name, place in at.items()},
         {name: tuple(listed) for name, listed in links.items()},
     )
+    # Coinciding pins cannot be manufactured, nor driven reliably.
     return made if min(made.links.values()) > MIN_LINK * size else None
 
 
 def _assembled(form: Form, signs: Real) -> tuple[float, int, int, float]:
+    """Return the arguments of :func:`~synthesis.fit.sixbar_curve.joints` that describe form and assembly."""
     return float(signs[0]), form.carrier, form.holder, float(signs[1])

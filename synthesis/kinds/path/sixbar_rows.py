@@ -1,18 +1,18 @@
-"""Residuals of a sixbar that guides a point along a curve, both ways, and its demands as margins.
+"""Residuals of a sixbar that guides a point along a curve, in both directions, and its constraints as margins.
 
-The points' crank angles are eliminated as in :mod:`synthesis.kinds.path.point_rows`: for each sixbar they are brought
-to where P is nearest to the points, and the Jacobian is that at fixed angles less its part along the curve. The *way
-back* is that of P at equal steps of the crank: its distance from the nearest side of the polyline through the points.
+The points' crank angles are eliminated as in :mod:`synthesis.kinds.path.point_rows`: for each sixbar they are moved to
+where P is nearest to the points, and the Jacobian is that at fixed angles less its part along the curve. The *way back*
+is that of P at equal steps of the crank: its distance from the nearest side of the polyline through the points.
 
-The demands are those of the fourbar O2 A B O4 (:mod:`synthesis.fit.demands`), and besides
+The constraints are those of the fourbar O2 A B O4 (:mod:`synthesis.fit.demands`), and in addition
 
 * the cosine of the angle at E, from above and from below, at equal steps of the crank;
-* the distances of C and D from the other pins of their links and the lengths C E and E D, from the least and the
-  greatest length, and their ratios to one another and to the fourbar's links;
-* the sides of the box of O6, where D is fixed;
+* the distances of C and D from the other pins of their links and the lengths C E and E D, from the minimum and the
+  maximum length, and their ratios to one another and to the fourbar's links;
+* the sides of the box of O6, if D is fixed;
 * at equal steps of the crank, from each side of a box, the distance of the joint that is nearest to it or beyond it.
 
-A row of derivatives is computed only where its limit bears a load.
+A row of derivatives is computed only if its limit bears a load.
 """
 
 from __future__ import annotations
@@ -48,46 +48,46 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 CARRIER, HOLDER, SIDE, STEPS, BACK, ROOM = range(DEMANDS, DEMANDS + 6)
-"""Places in a setting behind the demands: links that carry and hold the dyad, its assembly, equal steps of the crank,
-the weight of the way back, of a step (a square root; 0 where it does not count), and the box that all joints stay in (x
-from, to, y from, to; infinite where there is none)."""
+"""Indices in a setting behind the constraints: links that carry and hold the dyad, its assembly, number of equal steps
+of the crank, the weight of the way back per step (a square root; 0 if it does not count), and the box that all joints
+stay in (x from, to, y from, to; infinite if there is none)."""
 
 SETTING = DEMANDS + 9
-"""Numbers of a setting."""
+"""Number of values of a setting."""
 
 MORE = 6
-"""Lengths of a sixbar beside the fourbar's four."""
+"""Number of lengths of a sixbar in addition to the fourbar's four."""
 
 OWN = 2 * MORE + MORE * (MORE - 1) + 8 * MORE + 4
-"""Margins of a sixbar beside the fourbar's and those of the steps: lengths, ratios, O6."""
+"""Number of margins of a sixbar in addition to the fourbar's and those of the steps: lengths, ratios, O6."""
 
 AT_STEP = 6
-"""Margins of a step: the angle at E from above and from below, and the sides of the box."""
+"""Number of margins of a step: the angle at E from above and from below, and the sides of the box."""
 
 SETTLING, MAX_TURN_STEP, TURN_TOLERANCE = 2, 0.25, 1e-7
-"""Steps by which crank angles are settled at each sixbar, from those of the last accepted one; the greatest, and that
-after which they are settled, radians."""
+"""Maximum number of steps that settle crank angles at each sixbar, from those of the last accepted one; the maximum
+step, and the step after which they are settled, radians."""
 
 SPEED_FLOOR = 1e-9
-"""Speed of P, task sizes a radian, below which its path has no direction."""
+"""Speed of P, task sizes per radian, below which its path has no direction."""
 
 
 @njit(**OPTIONS)
 def margins_of(setting: Real) -> int:
-    """How many margins a setting has."""
+    """Return the number of margins of a setting."""
     return LIMITS + OWN + AT_STEP * int(setting[STEPS])
 
 
 @njit(**OPTIONS)
 def rows_of(points: int, setting: Real) -> int:
-    """How many rows there are at most."""
+    """Return the maximum number of rows."""
     most: int = 2 * points + int(setting[STEPS]) + margins_of(setting)
     return most
 
 
 @njit(**OPTIONS)
 def _pinned(frame: int, at: int, x: Real, lengths: Real, chart: Real, which: int, row: Real) -> float:
-    """ln of a pin's distance from the first (0) or second (1) other pin of its link, and its derivatives."""
+    """Compute ln of a pin's distance from the first (0) or second (1) other pin of its link, and its derivatives."""
     row[:] = 0.0
     if frame == GROUND:
         along, across, far = math.cos(x[2]), math.sin(x[2]), lengths[0] * which
@@ -112,7 +112,7 @@ def _pinned(frame: int, at: int, x: Real, lengths: Real, chart: Real, which: int
 
 @njit(**OPTIONS)
 def _lengths(x: Real, lengths: Real, chart: Real, setting: Real, logs: Real, slopes: Real) -> None:
-    """ln of all ten lengths (10,), the fourbar's first, and their derivatives (10, 15)."""
+    """Compute ln of all ten lengths (10,), the fourbar's first, and their derivatives (10, 15)."""
     for k in range(4):
         logs[k] = math.log(lengths[k])
         slopes[k] = 0.0
@@ -130,7 +130,7 @@ def _lengths(x: Real, lengths: Real, chart: Real, setting: Real, logs: Real, slo
 def own_margins(
     x: Real, lengths: Real, chart: Real, setting: Real, multipliers: Real, values: Real, gradients: Real
 ) -> int:
-    """Margins of the lengths, their ratios, and of O6, from the first on; how many they are."""
+    """Compute the margins of the lengths, their ratios, and of O6, from the first place on; return their number."""
     values[:OWN] = np.inf
     logs, slopes = np.empty(4 + MORE), np.empty((4 + MORE, UNKNOWNS))
     _lengths(x, lengths, chart, setting, logs, slopes)
@@ -149,6 +149,7 @@ def own_margins(
             for j in range(k):
                 for toward in (1.0, -1.0):
                     values[number] = most - toward * (logs[k] - logs[j])
+                    # Inactive margins need no derivatives.
                     if values[number] < multipliers[number] / weight:
                         gradients[number] = toward * (slopes[j] - slopes[k])
                     number += 1
@@ -169,9 +170,9 @@ def _joint_with_slopes(
     joint: int, x: Real, lengths: Real, chart: Real, setting: Real, theta: float, turns: Real, by_c: Complex,
     by_d: Complex, slopes: Complex,
 ) -> None:  # fmt: skip
-    """The derivatives of one of the joints A, B, C, D, E and P (0 to 5) by the unknowns, into ``slopes``.
+    """Compute the derivatives of one of the joints A, B, C, D, E and P (0 to 5) by the unknowns, into ``slopes``.
 
-    A and B are points of the coupler, and E is one of the link C E, whose coordinates change with the lengths.
+    A and B are points of the coupler, and E is a point of the link C E; their coordinates change with the lengths.
     """
     sign, carrier, holder = setting[SIGN], int(setting[CARRIER]), int(setting[HOLDER])
     pinned = x.copy()
@@ -198,7 +199,8 @@ def _joint_with_slopes(
 
 @njit(**OPTIONS)
 def settling_step(gap: complex, moved: complex) -> float:
-    """The step of the angle towards where P is nearest to a point that it misses by ``gap``; 0 where P rests."""
+    """Return the step of the angle towards the place where P is nearest to a point missed by ``gap``; 0 if P rests."""
+    # Gauss-Newton step of the squared distance; the curvature of the path is neglected.
     square = moved.real * moved.real + moved.imag * moved.imag
     if square < SPEED_FLOOR * SPEED_FLOOR:
         return 0.0
@@ -208,7 +210,7 @@ def settling_step(gap: complex, moved: complex) -> float:
 
 @njit(**OPTIONS)
 def _settled(x: Real, lengths: Real, setting: Real, z: complex, angle: float) -> float:
-    """The crank angle brought nearer to where P is nearest to z; NaN beyond a toggle."""
+    """Move the crank angle towards the place where P is nearest to z; NaN beyond a toggle."""
     sign, side = setting[SIGN], setting[SIDE]
     carrier, holder = int(setting[CARRIER]), int(setting[HOLDER])
     for _ in range(SETTLING):
@@ -224,7 +226,7 @@ def _settled(x: Real, lengths: Real, setting: Real, z: complex, angle: float) ->
 
 @njit(**OPTIONS)
 def nearest_side(p: complex, points: Real) -> complex:
-    """The vector from the nearest place of the closed polyline through points (n, 2 or more) to p."""
+    """Return the vector from the nearest place of the closed polyline through points (n, 2 or more) to p."""
     n, least, best = len(points), np.inf, 0j
     for k in range(n):
         after = points[k + 1] if k + 1 < n else points[0]
@@ -232,6 +234,7 @@ def nearest_side(p: complex, points: Real) -> complex:
         along, gap = complex(after[0], after[1]) - start, p - start
         square = along.real * along.real + along.imag * along.imag
         share = (gap.real * along.real + gap.imag * along.imag) / square if square > 0.0 else 0.0
+        # Beyond an end of the side its corner is nearest.
         share = min(max(share, 0.0), 1.0)
         off = complex(gap.real - share * along.real, gap.imag - share * along.imag)
         far = off.real * off.real + off.imag * off.imag
@@ -242,13 +245,14 @@ def nearest_side(p: complex, points: Real) -> complex:
 
 @njit(**OPTIONS)
 def rows_of_point(gap: complex, slopes: Complex, root: float, m: int, residuals: Real, jacobian: Real) -> None:
-    """The rows m and m + 1 of a point that P misses by ``gap``: along P's way, and across it.
+    """Write the rows m and m + 1 of a point that P misses by ``gap``: along P's path, and across it.
 
-    ``slopes`` are P's, by the unknowns and last by the angle that drives; ``root`` is the square root of the weight.
+    ``slopes`` are P's, by the unknowns and last by the driving angle; ``root`` is the square root of the weight.
     """
     along = slopes[UNKNOWNS]
     speed = abs(along)
     if speed < SPEED_FLOOR:
+        # P rests: no component can be removed along its path, so both coordinates count.
         along, across = 1.0 + 0j, 1j
         for j in range(UNKNOWNS):
             jacobian[m, j] = root * slopes[j].real
@@ -264,7 +268,7 @@ def rows_of_point(gap: complex, slopes: Complex, root: float, m: int, residuals:
 
 @njit(**OPTIONS)
 def row_of_back(off: complex, slopes: Complex, weight: float, m: int, residuals: Real, jacobian: Real) -> None:
-    """The row m of a place of the curve that is off the polyline by a vector."""
+    """Write the row m of a place of the curve that is off the polyline by a vector."""
     far = abs(off)
     residuals[m] = weight * far
     jacobian[m] = 0.0
@@ -277,9 +281,9 @@ def row_of_back(off: complex, slopes: Complex, weight: float, m: int, residuals:
 def sixbar_rows(
     x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
 ) -> int:
-    """Rows for the descent of :mod:`synthesis.numerics.levenberg`; −1 where the sixbar does not close.
+    """Compute rows for the descent of :mod:`synthesis.numerics.levenberg`; −1 if the sixbar does not close.
 
-    ``points`` (n, 4): x and y, nothing, and the square root of the weight. ``state``: crank angles at the points, then
+    ``points`` (n, 4): x and y, unused, and the square root of the weight. ``state``: crank angles at the points, then
     margins.
     """
     n = len(points)
@@ -287,6 +291,7 @@ def sixbar_rows(
     natural(int(setting[FAMILY]), x, lengths, chart)
     sign, side = setting[SIGN], setting[SIDE]
     carrier, holder = int(setting[CARRIER]), int(setting[HOLDER])
+    # Logarithms of lengths beyond this overflow in their products.
     if not (np.abs(x[3:7]).max() < 30.0 and max(abs(x[DYAD]), abs(x[DYAD + 1])) < 30.0):
         return -1
     turns = np.zeros((2, UNKNOWNS + 1))
@@ -321,12 +326,14 @@ def sixbar_rows(
         if not joints(x, lengths, sign, carrier, holder, side, angle, places):
             return -1
         at_e = cosine(x, places[2], places[3])
+        # |cos| is bounded by two one-sided margins, which are smooth.
         values[number], values[number + 1] = setting[COSINE] - at_e, setting[COSINE] + at_e
         for edge in range(4):
             limit, toward = setting[ROOM + edge], 1.0 if edge % 2 == 0 else -1.0
             least, nearest = np.inf, 0
             for joint in range(6):
                 at = places[joint].real if edge < 2 else places[joint].imag
+                # The margin is that of the most critical joint.
                 if toward * (at - limit) < least:
                     least, nearest = toward * (at - limit), joint
             values[number + 2 + edge] = least

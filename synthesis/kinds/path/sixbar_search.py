@@ -1,15 +1,15 @@
-"""Sixbars that guide a point along a curve or past points: shapes compared, the most alike fitted, the best driven.
+"""Sixbars that guide a point along a curve or past points: shapes compared, the most similar fitted, the best driven.
 
-For every form of the types that are looked for (:data:`~synthesis.kinds.path.sixbar_shapes.FORMS`):
+For every form of the requested types (:data:`~synthesis.kinds.path.sixbar_shapes.FORMS`):
 
-1. sixbars are drawn and their curves compared with the target; the most alike are placed on it;
-2. they descend on all of their dimensions at equal steps along the target, steered by the demands;
+1. sixbars are drawn and their curves compared with the target; the most similar are placed on it;
+2. they descend on all of their dimensions at equal steps along the target, with the constraints as penalties;
 3. copies of the best with changed dimensions descend again: such descents end in many minima.
 
-The best of all forms are then fitted to the points themselves, and to the way between them where the points show it,
-and brought to where the demands hold. What the kernels know of these is told in
-:mod:`synthesis.kinds.path.sixbar_rows`; all that is demanded is proven of the driven sixbar. Where no transmission
-angle is demanded, at least :data:`~synthesis.outcome.simplest.SOUND` degrees are aimed at.
+The best of all forms are then fitted to the points themselves, and to the way between them if the points show it, and
+led to satisfy the constraints. :mod:`synthesis.kinds.path.sixbar_rows` lists the constraints known to the kernels; all
+constraints are verified on the driven sixbar. Without a required transmission angle, at least
+:data:`~synthesis.outcome.simplest.SOUND` degrees are the aim.
 """
 
 from __future__ import annotations
@@ -46,38 +46,39 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 DRAWN, FOLLOWED = 229376, 2100
-"""Sixbars that are drawn, and the most alike that are followed, of all forms together."""
+"""Number of sixbars drawn, and of the most similar that are followed, over all forms."""
 
 MOST_DRAWN, MOST_FOLLOWED, OPEN_SHARE, EXACT_SHARE = 65536, 600, 0.125, 0.25
-"""The same of one form at most; the share of the first for a stroke, which is compared with parts of each curve; and of
-both for points that are to be met exactly, which leave much freedom."""
+"""The same for one form, at most; the share of the first for a stroke, which is compared with parts of each curve; and
+the share of both for points to be met exactly, which leave much freedom."""
 
 ROUGH_STEPS, FINE_STEPS, KICKED_STEPS = 40, 100, 60
-"""Steps of descents: of all that are followed, of the best of them, and of changed copies."""
+"""Number of steps of descents: of all followed sixbars, of the best of them, and of changed copies."""
 
 REFINED_SHARE = 0.125
-"""Of those that are followed the best that are refined."""
+"""Share of the followed sixbars, the best, that are refined."""
 
 KICKS, KICKED, COPIES, KICK, SPREAD, ELSEWHERE = 2, 12, 10, 0.15, 0.8, 0.4
 """Changed copies: rounds, sixbars, copies of each; standard deviation of the change of their logarithms of lengths,
-that of its own logarithm, and the share of it for other numbers."""
+that of its own logarithm, and the share of it for other unknowns."""
 
 RUNNING, BROUGHT, MAX_DRIVEN, MAX_JUDGED = 8, 32, 16, 32
-"""Sixbars of a form that stay in the running, or more where there are few forms; of all that are brought to the points;
-that are driven; and that are where a room, planes or forces are demanded, which are judged on the driven sixbar."""
+"""Number of sixbars of a form that remain candidates (more if there are few forms); over all forms, maximum number
+fitted to the points; number driven; and number driven if a workspace, planes or forces are constrained, which are
+checked on the driven sixbar."""
 
 BACK, TURNS = 96, 96
-"""Steps of the crank at which the curve is compared with the polyline through many points, and at which the
-transmission angle is held."""
+"""Number of crank steps at which the curve is compared with the polyline through many points, and at which the
+transmission angle is constrained."""
 
 MARGIN = 0.1
-"""Degrees that are held beyond the least transmission angle: it may lie between the steps of the crank."""
+"""Degrees added to the minimum transmission angle: the true minimum may lie between the steps of the crank."""
 
 EXACT_STEPS, EXACT_TOLERANCE = 300, 1e-14
-"""Steps of descents to points that are to be met, and their tolerance."""
+"""Maximum number of steps of descents to exact points, and their tolerance."""
 
 SAME_DESIGN = 1e-3
-"""Sixbars whose joints agree to this share of the task's size are one."""
+"""Sixbars whose joints agree to this share of the task's size are duplicates."""
 
 
 class _Candidate(NamedTuple):
@@ -96,7 +97,7 @@ def solve_sixbars(problem: PathProblem, progress: Progress) -> PathResult:
 
 
 def warm_up() -> None:
-    """Load the compiled kernels on a small circle."""
+    """Compile or load the kernels on a small circle."""
     circle = np.exp(2j * np.pi * np.arange(SHAPE_POINTS) / SHAPE_POINTS)
     stated = {"points": [{"x": z.real, "y": z.imag} for z in circle], "mechanisms": ["stephenson_3"]}
     problem = PathProblem.model_validate({"kind": "path", "method": "curve_match", "closed": True, **stated})
@@ -113,10 +114,12 @@ def _solved(problem: PathProblem, progress: Progress) -> PathResult:
     target = Target(problem)
     limits = problem.constraints
     asked = limits.min_transmission_angle
+    # Without a required angle sixbars would often end next to a toggle, where they are useless.
     least = MARGIN + (SOUND if asked is None else asked)
     ratio = MOST_UNEVEN if limits.max_link_ratio is None else limits.max_link_ratio
     setting = sixbar_setting(problem, target.centre, target.size, least, ratio)
     steps, places = target.steps, target.places
+    # Few points define no curve: a spline through them serves as the target of the comparison.
     if len(target.points) < FEW_POINTS and not problem.matched:
         steps, places = smooth_steps(target.points, target.closed)
     begun = _begun(problem, steps, target.size, setting, part_of(progress, 0.0, 0.7))
@@ -134,9 +137,10 @@ def _solved(problem: PathProblem, progress: Progress) -> PathResult:
 
 
 def _begun(problem: PathProblem, steps: Complex, size: float, setting: Real, progress: Progress) -> list[_Candidate]:
-    """Sixbars near a target, fitted at equal steps along it, the nearest first; ``size`` is the target's unit."""
+    """Find sixbars near a target, fitted at equal steps along it, nearest first; ``size`` is the target's unit."""
     families = FAMILIES[problem.constraints.grashof]
     tasks = [(kind, form) for kind in problem.sixbars for form in FORMS[kind] if form.family in families]
+    # Points to be met exactly leave a family of solutions, which fewer samples find.
     share = 1.0 if problem.fitted else EXACT_SHARE
     drawn = round(share * min(MOST_DRAWN, DRAWN // len(tasks)))
     drawn = drawn if problem.closed else round(OPEN_SHARE * drawn)
@@ -153,6 +157,7 @@ def _begun(problem: PathProblem, steps: Complex, size: float, setting: Real, pro
         fits = descended(fits, steps, weights, setting, steps=ROUGH_STEPS)
         fits = fits.chosen(_best(fits, math.ceil(REFINED_SHARE * followed)))
         fits = descended(fits, steps, weights, setting, steps=FINE_STEPS)
+        # Basin hopping: each round perturbs the best of all previous ones.
         for _ in range(KICKS):
             fits = _kicked(fits, steps, weights, setting, rng)
         order = _best(fits, KICKED * COPIES)
@@ -162,17 +167,18 @@ def _begun(problem: PathProblem, steps: Complex, size: float, setting: Real, pro
 
 
 def _best(fits: Fits, count: int) -> NDArray[np.int64]:
-    """The rows of the nearest, those that close."""
+    """Return the rows of the nearest fits that close."""
     order = np.argsort(fits.cost, kind="stable")[:count]
     return np.asarray(order[np.isfinite(fits.cost[order])])
 
 
 def _kicked(fits: Fits, points: Complex, weights: Real, setting: Real, rng: np.random.Generator) -> Fits:
-    """The fits, and those to which changed copies of the best descend."""
+    """Descend from changed copies of the best; return the old fits and the new ends."""
     rows = np.repeat(_best(fits, KICKED), COPIES)
     if not len(rows):
         return fits
     change = KICK * np.exp(SPREAD * rng.normal(size=(len(rows), 1))) * rng.normal(size=(len(rows), fits.x.shape[1]))
+    # Places and directions are absolute numbers; a change of the logarithms' size would destroy the shape.
     change[:, NO_LOGARITHMS] *= ELSEWHERE
     copies = Fits(fits.form, fits.x[rows] + change, fits.signs[rows], fits.theta[rows], fits.cost[rows])
     ends = descended(copies, points, weights, setting, steps=KICKED_STEPS)
@@ -180,14 +186,15 @@ def _kicked(fits: Fits, points: Complex, weights: Real, setting: Real, rng: np.r
 
 
 NO_LOGARITHMS = [0, 1, 2, 7, 8, 9, 10, 13, 14]
-"""Unknowns that are places and directions."""
+"""Indices of unknowns that are places and directions, not logarithms of lengths."""
 
 
 def _brought(
     problem: PathProblem, target: Target, places: Real, begun: Sequence[_Candidate], setting: Real
 ) -> list[_Candidate]:
-    """The best fitted to the points and brought to the demands; behind them those that were not brought there."""
+    """Fit the best to the points under all constraints; the ones that fail follow the feasible ones."""
     count = len(target.points)
+    # Only a dense closed polyline defines the curve between its points.
     dense = problem.fitted and problem.closed and count >= DENSE
     fitted = len(target.fitted) if problem.matched else count
     part: slice | NDArray[np.int64] = thinning(target)
@@ -211,7 +218,8 @@ def _brought(
 
 
 def _answer(problem: PathProblem, mechanisms: list[SixbarMechanism], progress: Progress) -> PathResult:
-    """Drive the sixbars, and rank what passes."""
+    """Drive the sixbars, rank those that pass, and build the result."""
+    # Constraints that the fits do not know reject many sixbars: drive more of them.
     judged = problem.space is not None or problem.layout is not None or bool(problem.constraints.of_forces)
     joints = [[to_complex(joint) for joint in one.skeleton.joints.values()] for one in mechanisms]
     chosen = distinct(joints, MAX_JUDGED if judged else MAX_DRIVEN, SAME_DESIGN * problem.task_size)
@@ -225,10 +233,10 @@ def _answer(problem: PathProblem, mechanisms: list[SixbarMechanism], progress: P
     progress(1.0, "verified")
     fitted = counted(sifting.candidates, "sixbar that was", "sixbars that were")
     satisfy = agreeing(sifting.accepted, "satisfies", "satisfy")
-    text = f"{grouped(sifting.accepted)} of {fitted} fitted {satisfy} all demands."
+    text = f"{grouped(sifting.accepted)} of {fitted} fitted {satisfy} all constraints."
     text += sifting.reasons()
     if not sifting.passed:
-        text += " None was found; others may exist."
+        text += " None was found; some may still exist."
     return PathResult(
         designs=sifting.designs(order_of(problem)),
         search=sifting.search("sixbar_shapes"),
@@ -237,7 +245,7 @@ def _answer(problem: PathProblem, mechanisms: list[SixbarMechanism], progress: P
 
 
 def best_sixbar(problem: PathProblem, designs: Sequence[PathDesign]) -> str:
-    """What is told of the first sixbar of an answer that keeps all demands, in a sentence; empty where none does."""
+    """Describe the best feasible sixbar of a result in a sentence; empty if there is none."""
     sixbars = [one for one in passing(designs) if isinstance(one.mechanism, SixbarMechanism)]
     if not sixbars:
         return ""

@@ -1,9 +1,9 @@
-"""Sixbars drawn at random whose curves have the shape of a target: drawn, swept, compared and placed in batches.
+"""Find random sixbars whose curves have the shape of a target: drawn, swept, compared and placed in batches.
 
-A sixbar is drawn from its fourbar outwards: Grashof lengths, C and D within a few links of theirs, then lengths of the
-dyad of several that are tried, the first that transmits with :data:`LEAST_ANGLE` over the whole turn, and P within a
-few links of C E. Logarithms of lengths are spread evenly. Curves are compared as those of fourbars are
-(:mod:`synthesis.kinds.path.curve_shapes`).
+A sixbar is drawn from its fourbar outwards: Grashof lengths, C and D within a few link lengths of theirs, then several
+pairs of lengths of the dyad, of which the first with a transmission angle of at least :data:`LEAST_ANGLE` over the full
+turn is taken, and P within a few lengths of C E. Logarithms of lengths are spread evenly. Curves are compared like
+those of fourbars (:mod:`synthesis.kinds.path.curve_shapes`).
 """
 
 from __future__ import annotations
@@ -40,19 +40,19 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 LEAST_ANGLE = 15.0
-"""Transmission angle, degrees, of both dyads of what is drawn: a sixbar nearer to a toggle seldom leaves it."""
+"""Minimum transmission angle, degrees, of both dyads of a drawn sixbar: one nearer to a toggle seldom leaves it."""
 
 TRIED = 12
-"""Pairs of lengths that are tried for a dyad."""
+"""Number of pairs of lengths tried for a dyad."""
 
 SAME_START = 0.05
 """Starts whose joints agree to this share of the target's size lead to the same sixbar."""
 
 OVERSUPPLY = 4
-"""So many times the wanted number are sifted for different ones."""
+"""Multiple of the requested number that is searched for distinct sixbars."""
 
 MAX_OVERSIZE = 2.0
-"""Starts with links this many times too long are still followed: most shrink in the descent."""
+"""Starts with links at most this many times too long are still followed: most shrink in the descent."""
 
 
 class Form(NamedTuple):
@@ -84,11 +84,11 @@ FAMILIES = {
     "crank_rocker": (CRANK_ROCKER,),
     "double_crank": (DOUBLE_CRANK,),
 }
-"""Families of a sixbar's fourbar by the class that is demanded."""
+"""Families of a sixbar's fourbar by the required class."""
 
 
 class Sixbars(NamedTuple):
-    """Sixbars of one form on a target, the most alike first.
+    """Sixbars of one form on a target, the most similar first.
 
     Attributes
     ----------
@@ -98,9 +98,9 @@ class Sixbars(NamedTuple):
     signs : float, shape (n, 2)
         Assemblies of the fourbar's dyad and of the other.
     theta : float, shape (n, SHAPE_POINTS)
-        Crank angles at the target's shape points.
+        Crank angles at the target's shape points, radians.
     unlike : float, shape (n,)
-        √(1 − ρ²).
+        Dissimilarity √(1 − ρ²).
     """
 
     form: Form
@@ -115,8 +115,8 @@ def _swept(
     form_family: int, carrier: int, holder: int, x: Real, signs: Real, tried: Real, curves: Complex,
     good: NDArray[np.bool_],
 ) -> None:  # fmt: skip
-    """Lengths of the dyad are chosen among those ``tried`` (n, pairs, 2), in units of the greatest C D; P is sized with
-    C E; then all is swept."""
+    """Choose lengths of the dyad among those ``tried`` (n, pairs, 2), in units of the maximum C D; scale P with C E;
+    sweep all."""
     n, steps = curves.shape
     lengths, chart = np.empty(4), np.zeros((4, 4))
     places, pins = np.empty(6, np.complex128), np.empty((steps, 2), np.complex128)
@@ -124,6 +124,7 @@ def _swept(
     for i in range(n):
         good[i] = False
         natural(form_family, x[i], lengths, chart)
+        # Lengths of e²⁰ close the dyad anywhere; only C and D matter here.
         x[i, DYAD] = x[i, DYAD + 1] = 20.0
         least, greatest, sharp = np.inf, 0.0, 0.0
         for k in range(steps):
@@ -133,12 +134,14 @@ def _swept(
             least, greatest = min(least, far), max(greatest, far)
         d, a, b, c = lengths
         for base in (d - a, d + a):
+            # The fourbar's transmission angle is extreme where the crank lies along the ground line.
             sharp = max(sharp, abs(b * b + c * c - base * base) / (2.0 * b * c))
         if sharp > most:
             continue
         for k in range(tried.shape[1]):
             first, second = greatest * tried[i, k, 0], greatest * tried[i, k, 1]
             two, around = 2.0 * first * second, first * first + second * second
+            # Law of cosines at E for the minimum and maximum of C D.
             if around - least * least <= most * two and greatest * greatest - around <= most * two:
                 x[i, DYAD], x[i, DYAD + 1] = math.log(first), math.log(second)
                 x[i, P] *= first
@@ -152,7 +155,7 @@ def _swept(
 
 
 def _drawn(form: Form, count: int, rng: np.random.Generator) -> tuple[Real, Real, Real]:
-    """Unknowns, signs, and lengths of the dyad to be tried, of sixbars about their fourbar."""
+    """Draw unknowns, signs, and lengths of the dyad to be tried, of sixbars around their fourbar."""
     fourbars = draw(form.family, count, 0.0, int(rng.integers(2**31)))
     x = np.zeros((count, UNKNOWNS))
     x[:, :C] = fourbars.x[:, :C]
@@ -165,6 +168,7 @@ def _drawn(form: Form, count: int, rng: np.random.Generator) -> tuple[Real, Real
         GROUND: 1.0 + half[:, 1] + half[:, 2],
     }
     for at, frame in ((C, form.carrier), (D, form.holder)):
+        # Pins are drawn around the middle of their link, on the crank around its pivot.
         middle = 0.0 if frame == CRANK else 0.5
         reach = np.exp(rng.uniform(np.log(0.15), np.log(3.0), count))
         pin = sizes[frame] * (middle + reach * np.exp(2j * np.pi * rng.uniform(size=count)))
@@ -187,7 +191,7 @@ def alike_sixbars(
     longest: float = math.inf,
     progress: Callable[[float], None] | None = None,
 ) -> Sixbars:
-    """The ``keep`` sixbars of a form, of ``count`` that are drawn, whose curves are most like a target, placed on it.
+    """Draw ``count`` sixbars of a form and return the ``keep`` most similar to a target, placed on it.
 
     Parameters
     ----------
@@ -199,7 +203,7 @@ def alike_sixbars(
     count, keep : int
     rng : Generator
     longest : float
-        Longest length, in the target's unit, of what is kept.
+        Longest length, in the target's unit, of the sixbars returned.
     progress : callable, optional
         Called with the share done.
     """
@@ -242,6 +246,7 @@ def alike_sixbars(
     else:
         _place_each(*form, windows, places, target, closed, chosen_x, chosen_signs, theta, marks)
     span = np.abs(marks[:, :5] - target.mean()).max(axis=1)
+    # Joints far outside mean links beyond the limit.
     near = np.flatnonzero(np.isfinite(span) & (span <= MAX_OVERSIZE * longest))
     kept = near[distinct(marks[near], keep, SAME_START * (np.ptp(target.real) + np.ptp(target.imag)))]
     unlike = np.sqrt(np.maximum(0.0, 1.0 - rho[order[kept]] ** 2))
@@ -253,7 +258,8 @@ def _place_each(
     family: int, carrier: int, holder: int, windows: Real, where: NDArray[np.int64], target: Complex, closed: bool,
     x: Real, signs: Real, at: Real, marks: Complex,
 ) -> None:  # fmt: skip
-    """Every sixbar put on the target in place; crank angles at its points, and where its joints are at the first."""
+    """Put every sixbar on the target in place; return crank angles at its points, and the joints at the first, in
+    ``marks``."""
     lengths, chart = np.empty(4), np.zeros((4, 4))
     curve, theta = np.empty(SWEEP_STEPS, np.complex128), np.empty(SWEEP_STEPS)
     middle, places = target.mean(), np.empty(6, np.complex128)
@@ -264,6 +270,7 @@ def _place_each(
             joints(x[i], lengths, signs[i, 0], carrier, holder, signs[i, 1], theta[k], places)
             curve[k] = places[5]
         z, angles, mirrored = laid(curve, theta, True, 2.0 * math.pi, where[i], windows, closed, len(target))
+        # Mirroring in the real axis flips every ordinate and both assemblies.
         if mirrored:
             for k in (1, 2, C + 1, D + 1, P + 1):
                 x[i, k] = -x[i, k]
@@ -279,7 +286,7 @@ def _place_each(
 
 @njit(cache=True, nogil=True)
 def moved(holder: int, alpha: complex, beta: complex, x: Real) -> None:
-    """A sixbar under z → αz + β, in place; crank angles grow by the phase of α."""
+    """Map a sixbar by z → αz + β, in place; crank angles grow by the phase of α."""
     size, turn = abs(alpha), cmath.phase(alpha)
     o2 = alpha * complex(x[0], x[1]) + beta
     x[0], x[1] = o2.real, o2.imag

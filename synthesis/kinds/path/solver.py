@@ -1,9 +1,9 @@
 """Path generation: all fourbars through nine points; for fewer points, members of the family that they leave.
 
-Where a search near a smooth curve finds no member that will do, points are drawn until there are nine.
+If a search near a smooth curve finds no suitable member, points are drawn until there are nine.
 
-A real cognate triple is six designs: three linkages, each with either fixed pivot as the input's. Every one of them is
-verified, and what each was rejected for is counted.
+A real cognate triple yields six designs: three linkages, each with either fixed pivot as the input's. Every one of them
+is verified, and the reasons for rejections are counted.
 """
 
 from __future__ import annotations
@@ -47,13 +47,14 @@ Complex = NDArray[np.complex128]
 NINE = 9
 
 THREADS = 2
-"""Paths are followed two at a time: the kernels leave the interpreter free, and most machines have a second core."""
+"""Paths are followed two at a time: the kernels release the interpreter, and most machines have a second core."""
 
 OFF_CURVE = 0.03
-"""Drawn points lie this share of the points' mean distance off the smooth curve, so that no two rounds are alike."""
+"""Distance of drawn points from the smooth curve, as a share of the points' mean distance, so that no two rounds are
+alike."""
 
 FIRST_PART = 0.5
-"""Share of the progress that the search near a smooth curve counts for, where others may follow it."""
+"""Share of the progress assigned to the search near a smooth curve, if other searches may follow it."""
 
 
 def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
@@ -66,6 +67,7 @@ def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
 
 
 def _solved(problem: PathProblem, progress: Progress) -> PathResult:
+    """Dispatch a problem with one mechanism type to its solver."""
     if problem.mechanism != "fourbar":
         if problem.fitted:
             return solve_other(problem, progress)
@@ -78,7 +80,7 @@ def _solved(problem: PathProblem, progress: Progress) -> PathResult:
 
 
 def _solve_exactly(problem: PathProblem, progress: Progress) -> PathResult:
-    """Fourbars that meet the points exactly."""
+    """Find fourbars that meet the points exactly."""
     if all_are_found(problem):
         return solve_given_pivots(problem, progress)
     if problem.prescribed:
@@ -86,7 +88,7 @@ def _solve_exactly(problem: PathProblem, progress: Progress) -> PathResult:
     if len(problem.points) < NINE:
         near = solve_family(problem, part_of(progress, 0.0, FIRST_PART))
         if near.search.accepted or bounded(problem):
-            # Of points that are drawn a room is not known to have any linkage: fits steer into it.
+            # Linkages through additional random points would hardly fit into a workspace; fits are led into it.
             progress(1.0, "verified")
             return near
         return _solve_nine(problem, part_of(progress, FIRST_PART, 1.0))
@@ -94,7 +96,7 @@ def _solve_exactly(problem: PathProblem, progress: Progress) -> PathResult:
 
 
 def _solve_nine(problem: PathProblem, progress: Progress) -> PathResult:
-    """All fourbars through nine points, some of which are drawn where fewer are given."""
+    """Find all fourbars through nine points, some of which are drawn if fewer are given."""
     rng = np.random.default_rng(problem.seed)
     given = np.array([point.point for point in problem.points])
     rounds = 1 if len(given) == NINE else problem.rounds
@@ -127,14 +129,15 @@ def _solve_nine(problem: PathProblem, progress: Progress) -> PathResult:
         f"{counted(counts.real, 'is real', 'are real')}, {on_one_circuit} of these "
         f"{agreeing(on_one_circuit, 'has', 'have')} all points on one circuit, and {grouped(harvest.accepted)} of "
         f"{counted(harvest.candidates, 'design')} {agreeing(harvest.accepted, 'satisfies', 'satisfy')} all "
-        f"demands.{harvest.reasons()}{harvest.proof(complete=complete)}"
+        f"constraints.{harvest.reasons()}{harvest.proof(complete=complete)}"
     )
     result = harvest.result(method, complete=complete, summary=text)
     return result.model_copy(update={"triples": counts})
 
 
 def warm_up() -> None:
-    """Load the kernels by refining a few solutions of the start; the paths of a whole problem would take a second."""
+    """Compile or load the kernels by refining a few solutions of the start; the paths of a whole problem would take a
+    second."""
     curve_match.warm_up()
     sixbar_search.warm_up()
     begun = nine_point_start()
@@ -145,7 +148,7 @@ def warm_up() -> None:
 
 
 def _nine(given: Complex, rng: np.random.Generator) -> Complex:
-    """Nine points: the given ones in their places, and others drawn near a smooth curve through them."""
+    """Return nine points: the given ones in their places, and others drawn near a smooth curve through them."""
     missing = NINE - len(given)
     if missing == 0:
         return given
@@ -153,13 +156,14 @@ def _nine(given: Complex, rng: np.random.Generator) -> Complex:
     along = np.concatenate([[0.0], np.cumsum(chords)])
     curve = CubicSpline(along, given)
     between = rng.choice(len(chords), missing, p=chords / chords.sum())
+    # Away from the given points: nearly equal points make the system nearly singular.
     drawn = along[between] + chords[between] * rng.uniform(0.15, 0.85, missing)
     off = OFF_CURVE * chords.mean() * (rng.normal(size=(missing, 2)) @ np.array([1.0, 1.0j]))
     return np.concatenate([given, np.asarray(curve(drawn)) + off])
 
 
 def _gathered(harvest: Harvest, triples: Triples) -> int:
-    """Verify all six designs of every triple; returns how many triples have all points on one circuit."""
+    """Verify all six designs of every triple; return the number of triples with all points on one circuit."""
     origin = harvest.problem.points[0].point
     on_one_circuit = 0
     for triple in triples.real:

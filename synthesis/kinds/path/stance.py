@@ -1,8 +1,8 @@
-"""What a finished linkage does in its stance: the band in which P stays, and how evenly it goes, by dense driving.
+"""Measure a finished linkage in its stance by dense driving: the band in which P stays, and the evenness of its speed.
 
-P is followed between the inputs at which it passes the stance's first point and its last. Across the line through
-these two wanted points the places of P have a height; the difference of the greatest and the least is the flatness.
-Along the line P has a speed, its way by a radian of the input; it is compared with the whole way over the whole turn.
+P is followed between the inputs at which it passes the stance's first point and its last. Heights of P are measured
+across the line through these two required points; maximum minus minimum is the flatness. The speed of P along the line,
+its displacement per radian of the input, is compared with the mean over the stance.
 """
 
 from __future__ import annotations
@@ -24,23 +24,24 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 APART = 1e-4
-"""Half of the turn, radians, over which P's way is differenced for its speed: the error is that turn's square, some
-1e-8 of the speed."""
+"""Half of the angle, radians, over which P's displacement is differenced for its speed; the relative error is the angle
+squared, some 1e-8 of the speed."""
 
 
 def stance_of(
     problem: PathProblem, place: Callable[[Real], Complex], used: tuple[float, float], inputs: Real
 ) -> dict[str, float]:
-    """Flatness (length units), greatest deviation of the speed (a share of its mean), rotation (degrees) of a stance.
+    """Measure a stance: flatness (length units), maximum deviation of speed (share of its mean), rotation (degrees).
 
-    What P does not do, as it has no position there or no way along the line, is left out; empty without a stance.
+    Quantities that are undefined, because P has no position or does not advance along the line, are left out; empty
+    without a stance.
 
     Parameters
     ----------
     problem : PathProblem
-        What was asked.
+        The problem.
     place : callable
-        Where P is at inputs (n,), radians, shape (n,); NaN where it is nowhere.
+        Place of P at inputs (n,), radians, shape (n,); NaN where it has no position.
     used : tuple of float
         The first and the last input that is used: a whole cycle for a closed path.
     inputs : float, shape (points,)
@@ -52,6 +53,7 @@ def stance_of(
     first, last = stance.points
     start, end = float(inputs[first]), float(inputs[last])
     if stance.around:
+        # The stance continues past the last point into the next cycle.
         end += math.copysign(used[1] - used[0], float(inputs[-1] - inputs[0]))
     way = problem.points[last].point - problem.points[first].point
     along = np.conj(way / abs(way))
@@ -65,11 +67,13 @@ def stance_of(
 
     heights = height(at)
     found: dict[str, float] = {"rotation": math.degrees(abs(end - start))}
+    # Without a motion, or across a toggle, only the rotation is defined.
     if start == end or not np.isfinite(heights).all():
         return found
     _, lowest = least_near(height, at, heights)
     _, highest = least_near(lambda closer: -height(closer), at, -heights)
     found["flatness"] = -highest - lowest
+    # The mean speed over the stance follows from its ends alone.
     ends = place(np.array([start, end]))
     mean = float(((ends[1] - ends[0]) * along).real) / (end - start)
     speeds = speed(at)
@@ -82,7 +86,7 @@ def stance_of(
 
 
 def stance_checks(problem: PathProblem, found: Mapping[str, float]) -> list[Check]:
-    """Whether a stance is as it is stated; what was not measured is not kept."""
+    """Check a stance against its limits; a quantity that was not measured fails."""
     stance = problem.stance
     if stance is None:
         return []
@@ -105,14 +109,14 @@ def stance_checks(problem: PathProblem, found: Mapping[str, float]) -> list[Chec
 
 
 def told_of_stance(designs: Sequence[PathDesign], problem: PathProblem) -> str:
-    """What the best designs that keep all demands do in their stance, in a sentence.
+    """Describe in a sentence the best stance among the designs that satisfy all constraints.
 
-    Empty without a stance, without such designs, and where not all designs will be listed.
+    Empty without a stance, without such designs, and if not all designs will be listed.
     """
     passed = [design.metrics for design in designs if design.verification.passed]
     flatness = [metrics.stance_flatness for metrics in passed if metrics.stance_flatness is not None]
     uneven = [metrics.stance_speed_deviation for metrics in passed if metrics.stance_speed_deviation is not None]
     if problem.stance is None or problem.listed_later or not flatness:
         return ""
-    text = f" In the stance P keeps within a band of down to {min(flatness):.3g} {problem.length_unit}"
-    return text + (f", and its speed within {100.0 * min(uneven):.3g} % of its mean." if uneven else ".")
+    text = f" The flattest stance lies within a band of {min(flatness):.3g} {problem.length_unit}"
+    return text + (f"; the most even speed stays within {100.0 * min(uneven):.3g} % of its mean." if uneven else ".")

@@ -1,8 +1,8 @@
-"""Fits brought to where their stance is as it is stated, beside all other demands.
+"""Lead fits to their required stance under all other constraints.
 
-What shapes are alike says nothing of how evenly a point moves, so that many fits are brought there, the nearest and
-others: the rows are those of :mod:`synthesis.kinds.path.stance_rows`, the method that of multipliers. At the places
-looked at a stance is held a little narrower than it is demanded, as it may be wider between them.
+Similar shapes say nothing about how evenly a point moves, so that many fits are tried, the nearest and others: the rows
+are those of :mod:`synthesis.kinds.path.stance_rows`, the method is that of multipliers. The stance is constrained a
+little more tightly than required at a finite number of places, because it may be wider between them.
 """
 
 from __future__ import annotations
@@ -57,26 +57,27 @@ Complex = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
 NARROWER = 0.97
-"""Share of a stated flatness, and of a stated share of the speed, that is aimed at."""
+"""Share of the required flatness, and of the permitted speed deviation, that serves as the aim."""
 
 ROUNDS, STEPS, WEIGHT = 8, 80, 30.0
-"""Descents with multipliers, steps of each, and the weight at first."""
+"""Maximum number of descents with multipliers, of steps of each, and the initial weight."""
 
 MISSED = 1e-3
-"""By how much a demand may be missed at the end, in its own unit: the driven linkage is judged."""
+"""Maximum violation of a constraint at the end, in its own unit: the driven linkage is verified anyway."""
 
 MOST_HELD, MOST_KEPT = 60, 12
-"""Fits that are brought to the stance, and of those that arrive the nearest that are driven."""
+"""Maximum number of fits that are led to the stance, and of successful ones, the nearest, that are driven."""
 
 
 def as_fit(candidate: Candidate, task: PointTask, target: Target) -> Fit:
-    """A fit to a target's own points as one to all that is fitted of it, in its unit; with its error."""
+    """Convert a fit to a target's own points into one to all fitted points of it, in its unit; with its error."""
     family, sign, n = int(candidate.setting[FAMILY]), float(candidate.setting[SIGN]), len(target.points)
     scale = task.size / target.size
     x = candidate.x[: UNKNOWNS[FOURBAR]].copy()
     theta = candidate.state[:n] + x[2]
     place = scale * complex(x[0], x[1]) + (task.origin - target.centre) / target.size
     x[0], x[1] = place.real, place.imag
+    # Lengths are logarithms in the chart: a change of unit is an addition.
     x[LENGTHS_AT : LENGTHS_AT + 4] += math.log(scale)
     x[POINT : POINT + 2] *= scale
     if len(target.fitted) > n:
@@ -98,9 +99,9 @@ class Stanced(NamedTuple):
 
 
 def stance_spec(problem: PathProblem, size: float, first: int, last: int, cycle: float) -> Real:
-    """What rows know of a stance, in a unit of ``size`` length units, from the row ``first`` to the row ``last``.
+    """Pack a stance for the rows, in a unit of ``size`` length units, from the row ``first`` to the row ``last``.
 
-    ``cycle`` is the input's, radians: it is passed over where the stance goes on past the last row.
+    ``cycle`` is the input's, radians: the stance uses it if it continues past the last row.
     """
     stance = problem.stance
     assert stance is not None
@@ -116,19 +117,20 @@ def stance_spec(problem: PathProblem, size: float, first: int, last: int, cycle:
 
 
 def no_stance(points: int) -> Real:
-    """The same where none is stated."""
+    """Return the same for a problem without a stance."""
     out = np.full(STANCE, math.inf)
     out[FIRST], out[LAST], out[CYCLE], out[COSINE], out[SINE] = 0, points - 1, 0.0, 1.0, 0.0
     return out
 
 
 def stance_of_target(problem: PathProblem, target: Target, fitted: int) -> tuple[Whole, Real]:
-    """Which of a target's first ``fitted`` points are fitted, and the stance of their rows, in the target's unit.
+    """Return the points to fit among a target's first ``fitted`` ones, and the stance by their rows, in the target's
+    unit.
 
     The first and last point of the stance are always among them.
     """
     assert problem.stance is not None
-    # The last point of a closed curve may be its first once more, which a target leaves out.
+    # The last point of a closed curve may repeat its first; a target drops it, so that its index wraps around.
     first, last = (index % len(target.points) for index in problem.stance.points)
     part = np.union1d(np.arange(fitted)[thinning(target)], [first, last])
     rows = np.searchsorted(part, [first, last])
@@ -138,25 +140,26 @@ def stance_of_target(problem: PathProblem, target: Target, fitted: int) -> tuple
 def fits_in_stance(
     problem: PathProblem, target: Target, fits: Sequence[Fit], families: list[int], setting: Real
 ) -> list[Fit]:
-    """Fourbars near a target, their cognates too, brought to the stance; the nearest that differ come first.
+    """Lead fourbars near a target, and their cognates, to the stance; distinct ones, nearest first.
 
     Parameters
     ----------
     problem : PathProblem
         With a stance.
     target : Target
-        What is drawn.
+        The curve to draw.
     fits : sequence of Fit
-        Where they begin.
+        Starts.
     families : list of int
-        To which an answer may belong.
+        Families to which an answer may belong.
     setting : float
-        The other demands, of :func:`synthesis.kinds.path.curve_limits.curve_setting`.
+        The other constraints, of :func:`synthesis.kinds.path.curve_limits.curve_setting`.
     """
     variants = [one for fit in fits for one in (fit, *cognate_fits(fit, families))]
     begun = that_differ(sorted(variants, key=lambda fit: fit.error), MOST_HELD)
     part, spec = stance_of_target(problem, target, len(target.fitted))
     demands = [setting]
+    # Without a required angle a usable one is tried as well, as in curve matching.
     if not math.isfinite(setting[LEAST_ANGLE]) and problem.rank_by != "accuracy":
         demands.append(usable(setting, USABLE, MOST_UNEVEN))
     tasks = [(fit, one) for fit in begun for one in demands]
@@ -176,6 +179,7 @@ def fits_in_stance(
 
 def _fourbar(fit: Fit, points: Complex, weights: Real, theta: Real, spec: Real, setting: Real) -> Stanced | None:
     demanded = setting.copy()
+    # Constrained fits run to change points, at which the crank would not turn through.
     demanded[FAMILY], demanded[SIGN], demanded[CHANGE_POINT] = fit.family, fit.sign, MIN_GRASHOF
     n, x, limits = len(points), np.array(fit.x), limits_of(demanded) + MARGINS
     state = np.zeros(3 * n + limits)
@@ -188,18 +192,18 @@ def simple_in_stance(
     family: int, x: Real, sign: float, theta: Real, points: Complex, spec: Real, *, ratio: float, longest: float,
     cycle: float, within: Real, cosine: float,
 ) -> Stanced | None:  # fmt: skip
-    """A slider-crank or geared fivebar brought to the stance; None where it does not come there.
+    """Lead a slider-crank or geared fivebar to the stance; None if that fails.
 
     Parameters
     ----------
     family, x, sign, theta, points
-        Of :func:`synthesis.kinds.path.curve_descent.descend`, of one start.
+        As for :func:`synthesis.kinds.path.curve_descent.descend`, of one start.
     spec : float
-        Of :func:`stance_spec`.
+        Stance from :func:`stance_spec`.
     ratio, longest, cycle, within
-        As there.
+        As for :func:`synthesis.kinds.path.curve_descent.descend`.
     cosine : float
-        Of the least transmission angle of a slider-crank whose crank turns through.
+        Cosine of the minimum transmission angle of a slider-crank whose crank turns through.
     """
     setting = np.empty(SIMPLE)
     setting[:STANCE] = spec
@@ -216,12 +220,14 @@ def simple_in_stance(
 def _held(
     rows: Any, x: Real, points: Complex, weights: Real, setting: Real, state: Real, limits: int, equations: int
 ) -> float | None:
-    """Half the sum of squares where all demands hold, in place; None where they were not brought to hold."""
+    """Enforce all constraints in place; return half the sum of squares, or None if a violation exceeds
+    :data:`MISSED`."""
     placed = np.stack([points.real, points.imag, np.zeros(len(points)), np.sqrt(weights)], axis=1)
     ended = np.empty(1)
     most = 2 * len(points) + limits
     status = hold(rows, x, placed, setting, state, most, limits, equations, WEIGHT, ROUNDS, STEPS, ended)
     margins = state[len(state) - limits :]
+    # The last margins are equations, violated on both sides.
     zero = np.abs(margins[-equations:])
     off = max(-float(margins[:-equations].min()), float(zero[np.isfinite(zero)].max(initial=0.0)))
     return float(ended[0]) if status != Status.IMPOSSIBLE and off <= MISSED and math.isfinite(ended[0]) else None

@@ -1,16 +1,17 @@
-"""Residuals of linkages of every family with a stance among their demands (:mod:`synthesis.kinds.path.stated_stance`).
+"""Residuals of linkages of every family with a stance among their constraints
+(:mod:`synthesis.kinds.path.stated_stance`).
 
 The crank angles at the stance's first and last point are those at which P is nearest to them, θ₀ and θ₁, which move
-with the unknowns as P's way does. At :data:`PLACES` angles in equal steps from θ₀ to θ₁ P has the height h across the
+with the unknowns as P's path does. At :data:`PLACES` angles in equal steps from θ₀ to θ₁ P has the height h across the
 stance line and the place s along it; the margins at each are
 
     f/2 − |h − (max h + min h)/2|,
     t − |(θ₁ − θ₀) s′/(s₁ − s₀) − 1|,        s′ = (s(θ + δ) − s(θ − δ))/2δ,
 
 f the flatness, t the share by which the speed may differ. They are margins of
-:mod:`synthesis.numerics.augmented_lagrangian` before all others. The rows of points, and of what else is demanded, are
+:mod:`synthesis.numerics.augmented_lagrangian` before all others. The rows of points and of the other constraints are
 those of :mod:`synthesis.kinds.path.point_rows` and :mod:`synthesis.kinds.path.sixbar_rows`; slider-cranks and geared
-fivebars are held to their fixed pivots and their longest link.
+fivebars have constraints on their fixed pivots and their longest link.
 """
 
 from __future__ import annotations
@@ -35,44 +36,45 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 PLACES = 25
-"""Places of P in the stance at which it is held."""
+"""Number of places of P in the stance at which it is constrained."""
 
 MARGINS = 4 * PLACES
-"""Margins of a stance: of the heights, from above and from below, and of the speeds."""
+"""Number of margins of a stance: of the heights, from above and from below, and of the speeds."""
 
 APART = 1e-3
-"""δ, radians: heights are those of the mean of two places so far apart, the error δ²/2 of P's acceleration."""
+"""δ, radians: a height is the mean of two places separated by 2δ, with an error δ²/2 of P's acceleration."""
 
 FIRST, LAST, CYCLE, COSINE, SINE, FLATNESS, OFF_MEAN = range(7)
-"""Places in a setting, before all others: the rows of the stance's first and last point, the input's cycle where the
-stance goes on past the last row (radians, else 0), the direction of its line, the flatness, in the task's unit, and
-the share by which the speed may differ from its mean; infinite where nothing is stated."""
+"""Indices in a setting, before all others: the rows of the stance's first and last point, the input's cycle if the
+stance continues past the last row (radians, else 0), the direction of its line, the flatness, in the task's unit, and
+the share by which the speed may differ from its mean; infinite if not constrained."""
 
 STANCE = 7
-"""Numbers of a stance in a setting."""
+"""Number of values of a stance in a setting."""
 
 SIMPLE_FAMILY, SIMPLE_SIGN, RATIO, LONGEST, JAM_CYCLE, LEAST_COSINE, WITHIN = range(STANCE, STANCE + 7)
-"""Places in the setting of a slider-crank or a geared fivebar behind those: family, assembly, gear ratio, longest link,
-the cycle in which it must not jam, the cosine of the least transmission angle of a crank that turns through, and the
-limits of fixed pivots (4, 2)."""
+"""Indices in the setting of a slider-crank or a geared fivebar behind those: family, assembly, gear ratio, longest
+link, the cycle in which it must not jam, the cosine of the minimum transmission angle of a crank that turns through,
+and the limits of fixed pivots (4, 2)."""
 
 SIMPLE = STANCE + 14
-"""Numbers of that setting."""
+"""Number of values of that setting."""
 
 LENGTHS, PIVOTS = 6, 4
-"""Margins of a slider-crank or a geared fivebar: lengths and P's arm below the longest, a slider-crank's transmission
-angle above the least, and pivots, which are equations."""
+"""Number of margins of a slider-crank or a geared fivebar: lengths and P's arm below the longest, a slider-crank's
+transmission angle above the minimum; and of its pivots, which are equations."""
 
 SPEED_FLOOR = 1e-9
-"""Speed of P, task sizes a radian, below which its path has no direction; the same of its way in a stance."""
+"""Speed of P, task sizes per radian, below which its path has no direction; also that of its advance in a stance."""
 
 SETTLING, MAX_TURN_STEP, TURN_TOLERANCE = 3, 0.25, 1e-8
-"""Steps by which crank angles are settled at each linkage, the greatest, and that after which they are, radians."""
+"""Maximum number of steps that settle crank angles at each linkage, the maximum step, and the step after which they are
+settled, radians."""
 
 
 @njit(**OPTIONS)
 def _turn_at_nearest(by: Complex, unknowns: int, turn: Real) -> None:
-    """How the crank angle at which P is nearest to a point moves with the unknowns: P stays where it is on its way."""
+    """Compute the derivatives of the crank angle at which P is nearest to a point: P stays in place along its path."""
     along = by[unknowns]
     square = along.real * along.real + along.imag * along.imag
     for j in range(unknowns):
@@ -83,7 +85,8 @@ def _turn_at_nearest(by: Complex, unknowns: int, turn: Real) -> None:
 
 @njit(**OPTIONS)
 def _end_of(state: Real, n: int, setting: Real) -> float:
-    """By how much the stance's last crank angle is beyond that at its last point."""
+    """Return the amount by which the stance's last crank angle exceeds that at its last point."""
+    # The cycle continues in the direction in which the points are passed.
     beyond: float = setting[CYCLE] if state[n - 1] >= state[0] else -setting[CYCLE]
     return beyond
 
@@ -93,10 +96,10 @@ def _margins(
     places: Complex, by: Complex, turn: float, turns: Real, setting: Real, multipliers: Real, values: Real,
     gradients: Real,
 ) -> None:  # fmt: skip
-    """Margins of a stance and, of those that bear a load, their derivatives.
+    """Compute the margins of a stance and, for those that bear a load, their derivatives.
 
     ``places`` (2 k,) are those before and those behind each angle, ``by`` (2 k, m) their derivatives; ``turn`` is the
-    crank's in the stance, ``turns`` (2, m) the derivatives of its ends.
+    crank's rotation in the stance, ``turns`` (2, m) the derivatives of its ends.
     """
     values[:] = np.inf
     count, m = len(places) // 2, by.shape[1]
@@ -110,6 +113,7 @@ def _margins(
             heights[k] = 0.5 * (cosine * both.imag - sine * both.real)
             low = k if heights[k] < heights[low] else low
             high = k if heights[k] > heights[high] else high
+        # The band may lie anywhere; only its height is limited.
         middle = 0.5 * (heights[low] + heights[high])
         for k in range(count):
             for side in range(2):
@@ -126,6 +130,7 @@ def _margins(
     whole = places[last] + places[count + last] - places[0] - places[count]
     way = 0.5 * (cosine * whole.real + sine * whole.imag)
     if abs(way) < SPEED_FLOOR:
+        # A stance without advance has no mean speed; the floor keeps the quotient finite.
         way = math.copysign(SPEED_FLOOR, way)
     for k in range(count):
         step = places[count + k] - places[k]
@@ -146,15 +151,17 @@ def _margins(
 
 @njit(**OPTIONS)
 def _along(k: int, first: float, last: float) -> tuple[float, float]:
-    """Share of the stance at a place, and the crank angle there: before each of the angles at first, then behind it."""
+    """Return the share of the stance at a place, and the crank angle there: first those before each angle, then those
+    behind."""
     share = (k % PLACES) / (PLACES - 1)
     return share, first + share * (last - first) + (APART if k >= PLACES else -APART)
 
 
 @njit(**OPTIONS)
 def _moved(by: Complex, m: int, share: float, turns: Real, out: Complex) -> None:
-    """Derivatives of a place of the stance, its crank angle moving with those of the ends."""
+    """Compute the derivatives of a place of the stance whose crank angle moves with those of the ends."""
     for j in range(m):
+        # The places divide the stance evenly, so that their angles are interpolated between its ends.
         turn = (1.0 - share) * turns[0, j] + share * turns[1, j]
         out[j] = by[j] + complex(by[m].real * turn, by[m].imag * turn)
 
@@ -164,9 +171,9 @@ def _simple_stance(
     family: int, x: Real, lengths: Real, chart: Real, sign: float, ratio: float, first: float, last: float,
     turns: Real, places: Complex, out: Complex,
 ) -> bool:  # fmt: skip
-    """Places of P in the stance and their derivatives, of a linkage with one closure; False beyond a toggle.
+    """Compute places of P in the stance and their derivatives, of a linkage with one closure; False beyond a toggle.
 
-    ``first`` and ``last`` are crank angles; ``turns`` (2, m) gets their derivatives.
+    ``first`` and ``last`` are crank angles; ``turns`` (2, m) receives their derivatives.
     """
     m = out.shape[1]
     by = np.empty(m + 1, np.complex128)
@@ -188,7 +195,7 @@ def _simple_stance(
 def fourbar_stance_rows(
     x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
 ) -> int:
-    """Rows of a fourbar, see :data:`synthesis.numerics.levenberg.ROWS`; those of path_rows, and its stance's.
+    """Compute rows of a fourbar: those of path_rows, and its stance's; see :data:`synthesis.numerics.levenberg.ROWS`.
 
     ``setting`` begins with the stance. ``state`` is that of path_rows, with the stance's margins before all others.
     """
@@ -227,7 +234,7 @@ def _with_stance(
     jacobian: Real,
     m: int,
 ) -> int:
-    """The rows of a stance, behind m others."""
+    """Append the rows of a stance to m others; return the number of all rows."""
     gradients, loads = np.zeros((MARGINS, by.shape[1])), np.empty(MARGINS + 1)
     loads[:MARGINS], loads[MARGINS] = multipliers[:MARGINS], multipliers[-1]
     _margins(places, by, turn, turns, setting, loads, values, gradients)
@@ -239,7 +246,7 @@ def _with_stance(
 def sixbar_stance_rows(
     x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
 ) -> int:
-    """Rows of a sixbar: those of sixbar_rows, and its stance's; see :func:`fourbar_stance_rows`."""
+    """Compute rows of a sixbar: those of sixbar_rows, and its stance's; see :func:`fourbar_stance_rows`."""
     n, own = len(points), setting[STANCE:]
     inner = np.empty(len(state) - MARGINS)
     inner[:n] = state[:n]
@@ -254,6 +261,7 @@ def sixbar_stance_rows(
     by_c, by_d = np.empty(UNKNOWNS + 1, np.complex128), np.empty(UNKNOWNS + 1, np.complex128)
     first = state[int(setting[FIRST])]
     last = state[int(setting[LAST])] + _end_of(state, n, setting)
+    # The first two passes compute the derivatives of the ends, which all others need.
     for k in range(-2, 2 * PLACES):
         share, angle = (0.0, first) if k == -2 else (1.0, last) if k == -1 else _along(k, first, last)
         closes, c, d = pins_with_slopes(
@@ -279,7 +287,8 @@ def sixbar_stance_rows(
 def simple_stance_rows(
     x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
 ) -> int:
-    """Rows of a slider-crank or a geared fivebar: points at their nearest places, stance, longest link, fixed pivots.
+    """Compute rows of a slider-crank or a geared fivebar: points at their nearest places, stance, longest link, fixed
+    pivots.
 
     ``state`` has the crank angles at the points, the margins of the stance, and those of lengths and pivots.
     """
@@ -287,6 +296,7 @@ def simple_stance_rows(
     sign, ratio = setting[SIMPLE_SIGN], setting[RATIO]
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     natural(family, x, lengths, chart)
+    # Logarithms beyond this overflow; the negation also catches NaN.
     if not np.abs(x).max() < 30.0:
         return -1
     if family == GEARED_FIVEBAR and jams(x, lengths, sign, ratio, setting[JAM_CYCLE]):
@@ -314,6 +324,7 @@ def simple_stance_rows(
         state[i] = angle
         gap, along = p - z, by[unknowns]
         speed = abs(along)
+        # Only the component across the path can be reduced by the linkage; the angle takes the other one.
         across = complex(-along.imag / speed, along.real / speed) if speed > SPEED_FLOOR else 1j
         residuals[m] = root * (gap.real * across.imag - gap.imag * across.real)
         residuals[m + 1] = root * (gap.real * across.real + gap.imag * across.imag)
@@ -345,7 +356,8 @@ def simple_stance_rows(
 
 @njit(**OPTIONS)
 def _held_angle(lengths: Real, chart: Real, cosine: float, values: Real, gradients: Real) -> None:
-    """How far the cosine of a slider-crank's least transmission angle, (r + |e|)/l, is below that of the least."""
+    """Compute the margin of a slider-crank's minimum transmission angle: its cosine (r + |e|)/l must not exceed
+    ``cosine``."""
     crank, rod, offset = lengths[0], lengths[1], lengths[2]
     least, sign = (crank + abs(offset)) / rod, (1.0 if offset >= 0.0 else -1.0)
     values[LENGTHS - 1] = cosine - least
@@ -357,7 +369,7 @@ def _held_angle(lengths: Real, chart: Real, cosine: float, values: Real, gradien
 def _held_lengths(
     family: int, x: Real, lengths: Real, chart: Real, longest: float, values: Real, gradients: Real
 ) -> None:
-    """Shares by which lengths, and P's arm, are below the longest."""
+    """Compute the shares by which lengths, and P's arm, are below the longest."""
     values[:LENGTHS] = np.inf
     if not longest < np.inf:
         return

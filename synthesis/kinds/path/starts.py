@@ -1,6 +1,6 @@
-"""Where continuation begins: all solutions of a path problem for one set of general complex parameters, as stored.
+"""Starts of the continuation: all solutions of a path problem for one set of general complex parameters, as stored.
 
-``tools/path_starts.py`` makes the files anew.
+``tools/path_starts.py`` regenerates the files.
 """
 
 from __future__ import annotations
@@ -24,16 +24,17 @@ class Start(NamedTuple):
 
 @cache
 def nine_point_start() -> Start:
-    """Nine points: one solution of each orbit, shape (1442, 16), for parameters of shape (16,)."""
+    """Load the start for nine points: one solution of each orbit, shape (1442, 16), for parameters of shape (16,)."""
     return _stored("nine_point_start.npz")
 
 
 @cache
 def five_point_start() -> Start:
-    """Five points on given pivots: the solutions, shape (36, 8), for parameters of shape (12,)."""
+    """Load the start for five points on given pivots: the solutions, shape (36, 8), for parameters of shape (12,)."""
     return _stored("five_point_start.npz")
 
 
 def _stored(name: str) -> Start:
+    """Read solutions and parameters from a file of this package."""
     with resources.files(__package__).joinpath(name).open("rb") as opened, np.load(opened) as arrays:
         return Start(arrays["y"], arrays["p"])

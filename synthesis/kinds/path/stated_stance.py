@@ -1,4 +1,4 @@
-"""The stance of a leg: a part of the path on which its foot is to go straight, at a constant speed if wanted."""
+"""The stance of a leg: a part of the path on which its foot moves straight, optionally at constant speed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pydantic import Field
 from synthesis.model.statement import Contradiction, Count, PositiveLength, PositiveNumber, Statement
 
 SPEED_TOLERANCE = 0.1
-"""Share by which a constant speed may differ from its mean, where nothing is stated."""
+"""Default share by which a constant speed may differ from its mean."""
 
 SAME_PLACE = 1e-9
 """Points nearer than this share of the coordinates' size are one place."""
@@ -22,39 +22,40 @@ Index = Annotated[Count, Field(ge=0)]
 class Stance(Statement):
     """A part of the path on which P goes straight, from one of the points to another.
 
-    The stance line goes from the first of the two points to the last. What is measured is P between the inputs at which
-    it passes them: the height of all its places across this line, and its speed along it by the angle of the input.
+    The stance line goes from the first of the two points to the last. P is measured between the inputs at which it
+    passes them: the height of all its places across this line, and its speed along it per angle of the input.
     """
 
     points: tuple[Index, Index] = Field(
-        description="First and last point of the stance, counted from 0; on a closed path it may go on past the last."
+        description="First and last point of the stance, counted from 0; on a closed path it may continue past the "
+        "last."
     )
     flatness: PositiveLength | None = Field(
-        default=None, description="Greatest height of the band across the stance line in which P stays."
+        default=None, description="Maximum height, across the stance line, of the band in which P stays."
     )
     speed: Literal["any", "constant"] = Field(
-        default="any", description="constant: P goes along the stance line by equal ways for equal turns of the input."
+        default="any", description="constant: equal rotations of the input move P by equal distances along the line."
     )
     speed_tolerance: PositiveNumber | None = Field(
         default=None,
-        description="Share by which a constant speed may differ from its mean at most; left out: 0.1.",
+        description="Maximum deviation of a constant speed from its mean, as a share; default 0.1.",
     )
 
     @property
     def off_mean(self) -> float | None:
-        """Share by which the speed may differ from its mean; None where any will do."""
+        """Maximum deviation of the speed from its mean, as a share of it; None if not constrained."""
         if self.speed == "any":
             return None
         return SPEED_TOLERANCE if self.speed_tolerance is None else self.speed_tolerance
 
     @property
     def around(self) -> bool:
-        """Whether it goes on past the last of the points with the first."""
+        """Whether it continues past the last of the points with the first."""
         return self.points[0] > self.points[1]
 
 
 def faults_of_stance(problem: Any) -> Iterator[Contradiction]:
-    """What a stance cannot be, and what cannot be stated beside it."""
+    """Yield errors in a stance, and requests that contradict it."""
     stance: Stance | None = problem.stance
     if stance is None:
         return
@@ -64,20 +65,21 @@ def faults_of_stance(problem: Any) -> Iterator[Contradiction]:
         if index >= count:
             yield Contradiction(f"/stance/points/{end}", f"there are {count} points, counted from 0")
     if first == last:
-        yield Contradiction("/stance/points", "a stance goes from one point to another")
+        yield Contradiction("/stance/points", "a stance needs two different points")
+    # Only a closed path has a first point behind the last.
     elif stance.around and not problem.closed:
-        yield Contradiction("/stance/points", "an open path does not go on past its last point; exchange them")
+        yield Contradiction("/stance/points", "an open path does not continue past its last point; exchange them")
     elif max(first, last) < count and _is_no_way(problem, first, last):
-        yield Contradiction("/stance/points", "the two points are one place, through which goes no line")
+        yield Contradiction("/stance/points", "the two points coincide and define no line")
     if stance.flatness is None and stance.speed == "any":
-        yield Contradiction("/stance", "demands nothing; state its flatness, or a constant speed")
+        yield Contradiction("/stance", "constrains nothing; give its flatness, or a constant speed")
     if stance.speed == "any" and stance.speed_tolerance is not None:
-        yield Contradiction("/stance/speed_tolerance", "is of a constant speed; state that too")
+        yield Contradiction("/stance/speed_tolerance", 'applies to a constant speed; set "speed": "constant"')
     for path, excluded, detail in (
-        ("/method", problem.method == "exact", "points that are met exactly leave a stance to luck; fit them"),
-        ("/timing", problem.prescribed, "a stance has free timing; it says by itself how P moves with the input"),
+        ("/method", problem.method == "exact", "exact points leave no freedom for a stance; fit them"),
+        ("/timing", problem.prescribed, "a stance needs free timing; it defines how P moves with the input"),
         ("/placement_free", bool(problem.placement_free), "a stance lies where it is drawn; leave this out"),
-        ("/constraints/in_order", not problem.constraints.in_order, "a stance is gone through in order"),
+        ("/constraints/in_order", not problem.constraints.in_order, "a stance visits its points in order"),
     ):
         if excluded:
             yield Contradiction(path, detail)

@@ -1,4 +1,4 @@
-"""The fourbar that a fit begins from, and what it cannot be stated beside."""
+"""The fourbar from which a fit starts, and requests that contradict it."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from pydantic import Field
 from synthesis.model.statement import Contradiction, Point, Statement
 
 MIN_SHARE = 1e-6
-"""A link shorter than this share of the longest is none."""
+"""A link shorter than this share of the longest has no length."""
 
 
 class StartFourbar(Statement):
-    """A fourbar by its joints in one of its positions, as the skeleton of an answer has them, in length units."""
+    """A fourbar by its joints in one of its positions, as in the skeleton of an answer, in length units."""
 
     O2: Point = Field(description="Fixed pivot of the input.")
     A: Point = Field(description="Pin of input and coupler.")
@@ -36,14 +36,14 @@ class StartFourbar(Statement):
 
 
 def faults_of_start(problem: Any) -> list[Contradiction]:
-    """What a start cannot be stated beside, and a start that is no linkage."""
+    """Return requests that contradict a start, and a start that is no linkage."""
     start = problem.start
     if start is None:
         return []
     for path, excluded, detail in (
-        ("/method", problem.method != "least_squares", "a start is where least_squares begins; state that method"),
+        ("/method", problem.method != "least_squares", "a start is for least_squares only; choose that method"),
         ("/timing", problem.prescribed, "a start is for points of free timing"),
-        ("/mechanism", problem.mechanism != "fourbar" or problem.mechanisms is not None, "a start is a fourbar's"),
+        ("/mechanism", problem.mechanism != "fourbar" or problem.mechanisms is not None, "a start must be a fourbar"),
         ("/stance", problem.stance is not None, "a start is for fits of points alone; leave one of the two out"),
     ):
         if excluded:

@@ -5,14 +5,14 @@ The crank W and the coupler vector Z of the input dyad satisfy, with crank rotat
 
     W (e^{iβ_k} − 1) + Z (e^{iα_k} − 1) = δ_k.
 
-In motion generation it is the other way round. As the equation is the same in both, the dyads of a body that is turned
+In motion generation the α_k are given instead. As the equation is the same in both, the dyads of a body that is rotated
 by β_k are the solutions, with W and Z exchanged: a fixed pivot O and a moving pivot A′ stand for O2 = O and
-A = O + P − A′. There are at most four (:mod:`synthesis.kinds.motion.sections`). Each says how the coupler turns,
+A = O + P − A′. There are at most four (:mod:`synthesis.kinds.motion.sections`). Each determines the coupler's rotation,
 
     e^{iα_k} = (Z + δ_k − W (e^{iβ_k} − 1)) / Z,
 
 and its output links are the dyads of that motion: at most four again, of which one is the input link itself. There are
-twelve fourbars at most, and with each stands the cognate whose input turns with it.
+at most twelve fourbars, and each comes with the cognate whose input turns with it.
 """
 
 from __future__ import annotations
@@ -39,14 +39,15 @@ Complex = NDArray[np.complex128]
 FIVE = 5
 
 SAME_DYAD = 1e-6
-"""An output link with both pivots this near (task sizes, and shares of its own reach) to the input link's is that."""
+"""An output link whose pivots are this near (task sizes, and shares of its own reach) to the input link's is that
+link."""
 
 
 class TimedFourbars(NamedTuple):
     """All fourbars through five points at their crank angles, in task coordinates.
 
-    ``joints`` are O2, A, B, O4 at the first point (rows of four; P is at 0). ``proved`` tells that there are no others,
-    but for sliders, of which ``sliders`` were found. ``inputs`` is the number of input dyads.
+    ``joints`` are O2, A, B, O4 at the first point (rows of four; P is at 0). ``proved`` is true if no others exist,
+    except sliders, of which ``sliders`` were found. ``inputs`` is the number of input dyads.
     """
 
     joints: Complex
@@ -56,7 +57,8 @@ class TimedFourbars(NamedTuple):
 
 
 def timed_fourbars(points: Complex, turns: Real) -> TimedFourbars:
-    """All fourbars whose coupler point is at each of five points when the crank has turned by each of five angles.
+    """Compute all fourbars whose coupler point is at each of five points when the crank has turned by each of five
+    angles.
 
     Parameters
     ----------
@@ -80,6 +82,7 @@ def timed_fourbars(points: Complex, turns: Real) -> TimedFourbars:
         rotations = (arm + points - crank * (np.exp(1j * turns) - 1.0)) / arm
         task = MotionTask(points, rotations / np.abs(rotations), 0j, 1.0)
         outputs = section(task, free)
+        # Completeness requires that every single step found all of its solutions.
         proved = proved and outputs.finite and outputs.proved
         sliders += len(outputs.sliders)
         if not len(outputs.dyads.fixed):
@@ -88,6 +91,7 @@ def timed_fourbars(points: Complex, turns: Real) -> TimedFourbars:
         a = o2 + crank
         for o4, b in zip(links.fixed, links.moving, strict=True):
             reach = 1.0 + abs(o2) + abs(a)
+            # One of the output dyads is the input dyad itself; it would make a linkage of two equal links.
             if max(abs(o4 - o2), abs(b - a)) > SAME_DYAD * reach:
                 linkages.append((o2, a, b, o4))
     return TimedFourbars(np.array(linkages, np.complex128).reshape(-1, 4), len(dyads.fixed), sliders, proved)
@@ -105,9 +109,11 @@ def solve_timed(problem: PathProblem, progress: Progress) -> PathResult:
 
 
 def _all_of_five(problem: PathProblem, progress: Progress) -> PathResult:
+    """Solve five points with free phase and pivots completely."""
     given = np.array([point.point for point in problem.points])
     size = problem.task_size
     points, turns = (given - given[0]) / size, np.array(problem.crank_turns)
+    # The opposite direction is another problem with its own solutions.
     ways = (turns, -turns) if problem.crank_direction == "either" else (turns,)
     harvest = Harvest(problem)
     inputs = fourbars = sliders = 0
@@ -123,21 +129,22 @@ def _all_of_five(problem: PathProblem, progress: Progress) -> PathResult:
     complete, passed = proved and not harvest.unproven, len(harvest.passed)
     text = (
         f"{counted(inputs, 'input dyad')} and {counted(fourbars, 'fourbar')} pass the five points at their crank "
-        f"angles; {passed} of them {agreeing(passed, 'satisfies', 'satisfy')} all demands."
+        f"angles; {passed} of them {agreeing(passed, 'satisfies', 'satisfy')} all constraints."
     )
     text += harvest.reasons()
     if sliders:
-        text += f" {counted(sliders, 'more dyad has', 'more dyads have')} a pivot at infinity: sliders."
+        text += f" {counted(sliders, 'more dyad has', 'more dyads have')} a pivot at infinity (a slider)."
     text += harvest.proof(complete=complete)
     result = harvest.result("timed_dyads", complete=complete, summary=text)
     return result.model_copy(update={"timed": TimedDyads(inputs=inputs, fourbars=fourbars, sliders=sliders)})
 
 
 def _summary_of_fewer(problem: PathProblem, harvest: Harvest) -> str:
+    """Describe the designs found for points that leave freedom."""
     passed = len(harvest.passed)
     text = (
         f"{passed} of {counted(harvest.candidates, 'linkage')} through the {len(problem.points)} points at their crank "
-        f"angles {agreeing(passed, 'satisfies', 'satisfy')} all demands; the points leave freedom, from which these "
-        "are drawn."
+        f"angles {agreeing(passed, 'satisfies', 'satisfy')} all constraints. The points leave freedom; the linkages "
+        "are random samples of it."
     )
     return text + harvest.reasons() + harvest.proof(complete=False)

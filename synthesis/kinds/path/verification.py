@@ -1,7 +1,7 @@
-"""Verification of a fourbar that guides a point: it is driven to where its coupler point passes each demanded point.
+"""Verify a fourbar that guides a point: drive it to where its coupler point passes each required point.
 
-:mod:`synthesis.kinds.path.passages` finds the inputs; what is measured is where P then stands, and in fits how far it
-goes astray on its way (:mod:`synthesis.kinds.path.astray`).
+:mod:`synthesis.kinds.path.passages` finds the inputs; the measurements are the place of P there and, for fits, the
+excursion of P between the points (:mod:`synthesis.kinds.path.astray`).
 """
 
 from __future__ import annotations
@@ -42,11 +42,11 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 SLACK = 1e-9
-"""Coordinates outside a stated interval by this share of its ends' size count as inside: rounding."""
+"""Coordinates outside a required interval by this share of its larger end count as inside: rounding."""
 
 
 class _Motion(NamedTuple):
-    """The motion through the targets: inputs in one run, what it is worth, and the range that is used."""
+    """The motion through the targets: inputs in one run, properties of the run, and the used range."""
 
     angles: Real
     same_branch: bool
@@ -62,14 +62,14 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign
     Parameters
     ----------
     problem : PathProblem
-        What was asked.
+        The problem.
     mechanism : FourbarMechanism
-        Dimensions only; the skeleton is not looked at.
+        Only the dimensions are used, not the skeleton.
 
     Returns
     -------
     PathDesign or None
-        None where the dimensions make no linkage that can be assembled, or it stays out of reach of a point.
+        None if the linkage cannot be assembled, or cannot reach a point.
     """
     try:
         fourbar = driven_fourbar(mechanism)
@@ -85,13 +85,16 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign
     way = _way(linkage, passed)
     barker = barker_class(linkage)
     turns = barker.motion in TURNS_THROUGH
+    # Across a toggle there is no single motion; the extreme inputs bound the report.
     used = (way.start, way.end) if way.same_branch else (float(way.angles.min()), float(way.angles.max()))
     if problem.closed and turns:
+        # A closed curve is traced by a full turn, not only from its first point to its last.
         used = float(way.angles[0]), float(way.angles[0]) + math.tau
     least = float(transmission_extremes(linkage, *used)[0]) if way.same_branch else 0.0
     pivots = [complex(linkage.input_pivot), complex(linkage.output_pivot)]
     joints = np.concatenate([passed.a, passed.b, passed.p, pivots])
     inputs = np.degrees(way.angles)
+    # Report angles in the same turn as the mechanism's reference angle.
     inputs += 360.0 * np.round((mechanism.reference_input_angle - inputs[0]) / 360.0)
     away = math.radians(inputs[0]) - float(way.angles[0])
     measures = measured(
@@ -116,18 +119,18 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign
 
 
 class AtPoints(NamedTuple):
-    """A linkage at the demanded points.
+    """A linkage at the required points.
 
     Attributes
     ----------
     inputs : float, shape (n,)
         Degrees, in one run.
     misses : float, shape (n,)
-        Distances of P from the points.
+        Distances of P from the points, length units.
     on_circuit : bool
         Whether all lie on one circuit.
     fixed_pivots, moving_pivots : list of complex
-        The pivots at the first point; the input's fixed pivot stands first.
+        The pivots at the first point; the input's fixed pivot comes first.
     """
 
     inputs: Real
@@ -138,9 +141,9 @@ class AtPoints(NamedTuple):
 
 
 class Way(NamedTuple):
-    """The whole way of P: where it is at inputs (n,), NaN where there is no position; and the inputs that are used.
+    """The path of P: its place at inputs (n,), NaN where there is no position; and the used range of inputs.
 
-    These are the first and the last: a whole cycle for a closed curve, else from the first point to the last.
+    The range is a whole cycle for a closed curve, else from the first point to the last, radians.
     """
 
     place: Callable[[Real], Complex]
@@ -155,13 +158,14 @@ def path_design(
     own: list[Check],
     way: Way,
 ) -> PathDesign:
-    """A linkage of any type with its proof; ``own`` are checks of its type."""
+    """Check a linkage of any type against all constraints and build its design; ``own`` are checks of its type."""
     residuals = at.misses / problem.task_size
     gone: dict[str, float] = {}
     of_sixbar = isinstance(mechanism, SixbarMechanism)
     if problem.fitted:
         points = np.array([point.point for point in problem.points])
         gone = astray(*way, points, problem.closed, float(at.misses.max()))._asdict()
+        # Only a dense polyline defines the curve well enough for the reverse distance.
         if of_sixbar and len(points) >= DENSE:
             gone["both_way_rms"] = both_ways(*way, points, problem.closed, at.misses)
         checks = _tolerance_checks(problem, at, way, points)
@@ -194,7 +198,7 @@ def path_design(
 
 
 def _tolerance_checks(problem: PathProblem, at: AtPoints, way: Way, points: Complex) -> list[Check]:
-    """Whether the points are within their tolerances of the curve, and all of the curve of their course."""
+    """Check that the points are within their tolerances of the curve, and the curve within those of its course."""
     widths = problem.tolerances
     if widths is None:
         return []
@@ -206,13 +210,14 @@ def _tolerance_checks(problem: PathProblem, at: AtPoints, way: Way, points: Comp
 
 
 def _passages(problem: PathProblem, fourbar: DrivenFourbar, points: Complex) -> Passages | None:
-    """Where the linkage meets the points, as the problem asks for it."""
+    """Find where the linkage meets the points, in the way that the problem requires."""
     if problem.prescribed:
         turns = np.array(problem.crank_turns)
         ways = (turns, -turns) if problem.crank_direction == "either" else (turns,)
         driven = [
             passed for way in ways if (passed := at_angles(fourbar, points, way, both=not problem.fitted)) is not None
         ]
+        # Either direction is allowed: take the more accurate one.
         return min(driven, key=lambda passed: float(np.sum(passed.misses**2)), default=None)
     if not problem.fitted:
         return at_points(fourbar, points)
@@ -220,7 +225,7 @@ def _passages(problem: PathProblem, fourbar: DrivenFourbar, points: Complex) -> 
 
 
 def _way(linkage: Fourbar, passed: Passages) -> _Motion:
-    """The motion from the first target to the last."""
+    """Return the motion from the first target to the last."""
     if passed.run:
         steps = np.diff(passed.angles)
         low, high = float(passed.angles.min()), float(passed.angles.max())
@@ -230,6 +235,7 @@ def _way(linkage: Fourbar, passed: Passages) -> _Motion:
     else:
         way = traverse(linkage, passed.angles, passed.assemblies)
         angles, start, end, on_branch, ordered = way.angles, way.start, way.end, way.same_branch, way.in_order
+    # A branch is part of a circuit; the converse needs the closed-form test.
     on_circuit = on_branch or bool(
         np.all(same_circuit(linkage, passed.angles[0], passed.assemblies[0], passed.angles, passed.assemblies))
     )
@@ -237,7 +243,8 @@ def _way(linkage: Fourbar, passed: Passages) -> _Motion:
 
 
 def _path_checks(problem: PathProblem, measures: Measures, pivots: list[complex]) -> list[Check]:
-    """What only tasks of path generation demand: places of pivots, a closed path, links that a curve may have."""
+    """Check the constraints specific to path generation: places of pivots, a closed path, lengths allowed for a
+    curve."""
     checks = []
     limits = problem.constraints
     if limits.input_pivot_region is not None:
@@ -256,7 +263,7 @@ def _path_checks(problem: PathProblem, measures: Measures, pivots: list[complex]
 
 
 def _coupler_point_checks(problem: PathProblem, linkage: Fourbar) -> list[Check]:
-    """Whether P lies on the coupler where it may."""
+    """Check that P lies in its allowed area of the coupler."""
     limits, point = problem.constraints.coupler_point, complex(linkage.coupler_point)
     if limits is None:
         return []
@@ -266,7 +273,7 @@ def _coupler_point_checks(problem: PathProblem, linkage: Fourbar) -> list[Check]
 
 
 def _crank_phase_checks(problem: PathProblem, mechanism: FourbarMechanism, linkage: Fourbar) -> list[Check]:
-    """Whether the crank stands at the first point as its angle there says."""
+    """Check that the crank has its prescribed angle at the first point."""
     if problem.crank_phase == "free":
         return []
     stands, wanted = mechanism.reference_input_angle, problem.points[0].crank_angle or 0.0

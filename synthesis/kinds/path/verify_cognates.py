@@ -1,7 +1,7 @@
-"""The cognates of an answer, driven past the same points and measured, and why a designer would take one or another.
+"""Drive the cognates of an answer past the same points, measure them, and compare them with the design.
 
 Each fourbar has two cognates that trace its curve (:mod:`kinematics.linkage.fourbar.cognates`). They stand on other
-pivots, can be of another Grashof type, and what one guides through the points without a toggle another may not.
+pivots, may be of another Grashof type, and one may pass a toggle between points that another reaches without one.
 """
 
 from __future__ import annotations
@@ -18,18 +18,19 @@ from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.model.linkages import DrivenFourbar, FourbarConfiguration, driven_fourbar, fourbar_mechanism
 
 ONE_PLACE = 1e-9
-"""Radians of the input between targets that are met at one place."""
+"""Separation of inputs, radians, below which two targets are met at one place."""
 
 ALIKE = 0.05
-"""Transmission angles that differ by less, in degrees, are not told apart."""
+"""Transmission angles that differ by less than this, in degrees, count as equal."""
 
 
 def with_cognates(design: PathDesign) -> PathDesign:
-    """A design with its cognates and a word on the choice among the three.
+    """Add to a design its cognates and a comparison of the three.
 
-    Designs that do not pass their points on one branch are left as they are: there is no one motion to compare.
+    Designs that do not pass their points on one branch are unchanged: they have no single motion to compare.
     """
     mechanism = design.mechanism
+    # Sixbars and slider-cranks have no cognates of this kind.
     if not isinstance(mechanism, FourbarMechanism) or not design.metrics.same_branch:
         return design
     source = driven_fourbar(mechanism)
@@ -46,7 +47,7 @@ def with_cognates(design: PathDesign) -> PathDesign:
 def _measured(
     side: Literal["left", "right"], cognate: Cognate, source: DrivenFourbar, design: PathDesign
 ) -> PathCognate | None:
-    """A cognate where the design stands at its targets; None where it has no position there (at a toggle)."""
+    """Measure a cognate at the design's targets; return None if it has no position there (at a toggle)."""
     inputs = np.radians([target.at for target in design.targets])
     own = positions(source.linkage, inputs, source.assembly)
     at = cognate.configuration(inputs, source.assembly)
@@ -54,7 +55,7 @@ def _measured(
     p, a, b = (part[:, 0] for part in (stands.p, stands.a, stands.b))
     if not (np.all(at.valid) and np.all(np.isfinite(p))):
         return None
-    # A fit may meet neighbouring points at one place, which is then one target of the motion.
+    # A fit may meet neighbouring points at one place; they count as one target of the motion.
     apart = np.append(True, np.abs(np.diff(inputs)) > ONE_PLACE)
     way = traverse(cognate.linkage, at.input_angle[apart], at.assembly[apart])
     least = float(transmission_extremes(cognate.linkage, way.start, way.end)[0]) if way.same_branch else 0.0
@@ -65,6 +66,7 @@ def _measured(
         mechanism=fourbar_mechanism(FourbarConfiguration(o2, complex(a[0]), complex(b[0]), o4, complex(p[0]))),
         grashof=barker.motion,
         full_rotation=barker.motion in ("double_crank", "crank_rocker"),
+        # The input of a cognate turns either with the design's input or with its coupler.
         same_timing=cognate.turns_with[0] == "input",
         same_branch=way.same_branch,
         visits_in_order=way.in_order,
@@ -74,9 +76,10 @@ def _measured(
 
 
 def _choice(design: PathDesign, driven: list[PathCognate]) -> str:
-    """Who has the better transmission, who turns through, and what keeps a cognate from being used."""
+    """Compare transmission angles and full rotation of the design and its cognates, and name defects of the
+    cognates."""
     ours = design.metrics.min_transmission_angle
-    parts = [f"This {_words(design.metrics.grashof)} transmits at {ours:.1f}° at least."]
+    parts = [f"This {_words(design.metrics.grashof)} has a minimum transmission angle of {ours:.1f}°."]
     for cognate in driven:
         (x2, y2), (x4, y4) = cognate.mechanism.fixed_pivots.input, cognate.mechanism.fixed_pivots.output
         name = (
@@ -88,10 +91,10 @@ def _choice(design: PathDesign, driven: list[PathCognate]) -> str:
             parts.append(f"{name} does not meet the points in order when its input turns one way.")
         else:
             gain = cognate.min_transmission_angle - ours
-            better = "as much" if abs(gain) <= ALIKE else "more" if gain > 0.0 else "less"
+            better = "equal" if abs(gain) <= ALIKE else "larger" if gain > 0.0 else "smaller"
             timing = "at the same crank angles" if cognate.same_timing else "its input turning with this one's coupler"
-            parts.append(f"{name} guides P through the points {timing} and transmits {better}: ")
-            parts[-1] += f"{cognate.min_transmission_angle:.1f}° at least."
+            parts.append(f"{name} guides P through the points {timing}; its minimum transmission angle is {better}: ")
+            parts[-1] += f"{cognate.min_transmission_angle:.1f}°."
     return " ".join(parts)
 
 

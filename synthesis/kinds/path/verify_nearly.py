@@ -1,4 +1,5 @@
-"""Verification of linkages that pass points as nearly as they can, whatever the problem wants: those on a grid."""
+"""Verify linkages that pass points only within rounding, those made on a grid, even if the problem requires
+exactness."""
 
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ from synthesis.model.linkage_answer import FourbarMechanism, LinkageMechanism, S
 
 
 def verify_nearly(problem: PathProblem, mechanism: LinkageMechanism) -> PathDesign | None:
-    """Drive a fourbar or slider-crank past the points, and measure it; None where it cannot be driven.
+    """Drive a fourbar or slider-crank past the points, and measure it; None if it cannot be driven.
 
     Raises
     ------
@@ -22,4 +23,4 @@ def verify_nearly(problem: PathProblem, mechanism: LinkageMechanism) -> PathDesi
         return verify_path(nearly, mechanism)
     if isinstance(mechanism, SliderCrankMechanism):
         return verify_traced(nearly, mechanism)
-    raise TypeError(f"a {mechanism.type} is on no grid")
+    raise TypeError(f"a {mechanism.type} cannot be rounded to a grid")

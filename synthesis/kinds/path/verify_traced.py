@@ -1,8 +1,8 @@
-"""Verification of slider-cranks, geared fivebars and sixbars that guide a point: driven and measured.
+"""Verify slider-cranks, geared fivebars and sixbars that guide a point: drive and measure them.
 
-They are driven through their closures. The branches are found by root finding in the analysis core. On that of the
-reference the input is looked for at which P comes nearest to each point, in order, within one cycle: a turn of the
-crank, or as many as its gears need.
+They are driven through their closures. The analysis core finds the branches by root finding. On the reference's branch
+the input is searched at which P comes nearest to each point, in order, within one cycle: a turn of the crank, or as
+many as its gears need.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from synthesis.proof.rebuilt import rebuilt
 from synthesis.proof.space import BODY_POINT
 
 TracedMechanism = SliderCrankMechanism | GearedFivebarMechanism | SixbarMechanism
-"""What is driven through its closures."""
+"""Mechanisms that are driven through their closures."""
 
 
 def verify_traced(problem: PathProblem, design: TracedMechanism) -> PathDesign | None:
@@ -36,19 +36,20 @@ def verify_traced(problem: PathProblem, design: TracedMechanism) -> PathDesign |
     Parameters
     ----------
     problem : PathProblem
-        What was asked.
+        The problem.
     design : SliderCrankMechanism, GearedFivebarMechanism or SixbarMechanism
-        Dimensions only; the skeleton is not looked at, but for a sixbar's, which has no others.
+        Only the dimensions are used, not the skeleton, except for a sixbar, which has no other dimensions.
 
     Returns
     -------
     PathDesign or None
-        None where the dimensions make no mechanism that can be driven.
+        None if the mechanism cannot be driven.
     """
     mechanism = rebuilt(design)
     if mechanism is None:
         return None
     try:
+        # The branch on which the reference position lies is the one that the input can drive.
         here = holding_reference(mechanism, branches(mechanism))
     except MechanismError:
         return None
@@ -57,6 +58,7 @@ def verify_traced(problem: PathProblem, design: TracedMechanism) -> PathDesign |
     driven = OnBranch(mechanism, here)
     place = partial(driven.joint, "P")
     points = np.array([point.point for point in problem.points])
+    # An input that turns through may begin anywhere in its cycle.
     period = cycle_on(mechanism, here) if here.full else None
     inputs = ordered_run(place, points, *driven.range, period)
     motion = driven.at(inputs)
@@ -81,6 +83,7 @@ def verify_traced(problem: PathProblem, design: TracedMechanism) -> PathDesign |
         full_rotation=here.full,
         used=used,
     )
+    # P may lie anywhere and is no pivot.
     still = {*mechanism.links[GROUND], BODY_POINT}
     moving = [complex(places[0]) for name, places in joints.items() if name not in still]
     at_points = AtPoints(np.degrees(inputs), misses, True, fixed_pivots(mechanism), moving)

@@ -1,8 +1,8 @@
-"""Designs with shorter links that are offered beside the one with the best transmission angle.
+"""Offer designs with shorter links next to the one with the best transmission angle.
 
-The members of a family of crank-rockers or of offset slider-cranks are told apart by one number, coupler over crank.
-The best transmission angle often belongs to a large one; members with smaller link ratios transmit worse, down to a
-limit below which nobody would build them.
+The members of a family of crank-rockers or of offset slider-cranks differ in one number, coupler over crank. The best
+transmission angle often belongs to a large one; members with smaller link ratios transmit worse, down to a practical
+limit.
 """
 
 from __future__ import annotations
@@ -11,39 +11,41 @@ import math
 from collections.abc import Callable
 
 MAX_LINK_RATIO = 20.0
-"""Link ratio above which a design is given only as far as it is needed to come near to the best transmission angle, or
-to the demanded one."""
+"""Link ratio above which a design is offered only as far as needed to come near to the best transmission angle, or to
+the required one."""
 
 RATIOS = (20.0, 15.0, 10.0, 7.0, 5.0, 4.0, 3.0, 2.5, 2.0)
 """Link ratios at which designs with shorter links than the best one's are offered too."""
 
 MIN_TRANSMISSION_ANGLE = math.radians(10.0)
-"""Such designs are left out where they transmit worse than this."""
+"""Minimum transmission angle of such designs, radians."""
 
 RANGE_END_TOLERANCE = 1e-9
-"""Radians from the end of the range within which all members are change points, to rounding."""
+"""Radians from the end of the range within which all members are change points, up to rounding."""
 
 LIMIT_TOLERANCE = 1e-9
-"""Share by which a length or a link ratio stays clear of its limit, so that rounding does not carry it beyond."""
+"""Relative distance of a length or a link ratio from its limit, so that rounding does not carry it beyond."""
 
 
 def shorter_members(
     best: float, at_link_ratio: Callable[[float], float], transmission: Callable[[float], float]
 ) -> list[float]:
-    """Members with smaller link ratios than the best one's, by their couplers over the crank, in falling order.
+    """Return members with smaller link ratios than the best one's, by their couplers over the crank, in decreasing
+    order.
 
     Parameters
     ----------
     best : float
         Coupler over crank of the best member, above 1.
     at_link_ratio : callable
-        Coupler over crank of the member with a link ratio; 1 or less where there is none.
+        Coupler over crank of the member with a link ratio; 1 or less if there is none.
     transmission : callable
-        Least transmission angle of a member, radians.
+        Minimum transmission angle of a member, radians.
     """
     members: list[float] = []
     for ratio in RATIOS:
         member = at_link_ratio(ratio)
+        # Only members that are really shorter than all before.
         if 1.0 < member < min([best, *members]) and transmission(member) >= MIN_TRANSMISSION_ANGLE:
             members.append(member)
     return members

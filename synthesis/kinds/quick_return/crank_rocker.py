@@ -1,12 +1,12 @@
 """The crank-rocker of given swing and time ratio with the best transmission angle, in closed form.
 
 While the crank turns by φ = π ± δ, δ = π (T − 1)/(T + 1), from the position in which crank and coupler extend each
-other to that in which they overlap, the rocker turns by ψ the same way round. With a = 1, ρ = b/a, S = sin(ψ/2) and
+other to that in which they overlap, the rocker turns by ψ in the same direction. With a = 1, ρ = b/a, S = sin(ψ/2) and
 η = (φ − ψ)/2 the triangles O2 B1 B2 and O4 B1 B2 give
 
     c S = √(sin²(φ/2) + ρ² cos²(φ/2)),        d S = √(sin² η + ρ² cos² η),
 
-so that ρ is the one free choice (Alt; Norton, Sec. 3.9). The least transmission angle μ stands where the crank lies
+so that ρ is the one free choice (Alt; Norton, Sec. 3.9). The minimum transmission angle μ occurs when the crank lies
 along the ground line:
 
     cos μ = (|b² + c² − a² − d²| + 2ad)/2bc = (|cos(φ/2) sin η| (ρ² − 1) + d S)/(ρ c S).
@@ -48,10 +48,10 @@ from synthesis.model.linkage_answer import CouplerPoint, FixedPivots, FourbarLin
 from synthesis.model.linkages import skeleton, to_point
 
 NEAR_BEST = math.radians(0.005)
-"""How near: half of the hundredth of a degree that anyone can see."""
+"""Tolerance of the best transmission angle, radians: half of the hundredth of a degree that answers show."""
 
 MAX_COUPLER = 1e6
-"""Coupler over crank at most; what is longer differs from the bound by less than rounding."""
+"""Maximum of coupler over crank; longer ones differ from the bound by less than rounding."""
 
 
 class Family(NamedTuple):
@@ -72,44 +72,46 @@ class Family(NamedTuple):
 
     @property
     def exists(self) -> bool:
-        """Whether it has any member that turns through on one circuit."""
+        """Whether any member turns through on one circuit."""
+        # Equivalent to κλ < 1, see the module's docstring.
         mean = self.phi - 0.5 * self.psi
         inside = 0.5 * math.pi + RANGE_END_TOLERANCE < mean < 1.5 * math.pi - RANGE_END_TOLERANCE
         return 0.0 < self.psi < math.pi - RANGE_END_TOLERANCE and inside
 
     def lengths(self, rho: float) -> tuple[float, float, float]:
-        """Coupler, rocker and ground in lengths of the crank."""
+        """Return coupler, rocker and ground in lengths of the crank."""
         s, eta = math.sin(0.5 * self.psi), 0.5 * (self.phi - self.psi)
         c = math.hypot(math.sin(0.5 * self.phi), rho * math.cos(0.5 * self.phi)) / s
         return rho, c, math.hypot(math.sin(eta), rho * math.cos(eta)) / s
 
     def cosine(self, rho: float) -> float:
-        """Cosine of the least transmission angle; 1 at a change point."""
+        """Return the cosine of the minimum transmission angle; 1 at a change point."""
         _, c, d = self.lengths(rho)
         s, eta = math.sin(0.5 * self.psi), 0.5 * (self.phi - self.psi)
+        # (ρ − 1)(ρ + 1) instead of ρ² − 1 keeps the digits near ρ = 1.
         bend = abs(math.cos(0.5 * self.phi) * math.sin(eta)) * (rho - 1.0) * (rho + 1.0)
         return (bend / s + d) / (rho * c)
 
     def transmission(self, rho: float) -> float:
-        """The least transmission angle, radians."""
+        """Return the minimum transmission angle, radians."""
         return math.acos(min(self.cosine(rho), 1.0))
 
     def link_ratio(self, rho: float) -> float:
-        """Longest link over the crank, which is the shortest."""
+        """Return the longest link over the crank, which is the shortest."""
         return max(self.lengths(rho))
 
     def longest(self, limit: float) -> float:
-        """The ρ at which the link ratio is the limit; below 1 where every member exceeds it."""
+        """Return the ρ at which the link ratio equals the limit; below 1 if every member exceeds it."""
         s, eta = math.sin(0.5 * self.psi), 0.5 * (self.phi - self.psi)
         bounds = [limit]
         for angle in (0.5 * self.phi, eta):
             room = (limit * s - math.sin(angle)) * (limit * s + math.sin(angle))
-            # A length that does not depend on ρ bounds it nowhere, or everywhere.
+            # A length independent of ρ excludes no member, or all of them.
             bounds.append(math.sqrt(max(room, 0.0)) / max(abs(math.cos(angle)), 1e-300))
         return min(bounds)
 
     def best(self) -> float:
-        """The ρ of the best transmission angle; infinite for a time ratio of 1."""
+        """Return the ρ of the best transmission angle; infinite for a time ratio of 1."""
         kappa, lam = self.kappa, self.lam
         if kappa == 0.0:
             return math.inf
@@ -117,30 +119,33 @@ class Family(NamedTuple):
         def cubic(q: float) -> float:
             return ((q + 2.0 * kappa) * q - kappa) * q - kappa * (1.0 + kappa) * lam
 
+        # κλ and 1 are the ends of the range, where cos μ is 1; the cubic changes its sign once between them.
         return 1.0 / math.sqrt(brentq(cubic, kappa * lam, 1.0, xtol=1e-300, rtol=1e-15))
 
     @property
     def supremum(self) -> float:
-        """The best transmission angle, or the bound that none reaches; radians."""
+        """The best transmission angle, or its bound that no member reaches; radians."""
         best = self.best()
         return self.transmission(best) if math.isfinite(best) else 0.5 * (math.pi - self.psi)
 
     def near_best(self, demanded: float) -> float:
-        """The ρ of the best, or of the shortest links that come near to it where its own are very long.
+        """Return the ρ of the best, or of the shortest links that come near to it if its own are very long.
 
-        Near enough to have the ``demanded`` transmission angle (radians), where the best is above it.
+        Near enough to have the ``demanded`` transmission angle (radians), if the best exceeds it.
         """
         best = min(self.best(), MAX_COUPLER)
+        # Up to this ratio the optimum itself is practical.
         if self.link_ratio(best) <= MAX_LINK_RATIO:
             return best
         wanted = self.supremum - NEAR_BEST
+        # The requirement is between the near-best angle and the bound: satisfy it rather than shorten the links.
         if wanted < demanded < self.supremum:
             wanted = min(demanded, self.transmission(best))
         return float(brentq(lambda rho: self.transmission(rho) - wanted, 1.0, best, xtol=1e-12, rtol=1e-12))
 
 
 def families(time_ratio: float, swing: float) -> list[Family]:
-    """The families with a time ratio and a swing (radians) that have members, φ > π first."""
+    """Return the families with a time ratio and a swing (radians) that have members, φ > π first."""
     delta = stroke_imbalance(time_ratio)
     # With a ratio of 1 the second family is the mirror image of the first.
     signs = (1.0,) if delta == 0.0 else (1.0, -1.0)
@@ -149,7 +154,7 @@ def families(time_ratio: float, swing: float) -> list[Family]:
 
 
 def reachable(problem: QuickReturnProblem) -> RatioRange:
-    """The time ratios of crank-rockers with the stated swing."""
+    """Return the time ratios of crank-rockers with the given swing."""
     swing = problem.swing_angle or 0.0
     greatest = (540.0 + swing) / (180.0 - swing) if swing < 180.0 else 1.0
     reaches = bool(families(problem.time_ratio, math.radians(swing)))
@@ -163,13 +168,14 @@ def reachable(problem: QuickReturnProblem) -> RatioRange:
 
 
 def crank_rockers(problem: QuickReturnProblem) -> list[FourbarMechanism]:
-    """The best of each family within the limit of the link ratio, and some with shorter links."""
+    """Return the best of each family within the limit of the link ratio, and some with shorter links."""
     assert problem.swing_angle is not None
     limit = problem.link_ratio_limit
     demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
     mechanisms: list[FourbarMechanism] = []
     for family in families(problem.time_ratio, math.radians(problem.swing_angle)):
         best = family.near_best(demanded)
+        # The transmission angle increases up to the optimum, so that the limit itself is best below it.
         rho = best if limit is None else min(best, family.longest(limit * (1.0 - LIMIT_TOLERANCE)))
         if rho <= 1.0:
             continue  # every member has a larger link ratio
@@ -179,7 +185,7 @@ def crank_rockers(problem: QuickReturnProblem) -> list[FourbarMechanism]:
 
 
 def _mechanism(problem: QuickReturnProblem, family: Family, rho: float) -> FourbarMechanism:
-    """The member of a family, at the beginning of its slow stroke."""
+    """Build the member of a family at the beginning of its slow stroke."""
     b, c, d = family.lengths(rho)
     turn = complex(math.cos(family.psi), math.sin(family.psi))
     overlap = complex(math.cos(family.phi), math.sin(family.phi))
@@ -187,6 +193,7 @@ def _mechanism(problem: QuickReturnProblem, family: Family, rho: float) -> Fourb
     b1, b2 = complex(rho + 1.0), (1.0 - rho) * overlap
     o4 = (b2 - b1 * turn) / (1.0 - turn)
     extended = family.phi >= math.pi
+    # The slow stroke begins in extension for φ > π, in overlap for φ < π.
     at_b, at_a = (b1, 1.0 + 0j) if extended else (b2, overlap)
     scale = problem.scaled(1.0, max(b, c, d), c)
     angle = math.radians(problem.direction)

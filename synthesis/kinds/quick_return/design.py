@@ -1,4 +1,4 @@
-"""Answers to problems of quick return."""
+"""Results of quick return problems."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class QuickReturnLinks(Answer):
 class QuickReturnMechanism(Answer):
     """Crank-shaper or Whitworth: the crank pin A slides in a link about O4, whose end C drives the ram D.
 
-    ``open``: the ram is the farther along the slide's direction of the two places that the coupler reaches.
+    ``open``: of the two places that the coupler reaches, the ram is at the one farther along the slide's direction.
     """
 
     type: Literal["crank_shaper", "whitworth"]
@@ -50,7 +50,7 @@ class QuickReturnMechanism(Answer):
 class DragLinkMechanism(Answer):
     """A drag-link sixbar: two cranks O2–A and O4–B with a coupler, and a dyad from B to a rocker or a slider.
 
-    ``links`` are lengths by name; the skeleton says all.
+    ``links`` are lengths by name; the skeleton defines the mechanism completely.
     """
 
     type: Literal["drag_link_rocker", "drag_link_slider"]
@@ -65,7 +65,7 @@ class DragLinkMechanism(Answer):
 QuickReturnMechanisms = Annotated[
     FourbarMechanism | SliderCrankMechanism | QuickReturnMechanism | DragLinkMechanism, Discriminator("type")
 ]
-"""Any mechanism of quick return; the field ``type`` tells which."""
+"""Any mechanism of quick return; the field ``type`` selects it."""
 
 
 class LimitPosition(Answer):
@@ -82,12 +82,12 @@ class QuickReturnMetrics(MotionMetrics):
     time_ratio: float = Field(description="Slow stroke over fast one, from the measured limit positions.")
     slow_rotation: Angle = Field(description="Crank rotation of the slow stroke, degrees.")
     fast_rotation: Angle = Field(description="Crank rotation of the fast stroke, degrees.")
-    swing: Angle | None = optional("Degrees; of an output that swings.")
-    stroke: Length | None = optional("Length; of an output that slides.")
+    swing: Angle | None = optional("Swing of a swinging output, degrees.")
+    stroke: Length | None = optional("Stroke of a sliding output, length units.")
 
 
 class QuickReturnDesign(Answer):
-    """A quick-return mechanism with the proof of what it does."""
+    """A quick-return mechanism with its verification."""
 
     mechanism: QuickReturnMechanisms
     targets: list[LimitPosition]
@@ -98,17 +98,17 @@ class QuickReturnDesign(Answer):
 
 
 class RatioRange(Answer):
-    """Time ratios that a type can reach with the stated output, both ends excluded unless said."""
+    """Time ratios that a type can reach with the given output, both ends excluded unless noted."""
 
     type: str
     least: float
     least_included: bool = Field(description="Whether the least ratio itself can be reached.")
-    greatest: float | None = Field(description="Never reached itself; null: there is none.")
-    reaches: bool = Field(description="Whether the demanded ratio is among them.")
-    reason: str = Field(description="What limits the type.")
+    greatest: float | None = Field(description="Upper limit, never reached itself; null if there is none.")
+    reaches: bool = Field(description="Whether the required ratio is within the range.")
+    reason: str = Field(description="Reason for the limit of the type.")
 
 
 class QuickReturnResult(LinkageResult[QuickReturnDesign]):
-    """Quick-return mechanisms, and what each type can reach."""
+    """Quick-return mechanisms, and the range of each type."""
 
     reachable: list[RatioRange]

@@ -1,12 +1,12 @@
 """Drag-link sixbars: a drag link drives a second crank unevenly, and this a rocker or a slider with equal strokes.
 
 The second crank O4–B turns by half a turn in each stroke, from ψ0 on, and the input by α = 2π/(T + 1) in the fast one
-(Norton, Example 3-10). With the ground d = 1 as the shortest link a drag link's least transmission angle is
+(Norton, Example 3-10). With the ground d = 1 as the shortest link a drag link's minimum transmission angle is
 
     cos μ = (|b² + c² − a² − 1| + 2a)/2bc,
 
-least for given a and c at b² = a² + 1 − c²; for c between 1 and √((a² + 1)/2) it then falls with c, while the time
-ratio that the best ψ0 gives rises. So c follows from T for each a, and a is searched for along one line. For ratios
+smallest for given a and c at b² = a² + 1 − c²; for c between 1 and √((a² + 1)/2) it then falls with c, while the time
+ratio of the best ψ0 rises. So c follows from T for each a, and a is found by a search in one dimension. For ratios
 below about 2.2 the transmission angle grows with a without end; a limit of the link ratio ends it.
 
 The dyad: a slider whose slide passes through O4 along ψ0, of stroke 2c; or the rocker of a central crank-rocker of
@@ -28,39 +28,39 @@ from synthesis.kinds.quick_return.problem import QuickReturnProblem
 from synthesis.model.linkages import skeleton, slide, to_point
 
 RATIOS = (10.0, 6.0, 4.0, 3.0, 2.0)
-"""Longest over shortest link of the drag links that are looked for."""
+"""Maximum link ratios of the drag links that are searched."""
 
 LEAST = 1.0 + 1e-4
-"""Shortest crank looked at, in grounds; with a crank like the ground every position is near a change point."""
+"""Shortest crank that is searched, in grounds; with a crank like the ground every position is near a change point."""
 
 STARTS = 90
-"""Directions ψ0 that are looked at first."""
+"""Number of directions ψ0 that are evaluated first."""
 
 GOLDEN, SECTIONS = 0.6180339887498949, 40
 """Share that a golden section keeps, and the number of sections: 4e-9 of the first interval is left."""
 
 LENGTHS = 25
-"""Lengths of the input that are looked at first."""
+"""Number of lengths of the input that are evaluated first."""
 
 SAME_LENGTH = 1e-3
-"""Drag links whose inputs differ by less, in grounds, are one."""
+"""Drag links whose inputs differ by less than this, in grounds, are duplicates."""
 
 LENGTH_TOLERANCE = 1e-9
-"""How nearly the best length of the input is found, in grounds; the transmission angle is greatest there, and flat."""
+"""Tolerance of the best length of the input, in grounds; the transmission angle is flat at its maximum."""
 
 BEYOND = 1e-8
-"""Share by which the drag link's greatest time ratio is above the demanded one, so that a ψ0 has that exactly."""
+"""Share by which the drag link's maximum time ratio exceeds the required one, so that some ψ0 gives that exactly."""
 
 SLIDER_DYAD = math.radians(75.0)
-"""Transmission angle of the slider's dyad, where no greater one is demanded."""
+"""Transmission angle of the slider's dyad, radians, unless a greater one is required."""
 
 ROCKER_DYAD = 3.0
-"""Link 5 over the second crank of a rocker's dyad, where no transmission angle demands a longer one."""
+"""Link 5 over the second crank of a rocker's dyad, unless a transmission angle requires a longer one."""
 
 
 class DragLink(NamedTuple):
     """A drag link in lengths of its ground, and the direction of the second crank at the beginning of the slow stroke
-    with the angle of the input there, both from the line O2 → O4."""
+    with the angle of the input there, both from the line O2 → O4, radians."""
 
     input: float
     coupler: float
@@ -70,13 +70,13 @@ class DragLink(NamedTuple):
 
     @property
     def transmission(self) -> float:
-        """The least transmission angle, radians."""
+        """The minimum transmission angle, radians."""
         a, b, c = self.input, self.coupler, self.output
         return math.acos(min((abs(b * b + c * c - a * a - 1.0) + 2.0 * a) / (2.0 * b * c), 1.0))
 
 
 def slider_reachable(problem: QuickReturnProblem) -> RatioRange:
-    """Time ratios of drag-link sixbars with a slider: all."""
+    """Return the time ratios of drag-link sixbars with a slider: all."""
     reason = "a drag link near its change point is as uneven as one likes"
     return RatioRange(
         type="drag_link_slider", least=1.0, least_included=True, greatest=None, reaches=True, reason=reason
@@ -84,7 +84,7 @@ def slider_reachable(problem: QuickReturnProblem) -> RatioRange:
 
 
 def rocker_reachable(problem: QuickReturnProblem) -> RatioRange:
-    """Time ratios of drag-link sixbars with a rocker: all, for a swing below half a turn."""
+    """Return the time ratios of drag-link sixbars with a rocker: all, for a swing below half a turn."""
     swings = problem.swing is not None and problem.swing < 180.0
     return RatioRange(
         type="drag_link_rocker",
@@ -99,7 +99,7 @@ def rocker_reachable(problem: QuickReturnProblem) -> RatioRange:
 
 
 def drag_link_sliders(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
-    """Drag-link sixbars with a slider, one for each limit of the drag link's lengths."""
+    """Return drag-link sixbars with a slider, one for each limit of the drag link's lengths."""
     assert problem.stroke is not None
     demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
     mechanisms = []
@@ -113,7 +113,7 @@ def drag_link_sliders(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
 
 
 def drag_link_rockers(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
-    """Drag-link sixbars with a rocker, one for each limit of the drag link's lengths."""
+    """Return drag-link sixbars with a rocker, one for each limit of the drag link's lengths."""
     assert problem.swing is not None
     demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
     half = math.radians(0.5 * problem.swing)
@@ -137,6 +137,7 @@ def drag_link_rockers(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
 
 def _drag_links(problem: QuickReturnProblem) -> list[DragLink]:
     limit = problem.constraints.max_link_ratio
+    # The limit itself is tried as well: transmission usually improves with the ratio.
     ratios = [ratio for ratio in RATIOS if limit is None or ratio < limit] + ([] if limit is None else [limit])
     drag_links: list[DragLink] = []
     for ratio in sorted(ratios, reverse=True):
@@ -147,25 +148,27 @@ def _drag_links(problem: QuickReturnProblem) -> list[DragLink]:
 
 
 def drag_link(time_ratio: float, link_ratio: float) -> DragLink | None:
-    """The drag link of the best transmission angle whose second crank turns half a turn with a time ratio.
+    """Find the drag link of the best transmission angle whose second crank turns half a turn with a time ratio.
 
     Parameters
     ----------
     time_ratio : float
         At least 1.
     link_ratio : float
-        Longest link over the ground at most, above 1.
+        Maximum of the longest link over the ground, above 1.
 
     Returns
     -------
     DragLink or None
-        None where no member of the family within the limit has the time ratio.
+        None if no member of the family within the limit has the time ratio.
     """
     if link_ratio <= LEAST:
         return None
     lengths = np.exp(np.linspace(math.log(LEAST), math.log(link_ratio), LENGTHS))
+    # The grid brackets the minimum, which a bounded search then refines.
     cosines = [_cosine(a, time_ratio) for a in lengths]
     k = int(np.argmin(cosines))
+    # No length has the time ratio.
     if cosines[k] > 1.0:
         return None
     a = float(lengths[k])
@@ -184,15 +187,16 @@ def drag_link(time_ratio: float, link_ratio: float) -> DragLink | None:
 
 
 def _cosine(a: float, time_ratio: float) -> float:
-    """cos μ of the best drag link with an input of length a; 2 where none has the time ratio."""
+    """Return cos μ of the best drag link with an input of length a; 2 if none has the time ratio."""
     c = _output(a, time_ratio)
     return 2.0 if c is None else a / (c * math.sqrt((a - c) * (a + c) + 1.0))
 
 
 def _output(a: float, time_ratio: float) -> float | None:
-    """The longest second crank with which an input of length a has the time ratio."""
+    """Return the longest second crank with which an input of length a has the time ratio."""
     wanted = time_ratio * (1.0 + BEYOND)
     high = math.sqrt(0.5 * (a * a + 1.0))
+    # At c = 1 exactly the drag link has a change point.
     low = 1.0 + (high - 1.0) * 1e-6
     if _greatest_ratio(a, high) >= wanted:
         return high
@@ -203,22 +207,25 @@ def _output(a: float, time_ratio: float) -> float | None:
 
 @njit(cache=True, nogil=True)
 def _input_angle(a: float, c: float, direction: float) -> float:
-    """Input angle at a direction of the second crank, from the line O2 → O4."""
+    """Return the input angle at a direction of the second crank, from the line O2 → O4."""
     x, y = 1.0 + c * math.cos(direction), c * math.sin(direction)
     f = math.hypot(x, y)
     along = (f * f + a * a - (a - c) * (a + c) - 1.0) / (2.0 * f)
+    # At a change point rounding may put the cosine beyond 1.
     return math.atan2(y, x) + math.acos(min(max(along / a, -1.0), 1.0))
 
 
 @njit(cache=True, nogil=True)
 def _slow(a: float, c: float, start: float) -> float:
-    """Input rotation while the second crank turns half a turn from a direction on."""
+    """Return the input rotation while the second crank turns half a turn from a direction on."""
+    # Both angles are known modulo a full turn; the difference of a drag link is positive.
     return (_input_angle(a, c, start + math.pi) - _input_angle(a, c, start)) % (2.0 * math.pi)
 
 
 @njit(cache=True, nogil=True)
 def _slowest(a: float, c: float) -> float:
-    """The direction from which half a turn of the second crank takes most of the input's turn: golden section."""
+    """Find the direction from which half a turn of the second crank takes most of the input's turn, by golden
+    section."""
     step = 2.0 * math.pi / STARTS
     best, most = 0.0, -1.0
     for k in range(STARTS):
@@ -247,7 +254,7 @@ def _greatest_ratio(a: float, c: float) -> float:
 
 
 def _start(a: float, c: float, time_ratio: float) -> float | None:
-    """The direction of the second crank at the beginning of a slow stroke with the time ratio."""
+    """Find the direction of the second crank at the beginning of a slow stroke with the time ratio."""
     wanted = 2.0 * math.pi * time_ratio / (time_ratio + 1.0)
 
     def off(at: float) -> float:
@@ -256,7 +263,7 @@ def _start(a: float, c: float, time_ratio: float) -> float | None:
     best = _slowest(a, c)
     if off(best) < 0.0:
         return None
-    # Half a turn further on the strokes have changed places.
+    # Half a turn further on the strokes are exchanged, so that the root is bracketed.
     return float(brentq(off, best, best + math.pi, xtol=1e-15, rtol=1e-15))
 
 
@@ -269,7 +276,7 @@ def _mechanism(
     c_pin: complex,
     o6: complex | None,
 ) -> DragLinkMechanism:
-    """The sixbar at the beginning of its slow stroke; places in grounds, from O2 with the ground along +x."""
+    """Build the sixbar at the beginning of its slow stroke; places in grounds, from O2 with the ground along +x."""
     o2 = problem.o2
     local = {
         "O2": 0j,

@@ -1,18 +1,18 @@
-"""Its examples as a person looks for them, in their order."""
+"""Examples of quick return for the gallery, in the order in which it shows them."""
 
 from __future__ import annotations
 
 from synthesis.model.kind import Named
 
 GALLERY = (
-    Named("Wiper", "Make an output follow", "A rocker swings to and fro; forth takes a quarter longer than back."),
+    Named("Wiper", "Make an output follow", "A rocker swings back and forth; forth takes a quarter longer than back."),
     Named(
         "Pump",
         "Make an output follow",
-        "A stroke of 100 mm, slow forth and fast back, by whichever linkage does it best.",
+        "A stroke of 100 mm, slow forth and fast back, by the best type of linkage.",
     ),
     Named(
-        "Flap, even timing", "Make an output follow", "Two limit positions of a body, with as much time forth as back."
+        "Flap, even timing", "Make an output follow", "Two limit positions of a body, with equal times forth and back."
     ),
     Named(
         "Shaper drive",

@@ -6,7 +6,7 @@ n = sin²(δ/2) and W = n + (1 − n) x² the triangle O2 B1 B2 gives the stroke
 
     H = 2 √W,        e = (1 − x²) √(n (1 − n))/√W,
 
-and cos μ = x + e for the least transmission angle μ, which stands where the crank is square to the slide. Its
+and cos μ = x + e for the minimum transmission angle μ, which occurs when the crank is square to the slide. Its
 derivative by x is a cubic in W with the factor (1 − n) W − n, which belongs to x = tan²(δ/2), and
 
     W² − n W − n = 0,        W = (n + √(n² + 4n))/2.
@@ -36,7 +36,7 @@ from synthesis.model.linkages import slider_crank_mechanism, without_coupler_poi
 
 
 def reachable(problem: QuickReturnProblem) -> RatioRange:
-    """Time ratios of offset slider-cranks."""
+    """Return the time ratios of offset slider-cranks."""
     return RatioRange(
         type="offset_slider_crank",
         least=1.0,
@@ -48,17 +48,20 @@ def reachable(problem: QuickReturnProblem) -> RatioRange:
 
 
 def offset_slider_cranks(problem: QuickReturnProblem) -> list[SliderCrankMechanism]:
-    """The best within the limit of the link ratio, and some with shorter couplers."""
+    """Return the best within the limit of the link ratio, and some with shorter couplers."""
     assert problem.stroke is not None
     n = math.sin(0.5 * stroke_imbalance(problem.time_ratio)) ** 2
     best = best_ratio(n)
+    # For nearly equal strokes the best coupler is very long; a shorter one transmits almost as well.
     x = max(best, 1.0 / MAX_LINK_RATIO)
     demanded = math.cos(math.radians(problem.constraints.min_transmission_angle or 0.0))
+    # The shortened coupler fails the requirement that the best one satisfies: lengthen it just enough.
     if cosine(best, n) < demanded < cosine(x, n):
         x = float(brentq(lambda ratio: cosine(ratio, n) - demanded, best, x, xtol=1e-300, rtol=1e-15))
     limit = problem.constraints.max_link_ratio
     if limit is not None:
         x = max(x, (1.0 + LIMIT_TOLERANCE) / limit)
+    # The crank would be as long as the coupler: a change point.
     if x >= 1.0:
         return []
     shorter = shorter_members(1.0 / x, float, lambda ratio: math.acos(min(cosine(1.0 / ratio, n), 1.0)))
@@ -66,19 +69,19 @@ def offset_slider_cranks(problem: QuickReturnProblem) -> list[SliderCrankMechani
 
 
 def best_ratio(n: float) -> float:
-    """Crank over coupler of the best transmission angle; 0 for equal strokes."""
+    """Return crank over coupler of the best transmission angle; 0 for equal strokes."""
     w = 0.5 * (n + math.sqrt(n * (n + 4.0)))
     return math.sqrt((w - n) / (1.0 - n))
 
 
 def cosine(x: float, n: float) -> float:
-    """Cosine of the least transmission angle."""
+    """Return the cosine of the minimum transmission angle."""
     w = n + (1.0 - n) * x * x
     return x + ((1.0 - x) * (1.0 + x) * math.sqrt(n * (1.0 - n) / w) if w > 0.0 else 0.0)
 
 
 def _mechanism(problem: QuickReturnProblem, x: float, n: float) -> SliderCrankMechanism:
-    """The member with x = a/b in the position of extension, where its slow stroke begins."""
+    """Build the member with x = a/b in the position of extension, where its slow stroke begins."""
     assert problem.stroke is not None
     w = n + (1.0 - n) * x * x
     b = 0.5 * problem.stroke / math.sqrt(w)

@@ -1,4 +1,4 @@
-"""Quick return: a mechanism whose output goes slowly one way and fast the other, the crank at constant speed."""
+"""Problems of quick return: a mechanism whose output moves slowly forward and fast back, at constant crank speed."""
 
 from __future__ import annotations
 
@@ -36,22 +36,22 @@ CLASSES: dict[QuickReturnType, str] = {
     "drag_link_rocker": "double_crank",
     "drag_link_slider": "double_crank",
 }
-"""Grashof's class of the fourbar that the crank drives, of each type that has one."""
+"""Grashof's class of the fourbar that the crank drives, for each type that has one."""
 
 LEAST_ROTATION = 1e-4
-"""Degrees that a body must turn at least: for less the rotopole is a million times as far away as the body goes."""
+"""Minimum rotation of a body, degrees: for less the rotopole is a million times as far away as the body moves."""
 
 SAME_POLE = 1e-6
-"""Share of the body's distance from it by which a stated rotopole may miss the computed one: printed digits."""
+"""Share of the body's distance from it by which a given rotopole may miss the computed one: printed digits."""
 
 
 def stroke_imbalance(time_ratio: float) -> float:
-    """δ = π (T − 1)/(T + 1): what the crank turns beyond half a turn in the slow stroke, radians."""
+    """Return δ = π (T − 1)/(T + 1): the rotation of the crank beyond half a turn in the slow stroke, radians."""
     return math.pi * (time_ratio - 1.0) / (time_ratio + 1.0)
 
 
 class RockerPosition(Statement):
-    """Where a body on the rocker is at a limit: a point of it, and the angle of its line."""
+    """Position of a body on the rocker at a limit: a point of it, and the angle of its line."""
 
     x: Coordinate
     y: Coordinate
@@ -64,13 +64,14 @@ class RockerPosition(Statement):
 
 
 class QuickReturnProblem(LinkageProblem):
-    """Quick return: an output that swings or slides to and fro once in a turn of the crank, with a given time ratio.
+    """Quick return: an output that swings or slides back and forth once in a turn of the crank, with a given time
+    ratio.
 
-    The time ratio is that of the slow stroke to the fast one. For each type the design with the greatest least
-    transmission angle is given, and others with shorter links that transmit less well; the time ratio is measured on
-    the finished mechanism. Where no design exists the answer says which ratios can be reached.
+    The time ratio is that of the slow stroke to the fast one. For each type the design with the maximum of the minimum
+    transmission angle is returned, and others with shorter links that transmit less well; the time ratio is measured on
+    the finished mechanism. If no design exists the answer reports the ratios that can be reached.
 
-    Instead of a swing two positions of a body can be stated, which the rocker carries from one to the other about their
+    Instead of a swing two positions of a body can be given, which the rocker carries from one to the other about their
     rotopole, with its limits there (Norton, Example 3-2).
     """
 
@@ -116,30 +117,30 @@ class QuickReturnProblem(LinkageProblem):
     )
     positions: tuple[RockerPosition, RockerPosition] | None = Field(
         default=None,
-        description="Of a body on the rocker of a crank-rocker, at its limits; they give the swing, and their rotopole "
-        "is the rocker's fixed pivot.",
+        description="Positions of a body on the rocker of a crank-rocker, at its limits; they determine the swing, and "
+        "their rotopole is the rocker's fixed pivot.",
     )
     rotopole: Point | None = Field(
         default=None,
-        description="Where the rocker's fixed pivot shall be; that of the positions, where they are stated.",
+        description="Required place of the rocker's fixed pivot; with positions, their rotopole.",
     )
     mechanism: Literal[QuickReturnType, "auto"] = Field(
-        default="auto", description="`auto` compares all types that have such an output and can reach the ratio."
+        default="auto", description="`auto` compares all types with such an output that can reach the ratio."
     )
     rocker_length: PositiveLength | None = Field(
         default=None,
-        description="Distance from the output's fixed pivot to its pin, for an output that swings; left out it is 1, "
-        "or what puts links and pivots within `link_length` and regions, or the body's distance from the rotopole.",
+        description="Distance from the output's fixed pivot to its pin, for an output that swings. By default 1, or a "
+        "value that puts links and pivots within `link_length` and regions, or the body's distance from the rotopole.",
     )
     crank_pivot: Point | None = Field(
         default=None,
-        description="Where the crank's fixed pivot O2 shall be; left out, without a rotopole, it is at (0, 0) or where "
-        "regions want it.",
+        description="Required place of the crank's fixed pivot O2; without it and a rotopole, (0, 0) or a place within "
+        "the regions.",
     )
     ground_angle: Degrees | None = Field(
         default=None,
-        description="Angle of the line O2 → O4 where the output swings, or of the slide; degrees. Left out it is 0; "
-        "where O2 is left out too, what regions want.",
+        description="Angle of the line O2 → O4 if the output swings, or of the slide; degrees. By default 0; if O2 is "
+        "left out too, chosen to satisfy the regions.",
     )
     rank_by: RankBy = "transmission_angle"
 
@@ -150,7 +151,7 @@ class QuickReturnProblem(LinkageProblem):
 
     @property
     def types(self) -> tuple[QuickReturnType, ...]:
-        """The types that are asked for."""
+        """The requested types."""
         if self.mechanism != "auto":
             return (self.mechanism,)
         if self.positions is not None:
@@ -159,64 +160,68 @@ class QuickReturnProblem(LinkageProblem):
 
     @property
     def o2(self) -> complex:
-        """The crank's fixed pivot, where no rotopole decides."""
+        """The crank's fixed pivot, unless a rotopole determines it."""
         return complex(*(self.crank_pivot or (0.0, 0.0)))
 
     @property
     def direction(self) -> float:
-        """The stated angle of the ground line or of the slide, degrees; 0 where it is left out."""
+        """The given angle of the ground line or of the slide, degrees; 0 by default."""
         return 0.0 if self.ground_angle is None else self.ground_angle
 
     @property
     def placed(self) -> bool:
-        """Whether the statement says where the mechanism stands."""
+        """Whether the problem determines the place of the mechanism."""
         return self.crank_pivot is not None or self.rotopole is not None or self.positions is not None
 
     @property
     def rotation(self) -> float:
-        """Of the body from its first position to its second, degrees in [−180, 180]."""
+        """Rotation of the body from its first position to its second, degrees in [−180, 180]."""
         assert self.positions is not None
         first, second = self.positions
         return math.remainder(second.angle - first.angle, 360.0)
 
     @property
     def pole(self) -> complex | None:
-        """The rotopole: the point that both positions of the body have in common, or the stated one."""
+        """The rotopole: the point that both positions of the body have in common, or the given one."""
         if self.positions is None:
             return None if self.rotopole is None else complex(*self.rotopole)
         first, second = (position.point for position in self.positions)
         turn = math.radians(self.rotation)
-        # Half the way, and from there square to it by cot(β/2) times as much.
+        # From the midpoint of both points, perpendicular to their distance by cot(β/2) times half of it.
         return 0.5 * (first + second) + 0.5j * (second - first) / math.tan(0.5 * turn)
 
     @property
     def swing_angle(self) -> float | None:
-        """The swing, stated or that of the positions; degrees."""
+        """The swing, given or that of the positions; degrees."""
         return self.swing if self.positions is None else abs(self.rotation)
 
     @property
     def link_ratio_limit(self) -> float | None:
-        """Longest link over shortest at most: as stated, or as limits of length imply where the size is free."""
+        """Maximum of the longest link over the shortest: as given, or as implied by limits of length if the size is
+        free."""
         limits = [self.constraints.max_link_ratio] if self.constraints.max_link_ratio is not None else []
         lengths = self.constraints.link_length
+        # With a free size only the ratio of both limits matters.
         if lengths is not None and self.rocker_length is None and lengths.max is not None and lengths.min > 0.0:
             limits.append(lengths.max / lengths.min)
         return min(limits, default=None)
 
     def scaled(self, shortest: float, longest: float, rocker: float) -> float:
-        """The scale of a linkage that swings, by its shortest and longest link and its rocker."""
+        """Return the scale of a linkage that swings, from its shortest and longest link and its rocker."""
         lengths = self.constraints.link_length
         if self.rocker_length is not None:
             return self.rocker_length / rocker
         pole = self.pole
+        # The body lies at the rocker's end by default.
         if self.positions is not None and pole is not None and abs(self.positions[0].point - pole) > 0.0:
             return abs(self.positions[0].point - pole) / rocker
+        # Make the linkage as large as permitted: smaller links would only violate the minimum.
         if lengths is not None and lengths.max is not None:
             return lengths.max / longest
         return lengths.min / shortest if lengths is not None and lengths.min > 0.0 else 1.0 / rocker
 
     def contradictions(self) -> list[Contradiction]:
-        """An output that is not the type's, and demands that exclude one another."""
+        """Return an output that is not the type's, and requests that exclude one another."""
         if self.positions is not None:
             return [*self._of_positions(), *self._of_constraints()]
         contradictions = []
@@ -224,14 +229,14 @@ class QuickReturnProblem(LinkageProblem):
             contradictions.append(Contradiction("/rotopole", "an output that slides has no fixed pivot; leave it out"))
         elif self.rotopole is not None and self.mechanism != "fourbar":
             contradictions.append(
-                Contradiction("/rotopole", "only a crank-rocker is put at a rotopole: state the type fourbar")
+                Contradiction("/rotopole", "only a crank-rocker can be placed at a rotopole; choose mechanism fourbar")
             )
         if self.rotopole is not None and self.crank_pivot is not None:
-            contradictions.append(Contradiction("/crank_pivot", "the rotopole says where the linkage is; leave it out"))
+            contradictions.append(Contradiction("/crank_pivot", "the rotopole places the linkage; leave this out"))
         if self.mechanism == "auto" and (self.swing is None) == (self.stroke is None):
             which = "neither" if self.swing is None else "both"
             contradictions.append(
-                Contradiction("/swing", f"state the swing or the stroke of the output; {which} is given")
+                Contradiction("/swing", f"give either the swing or the stroke of the output; {which} is given")
             )
         if self.mechanism in ROCKERS:
             contradictions += self._one("swing", "stroke", "swings")
@@ -240,19 +245,19 @@ class QuickReturnProblem(LinkageProblem):
         return [*contradictions, *self._of_constraints()]
 
     def _of_constraints(self) -> list[Contradiction]:
-        """Classes of fourbars that the types do not have."""
+        """Return classes of fourbars that the types do not have."""
         classes = {CLASSES[name] for name in self.types if name in CLASSES}
         listed = " or ".join(sorted(classes)).replace("_", "-") or "of no class of fourbars"
-        reason = f"its crank turns through, and the mechanism that is asked for is {listed}"
+        reason = f"its crank turns through, and the requested mechanism is {listed}"
         return [*self.constraints.of_another_class(classes, reason), *self.contradicting_demands()]
 
     def _of_positions(self) -> list[Contradiction]:
-        """What two positions of a body exclude."""
+        """Return requests that two positions of a body exclude."""
         contradictions = []
         for name in ("swing", "stroke", "crank_pivot"):
             if getattr(self, name) is not None:
                 contradictions.append(
-                    Contradiction(f"/{name}", f"the positions of the body say all; leave the {name} out")
+                    Contradiction(f"/{name}", f"the positions of the body determine this; leave the {name} out")
                 )
         if self.mechanism not in ("fourbar", "auto"):
             contradictions.append(Contradiction("/mechanism", "a body is carried by the rocker of a fourbar"))
@@ -273,7 +278,7 @@ class QuickReturnProblem(LinkageProblem):
         contradictions = []
         if getattr(self, wanted) is None:
             contradictions.append(
-                Contradiction(f"/{wanted}", f"the output of a {self.mechanism} {does}: state its {wanted}")
+                Contradiction(f"/{wanted}", f"the output of a {self.mechanism} {does}; give its {wanted}")
             )
         if getattr(self, other) is not None:
             contradictions.append(

@@ -28,48 +28,51 @@ from synthesis.model.linkage_answer import FixedPivots, Line
 from synthesis.model.linkages import skeleton, slide, to_point
 
 REACH = 0.9
-"""How far out the crank pin comes on the slotted link, as a share of its arm to C: the block stays clear of the pin."""
+"""Maximum distance of the crank pin from O4 on the slotted link, as a share of its arm to C: the block stays clear of
+C."""
 
 SHAPER_COUPLER = 1.0
-"""Coupler of a crank-shaper in strokes, where no transmission angle asks for a longer one."""
+"""Coupler of a crank-shaper in strokes, unless a transmission angle requires a longer one."""
 
 CLEAR = 0.9
 """Height of the ram's line over the ends of the arc, as a share of that at which the ram would turn back too early."""
 
 WHITWORTH_COUPLER = 4.0
-"""Coupler of a Whitworth in arms, for a transmission angle of 75.5°, where none asks for a longer one."""
+"""Coupler of a Whitworth in arms, for a transmission angle of 75.5°, unless a longer one is required."""
 
 
 def crank_shaper_reachable(problem: QuickReturnProblem) -> RatioRange:
-    """Time ratios of crank-shapers."""
+    """Return the time ratios of crank-shapers."""
     return _above_one(problem, "crank_shaper", "equal strokes would need a crank without length")
 
 
 def whitworth_reachable(problem: QuickReturnProblem) -> RatioRange:
-    """Time ratios of Whitworth mechanisms."""
+    """Return the time ratios of Whitworth mechanisms."""
     return _above_one(problem, "whitworth", "equal strokes would need both fixed pivots in one place")
 
 
 def crank_shapers(problem: QuickReturnProblem) -> list[QuickReturnMechanism]:
-    """The crank-shaper, at the beginning of its slow stroke."""
+    """Return the crank-shaper, at the beginning of its slow stroke."""
     assert problem.stroke is not None
     half = 0.5 * stroke_imbalance(problem.time_ratio)
     sine = math.sin(half)
     rocker = 0.5 * problem.stroke / sine
+    # The pin is farthest from O4 at ground + crank, and must stay below the arm.
     ground = REACH * rocker / (1.0 + sine)
     rise = rocker * 2.0 * math.sin(0.5 * half) ** 2
     shortest = SHAPER_COUPLER * problem.stroke
     above = min(0.5 * rise, CLEAR * shortest * math.cos(half))
     coupler = max(shortest, (rise - above) * _stretch(problem))
-    # With a longer coupler the line may be higher, and the coupler leans less than was asked for.
+    # With a longer coupler the line may be higher, and the coupler leans less than permitted.
     height = rocker * math.cos(half) + min(0.5 * rise, CLEAR * coupler * math.cos(half))
     return [_mechanism(problem, "crank_shaper", ground, ground * sine, rocker, coupler, height, -half)]
 
 
 def whitworths(problem: QuickReturnProblem) -> list[QuickReturnMechanism]:
-    """The Whitworth mechanism, at the beginning of its slow stroke."""
+    """Return the Whitworth mechanism, at the beginning of its slow stroke."""
     assert problem.stroke is not None
     half = 0.5 * stroke_imbalance(problem.time_ratio)
+    # The arm's end moves the ram by twice its length.
     rocker = 0.5 * problem.stroke
     crank = REACH * rocker / (1.0 + math.sin(half))
     coupler = rocker * max(WHITWORTH_COUPLER, _stretch(problem))
@@ -83,7 +86,7 @@ def _above_one(problem: QuickReturnProblem, name: str, reason: str) -> RatioRang
 
 
 def _stretch(problem: QuickReturnProblem) -> float:
-    """Coupler over the height that it bridges, for the demanded transmission angle."""
+    """Return the coupler over the height that it bridges, for the required transmission angle."""
     demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
     return (1.0 + LIMIT_TOLERANCE) / math.cos(demanded)
 
@@ -98,7 +101,8 @@ def _mechanism(
     height: float,
     crank_angle: float,
 ) -> QuickReturnMechanism:
-    """The mechanism with its ram at a height over O4 along the stated direction, O2 over O4; crank angle from there."""
+    """Build the mechanism with its ram at a height over O4 along the given direction, O2 over O4; crank angle from
+    there."""
     turn = math.radians(problem.direction)
     o2 = problem.o2
     up = 1j * cmath.exp(1j * turn)

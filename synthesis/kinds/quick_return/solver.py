@@ -1,7 +1,7 @@
-"""Quick return: the best mechanism of each type that is asked for, verified, and what each type can reach.
+"""Quick return: the best mechanism of each requested type, verified, and the range of each type.
 
-Each type has a function that says which time ratios it reaches, with the reason, and one that makes candidates. What
-is returned has been driven and measured.
+Each type has a function that returns the range of its time ratios, with the reason, and one that builds candidates. All
+results have been driven and measured.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from synthesis.proof.measures import link_lengths
 
 
 class _Type(NamedTuple):
-    """How one type is made; ``proven``: its first candidate is the best there is, or there is none."""
+    """Functions of one type; ``proven``: its first candidate is the best possible, or none exists."""
 
     reachable: Callable[[QuickReturnProblem], RatioRange]
     candidates: Callable[[QuickReturnProblem], Sequence[QuickReturnMechanisms]]
@@ -70,7 +70,8 @@ def solve_quick_return(problem: QuickReturnProblem, progress: Progress) -> Quick
 
 
 def _put(problem: QuickReturnProblem, mechanism: QuickReturnMechanisms) -> QuickReturnMechanisms:
-    """A mechanism where regions and limits of length want it, as far as the statement leaves that open."""
+    """Place a mechanism to satisfy regions and limits of length, as far as the problem leaves that open."""
+    # Place, direction and size are already determined.
     if problem.placed:
         return mechanism
     sized = not problem.slides and problem.rocker_length is None
@@ -79,7 +80,7 @@ def _put(problem: QuickReturnProblem, mechanism: QuickReturnMechanisms) -> Quick
 
 
 def _as_derived(rejected: Counter[str]) -> bool:
-    """Whether nothing was rejected but for limits of which the best candidate is known to come nearest."""
+    """Return True if every rejection is by a limit that the optimum provably approaches best."""
     return rejected.keys() <= {"transmission_angle"}
 
 
@@ -90,7 +91,8 @@ _KEYS: dict[str, Callable[[QuickReturnDesign], float]] = {
 
 
 def _ordered(problem: QuickReturnProblem, designs: list[QuickReturnDesign]) -> list[QuickReturnDesign]:
-    """Designs in the order asked for; of those that passed no type takes more than its share of the answer."""
+    """Return designs in the requested order; of those that passed no type takes more than its share of the answer."""
+    # Rounded up, so that the shares fill the answer.
     share = -(-problem.max_designs // len(problem.types))
     of_type: Counter[str] = Counter()
     chosen = []
@@ -112,10 +114,12 @@ def _summary(
     lines = []
     for reach in ranges:
         if not reach.reaches:
-            lines.append(f"{_words(reach.type)} cannot reach a time ratio of {problem.time_ratio:g}: {_said(reach)}.")
-    within = "" if problem.link_ratio_limit is None else f" with a link ratio within {problem.link_ratio_limit:g}"
+            lines.append(
+                f"The {_words(reach.type)} cannot reach a time ratio of {problem.time_ratio:g}: {_said(reach)}."
+            )
+    within = "" if problem.link_ratio_limit is None else f" with a link ratio of at most {problem.link_ratio_limit:g}"
     lines += [
-        f"There is no {_words(name)}{within}." if TYPES[name].proven else f"No {_words(name)}{within} was found."
+        f"No {_words(name)}{within} exists." if TYPES[name].proven else f"No {_words(name)}{within} was found."
         for name in short
     ]
     if sifting.passed:
@@ -124,8 +128,8 @@ def _summary(
         lines.insert(
             0,
             f"{counted(count, 'design')} {agreeing(count, 'has', 'have')} a measured time ratio of "
-            f"{problem.time_ratio:g}; the "
-            f"best transmission angle is {best.metrics.min_transmission_angle:.3f}°, of a "
+            f"{problem.time_ratio:g}. The "
+            f"best minimum transmission angle is {best.metrics.min_transmission_angle:.3f}°, of a "
             f"{_words(best.mechanism.type)}.",
         )
     else:
@@ -136,13 +140,15 @@ def _summary(
 
 
 def _words(name: str) -> str:
+    """Return the name of a type in words."""
     return name.replace("_", " ")
 
 
 def _said(reach: RatioRange) -> str:
+    """Describe the range of time ratios of a type and its reason."""
     to = "" if reach.greatest is None else f" to below {reach.greatest:.6g}"
     from_ = f"from {reach.least:g}" if reach.least_included else f"above {reach.least:g}"
     spread = f"{from_}{to}"
     if reach.greatest is not None and reach.greatest <= reach.least:
         spread = "none"
-    return f"reachable with this output: {spread} ({reach.reason})"
+    return f"its range with this output is {spread} ({reach.reason})"

@@ -1,6 +1,6 @@
-"""Verification of quick-return mechanisms: the finished mechanism is driven and its limit positions are looked for.
+"""Verify quick-return mechanisms: drive the finished mechanism and find its limit positions.
 
-Nothing of the solvers' formulas is used: the output's rate over a turn of the crank comes from the analysis core, its
+None of the solvers' formulas is used: the output's rate over a turn of the crank comes from the analysis core, its
 roots are the limit positions, and time ratio, swing and stroke follow from these.
 """
 
@@ -36,16 +36,17 @@ from synthesis.proof.measures import fixed_pivots, link_lengths, measured, movin
 from synthesis.proof.rebuilt import rebuilt
 
 RATIO_MET = 1e-9
-"""Share by which the measured time ratio may differ from the demanded one; rounding leaves some 1e-14."""
+"""Maximum relative error of the measured time ratio; rounding leaves some 1e-14."""
 
 SWING_MET = 1e-9
-"""Degrees by which the measured swing may differ."""
+"""Maximum error of the measured swing, degrees."""
 
 BODY_MET = 1e-9
-"""Share of its distance from the rocker's pivot, and radians, by which a body on the rocker may miss its positions."""
+"""Maximum error of the positions of a body on the rocker: share of its distance from the rocker's pivot, and
+radians."""
 
 STROKE_MET = 1e-9
-"""Share by which the measured stroke may differ."""
+"""Maximum relative error of the measured stroke."""
 
 OUTPUTS = {
     "fourbar": "output",
@@ -64,20 +65,20 @@ def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanis
     Parameters
     ----------
     problem : QuickReturnProblem
-        What was asked.
+        The problem.
     design : a mechanism
-        Dimensions only; the skeleton is looked at where it is the dimensions, as for drag links.
+        Only the dimensions are used; for drag links these are the skeleton.
 
     Returns
     -------
     QuickReturnDesign or None
-        None where the dimensions make no mechanism whose output reverses exactly twice while the crank turns through.
+        None unless the output reverses exactly twice while the crank turns through.
     """
     output = OUTPUTS[design.type]
     mechanism = rebuilt(design)
     if mechanism is None:
         return None
-    # Where a body stands on the rocker, only the skeleton says.
+    # Only the skeleton contains the body's place on the rocker.
     carrier = None if problem.positions is None else rebuilt(design, from_skeleton=True)
     if problem.positions is not None and carrier is None:
         return None
@@ -86,6 +87,7 @@ def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanis
         reversals = strokes(mechanism, output)
     except MechanismError:
         return None
+    # An output with more than two reversals has no time ratio.
     if reversals is None or here is None or not here.full:
         return None
     inputs = turn_from(float(mechanism.reference_input))
@@ -99,7 +101,7 @@ def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanis
     measures = measured(
         link_lengths(design),
         reach_of(whole),
-        # The way of the output's pin, as the chord of its arc or along its slide.
+        # Displacement of the output's pin, as the chord of its arc or along its slide.
         2.0 * _rocker(design) * abs(math.sin(0.5 * reversals.travel)) if swings else travel,
         least_angles(partial(drive, mechanism, order=0), inputs, motion),
         np.concatenate([jet[0] for jet in places.values()]),
@@ -131,8 +133,8 @@ def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanis
 
 
 def _limits(measured: Strokes, reference: float, *, swings: bool) -> list[LimitPosition]:
-    """The limit positions, in the turn whose first one is nearest to the reference; angles of links from (−180°, 180°]
-    on."""
+    """Return the limit positions, in the turn whose first one is nearest to the reference; angles of links from (−180°,
+    180°] on."""
     inputs = measured.inputs - 2.0 * math.pi * round((measured.inputs[0] - reference) / (2.0 * math.pi))
     outputs = measured.outputs
     if swings:
@@ -158,9 +160,9 @@ def _task_checks(problem: QuickReturnProblem, metrics: QuickReturnMetrics) -> li
 def _body_checks(
     problem: QuickReturnProblem, design: QuickReturnMechanisms, mechanism: Mechanism | None, measured: Strokes
 ) -> list[Check]:
-    """The body on the rocker stands at its two positions when the driven rocker is at its limits.
+    """Check that the body on the rocker stands at its two positions when the driven rocker is at its limits.
 
-    The skeleton says where the body is fixed on the rocker; nothing else does.
+    The place of the body on the rocker is taken from the skeleton, its only source.
     """
     if problem.positions is None:
         return []
@@ -171,6 +173,7 @@ def _body_checks(
     turned = motion.angles["output"][0] - mechanism.link_angle("output")
     angles = (design.reference_body_angle or 0.0) + np.degrees(turned)
     size = max(abs(position.point - complex(*design.fixed_pivots.output)) for position in problem.positions)
+    # A body near its pole would have no size of its own.
     size = max(size, design.links.output)
 
     def missed(k: int, position: RockerPosition) -> float:
@@ -178,17 +181,18 @@ def _body_checks(
         return max(float(abs(points[k] - position.point)) / size, abs(turn))
 
     first, second = problem.positions
+    # Either position may be the begin of the slow stroke.
     worst = min(max(missed(k, first), missed(1 - k, second)) for k in (0, 1))
     return [tolerated("reaches_targets", worst, BODY_MET)]
 
 
 def _rocker(design: QuickReturnMechanisms) -> float:
-    """Length of the output link of a mechanism whose output swings."""
+    """Return the length of the output link of a mechanism whose output swings."""
     return design.links["output"] if isinstance(design.links, dict) else float(design.links.model_dump()["output"])
 
 
 def _barker(design: QuickReturnMechanisms) -> BarkerClass | None:
-    """Grashof's class and Barker's code of the fourbar that the crank drives."""
+    """Return Grashof's class and Barker's code of the fourbar that the crank drives."""
     if isinstance(design, FourbarMechanism):
         d, a, b, c = link_lengths(design)
     elif isinstance(design, DragLinkMechanism):

@@ -1,8 +1,8 @@
-"""Ackermann's steering linkage: a symmetrical fourbar with the least greatest steering error.
+"""Ackermann's steering linkage: a symmetrical fourbar with the minimum of the maximum steering error.
 
-The arms, of k pivot distances, lean by α from the vehicle's axis, towards each other where the tie rod is behind the
-kingpins, apart where it is ahead. For a given arm the greatest error up to the lock has one least value over α, where
-errors of both signs are equally large; over k it is searched for between the limits.
+The arms, of k pivot distances, lean by α from the vehicle's axis, towards each other if the tie rod is behind the
+kingpins, away from each other if it is ahead. For a given arm the maximum error up to the lock has a single minimum
+over α, at which errors of both signs are equally large; k is then optimized between its limits.
 """
 
 from __future__ import annotations
@@ -22,28 +22,30 @@ from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism, wi
 Real = NDArray[np.float64]
 
 LEANS = np.radians(np.linspace(0.5, 80.0, 160))
-"""Angles of the arms that are looked at first."""
+"""Angles of the arms that are evaluated first, radians."""
 
 COARSE, FINE = 65, 721
-"""Inner angles at which the error is looked at: for all arms, and for one."""
+"""Number of inner angles at which the error is evaluated: for all arms, and for one."""
 
 ARMS = 9
-"""Lengths of the arms that are looked at first."""
+"""Number of lengths of the arms that are evaluated first."""
 
 ANGLE_FOUND, ARM_FOUND = 1e-10, 1e-7
-"""How nearly the best angle (radians) and length (pivot distances) are found; the error is least there, and flat."""
+"""Tolerances of the best angle (radians) and length (pivot distances); the error is flat at its minimum."""
 
 Side = Literal["behind", "ahead"]
 
 
 def ackermann_linkages(problem: SteeringProblem) -> list[FourbarMechanism]:
-    """The best linkage with the tie rod on each allowed side, and the best ones with the shortest and longest arms."""
+    """Return the best linkage with the tie rod on each allowed side, and the best ones with the shortest and longest
+    arms."""
     ratio, lock = problem.pivot_distance / problem.wheelbase, math.radians(problem.lock)
     low, high = problem.arms
     found = []
     for side in problem.sides:
         lengths = np.linspace(low, high, ARMS) if high > low else np.array([low])
         errors = [best_lean(float(k), ratio, lock, side)[1] for k in lengths]
+        # The grid brackets the minimum, which a bounded search then refines.
         n = int(np.argmin(errors))
         if not math.isfinite(errors[n]):
             continue
@@ -57,6 +59,7 @@ def ackermann_linkages(problem: SteeringProblem) -> list[FourbarMechanism]:
                 options={"xatol": ARM_FOUND},
             )
             best = float(closer.x) if closer.fun < errors[n] else best
+        # The shortest and longest arms are offered too, for their size and their forces.
         for k in dict.fromkeys((best, low, high)):
             lean, error = best_lean(k, ratio, lock, side)
             if math.isfinite(error):
@@ -65,7 +68,8 @@ def ackermann_linkages(problem: SteeringProblem) -> list[FourbarMechanism]:
 
 
 def best_lean(arm: float, ratio: float, lock: float, side: Side) -> tuple[float, float]:
-    """The angle of the arms with the least greatest error, and that error; radians, infinite where none reaches."""
+    """Find the angle of the arms with the minimum of the maximum error, and that error; radians, infinite if none
+    reaches."""
     theta = np.linspace(0.0, lock, COARSE)[1:]
     worst = np.abs(_errors(arm, LEANS[:, None], theta, ratio, side)).max(axis=1)
     worst = np.where(np.isfinite(worst), worst, np.inf)
@@ -76,6 +80,7 @@ def best_lean(arm: float, ratio: float, lock: float, side: Side) -> tuple[float,
 
     def greatest(lean: float) -> float:
         found = float(np.abs(_errors(arm, np.asarray(lean), theta, ratio, side)).max())
+        # A finite penalty keeps the search going where the tie rod does not reach.
         return found if math.isfinite(found) else math.pi
 
     ends = float(LEANS[max(n - 1, 0)]), float(LEANS[min(n + 1, len(LEANS) - 1)])
@@ -84,14 +89,15 @@ def best_lean(arm: float, ratio: float, lock: float, side: Side) -> tuple[float,
 
 
 def _errors(arm: float, lean: Real, theta: Real, ratio: float, side: Side) -> Real:
-    """Steering errors at inner angles; NaN where the tie rod does not reach."""
+    """Return steering errors at inner angles, radians; NaN where the tie rod does not reach."""
     sense = 1.0 if side == "behind" else -1.0
     left = arm * sense * (np.sin(lean) - 1j * np.cos(lean))
     right = -left.conjugate()
+    # The tie rod follows from the straight position, where the linkage is symmetrical.
     rod = 1.0 - 2.0 * left.real
     reach = 1.0 - left * np.exp(1j * theta)
     f = np.abs(reach)
-    # B on the circles about A and O4, on the side where it stands in the straight position.
+    # B lies on the circles about A and O4, on the same side as in the straight position.
     along = (f * f + rod * rod - arm * arm) / (2.0 * f)
     with np.errstate(invalid="ignore"):
         across = -sense * np.sqrt((rod - along) * (rod + along))
@@ -100,7 +106,7 @@ def _errors(arm: float, lean: Real, theta: Real, ratio: float, side: Side) -> Re
 
 
 def _mechanism(problem: SteeringProblem, arm: float, lean: float, side: Side) -> FourbarMechanism:
-    """The linkage in the straight position, its kingpins on the x-axis, the vehicle along y."""
+    """Build the linkage in the straight position, its kingpins on the x-axis, the vehicle along y."""
     half, sense = 0.5 * problem.pivot_distance, 1.0 if side == "behind" else -1.0
     left = arm * problem.pivot_distance * sense * complex(math.sin(lean), -math.cos(lean))
     a, b = -half + left, half - left.conjugate()

@@ -1,8 +1,8 @@
 """Davis's steering gear, which steers correctly at every angle: its arms lean by α with 2 tan α = w/L.
 
-The arms spread where the bar is behind the kingpins and close where it is ahead. With the bar at the height h and moved
-by x the outer wheel turns to tan⁻¹(tan α + x/h) − α and the inner one to α − tan⁻¹(tan α − x/h); every lock below a
-right angle is reached.
+The arms spread if the bar is behind the kingpins and close if it is ahead. With the bar at the height h and moved by x
+the outer wheel turns to tan⁻¹(tan α + x/h) − α and the inner one to α − tan⁻¹(tan α − x/h); every lock below a right
+angle is reached.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from synthesis.kinds.steering.problem import SteeringProblem
 from synthesis.model.linkages import skeleton, slide, to_point
 
 BEYOND = 1.1
-"""Length of the slotted arms over what they need at the lock."""
+"""Length of the slotted arms over their minimum at the lock."""
 
 
 def davis_gears(problem: SteeringProblem) -> list[DavisMechanism]:
-    """The gear with its bar on each allowed side."""
+    """Return the gear with its bar on each allowed side."""
     return [_mechanism(problem, -1.0 if side == "behind" else 1.0) for side in problem.sides]
 
 
 def _mechanism(problem: SteeringProblem, ahead: float) -> DavisMechanism:
-    """The gear in the straight position, its kingpins on the x-axis, the vehicle along y."""
+    """Build the gear in the straight position, its kingpins on the x-axis, the vehicle along y."""
     half, ratio = 0.5 * problem.pivot_distance, problem.pivot_distance / problem.wheelbase
     lean, lock = float(davis_arm_angle(ratio)), math.radians(problem.lock)
     length = 0.5 * sum(problem.arms) * problem.pivot_distance
     arm = ahead * length * complex(math.sin(lean), math.cos(lean))
-    # The slots are longest used by the arm that leans most from the square to its bar.
+    # The arm that deviates most from the normal of the bar needs the longest slot.
     leaning = max(lean + float(outer_angle(lock, ratio)), lock - lean)
     slot = BEYOND * math.cos(lean) / math.cos(leaning) * arm
     places = {

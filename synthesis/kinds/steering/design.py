@@ -1,4 +1,4 @@
-"""Answers to problems of steering."""
+"""Results of steering problems."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class DavisMechanism(Answer):
 
 
 SteeringMechanisms = Annotated[FourbarMechanism | DavisMechanism, Discriminator("type")]
-"""Any steering mechanism; the field ``type`` tells which."""
+"""Any steering mechanism; the field ``type`` selects it."""
 
 
 class SteeringPosition(DrivenTo):
@@ -39,30 +39,30 @@ class SteeringPosition(DrivenTo):
 
     inner: Angle
     outer: Angle
-    required: Angle = Field(description="What the outer wheel should have.")
+    required: Angle = Field(description="Required angle of the outer wheel.")
     error: Angle = Field(description="outer − required.")
 
 
 class SteeringMetrics(UsedRange):
     """Measured properties of a steering mechanism."""
 
-    steering_error: Angle = Field(description="Greatest magnitude up to the lock, to both sides, degrees.")
+    steering_error: Angle = Field(description="Maximum magnitude of the error up to the lock, to both sides, degrees.")
     correct_at: list[Angle] = Field(description="Inner angles between which the error changes sign, degrees.")
     outer_lock: Angle = Field(description="Angle of the outer wheel at the lock, degrees.")
-    arm_length: Length = Field(description="Of a steering arm; of Davis's gear, in the straight position.")
-    arm_angle: Angle = Field(description="Of the arms from the vehicle's axis in the straight position, degrees.")
+    arm_length: Length = Field(description="Length of a steering arm; for Davis's gear, in the straight position.")
+    arm_angle: Angle = Field(description="Angle of the arms from the vehicle's axis in the straight position, degrees.")
     tie_rod: Literal["behind", "ahead"]
     turning_radius: Length = Field(
-        description="Of the outer front wheel's path at the lock, were its angle the required one."
+        description="Radius of the outer front wheel's path at the lock, if its angle were the required one."
     )
     min_transmission_angle: Angle = Field(description="Over the whole range, degrees.")
     link_ratio: float = Field(description="Longest link over shortest.")
     size: Length = Field(description="Diagonal of the box around all joints in the straight position.")
-    bar_travel: Length | None = optional("Of Davis's bar, to each side.")
+    bar_travel: Length | None = optional("Travel of Davis's bar, to each side.")
 
 
 class SteeringDesign(Answer):
-    """A steering mechanism with the proof of what it does."""
+    """A steering mechanism with its verification."""
 
     mechanism: SteeringMechanisms
     targets: list[SteeringPosition]
@@ -73,4 +73,4 @@ class SteeringDesign(Answer):
 
 
 class SteeringResult(LinkageResult[SteeringDesign]):
-    """Steering mechanisms, the least steering error first."""
+    """Steering mechanisms, the smallest steering error first."""

@@ -1,4 +1,4 @@
-"""Steering: two stub axles whose wheels roll about one centre while the vehicle turns."""
+"""Problems of steering: two stub axles whose wheels roll about one centre while the vehicle turns."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.model.statement import Contradiction, PositiveLength, Range, Sizable
 
 ARM = (0.1, 0.25)
-"""Least and greatest length of the steering arms where none is stated, in distances of the kingpins."""
+"""Default minimum and maximum length of the steering arms, in distances of the kingpins."""
 
 
 class ArmLimits(Range):
-    """Least and greatest length of the steering arms; equal to fix it."""
+    """Minimum and maximum length of the steering arms; equal to fix it."""
 
     min: PositiveLength
     max: PositiveLength
 
 
 class SteeringProblem(LinkageProblem):
-    """Steering: a linkage between two stub axles that turns the outer wheel as much as it must for the inner one.
+    """Steering: a linkage between two stub axles that gives the outer wheel the angle that matches the inner one's.
 
-    The wheels roll without slip where cot φ − cot θ = pivot distance/wheelbase for the angles φ of the outer and θ of
-    the inner wheel. Ackermann's linkage, a symmetrical fourbar, comes near to that: its greatest steering error up to
-    the lock is made as small as it can be. Davis's gear does it exactly, with slides.
+    The wheels roll without slip if cot φ − cot θ = pivot distance/wheelbase for the angles φ of the outer and θ of the
+    inner wheel. Ackermann's linkage, a symmetrical fourbar, approximates that: its maximum steering error up to the
+    lock is minimized. Davis's gear is exact, with slides.
     """
 
     model_config = ConfigDict(
@@ -39,55 +39,57 @@ class SteeringProblem(LinkageProblem):
     )
 
     kind: Literal["steering"]
-    wheelbase: PositiveLength = Field(description="From the rear axle to the front axle.")
-    pivot_distance: PositiveLength = Field(description="Between the kingpins.")
+    wheelbase: PositiveLength = Field(description="Distance from the rear axle to the front axle.")
+    pivot_distance: PositiveLength = Field(description="Distance between the kingpins.")
     track: PositiveLength | None = Field(
-        default=None, description="Between the front wheels; for the turning circle. The pivot distance if left out."
+        default=None,
+        description="Distance between the front wheels; for the turning circle. By default the pivot distance.",
     )
     lock: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=90.0), Sizable] = Field(
-        description="Greatest angle of the inner wheel, degrees."
+        description="Maximum angle of the inner wheel, degrees."
     )
     mechanism: Literal["ackermann", "davis", "auto"] = "auto"
     tie_rod: Literal["behind", "ahead", "any"] = Field(
-        default="any", description="Where the tie rod is, seen from the kingpins."
+        default="any", description="Place of the tie rod, seen from the kingpins."
     )
     arm_length: ArmLimits | None = Field(
-        default=None, description="Of the steering arms; 0.1 to 0.25 of the pivot distance if left out."
+        default=None, description="Length of the steering arms; by default 0.1 to 0.25 of the pivot distance."
     )
     max_steering_error: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=90.0), Sizable] | None = Field(
-        default=None, description="Greatest error of the outer wheel's angle that is allowed, degrees."
+        default=None, description="Maximum error of the outer wheel's angle, degrees."
     )
 
     @property
     def arms(self) -> tuple[float, float]:
-        """Least and greatest length of the steering arms, in pivot distances."""
+        """Minimum and maximum length of the steering arms, in pivot distances."""
         if self.arm_length is None:
             return ARM
         return self.arm_length.min / self.pivot_distance, self.arm_length.max / self.pivot_distance
 
     @property
     def sides(self) -> tuple[Literal["behind", "ahead"], ...]:
-        """Where the tie rod may be."""
+        """Allowed sides of the tie rod."""
         return ("behind", "ahead") if self.tie_rod == "any" else (self.tie_rod,)
 
     @property
     def input_slides(self) -> bool:
-        """A bar that slides drives Davis's gear."""
+        """Whether a sliding bar drives the mechanism, as in Davis's gear."""
         return self.mechanism == "davis"
 
     def contradictions(self) -> list[Contradiction]:
-        """Wheels between their kingpins, and arms that would meet."""
+        """Return contradictory requests: wheels between their kingpins, arms that would meet, and others."""
         found = []
         if self.track is not None and self.track < self.pivot_distance:
-            found.append(Contradiction("/track", "the wheels stand between their kingpins; the track is the larger"))
+            found.append(Contradiction("/track", "the wheels would lie between the kingpins; the track is the larger"))
+        # Arms that point at each other would collide.
         if self.arms[1] >= 0.5:
-            detail = "arms of half the pivot distance could meet; shorter ones are needed"
+            detail = "arms of half the pivot distance could meet; give shorter ones"
             found.append(Contradiction("/arm_length/max", detail))
         if self.constraints.full_rotation:
-            detail = "a steering mechanism goes from lock to lock and does not turn through; drop the demand"
+            detail = "a steering mechanism moves from lock to lock and does not turn through; drop this constraint"
             found.append(Contradiction("/constraints/full_rotation", detail))
         if not self.constraints.same_branch:
-            detail = "a steering mechanism that passes a toggle between its locks does not steer; drop the demand"
+            detail = "a steering mechanism that passes a toggle between its locks does not steer; leave this true"
             found.append(Contradiction("/constraints/same_branch", detail))
         if self.mechanism == "davis":
             found += self.constraints.of_another_class((), "Davis's gear has slides and no class of fourbars")

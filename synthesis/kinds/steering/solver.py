@@ -1,4 +1,4 @@
-"""Steering: Ackermann's linkage with the least steering error, and Davis's gear, verified from lock to lock."""
+"""Steering: Ackermann's linkage with the minimum steering error, and Davis's gear, verified from lock to lock."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def solve_steering(problem: SteeringProblem, progress: Progress) -> SteeringResu
     sifting = Sifting[SteeringDesign](problem)
     sifting.sift(mechanisms, partial(verify_steering, problem))
     progress(1.0, "verified")
-    # Davis's gear alone has one solution, and its reach is known; Ackermann's is an optimum found by search.
+    # Only Davis's gear has a single solution with a known reach; Ackermann's is an optimum found by search.
     complete = problem.mechanism == "davis" and not sifting.rejected
     return SteeringResult(
         designs=sifting.designs(partial(_ranked, problem.rank_by)),
@@ -41,7 +41,7 @@ def solve_steering(problem: SteeringProblem, progress: Progress) -> SteeringResu
 
 
 def _ranked(rank_by: str, designs: list[SteeringDesign]) -> list[SteeringDesign]:
-    """Ackermann's linkages, which have no slides, come first; the steering error stands for quality and accuracy."""
+    """Rank designs: Ackermann's linkages, without slides, come first; steering error decides quality and accuracy."""
     return ranked(
         designs,
         rank_by,

@@ -1,7 +1,7 @@
-"""Verification of steering mechanisms: they are driven to both locks, and the wheels' angles are measured.
+"""Verify steering mechanisms: drive them to both locks, and measure the wheels' angles.
 
 A fourbar is driven at its left arm in closed form, any other mechanism by its closures. The vehicle turns to the left
-where the arms turn counter-clockwise: the left wheel is then the inner one.
+if the arms turn counter-clockwise: the left wheel is then the inner one.
 """
 
 from __future__ import annotations
@@ -39,22 +39,22 @@ from synthesis.proof.rebuilt import rebuilt
 Real = NDArray[np.float64]
 
 SAMPLES = 2049
-"""Inputs from lock to lock, on each side of the straight position half of them: 64 to each position that is listed."""
+"""Number of inputs from lock to lock, half of them on each side of the straight position: 64 per reported position."""
 
 SHOWN = 17
-"""Positions that an answer lists, from straight to the lock."""
+"""Number of positions that an answer lists, from straight to the lock."""
 
 LOCKED = 1e-9
-"""Radians by which the inner wheel may miss the lock; its input is found by halving."""
+"""Maximum miss of the lock by the inner wheel, radians; its input is found by bisection."""
 
 HALVINGS = 60
-"""Times that a range is halved to find a lock: 2⁻⁶⁰ of it is less than rounding leaves."""
+"""Number of bisections to find a lock: 2⁻⁶⁰ of the range is below rounding."""
 
 FARTHEST = 1e6
-"""Pivot distances that the bar is moved by at most to lock a wheel; a gear that needs more locks none."""
+"""Maximum travel of the bar to lock a wheel, in pivot distances; a gear that needs more does not lock."""
 
 EXACT = 1e-9
-"""Degrees of steering error that are rounding: what Davis's gear may have."""
+"""Maximum steering error, degrees, that is rounding, for Davis's gear."""
 
 
 class _Driven(NamedTuple):
@@ -75,19 +75,20 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
     Parameters
     ----------
     problem : SteeringProblem
-        What was asked.
+        The problem.
     design : a mechanism
-        In the straight position. Dimensions only; Davis's gear has its skeleton as its dimensions.
+        In the straight position. Only the dimensions are used; those of Davis's gear are its skeleton.
 
     Returns
     -------
     SteeringDesign or None
-        None where the dimensions make no mechanism that reaches both locks.
+        None if the mechanism does not reach both locks.
     """
     driven = _fourbar(problem, design) if isinstance(design, FourbarMechanism) else _gear(problem, design)
     if driven is None:
         return None
     ratio, lock = problem.pivot_distance / problem.wheelbase, math.radians(problem.lock)
+    # Both turns are measured at once: the left wheel is the inner one in left turns only.
     inner, outer = _by_turn(driven.left, driven.right)
     error = np.degrees(outer - outer_angle(inner, ratio))
 
@@ -100,6 +101,7 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
     arm = joints["A"] - joints["O2"]
     behind = arm.imag < 0.0
     required = float(outer_angle(lock, ratio))
+    # The mechanism is symmetrical: positions of the left turn are enough for the report.
     half = [values[SAMPLES // 2 :] for values in (inner, outer, error, driven.inputs)]
     measures = measured(
         link_lengths(design),
@@ -136,7 +138,7 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
         checks.append(at_most("steering_error", worst, problem.max_steering_error, ANGLE))
     fixed = [joints.pop(name) for name in ("O2", "O4")]
     of_constraints = constraint_checks(problem.constraints, measures, fixed, list(joints.values()))
-    checks += [check for check in of_constraints if check.name != "same_branch"]  # demanded in any case
+    checks += [check for check in of_constraints if check.name != "same_branch"]  # always checked above
     listed = np.linspace(0, len(half[0]) - 1, SHOWN, dtype=int)
     turns = isinstance(design, FourbarMechanism)
     return SteeringDesign(
@@ -159,13 +161,13 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
 
 
 def _by_turn(left: Real, right: Real) -> tuple[Real, Real]:
-    """Angles of the inner and the outer wheel."""
+    """Return the angles of the inner and the outer wheel."""
     to_left = left >= 0.0
     return np.where(to_left, left, -right), np.where(to_left, right, -left)
 
 
 def _fourbar(problem: SteeringProblem, design: FourbarMechanism) -> _Driven | None:
-    """The fourbar driven at its left arm, to the lock on one side and until the right wheel locks on the other."""
+    """Drive the fourbar at its left arm, to the lock on one side and until the right wheel locks on the other."""
     try:
         linkage, assembly, straight = driven_fourbar(design)
     except DimensionError:
@@ -177,6 +179,7 @@ def _fourbar(problem: SteeringProblem, design: FourbarMechanism) -> _Driven | No
         at = positions(linkage, straight + turned, assembly).output_angle
         return np.asarray(np.angle(np.exp(1j * (at - float(start.output_angle)))))
 
+    # In a right turn the right wheel is the inner one and determines the lock.
     low = _where(right, -lock, lock)
     if low is None:
         return None
@@ -195,7 +198,7 @@ def _fourbar(problem: SteeringProblem, design: FourbarMechanism) -> _Driven | No
 
 
 def _gear(problem: SteeringProblem, design: DavisMechanism) -> _Driven | None:
-    """Davis's gear driven at its bar, until the inner wheel locks on either side."""
+    """Drive Davis's gear at its bar, until the inner wheel locks on either side."""
     mechanism = rebuilt(design)
     if mechanism is None:
         return None
@@ -214,6 +217,7 @@ def _gear(problem: SteeringProblem, design: DavisMechanism) -> _Driven | None:
 
     far = size
     while not float(arm("left_arm", np.array([far]))[0]) > lock:
+        # The travel to the lock has no simple bound: double it until the wheel is beyond the lock.
         far *= 2.0
         if far > FARTHEST * size:
             return None
@@ -233,15 +237,15 @@ def _gear(problem: SteeringProblem, design: DavisMechanism) -> _Driven | None:
 
 
 def _where(right: Callable[[Real], Real], low: float, lock: float) -> float | None:
-    """The left wheel's angle, negative, at which the right one stands at −lock; None where it does not get there."""
-    # The right wheel is the inner one there and turns farther; beyond its lock it may have no position at all.
+    """Find the left wheel's angle, negative, at which the right one stands at −lock; None if it does not get there."""
+    # The right wheel is the inner one there and turns further; beyond its lock it may have no position at all.
     if float(right(np.array([low]))[0]) > -lock:
         return None
     return _narrowed(lambda left: not float(right(np.array([left]))[0]) > -lock, 0.0, low)[0]
 
 
 def _narrowed(beyond: Callable[[float], bool], inside: float, outside: float) -> tuple[float, float]:
-    """The last input before a lock and the first beyond it, by bisection between one on either side."""
+    """Bisect between an input on either side of a lock; return the last one before and the first one beyond it."""
     for _ in range(HALVINGS):
         middle = 0.5 * (inside + outside)
         inside, outside = (inside, middle) if beyond(middle) else (middle, outside)
@@ -249,5 +253,6 @@ def _narrowed(beyond: Callable[[float], bool], inside: float, outside: float) ->
 
 
 def _changes(inner: Real, error: Real) -> list[float]:
-    """Inner angles at which the error changes sign, beyond the straight position: by cubic pieces between samples."""
+    """Return the inner angles at which the error changes sign, beyond the straight position: by cubic pieces between
+    samples."""
     return [float(at) for at in CubicSpline(inner, error).roots(extrapolate=False) if at > inner[1]]

@@ -1,4 +1,4 @@
-"""Answers to problems of straight lines."""
+"""Results of straight line problems."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from synthesis.model.linkage_answer import (
 
 
 class ExactLineMechanism(Answer):
-    """Peaucellier's eightbar, Hart's sixbar or Scott-Russell's slider-crank; the skeleton says all.
+    """Peaucellier's eightbar, Hart's sixbar or Scott-Russell's slider-crank; the skeleton defines it completely.
 
     Peaucellier: crank O2–A, arms O4–B and O4–C, rhombus A B P C. Hart: crank O2–A, crossed parallelogram B C E D with
     O4 on B–C, A on B–D and P on E–C. Scott-Russell: crank O2–A to the middle of the coupler P–B, B on a slide through
@@ -36,7 +36,7 @@ class ExactLineMechanism(Answer):
 
 
 LineMechanisms = Annotated[FourbarMechanism | ExactLineMechanism, Discriminator("type")]
-"""Any straight-line mechanism; the field ``type`` tells which."""
+"""Any straight-line mechanism; the field ``type`` selects it."""
 
 
 class LinePoint(Answer):
@@ -46,7 +46,7 @@ class LinePoint(Answer):
     input_angle: Angle = Field(description="Absolute input angle, degrees, continuous from the first.")
     x: Length
     y: Length
-    deviation: Length = Field(description="Distance from the demanded line, length units.")
+    deviation: Length = Field(description="Distance from the required line, length units.")
 
 
 class StraightLineMetrics(MotionMetrics):
@@ -54,27 +54,33 @@ class StraightLineMetrics(MotionMetrics):
 
     family: LineMechanism
     proportions: Literal["optimal", "classical", "exact"] = Field(
-        description="Whether the proportions are the best of the family, those of the books, or such that the line is "
-        "exact; free proportions of an exact mechanism are those of best quality."
+        description="Whether the proportions are the best of the family, those of the literature, or give an exact "
+        "line; free proportions of an exact mechanism are those of best quality."
     )
-    deviation: Length = Field(description="Greatest distance of P from the demanded line, length units.")
+    deviation: Length = Field(description="Maximum distance of P from the required line, length units.")
     straightness_error: Percent = Field(
-        description="Width of the strip along the line's direction that holds P's path, percent of the length."
+        description="Width of the strip along the line's direction that contains P's path, percent of the length."
     )
     velocity_variation: Percent = Field(
-        description="Greatest less least velocity along the line at constant input speed, percent of the mean."
+        description="Maximum minus minimum velocity along the line at constant input speed, percent of the mean."
     )
-    mean_velocity: LengthPerRadian = Field(description="Along the line, length units per radian of the input.")
+    mean_velocity: LengthPerRadian = Field(
+        description="Mean velocity along the line, length units per radian of the input."
+    )
     middle_velocity: LengthPerRadian = Field(description="The same in the middle of the input's range.")
-    input_rotation: Angle = Field(description="Of the input from the line's start to its end, degrees, with its sign.")
+    input_rotation: Angle = Field(
+        description="Rotation of the input from the line's start to its end, degrees, with its sign."
+    )
     moving_links: int
-    cycle_transmission_angle: Angle | None = optional("Over the whole turn of an input that turns through, degrees.")
+    cycle_transmission_angle: Angle | None = optional(
+        "Minimum transmission angle over the full turn of an input that turns through, degrees."
+    )
     same_branch: bool
     visits_in_order: bool = Field(description="Whether P runs along the line without turning back.")
 
 
 class StraightLineDesign(Answer):
-    """A straight-line mechanism with the proof of what it does."""
+    """A straight-line mechanism with its verification."""
 
     mechanism: LineMechanisms
     targets: list[LinePoint]
@@ -85,4 +91,4 @@ class StraightLineDesign(Answer):
 
 
 class StraightLineResult(LinkageResult[StraightLineDesign]):
-    """Straight-line mechanisms, best first in the measure that was asked for."""
+    """Straight-line mechanisms, best first in the requested measure."""

@@ -6,9 +6,9 @@ about the direction from O4 to O2, O4 A turns by θ/2, and P stands at D tan(θ/
 
     length = 2 D tan(β/4),
 
-and two proportions of the cell are left. They are searched on a grid for the best quality
-(:mod:`synthesis.proof.measures`): force transmission against size. With Scott-Russell's P is at 2r sin θ, and nothing
-is left.
+and two proportions of the cell are free. They are searched on a grid for the best quality
+(:mod:`synthesis.proof.measures`): force transmission against size. In Scott-Russell's P is at 2r sin θ, without any
+free proportion.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from synthesis.proof.measures import quality
 Real = NDArray[np.float64]
 
 GRID = 48
-"""Values of each proportion."""
+"""Number of values of each proportion."""
 
 ALONG = 33
-"""Inputs over half the range at which force transmission is looked at; the other half is its mirror image."""
+"""Number of inputs over half the range at which force transmission is evaluated; the other half is its mirror image."""
 
 
 class ExactLine(NamedTuple):
@@ -40,7 +40,8 @@ class ExactLine(NamedTuple):
 
 
 def scott_russell(length: float, span: float) -> ExactLine | None:
-    """Crank = A B = A P; B slides towards O2, and P runs through O2 at right angles to the slide; span < 180°."""
+    """Size a Scott-Russell: crank = A B = A P; B slides towards O2, P runs through O2 square to the slide; span <
+    180°."""
     if not span < math.pi:
         return None
     r = length / (4.0 * math.sin(0.5 * span))
@@ -49,22 +50,24 @@ def scott_russell(length: float, span: float) -> ExactLine | None:
 
 
 def peaucellier(length: float, span: float) -> ExactLine | None:
-    """The cell with arms and sides of best quality; None where the crank's range is a whole turn."""
+    """Size the Peaucellier cell with arms and sides of best quality; None if the crank's range is a full turn."""
     far = _distance(length, span)
     if far is None:
         return None
-    # Unit D = 1: crank r, and the arm's excess over the largest half sum of O4 A and O4 P.
+    # In units of D: crank r, and the arm's excess over the largest half sum of O4 A and O4 P.
     crank = np.geomspace(0.1, 4.0, GRID)[:, None, None]
     cosine = np.cos(np.linspace(0.0, 0.25 * span, ALONG))
     near = 2.0 * crank * cosine
     half = 0.5 * (near + 2.0 * crank / near)
+    # The rhombus closes only if the arm exceeds this half sum over the whole range.
     arm = half.max(axis=-1, keepdims=True) * (1.0 + np.geomspace(0.003, 2.0, GRID))[None, :, None]
     side = np.sqrt(arm**2 - 2.0 * crank)
+    # Law of cosines in the triangle O4 B A.
     at_pins = (arm**2 + side**2 - near**2) / (2.0 * arm * side)
     # The rhombus: its corner at P is the angle between its last two sides.
     height = np.sqrt(np.maximum(arm**2 - half**2, 0.0))
     apart = 2.0 * crank / near - near
-    # P must not pass A: the rhombus would be folded flat there.
+    # P must not pass A, where the rhombus would be folded flat.
     apart = np.where((apart * apart[..., :1]).min(axis=-1, keepdims=True) > 0.0, np.abs(apart), 0.0)
     at_point = height * apart / side**2
     sine = np.minimum(np.sqrt(np.maximum(1.0 - at_pins**2, 0.0)), at_point).min(axis=-1)
@@ -79,11 +82,11 @@ def peaucellier(length: float, span: float) -> ExactLine | None:
 
 
 def hart(length: float, span: float) -> ExactLine | None:
-    """The crossed parallelogram of best quality; None where the crank's range is a whole turn."""
+    """Size the crossed parallelogram of best quality; None if the crank's range is a full turn."""
     far = _distance(length, span)
     if far is None:
         return None
-    # Unit long = 1: short, the share, and the widest base D C as a part of what the links reach.
+    # In units of the long link: the short one, the share, and the widest base D C as a part of the links' reach.
     short = np.linspace(0.1, 0.9, GRID)[:, None, None]
     share = np.linspace(0.15, 0.85, 15)[None, :, None]
     least = math.cos(0.25 * span)
@@ -91,6 +94,7 @@ def hart(length: float, span: float) -> ExactLine | None:
     with np.errstate(invalid="ignore"):
         sines = [np.sqrt(1.0 - ((1.0 + short**2 - base**2) / (2.0 * short)) ** 2) for base in (widest, least * widest)]
     sine = np.nan_to_num(np.minimum(*sines) + 0.0 * share)
+    # The crossed parallelogram closes between these bases.
     sine = np.where((widest * least > 1.0 - short) & (widest < 1.0 + short), sine, 0.0)
     distance = (1.0 - share) * (1.0 - short**2) / widest
     lengths = np.stack(np.broadcast_arrays(0.5 * share * widest, np.ones_like(short), short), axis=-1)
@@ -106,15 +110,17 @@ def hart(length: float, span: float) -> ExactLine | None:
 
 
 def _distance(length: float, span: float) -> float | None:
+    """Return the distance D of the line from O4, length units; None for a full turn."""
     return length / (2.0 * math.tan(0.25 * span)) if span < 2.0 * math.pi else None
 
 
 def _best(sine: Real, lengths: Real, size: float) -> tuple[int, ...] | None:
-    """Index of the cell of best quality; ``size`` is the line's length in the unit of the lengths."""
+    """Return the index of the cell of best quality; ``size`` is the line's length in the unit of the lengths."""
     sound = np.flatnonzero((sine > 0.0) & np.isfinite(lengths).all(axis=-1))
     if not len(sound):
         return None
     longest, shortest = (f(axis=-1).ravel()[sound] for f in (lengths.max, lengths.min))
+    # Quality weighs transmission, size and link ratio.
     worth = _QUALITY(sine.ravel()[sound], longest / size, longest / shortest)
     return tuple(int(k) for k in np.unravel_index(sound[int(worth.argmax())], sine.shape))
 

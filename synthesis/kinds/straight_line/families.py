@@ -1,8 +1,8 @@
-"""Fourbars with an approximate straight line: the proportions that a type leaves free, and what they give.
+"""Fourbars with an approximate straight line: the free proportions of each type, and the resulting motion.
 
 Each type is a family of shapes in a frame of its own, O2 at the origin and O4 on the real axis at 1, or with a crank of
-length 1. The motion that counts is the input turning by the given range, counter-clockwise, about a middle that is
-known by symmetry up to an offset:
+length 1. The relevant motion is the input turning by the given range, counter-clockwise, about a middle that is known
+by symmetry up to an offset:
 
 hoeken     crank 1, ground L1, coupler = output = B P = L3, with A, B, P in line; the middle is θ2 = 180° exactly. B is
            the centre of a circle through A, O4, P, and A P a diameter of it (Norton, Sec. 3.7, Fig. 3-29)
@@ -30,26 +30,26 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 SAMPLES = 65
-"""Inputs at which a motion is judged, in Chebyshev's spacing; a band of six ripples is seen to 1 %."""
+"""Number of inputs at which a motion is evaluated, in Chebyshev's spacing; a band of six ripples is resolved to 1 %."""
 
 SPARSER = 4
-"""Velocity and transmission angle, which change slowly, are kept above their limits at every fourth sample."""
+"""Velocity and transmission angle, which change slowly, are constrained at every fourth sample."""
 
 FORWARD = 0.02
-"""Least velocity along the line, in units of the mean: P must not turn back."""
+"""Minimum velocity along the line, in units of the mean: P must not turn back."""
 
 OFF_MIDDLE, OFF_CHORD = 0.6, 0.3
-"""Most that the middle of the range may lie off its place by symmetry, and the line off the chord, radians."""
+"""Maximum offset of the middle of the range from its place by symmetry, and of the line from the chord, radians."""
 
 MIDDLES = np.linspace(-0.9 * OFF_MIDDLE, 0.9 * OFF_MIDDLE, 13)
-"""Offsets of the middle that are tried at first."""
+"""Offsets of the middle that are tried first, radians."""
 
 TURNS = 0.02
-"""A crank of 1 is this much shorter at least than Grashof's condition asks: at zero it would meet a change point."""
+"""Minimum margin of a crank of 1 in Grashof's condition: at zero it would meet a change point."""
 
 
 class Shapes(NamedTuple):
-    """Fourbars, the middles of their input ranges (radians), and lengths that must be positive; shape (m, ...)."""
+    """Fourbars, the middles of their input ranges (radians), and margins that must be positive; shape (m, ...)."""
 
     linkage: Fourbar
     middle: Real
@@ -60,8 +60,8 @@ class Shapes(NamedTuple):
 class Family:
     """A type of straight-line fourbar.
 
-    ``classical`` are the proportions of the books, ``low`` and ``high`` bounds of what is sensible. ``symmetric`` says
-    that middle and direction are exact and nothing is to be found of them.
+    ``classical`` are the proportions of the literature, ``low`` and ``high`` bounds of sensible ones. ``symmetric`` is
+    true if middle and direction are exact and need no search.
     """
 
     name: LineMechanism
@@ -73,13 +73,13 @@ class Family:
     symmetric: bool = False
 
     def bounds(self, *, fixed: tuple[float, ...] | None = None) -> tuple[Real, Real]:
-        """Bounds of a shape, with the proportions fixed or not."""
+        """Return bounds of a shape, with the proportions fixed or free."""
         off = [] if self.symmetric else [OFF_MIDDLE, OFF_CHORD]
         low, high = (self.low, self.high) if fixed is None else (fixed, fixed)
         return np.array([*low, *(-x for x in off)]), np.array([*high, *off])
 
     def beginnings(self, proportions: Real) -> Real:
-        """Shapes with given proportions (m, k) and, where the middle is open, several offsets of it."""
+        """Return shapes with given proportions (m, k) and, if the middle is free, several offsets of it."""
         if self.symmetric:
             return proportions
         repeated = np.repeat(proportions, len(MIDDLES), axis=0)
@@ -88,7 +88,7 @@ class Family:
 
 
 class LineLimits(NamedTuple):
-    """What a motion is judged by: the input's range (radians), the measure, and what the linkage must keep."""
+    """Requirements on a motion: the input's range (radians), the measure, and the constraints on the linkage."""
 
     span: float
     velocity: bool
@@ -97,7 +97,7 @@ class LineLimits(NamedTuple):
 
 
 class Line(NamedTuple):
-    """How P runs: points (m, N), and the line's direction (unit vectors), its length, the input's angles."""
+    """Motion of P: points (m, N), and the line's direction (unit vectors), its length, the input's angles."""
 
     p: Complex
     velocity: Complex
@@ -107,33 +107,35 @@ class Line(NamedTuple):
 
 
 def chebyshev_nodes(count: int) -> Real:
-    """Points in [−1/2, 1/2] that lie densest at the ends, which they contain."""
+    """Return points in [−1/2, 1/2] that are densest at the ends, which they include."""
     return np.asarray(-0.5 * np.cos(np.pi * np.arange(count) / (count - 1)))
 
 
 def run(family: Family, shapes: Real, span: float, nodes: Real) -> tuple[Line, Shapes]:
-    """The motion of P over the range, in the family's frame; NaN where a shape is no linkage there."""
+    """Compute the motion of P over the range, in the family's frame; NaN where a shape is no linkage there."""
     k = len(family.classical)
     members = family.make(shapes[:, :k])
+    # Unsymmetric families search the offset of the middle as a further unknown.
     middle = members.middle if family.symmetric else members.middle + shapes[:, k]
     theta = middle[:, None] + span * nodes
     motion = coupler_motion(members.linkage, theta, np.full(len(shapes), family.assembly))
     chord = motion.p[:, -1] - motion.p[:, 0]
     with np.errstate(invalid="ignore", divide="ignore"):
-        # By symmetry the line of Hoeken's linkage lies along the axis; elsewhere near the chord.
+        # By symmetry the line of Hoeken's linkage lies along the axis; lines of other types lie near the chord.
         along = np.sign(chord.real) + 0j if family.symmetric else chord / np.abs(chord) * np.exp(1j * shapes[:, k + 1])
         length = (chord * along.conj()).real
     return Line(motion.p, motion.velocity, along, length, theta), members
 
 
 def values_of(family: Family, demands: LineLimits, nodes: Real) -> Callable[[Real], Values]:
-    """What is minimised and what is kept, by shape."""
+    """Return the function that computes objective and constraints of shapes."""
 
     def values(shapes: Real) -> Values:
         line, members = run(family, shapes, demands.span, nodes)
         turned = line.direction.conj()[:, None]
         with np.errstate(invalid="ignore", divide="ignore"):
             across = (line.p * turned).imag / line.length[:, None]
+            # In units of the mean velocity, so that 1 means even motion.
             speed = (line.velocity * turned).real * (demands.span / line.length)[:, None]
             positive = np.concatenate(
                 [
@@ -144,6 +146,7 @@ def values_of(family: Family, demands: LineLimits, nodes: Real) -> Callable[[Rea
                 ],
                 axis=1,
             )
+        # Even velocity is the objective, and the width of the strip is limited by the caller.
         if demands.velocity:
             return Values(speed, across, positive)
         return Values(across, np.empty((len(shapes), 0)), positive)
@@ -152,7 +155,7 @@ def values_of(family: Family, demands: LineLimits, nodes: Real) -> Callable[[Rea
 
 
 def configuration(family: Family, shape: Real, span: float) -> tuple[Complex, Line]:
-    """Joints O2, A, B, O4, P at the start of the range, and the motion of one shape in the family's frame."""
+    """Return joints O2, A, B, O4, P at the start of the range, and the motion of one shape in the family's frame."""
     line, members = run(family, shape[None], span, chebyshev_nodes(SAMPLES))
     at = positions(members.linkage, line.theta[:, :1], np.array([family.assembly]))
     pivots = members.linkage.input_pivot[0], members.linkage.output_pivot[0]
@@ -160,7 +163,7 @@ def configuration(family: Family, shape: Real, span: float) -> tuple[Complex, Li
 
 
 def _transmission(linkage: Fourbar, theta: Real) -> Real:
-    """sin² of the transmission angle, by the law of cosines in the triangle A B O4."""
+    """Return sin² of the transmission angle, by the law of cosines in the triangle A B O4."""
     pin = linkage.input_pivot[:, None] + linkage.input[:, None] * np.exp(1j * theta)
     diagonal = np.abs(linkage.output_pivot[:, None] - pin)
     b, c = linkage.coupler[:, None], linkage.output[:, None]
@@ -168,25 +171,26 @@ def _transmission(linkage: Fourbar, theta: Real) -> Real:
 
 
 def _ratios(linkage: Fourbar, most: float) -> Real:
-    """log(most) − log(longest / shortest), for each pair of links."""
+    """Return log(most) − log(longest / shortest), for each pair of links."""
     logs = np.log(linkage.lengths)
     return np.asarray((math.log(most) + logs[:, :, None] - logs[:, None, :]).reshape(len(logs), -1))
 
 
 def _hoeken(x: Real) -> Shapes:
     ground, coupler = x[:, 0], x[:, 1]
+    # A, B and P in line with B in the middle: the coupler point is at twice the coupler.
     linkage = Fourbar.from_lengths(np.ones_like(ground), coupler, coupler, ground, 2.0 * coupler)
     spare = np.stack([ground - 1.0 - TURNS, 2.0 * coupler - ground - 1.0 - TURNS], axis=1)
     return Shapes(linkage, np.full(len(x), np.pi), spare)
 
 
 def _norton(x: Real) -> Shapes:
-    """Hoeken's linkages with 2 L3 = 3 L1 − L2, on which Norton's Table 3-1 lies."""
+    """Return Hoeken's linkages with 2 L3 = 3 L1 − L2, which include those of Norton's Table 3-1."""
     return _hoeken(np.stack([x[:, 0], 1.5 * x[:, 0] - 0.5], axis=1))
 
 
 def _beside(height: Real) -> Real:
-    """Root of a square of a height that must be positive for the middle position to exist."""
+    """Return the root of a squared height that must be positive for the middle position to exist."""
     with np.errstate(invalid="ignore"):
         return np.sqrt(height)
 
@@ -235,6 +239,6 @@ FOURBARS: dict[str, Family] = {
         "evans", _evans, OPEN, (1.0, 3.0, 1.0, 1.9, 3.0), (0.5, 0.8, 0.3, 0.2, 0.3), (3.0, 6.0, 4.0, 6.0, 6.0)
     ),
 }
-"""By the names of the types. Classical: Chebyshev 4:5:2; Watt rockers 2, coupler 1 at right angles to both in the
-middle; Roberts ground twice the coupler, all other sides equal to it; Evans' grasshopper crank = A B = A P with a
-rocker of three times that at right angles to the way of B."""
+"""Families by the names of the types. Classical: Chebyshev 4:5:2; Watt rockers 2, coupler 1 at right angles to both in
+the middle; Roberts ground twice the coupler, all other sides equal to it; Evans' grasshopper crank = A B = A P with a
+rocker of three times that at right angles to the path of B."""

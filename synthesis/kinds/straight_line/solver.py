@@ -1,4 +1,4 @@
-"""Straight-line mechanisms: the narrowest or most even of each type, placed on the line and verified."""
+"""Straight-line mechanisms: find the narrowest or most even of each type, place them on the line, and verify them."""
 
 from __future__ import annotations
 
@@ -36,36 +36,36 @@ from synthesis.outcome.sifting import Sifting
 Real = NDArray[np.float64]
 
 LINK_RATIO = 5.0
-"""Longest link over shortest of a fourbar, at most, where the client says nothing: several families grow straighter the
-more uneven their links are, without end."""
+"""Default maximum of the longest link over the shortest of a fourbar: several families grow ever straighter with more
+uneven links."""
 
 TRANSMISSION = 20.0
-"""Least transmission angle along the line, degrees, where the client says nothing; at a toggle P runs fast and far."""
+"""Default minimum transmission angle along the line, degrees; at a toggle P runs fast and far."""
 
 STRAIGHT = 0.01
-"""Width of the strip in which the line has to stay while its velocity is made even, as a share of its length, where the
-client says nothing; for Hoeken's linkages it is the width of Norton's family at its most even."""
+"""Default width of the strip that must contain the line while its velocity is made even, as a share of its length; for
+Hoeken's linkages it is the width of Norton's family at its most even."""
 
 DRAWN = 160
-"""Proportions drawn at random in a family's bounds, of which the best is improved beside the classical ones."""
+"""Number of random proportions in a family's bounds, of which the best is improved next to the classical ones."""
 
 COARSER, NEARLY = 4, 1e-2
-"""A first descent looks at every fourth sample, and ends where a step gains less than this share."""
+"""A first descent uses every fourth sample, and ends when a step gains less than this share."""
 
 KEPT = 0.98
-"""Share of a demanded deviation that is used: between two samples P is somewhat farther off."""
+"""Share of a required deviation that is used: between two samples P is somewhat farther off."""
 
 SAME_DESIGN = 1e-4
-"""Designs whose joints agree to this share of the length are one and the same."""
+"""Designs whose joints agree to this share of the length are duplicates."""
 
 SLACK = 1e-6
-"""Violation of a constraint with which a shape still counts as one; verification decides."""
+"""Maximum violation of a constraint after the search; verification decides."""
 
 ROUNDING = 1e-9
 """Straightness errors and velocity variations, per cent, below this are rounding."""
 
 EXACT = {"peaucellier": peaucellier, "hart": hart, "scott_russell": scott_russell}
-"""Sizing of the exact types."""
+"""Sizing functions of the exact types."""
 
 Proportions = Literal["optimal", "classical", "exact"]
 
@@ -89,6 +89,7 @@ def solve_straight_line(problem: StraightLineProblem, progress: Progress) -> Str
     for n, name in enumerate(types):
         progress(n / len(types), f"searching {name.replace('_', ' ')} linkages")
         candidates = _exact(problem, name) if name in EXACT else _fourbars(problem, name)
+        # Counts as one rejected candidate, so that the summary explains a missing type.
         sifting.reject("no_such_linkage", not candidates)
         sifting.sift(candidates, partial(_best_side, problem))
     progress(1.0, "verified")
@@ -100,14 +101,14 @@ def solve_straight_line(problem: StraightLineProblem, progress: Progress) -> Str
 
 
 def warm_up() -> None:
-    """Load the kernels: one fourbar, and one mechanism of each exact type."""
+    """Compile or load the kernels: one fourbar, and one mechanism of each exact type."""
     for name in ("hoeken", *EXACT):
         problem = StraightLineProblem(kind="straight_line", length=1.0, crank_range=60.0, mechanism=name)
         solve_straight_line(problem, lambda fraction, message: None)
 
 
 def _ranked(problem: StraightLineProblem, designs: list[StraightLineDesign]) -> list[StraightLineDesign]:
-    """Quality is what was optimized: widths and variations at the level of rounding are all alike."""
+    """Rank designs by the optimized measure; widths and variations at the level of rounding count as equal."""
 
     def optimized(design: StraightLineDesign) -> float:
         metrics = design.metrics
@@ -121,7 +122,7 @@ def _ranked(problem: StraightLineProblem, designs: list[StraightLineDesign]) -> 
 
 
 def _fourbars(problem: StraightLineProblem, name: LineMechanism) -> list[_PlacedMechanism]:
-    """The best of a family of fourbars, and the one of classical proportions."""
+    """Return the best of a family of fourbars, and the one of classical proportions."""
     family = FOURBARS[name]
     constraints = problem.constraints
     demands = LineLimits(
@@ -142,17 +143,20 @@ def _fourbars(problem: StraightLineProblem, name: LineMechanism) -> list[_Placed
     if len(made) == 2 and max(abs(z - made[1].joints[name]) for name, z in made[0].joints.items()) < (
         SAME_DESIGN * problem.length
     ):
+        # The classical proportions are optimal here: offer them once.
         return made[:1]
     return made
 
 
 def _hoeken(problem: StraightLineProblem, demands: LineLimits, nodes: Real) -> dict[Proportions, Real]:
-    """The best of both free proportions, and the best of Norton's family, which sets how straight it must be."""
+    """Return the best of both free proportions, and the best of Norton's family, which sets the required
+    straightness."""
     family = FOURBARS["hoeken"]
     norton = narrowest(values_of(NORTON, demands, nodes), np.array(NORTON.classical), *NORTON.bounds())
     shapes: dict[Proportions, Real] = {}
     start, limit = np.array(family.classical), np.inf
     if norton is not None:
+        # Norton's family within Hoeken's: 2 L3 = 3 L1 − L2.
         start = np.array([norton.shape[0], 1.5 * norton.shape[0] - 0.5])
         if demands.velocity:
             limit = 0.5 * float(np.ptp(values_of(NORTON, demands, nodes)(norton.shape[None]).limited))
@@ -160,6 +164,7 @@ def _hoeken(problem: StraightLineProblem, demands: LineLimits, nodes: Real) -> d
         limit = KEPT * problem.max_deviation / problem.length
     starts = [start]
     if demands.velocity and problem.max_deviation is not None:
+        # A strict deviation may exclude Norton's start; the straightest linkage is a feasible one.
         straightest = values_of(family, demands._replace(velocity=False), nodes)
         fit = narrowest(straightest, np.array(family.classical), *family.bounds())
         starts += [] if fit is None else [fit.shape]
@@ -176,20 +181,22 @@ def _hoeken(problem: StraightLineProblem, demands: LineLimits, nodes: Real) -> d
 def _shapes(
     problem: StraightLineProblem, family: Family, demands: LineLimits, nodes: Real, limit: float
 ) -> dict[Proportions, Real]:
-    """The best of classical proportions, in its range and direction alone, and the best of all."""
+    """Return the best of classical proportions, in its range and direction alone, and the best of all."""
     values, coarse = values_of(family, demands, nodes), values_of(family, demands, nodes[::COARSER])
     chosen: dict[Proportions, Real] = {}
     low, high = np.array(family.low), np.array(family.high)
-    # More even proportions are more common among good ones: the power draws them towards the lower bounds.
+    # Good linkages mostly have even proportions: the power draws them towards the lower bounds.
     drawn = low + (high - low) * np.random.default_rng(problem.seed).random((DRAWN, len(low))) ** 1.5
     starts = []
     for proportions in (np.array([family.classical]), drawn):
         shapes = family.beginnings(proportions)
+        # Merit combines width and violations, so that infeasible starts can be compared too.
         merit = merits(coarse(shapes), limit)[2]
         if np.isfinite(merit).any():
             starts.append(shapes[int(merit.argmin())])
     if not starts:
         return {}
+    # The classical proportions have a finite merit, and their own fit.
     if np.array_equal(starts[0][: len(low)], family.classical):
         fixed = family.bounds(fixed=family.classical)
         first = narrowest(coarse, starts[0], *fixed, half_limit=limit, arrived=NEARLY)
@@ -211,7 +218,7 @@ def _shapes(
 def _placed(
     problem: StraightLineProblem, family: Family, shape: Real, span: float, proportions: Proportions
 ) -> _PlacedMechanism:
-    """A shape, scaled and moved so that P runs from 0 to the length along +x, in the middle of its strip."""
+    """Scale and move a shape so that P runs from 0 to the length along +x, in the middle of its strip."""
     joints, line = configuration(family, shape, span)
     turned = line.direction.conjugate()
     across = (line.p * turned).imag
@@ -231,11 +238,12 @@ def _exact(problem: StraightLineProblem, name: LineMechanism) -> list[_PlacedMec
 
 
 def _best_side(problem: StraightLineProblem, candidate: _PlacedMechanism) -> StraightLineDesign | None:
-    """The design with the input turning the demanded way, or the way that meets the constraints."""
+    """Return the design with the input turning in the required direction, or in one that satisfies the constraints."""
     designs = []
     for rotation in ("ccw", "cw"):
         if problem.rotation in ("any", rotation):
             mechanism = _mechanism(problem, candidate, mirrored=rotation == "cw")
+            # Mirroring does not change the motion, but may move pivots into their regions.
             design = verify_straight_line(problem, mechanism, candidate.family, candidate.proportions)
             if design is not None and design.verification.passed:
                 return design
@@ -268,14 +276,14 @@ def _mechanism(
 def _summary(problem: StraightLineProblem, sifting: Sifting[StraightLineDesign]) -> str:
     if not sifting.passed:
         return (
-            f"No straight-line mechanism was found that meets every demand ({sifting.listed()}); that none exists is "
-            "not proven."
+            f"No straight-line mechanism was found that satisfies all constraints ({sifting.listed()}). One may still "
+            "exist."
         )
     best = _ranked(problem, sifting.passed)[0].metrics
     exact = best.straightness_error <= ROUNDING
-    kept = "to the line exactly" if exact else f"within {best.straightness_error:.3g} % of the length across the line"
+    kept = "follows the line exactly" if exact else f"stays in a strip of {best.straightness_error:.3g} % of the length"
     name = best.family.replace("_", "-").title()
     return (
-        f"{counted(len(sifting.passed), 'straight-line mechanism')}; the first, {name}'s, keeps {kept}, "
-        f"with a velocity that varies by {best.velocity_variation:.3g} %."
+        f"{counted(len(sifting.passed), 'straight-line mechanism')} found. The first, {name}'s, {kept}; "
+        f"its velocity varies by {best.velocity_variation:.3g} %."
     )

@@ -1,7 +1,7 @@
-"""Verification of a straight-line mechanism: it is driven along its line, and what P does is measured.
+"""Verify a straight-line mechanism: drive it along its line, and measure the motion of P.
 
-The mechanism stands at the line's start; its input turns by the stated range the way that takes P forward. Deviation
-and velocity are looked at on a grid, and their extremes ever closer.
+The mechanism stands at the line's start; its input turns by the given range in the direction that moves P forward.
+Deviation and velocity are evaluated on a grid, and their extremes refined.
 """
 
 from __future__ import annotations
@@ -31,13 +31,14 @@ from synthesis.proof.rebuilt import rebuilt
 Real = NDArray[np.float64]
 
 REACHED = 1e-9
-"""How far P may be from the ends of the line, along it, and from an exact line: a share of the length."""
+"""Maximum distance of P from the ends of the line, along it, and from an exact line: a share of the length."""
 
 ROUNDING = 64.0 * float(np.finfo(np.float64).eps)
-"""What rounding adds to that, as a share of the largest coordinate: mechanisms far from the origin lose digits."""
+"""Allowance for rounding in addition, as a share of the largest coordinate: mechanisms far from the origin lose
+digits."""
 
 NO_TOGGLE = 1e-6
-"""The least sine of a transmission angle at which the mechanism still moves one way."""
+"""Minimum sine of a transmission angle at which the mechanism still moves in a defined direction."""
 
 LineMechanisms = FourbarMechanism | ExactLineMechanism
 
@@ -64,16 +65,16 @@ def verify_straight_line(
     Parameters
     ----------
     problem : StraightLineProblem
-        What was asked.
+        The problem.
     design : FourbarMechanism or ExactLineMechanism
-        Dimensions; a fourbar's skeleton is not looked at.
+        Dimensions; a fourbar's skeleton is not used.
     family, proportions
-        What the design is called in its metrics; the family's usual range is taken where none is stated.
+        Type of the design, as reported in its metrics; the family's usual range is the default.
 
     Returns
     -------
     StraightLineDesign or None
-        None where the dimensions are no mechanism that can be driven through the range.
+        None if the mechanism cannot be driven through the range.
     """
     mechanism = rebuilt(design)
     if mechanism is None:
@@ -89,6 +90,7 @@ def verify_straight_line(
         return None
     length = problem.length
     travelled = driven.ends[1].real - driven.ends[0].real
+    # P must have advanced, or the mean velocity is undefined.
     if not travelled > 0.0:
         return None
     mean = travelled / span
@@ -143,6 +145,7 @@ def _checks(
     limit = REACHED + ROUNDING * float(np.abs(driven.joints).max()) / length
     gap = max(abs(driven.ends[0].real), abs(driven.ends[1].real - length)) / length
     checks = [tolerated("reaches_ends", gap, limit)]
+    # An exact mechanism may deviate by rounding only.
     if metrics.proportions == "exact":
         off = metrics.deviation / length
         checks.append(tolerated("exact_line", off, limit))
@@ -161,14 +164,15 @@ def _checks(
 
 
 def _sense(mechanism: Mechanism, along: complex) -> int | None:
-    """Which way the input turns where P goes forward; None at a toggle."""
+    """Return the direction in which the input turns while P goes forward; None at a toggle."""
     motion = drive(mechanism, mechanism.reference_input[None], order=1)
+    # First derivative of P by the input, along the line.
     forward = (motion.joints["P"][1, 0] * along.conjugate()).real
     return (1 if forward > 0.0 else -1) if motion.smooth[0] and forward != 0.0 else None
 
 
 def _driven(mechanism: Mechanism, inputs: Real, start: complex, along: complex, sense: int) -> _Along | None:
-    """What P does along the line, or None where the mechanism cannot be driven all along it."""
+    """Measure the motion of P along the line; None if the mechanism cannot be driven all along it."""
     motion = drive(mechanism, inputs, order=1)
     if not motion.smooth.all():
         return None
@@ -191,18 +195,20 @@ def _driven(mechanism: Mechanism, inputs: Real, start: complex, along: complex, 
 
 
 def _whole_turn(mechanism: Mechanism) -> float | None:
-    """The least transmission angle over a whole turn of the input, degrees; None where it does not turn through."""
+    """Return the minimum transmission angle over a full turn of the input, degrees; None if it does not turn
+    through."""
     inputs = turn_from(float(mechanism.reference_input))
     motion = drive(mechanism, inputs, order=1)
     if not motion.smooth.all():
         return None
     least = min(least_angles(partial(drive, mechanism, order=0), inputs, motion).values())
+    # A linkage may return in another assembly after one turn of its input.
     closed = all(abs(jet[0, -1] - jet[0, 0]) <= REACHED * np.abs(jet[0]).max() for jet in motion.joints.values())
     return math.degrees(least) if closed and least > NO_TOGGLE else None
 
 
 def _lengths(design: LineMechanisms, mechanism: Mechanism) -> list[float]:
-    """Lengths of the links, with the ground's where it has two pivots."""
+    """Return the lengths of the links, with the ground's if it has two pivots."""
     lengths = link_lengths(design)
     if isinstance(design, FourbarMechanism):
         return lengths
