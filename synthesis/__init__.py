@@ -1,8 +1,8 @@
-"""Which mechanism does what is asked: solvers, verification and ranking.
+"""Synthesis of mechanisms: solvers, verification and ranking.
 
-The door is :func:`parse_problem`, which makes a problem of a JSON-like statement, and :func:`solve`; docs/python.md
-shows them at work. Both are imported when they are first asked for, so that ``import synthesis`` costs nothing. The
-kinds of problems are folders of :mod:`synthesis.kinds`.
+The entry points are :func:`parse_problem`, which parses a JSON-like statement into a problem, and :func:`solve`;
+docs/python.md has examples. Both are imported on first use, so that ``import synthesis`` costs nothing. The kinds of
+problems are folders of :mod:`synthesis.kinds`.
 """
 
 from __future__ import annotations

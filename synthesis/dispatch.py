@@ -1,4 +1,4 @@
-"""The one door to every solver."""
+"""Entry point to all solvers."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ __all__ = [
 ]
 
 LOOK_PERIOD_S = 1.0
-"""Period at which it looks whether the kernels of a kind have been compiled: a mark on disk, which tells nobody."""
+"""Period, seconds, of polling whether the kernels of a kind have been compiled, which a mark on disk shows."""
 
 SEARCH_SHARE = 0.9
-"""Share of the progress that the search counts for; the rest is that for the nearest miss where nothing passed."""
+"""Share of the progress for the search; the rest is for the nearest miss if no design passed."""
 
 
 def _silent(_fraction: float, _message: str) -> None:
@@ -49,14 +49,14 @@ def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[An
     Parameters
     ----------
     problem : StatedProblem
-        A statement without contradictions.
+        A problem without contradictions.
     progress : callable, optional
-        Told from time to time how far the work is.
+        Progress callback.
 
     Raises
     ------
     ContradictionError
-        Where ``problem.contradictions()`` is not empty.
+        If ``problem.contradictions()`` is not empty.
     """
     problem.require_consistent()
     told = _silent if progress is None else progress
@@ -64,9 +64,10 @@ def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[An
     asked = searched_for(problem)
     result: Result[Any] = kind.solve(asked, part_of(told, 0.0, SEARCH_SHARE))
     if not any(design.verification.passed for design in result.designs):
-        told(SEARCH_SHARE, "no design found; looking for what comes nearest")
+        told(SEARCH_SHARE, "no design found; searching the nearest miss")
         rest = part_of(told, SEARCH_SHARE, 1.0)
         result = _relaxed(asked, result, relaxation(asked, kind.solve, rest, kind.verify, kind.nearer))
+    # Order matters: expensive measures first select and rank, rounding changes designs, and missing results come last.
     if isinstance(problem, LinkageProblem):
         if problem.rank_by in LOOKED_AT:
             measured = _measured(problem, result, problem.rank_by)
@@ -85,7 +86,7 @@ def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[An
 
 
 def _measured(problem: LinkageProblem, result: Result[Any], *orders: str) -> Result[Any]:
-    """An answer with what is measured on finished designs for these orders, as far as it is stated."""
+    """Add the results that these orders need to the finished designs, if the problem has the blocks for them."""
     if "planes" in orders and problem.layout is not None:
         result = all_laid_out(problem.layout, result)
     if "yield" in orders and problem.manufacture is not None:
@@ -94,7 +95,7 @@ def _measured(problem: LinkageProblem, result: Result[Any], *orders: str) -> Res
 
 
 def _rounded(problem: LinkageProblem, result: Result[Any], kind: Kind[Any, Any]) -> Result[Any]:
-    """An answer with linkages on the grid; where what is measured orders designs, with those near the first of them."""
+    """Round designs to the grid; if they are ranked by a measured quantity, round only the best ones."""
     if problem.rank_by not in LOOKED_AT:
         return on_grid(problem, result, kind.nearly)
     first = in_order(problem, result.designs)[: max(problem.max_designs, GRIDDED)]
@@ -104,7 +105,7 @@ def _rounded(problem: LinkageProblem, result: Result[Any], kind: Kind[Any, Any])
 
 
 def _relaxed(problem: StatedProblem, result: Result[Any], found: Relaxation) -> Result[Any]:
-    """An answer without designs, with those that were found without the demands, or with the nearest miss."""
+    """Add designs found by ignoring constraints, or the nearest miss, to an answer without designs."""
     if not found.sound:
         miss = found.nearest_miss
         told = "" if miss is None else _longest_dwells(miss.reachable)
@@ -112,8 +113,8 @@ def _relaxed(problem: StatedProblem, result: Result[Any], found: Relaxation) -> 
     designs = found.sound[: problem.max_designs]
     count, search = len(designs), result.search
     account = {"complete": False, "candidates": search.candidates + count, "accepted": count}
-    those = f"{counted(count, 'design')} found without the constraints"
-    summary = f"{those} {agreeing(count, 'satisfies', 'satisfy')} them all the same."
+    those = f"{counted(count, 'design')}, found by ignoring the constraints,"
+    summary = f"{those} {agreeing(count, 'satisfies', 'satisfy')} them anyway."
     return result.model_copy(
         update={
             "designs": [*designs, *result.designs][: problem.max_designs],
@@ -125,11 +126,11 @@ def _relaxed(problem: StatedProblem, result: Result[Any], found: Relaxation) -> 
 
 def _longest_dwells(reachable: Reachable) -> str:
     longest = reachable.dwell_angles or ([] if reachable.dwell_angle is None else [reachable.dwell_angle])
-    return f" Dwells of up to {' and '.join(f'{angle:.4g}°' for angle in longest)} were found." if longest else ""
+    return f" The longest dwells found are {' and '.join(f'{angle:.4g}°' for angle in longest)}." if longest else ""
 
 
 def warm_up() -> None:
-    """Compile the kernels of the most usual jobs, or load them from their cache; the rest is :func:`warm_up_rest`."""
+    """Compile the kernels of the most common jobs or load them from cache; :func:`warm_up_rest` does the others."""
     motion = KINDS["motion"]
     solve(motion.problem.model_validate(motion.examples[0]))
 
@@ -137,7 +138,7 @@ def warm_up() -> None:
 def warm_up_rest() -> None:
     """Load everything else that the first jobs may need: the analysis core, and the solvers of all kinds.
 
-    Each is loaded when its kernels have been compiled, by whomever: to compile them here would hold up the jobs.
+    Each is loaded once its kernels have been compiled elsewhere: compiling them here would delay jobs.
     """
     waiting = [LINKAGES, *KINDS]
     while waiting:
@@ -149,12 +150,12 @@ def warm_up_rest() -> None:
 
 
 def load_linkages() -> None:
-    """Compile the kernels of the analysis of linkages, or load them from their cache."""
+    """Compile the kernels of the analysis of linkages or load them from cache."""
     warm.warm_up()
 
 
 def compile_kind(name: str) -> None:
-    """Compile what the solver of a kind may need, that is, whatever its examples call besides what a worker loads."""
+    """Compile all kernels that the solver of a kind may need: those that a worker loads, and those of its examples."""
     kind = KINDS[name]
     _load(name)
     if kind.warm_up is not None:
@@ -163,9 +164,9 @@ def compile_kind(name: str) -> None:
 
 
 def compile_demands() -> None:
-    """Compile what no example calls: linkages that weigh, are made, are steered into a room, sixbars of each type.
+    """Compile kernels that no example uses: for forces, manufacture, workspaces, and sixbars of each type.
 
-    Those of motions may stand on a chain that is stated.
+    This includes motion sixbars on a given chain.
     """
     statement = KINDS["motion"].examples[0] | {
         "max_designs": 1,
@@ -202,7 +203,7 @@ def compile_demands() -> None:
 
 
 def _load(name: str) -> None:
-    """Have the solver of a kind load its kernels: by its own ``warm_up``, or by solving its examples."""
+    """Load the kernels of a kind, by its ``warm_up`` or by solving its examples."""
     kind = KINDS[name]
     if kind.warm_up is not None:
         kind.warm_up()

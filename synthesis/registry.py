@@ -1,4 +1,4 @@
-"""All kinds of problems, collected from their folders, and the union of their statements.
+"""Registry of all kinds of problems, collected from their folders, and the union of their statements.
 
 A new kind is one import and one entry here; see docs/adding-a-kind.md.
 """
@@ -57,7 +57,7 @@ KINDS: dict[str, Kind[Any, Any]] = {
         indexing,
     )
 }
-"""Every kind of problem by its name, in the order in which they are offered."""
+"""Every kind of problem by name, in display order."""
 
 
 def _tag(statement: Any) -> str | None:
@@ -77,21 +77,21 @@ else:
             custom_error_message=f"kind must be given and be one of: {', '.join(KINDS)}",
         ),
     ]
-    """Any problem; the field ``kind`` tells which."""
+    """Any problem, identified by its field ``kind``."""
 
 
 def parse_problem(statement: dict[str, Any]) -> Problem:
-    """The problem of a JSON-like statement; raises pydantic's ValidationError for an ill-formed one."""
+    """Parse a JSON-like statement into a problem; raise pydantic's ValidationError for an ill-formed one."""
     return _PROBLEM.validate_python(statement)
 
 
 def examples(kind: str) -> list[dict[str, Any]]:
-    """The runnable examples of a kind, as a client would post them."""
+    """Return the runnable examples of a kind, as a client would post them."""
     return KINDS[kind].examples
 
 
 def example(kind: str) -> dict[str, Any]:
-    """The first of them."""
+    """Return the first example of a kind."""
     return examples(kind)[0]
 
 

@@ -1,16 +1,16 @@
-"""What there is of a task that no design was found for: the design that breaks its demands least, and what is in reach.
+"""Nearest miss of a problem without designs: the design that violates the constraints least, and reachable values.
 
-The room that is stated is left out first, as what does not fit into it is most easily looked at: the clearance before
-box and obstacles, and these before the zones of pivots, so that what comes nearest to fitting passes by what it can,
-and has its pivots where they may lie. Then one constraint after another is left out and the task is solved again: what
-the designs then have of it is what can be reached beside all other demands. Where that gives none, all constraints are
-left out together. A limit that alone is out of reach is then approached: designs are looked for with limits between
-what was reached and what is demanded, by bisection; by continuation from those at hand where the kind can, and by a
-whole search otherwise. A design that satisfies all demands although it was found without one is an answer: no demand
-hides what the task without it shows. Of gears it is the tolerance that is left out, and a dwell is made shorter.
-Everything else has its nearest miss among the designs that were driven and failed.
+The workspace is relaxed first: the clearance before box and obstacles, and these before the zones of pivots, so that
+the nearest design avoids as many obstacles as possible and has its pivots in their zones. Then the constraints are
+dropped one after another, and the problem is solved again. The value of the dropped constraint in those designs is what
+can be reached with all others. If that gives no design, all constraints are dropped together.
 
-All of this may take no longer than :mod:`synthesis.outcome.allowance` says; what was found by then is told.
+A single limit that cannot be reached is then approached by bisection between the reached and the required value: by
+continuation from known designs if the kind supports it, otherwise by a whole search. A design found without a
+constraint that nevertheless satisfies it is a regular answer. For gears the tolerance is dropped, and a dwell is
+shortened. All other problems have their nearest miss among the designs that were driven and failed.
+
+:mod:`synthesis.outcome.allowance` limits the time of all of this; whatever was found by then is reported.
 """
 
 from __future__ import annotations
@@ -36,38 +36,37 @@ Verify = Callable[[Any, Any], Any]
 Continue = Callable[[Any, Sequence[Any], Progress], Sequence[Any] | None]
 
 MAX_DESIGNS = 20
-"""Designs of each relaxed task that are looked at, those first that are likely to come nearest."""
+"""Maximum number of designs of each relaxed problem, the likely nearest ones first."""
 
 MAX_DRIVEN = 10
-"""The same of linkages with a driver, which take several times as long to find and to verify."""
+"""The same maximum for linkages with a driver, which take several times as long to find and to verify."""
 
 UNMEASURED = 1.0
-"""Relative gap of a broken demand that has no measure, such as a class of linkage: as much as all of a limit."""
+"""Relative gap of a violated constraint without a measure, such as a class of linkage: as large as a whole limit."""
 
 RANK_BY = {"min_transmission_angle": "transmission_angle", "link_length": "size"}
-"""How designs are ordered when a constraint is left out, so that those near to it come first; others by quality."""
+"""Order of designs if a constraint is dropped, so that those close to it come first; by quality for all others."""
 
 APPROACHES = 4
-"""Steps of the bisection at most: a gap is known to a sixteenth of what it was."""
+"""Maximum number of bisection steps: they reduce a gap to a sixteenth."""
 
 KNOWN = 0.005
-"""Share of a limit, or for a zone of the task's size, to which it suffices to know what can be reached."""
+"""Sufficient accuracy of a reachable value, as a share of its limit, or of the task's size for a zone."""
 
 NEAR = 0.05
-"""A single demand broken by no more than this is the trouble: the others are not left out as well."""
+"""Relative violation of a single constraint up to which it is the only obstacle, so that no other is dropped."""
 
 FEW = 2
-"""Constraints up to which each is left out in turn, whatever the others do."""
+"""Maximum number of constraints of which each is dropped in turn in any case."""
 
 REACHABLE: Mapping[str, tuple[str, Callable[[Sequence[float]], float]]] = {
     "min_transmission_angle": ("min_transmission_angle", max),
     "max_link_ratio": ("link_ratio", min),
 }
-"""By the constraint: the measure whose best value beside all other demands is told."""
-
+"""Reported measures by constraint, and the function that selects the best value reachable with all others."""
 
 DRIVER_PIVOT_REGION = "driver_pivot_region"
-"""What the zone of a driver's pivot is called among the constraints."""
+"""Name of the zone of a driver's pivot among the constraints."""
 
 CONSTRAINT_OF: dict[str, str] = {
     "transmission_angle": "min_transmission_angle",
@@ -80,10 +79,10 @@ CONSTRAINT_OF: dict[str, str] = {
     "moving_pivot_region": "moving_pivot_region",
     "driver_pivot_region": DRIVER_PIVOT_REGION,
 } | {name: f"max_{name}" for name in FORCES}
-"""The constraint that a check is of; the zone of a driver's pivot counts as one."""
+"""Constraint by name of its check; the zone of a driver's pivot counts as one."""
 
 DRIVER_JOINTS = "O6", "C", "D"
-"""Joints of a driver dyad, which zones of the linkage's pivots are not for."""
+"""Joints of a driver dyad, to which the zones of the linkage's pivots do not apply."""
 
 RATIO_ERRORS = {
     "gear_train": ("ratio_error", "relative_error"),
@@ -91,11 +90,11 @@ RATIO_ERRORS = {
     "gearbox": ("speeds", "max_error"),
     "layshaft_gearbox": ("ratios", "max_error"),
 }
-"""Of each kind of gears: the check of its tolerance, and the measure that it compares."""
+"""Check of the tolerance and the measure that it compares, by kind of gear problem."""
 
 
 class _Miss(NamedTuple):
-    """A design, the checks that it breaks, and the size of the task, which gaps of zones are measured by."""
+    """A design, its failed checks, and the size of the task, by which distances from zones are measured."""
 
     design: Any
     broken: list[Check]
@@ -103,12 +102,12 @@ class _Miss(NamedTuple):
 
     @property
     def distance(self) -> float:
-        """Sum of the relative gaps: what misses are compared by."""
+        """Sum of the relative gaps, by which misses are compared."""
         return math.fsum(_relative_gap(check, self.size) for check in self.broken)
 
 
 class Relaxation(NamedTuple):
-    """What a task has without its demands: designs that keep them all the same, or what comes nearest."""
+    """Result of relaxing a problem: designs that satisfy all constraints after all, or the nearest miss."""
 
     sound: list[Any]
     nearest_miss: NearestMiss[Any] | None
@@ -122,29 +121,28 @@ def relaxation(
     nearer: Continue | None = None,
     allowance: Allowance | None = None,
 ) -> Relaxation:
-    """What there is of a problem that no design was found for.
+    """Find the nearest miss of a problem for which no design was found.
 
     Parameters
     ----------
     problem : StatedProblem
-        A consistent statement.
+        A consistent problem.
     solve : callable
         The solver of its kind, which found no design.
     progress : callable
-        Told how far the work is.
+        Progress callback.
     verify : callable, optional
-        Measures a finished mechanism against a statement of the kind, where the kind has one.
+        Measures a finished mechanism against a problem of the kind.
     nearer : callable, optional
-        Designs of a statement by continuation from designs of a looser one, where the kind has one; None for
-        statements that it has none for.
+        Continues designs of a looser problem to this one; returns None for problems without continuation.
     allowance : Allowance, optional
-        What may be spent.
+        Time budget.
 
     Returns
     -------
     Relaxation
-        Designs that satisfy all demands although they were found without one; where there are none, the nearest miss,
-        which is None where nothing is found without the demands either.
+        Designs that satisfy all constraints although they were found without one. If there are none, the nearest miss,
+        or None if no design is found without the constraints either.
     """
     reachable: dict[str, Any] = {}
     purse = Allowance() if allowance is None else allowance
@@ -172,13 +170,13 @@ def relaxation(
 
 
 def _nothing(_problem: Any, _designs: Sequence[Any], _progress: Progress) -> None:
-    """The continuation of kinds that have none."""
+    """Return None: the continuation of kinds that support none."""
 
 
 def _without_room(problem: Any, solve: Metered, progress: Progress) -> tuple[list[Any], list[_Miss]]:
-    """Designs of the task without the room that is stated: those that fit into it all the same, and the others.
+    """Solve the problem with a relaxed workspace; return designs that fit into the workspace anyway, and the others.
 
-    More is left out only where there are none without less.
+    More of the workspace is dropped only if dropping less gives no design.
     """
     space = getattr(problem, "space", None)
     if space is None:
@@ -205,7 +203,7 @@ def _without_room(problem: Any, solve: Metered, progress: Progress) -> tuple[lis
 
 
 def _without_room_checks(design: Any) -> Any:
-    """A design to be judged by another room than the one that it was found in."""
+    """Remove the workspace checks of a design, so that it can be checked against another workspace."""
     checks = [check for check in design.verification.checks if check.name not in ROOM]
     return design.model_copy(update={"verification": Verification.of(checks)})
 
@@ -213,14 +211,14 @@ def _without_room_checks(design: Any) -> Any:
 def _without_constraints(
     problem: Any, solve: Metered, nearer: Metered, progress: Progress, reachable: dict[str, float]
 ) -> tuple[list[Any], list[_Miss]]:
-    """Designs of the task without one of its constraints; without all where that gives none.
+    """Solve the problem without one of its constraints, or without all if that gives no design.
 
-    Returns those that keep the constraints all the same, and those that do not. ``reachable`` is filled.
+    Return the designs that satisfy all constraints anyway, and those that do not. ``reachable`` is filled.
     """
     stated = _stated(problem)
     free: list[_Miss] = []
     if len(stated) > FEW:
-        # Of many only those are tried one by one that the best design without any breaks.
+        # With many constraints drop only those one by one that the best design without any of them violates.
         relaxed = _relaxed(problem, stated, solve, progress)
         if relaxed.sound or not relaxed.misses:
             return relaxed.sound, []
@@ -249,7 +247,7 @@ def _without_constraints(
     if not misses and not free and len(stated) > 1:
         relaxed = _relaxed(problem, stated, solve, progress)
         return relaxed.sound, relaxed.misses
-    if searched and not exhaustive:  # where all designs are known none is nearer
+    if searched and not exhaustive:  # if all designs are known, none is nearer
         reached = _approached(problem, misses, lambda eased, _, told: solve(eased, told).designs, solve) or []
         if reached and not reached[0].broken:
             return [miss.design for miss in reached], []
@@ -263,7 +261,7 @@ def _without_constraints(
 
 
 def _without_tolerance(problem: Any, solve: Metered, progress: Progress, reachable: dict[str, float]) -> list[_Miss]:
-    """The most exact gears where none are within the tolerance."""
+    """Find the most accurate gears if none are within the tolerance."""
     if problem.kind not in RATIO_ERRORS or problem.tolerance is None:
         return []
     name, measure = RATIO_ERRORS[problem.kind]
@@ -284,9 +282,9 @@ def _without_tolerance(problem: Any, solve: Metered, progress: Progress, reachab
 def _with_shorter_dwells(
     problem: Any, solve: Metered, verify: Verify | None, progress: Progress, reachable: dict[str, Any]
 ) -> tuple[list[Any], list[_Miss]]:
-    """What rests for longest where nothing rests for as long as is demanded, approached by bisection.
+    """Find the longest possible dwell by bisection if no design has the required one.
 
-    Returns designs that satisfy all demands all the same, and those that do not. ``reachable`` is filled.
+    Return designs that satisfy all constraints anyway, and those that do not. ``reachable`` is filled.
     """
     if problem.kind != "dwell" or verify is None:
         return [], []
@@ -317,7 +315,7 @@ def _with_shorter_dwells(
 
 
 def _failed(problem: StatedProblem, solve: Metered, progress: Progress) -> list[_Miss]:
-    """Designs that were driven and break a check."""
+    """Return the designs that were driven and fail a check."""
     asked = problem.model_copy(update={"include_failed": True, "max_designs": _most(problem)})
     return [
         _Miss(design, [check for check in design.verification.checks if not check.passed])
@@ -326,7 +324,7 @@ def _failed(problem: StatedProblem, solve: Metered, progress: Progress) -> list[
 
 
 def _stated(problem: StatedProblem) -> list[str]:
-    """The constraints that demand more than a sound motion."""
+    """Return the constraints beyond a sound motion that differ from their defaults."""
     constraints = getattr(problem, "constraints", None)
     if not isinstance(constraints, Constraints):
         return []
@@ -340,12 +338,12 @@ def _stated(problem: StatedProblem) -> list[str]:
 
 
 def _zone_of_driver(problem: Any) -> Region | None:
-    """Where the pivot of a driver is to lie, if that is stated."""
+    """Return the zone of a driver's pivot, if one is given."""
     return problem.driver.pivot_region if _driven(problem) else None
 
 
 def _without(problem: Any, names: Sequence[str]) -> dict[str, Any]:
-    """The fields of a statement that change where these constraints are left out."""
+    """Return the changed fields of a problem without these constraints."""
     plain = type(problem.constraints)()
     left_out = {name: getattr(plain, name) for name in names if name != DRIVER_PIVOT_REGION}
     fields: dict[str, Any] = {"constraints": problem.constraints.model_copy(update=left_out)}
@@ -355,7 +353,7 @@ def _without(problem: Any, names: Sequence[str]) -> dict[str, Any]:
 
 
 class _Relaxed(NamedTuple):
-    """What a task has without some of its constraints."""
+    """Designs of a problem without some of its constraints."""
 
     designs: list[Any]
     sound: list[Any]
@@ -374,16 +372,16 @@ def _relaxed(problem: Any, left_out: Sequence[str], solve: Metered, progress: Pr
 
 
 def _constraints_of(miss: _Miss) -> list[str]:
-    """The constraints that a design breaks, in the order in which they are declared."""
+    """Return the constraints that a design violates, in the order of their declaration."""
     broken = {CONSTRAINT_OF[check.name] for check in miss.broken}
     return [name for name in (*Constraints.model_fields, DRIVER_PIVOT_REGION) if name in broken]
 
 
 def _approached(problem: Any, misses: Sequence[_Miss], further: Continue, spent: Metered) -> list[_Miss] | None:
-    """The nearest miss of one limit, brought nearer to it as long as designs are found and one more step fits.
+    """Bring the nearest miss of one limit closer to it, as long as designs are found and another step fits the budget.
 
-    Where designs are met that break nothing these are returned, best first. None where there is no such miss, or none
-    that ``further`` continues.
+    Designs that violate nothing are returned, best first, if any are found. None if there is no such miss, or if
+    ``further`` does not support the problem.
     """
     single = sorted((miss for miss in misses if len(miss.broken) == 1), key=lambda miss: miss.distance)
     if not single or single[0].broken[0].value is None or single[0].broken[0].limit is None:
@@ -418,7 +416,7 @@ def _silent(_fraction: float, _message: str) -> None:
 
 
 def _eased(problem: Any, check: str, limit: float) -> dict[str, Any] | None:
-    """The fields of a statement that change with another limit for what a check is of; None where it has none."""
+    """Return the changed fields of a problem with another limit for a check; None if the check has no limit."""
     constraints: Constraints = problem.constraints
     lengths = constraints.link_length
     update: dict[str, Any]
@@ -444,7 +442,7 @@ def _eased(problem: Any, check: str, limit: float) -> dict[str, Any] | None:
 
 
 def judged(problem: Any, design: Any) -> _Miss:
-    """A design of a relaxed task with the checks of the constraints that were stated, measured on the answer."""
+    """Check a design of a relaxed problem against the original constraints, measured on the answer."""
     joints, ground = design.mechanism.skeleton.joints, _ground(design)
     apart = {"P", *(DRIVER_JOINTS if _driven(problem) else ())}
     fixed = [complex(*joints[name]) for name in ground if name not in apart]
@@ -470,19 +468,19 @@ def _ground(design: Any) -> list[str]:
 
 
 def _relative_gap(check: Check, size: float) -> float:
-    """A gap as a share of what it is measured by."""
+    """Return a gap as a share of its unit of measure."""
     if check.value is None or check.limit is None:
         return UNMEASURED
     return abs(check.value - check.limit) / _unit(check, size)
 
 
 def _unit(check: Check, size: float) -> float:
-    """What a gap is measured by: its limit, or the size of the task where that is zero, as for zones."""
+    """Return the unit of a gap: its limit, or the size of the task if the limit is 0, as for zones."""
     return abs(check.limit or 0.0) or (size if check.dimension == LENGTH else 1.0)
 
 
 def _size_of(problem: Any) -> float:
-    """The size of a task; where it has none by itself, that of its zones. Length units."""
+    """Return the size of a task in length units; for a task without size, that of its zones."""
     size = getattr(problem, "task_size", None)
     if size is not None:
         return float(size)
@@ -492,10 +490,10 @@ def _size_of(problem: Any) -> float:
 
 
 def _driven(problem: Any) -> bool:
-    """Whether a driver is asked for beside the linkage."""
+    """Return whether a driver dyad is requested."""
     return getattr(problem, "driver", None) is not None
 
 
 def _most(problem: Any) -> int:
-    """Designs of a relaxed task that are looked at."""
+    """Return the maximum number of designs of a relaxed problem."""
     return MAX_DRIVEN if _driven(problem) else MAX_DESIGNS

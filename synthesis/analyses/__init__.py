@@ -59,7 +59,7 @@ FAMILIES: dict[str, Family] = {
 
 
 def family(mechanism: Any) -> Family:
-    """The family of a mechanism as JSON has it; linkages' where it cannot be told."""
+    """Return the family of a mechanism in JSON form; that of linkages if it is unclear."""
     kind = mechanism.get("type") if isinstance(mechanism, dict) else None
     return FAMILIES.get(kind, linkage.FAMILY) if isinstance(kind, str) else linkage.FAMILY
 

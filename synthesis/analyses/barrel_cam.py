@@ -36,7 +36,7 @@ class BarrelCamAnalysisRequest(DrivenRequest[GivenBarrelCam]):
     """A barrel cam and how it turns; a full turn in 360 steps by default."""
 
     model_config = ConfigDict(
-        title="Barrel cam, what its groove does",
+        title="Barrel cam: motion of its groove",
         json_schema_extra={
             "examples": [
                 {
@@ -62,7 +62,7 @@ class BarrelCamAnalysisRequest(DrivenRequest[GivenBarrelCam]):
         given = self.mechanism
         radius, roller = given.cylinder_radius, given.follower.roller_radius
         if len(at) * len(given.lower_wall.x) > MAX_EFFORT:
-            raise MechanismError("/lower_wall", "too many points for so many positions; take fewer of one of them")
+            raise MechanismError("/lower_wall", "too many points and positions; reduce one of them")
         x = radius * np.radians(at)
         walls = self._wall_of("lower_wall", given.lower_wall), self._wall_of("upper_wall", given.upper_wall)
         try:
@@ -100,14 +100,14 @@ class BarrelCamAnalysisRequest(DrivenRequest[GivenBarrelCam]):
 
 
 class BarrelCamAnalysis(DrivenAnalysis):
-    """Everything that the analysis core measures on a barrel cam over the motion; null where nothing is touched."""
+    """Analysis of a barrel cam over the motion; null where the roller touches no wall."""
 
     valid: list[bool]
     follower: FollowerSeries
     play: list[float | None] = Field(
-        description="Between the walls, along the axis; negative where the roller does not fit."
+        description="Play between the walls along the axis; negative if the roller does not fit."
     )
-    pressure_angle: list[float | None] = Field(description="Degrees, without sign.")
+    pressure_angle: list[float | None] = Field(description="Magnitude, degrees.")
     forces: ForceSeries | None
 
 

@@ -44,7 +44,7 @@ Given = TypeVar("Given", bound=Statement)
 
 
 class DrivenRequest(AnalysisRequest, Generic[Given]):
-    """A given mechanism whose input moves as stated: a full turn in 360 steps by default."""
+    """A given mechanism and the motion of its input: a full turn in 360 steps by default."""
 
     mechanism: Given
     motion: StatedMotion = Sweep()
@@ -55,7 +55,7 @@ class DrivenRequest(AnalysisRequest, Generic[Given]):
 
 
 class DrivenAnalysis(Answer):
-    """The positions of the input for which everything else is told."""
+    """Positions of the input for which all results are given."""
 
     input_angle: list[float]
     time: list[float] | None
@@ -64,14 +64,14 @@ class DrivenAnalysis(Answer):
 class TurningPart(Answer):
     """What turns at a fixed ratio to the input, over the positions."""
 
-    speed_ratio: float = Field(description="Speed over the input's; negative: the other way.")
-    angle: list[float] = Field(description="From the position at input angle 0, degrees.")
+    speed_ratio: float = Field(description="Speed over the speed of the input; negative if it turns the other way.")
+    angle: list[float] = Field(description="Angle from the position at input angle 0, degrees.")
     omega: list[float] = Field(description="rad/s")
     alpha: list[float] = Field(description="rad/s²")
 
 
 class Family(NamedTuple):
-    """Mechanisms that are stated and answered in one shape."""
+    """Family of mechanisms with a common form of request and answer."""
 
     request: type[AnalysisRequest]
     analysis: type[Answer]

@@ -46,8 +46,8 @@ class Load(Statement):
 
     mass: PositiveNumber
     spring_rate: NonNegative = 0.0
-    preload: NonNegative = Field(default=0.0, description="Toward the cam at zero displacement.")
-    damping: NonNegative = Field(default=0.0, description="Force for each unit of velocity.")
+    preload: NonNegative = Field(default=0.0, description="Preload towards the cam at zero displacement.")
+    damping: NonNegative = Field(default=0.0, description="Damping force per unit of velocity.")
 
     def core(self) -> FollowerLoad:
         """The load of the analysis core."""
@@ -73,7 +73,8 @@ class Cutter(Statement):
 
     radius: NonNegative
     chordal_tolerance: PositiveNumber | None = Field(
-        default=None, description="Greatest distance of the straight moves from the path; null: the motion's positions."
+        default=None,
+        description="Maximum distance of the straight moves from the path; null: use the positions of the motion.",
     )
 
 
@@ -94,7 +95,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
     """A cam and how it turns; a full turn in 360 steps by default."""
 
     model_config = ConfigDict(
-        title="Cam, what its profile does",
+        title="Cam: motion and forces of its profile",
         json_schema_extra={
             "examples": [
                 {
@@ -117,7 +118,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
         """What no single field shows."""
         faults = super().faults()
         if self.train is not None and self.motion.rate <= 0.0:
-            faults.append(("/motion/speed", "a vibration needs a speed that is positive"))
+            faults.append(("/motion/speed", "a vibration needs a positive speed"))
         return faults
 
     def answer(self) -> dict[str, Any]:
@@ -125,7 +126,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
         at, speed, time = self.motion.inputs()
         contour, follower = self.mechanism.contour(), self.mechanism.core_follower()
         if len(at) * len(contour.points) > MAX_EFFORT:
-            raise MechanismError("/profile", "too many points for so many positions; take fewer of one of them")
+            raise MechanismError("/profile", "too many points and positions; reduce one of them")
         rotation = self.mechanism.rotation
         contact = contour.follow(follower, np.radians(at), rotation)
         unit = 180.0 / math.pi if isinstance(follower, OscillatingRoller | OscillatingFlat) else 1.0
@@ -171,7 +172,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
 
     def _response(self, contour: Contour, follower: Follower, at: Real) -> dict[str, Any]:
         """The steady vibration at the motion's cam angles."""
-        assert self.train is not None, "only asked for with a train"
+        assert self.train is not None, "needs `train`"
         program = measured_program(contour, follower, self.mechanism.rotation, MEASURED)
         vibration = Response(program, self.train.core(), self.motion.rate)
         theta, grid = np.mod(np.radians(at), math.tau), vibration.angle
@@ -189,7 +190,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
 
     def _cutter_path(self, contour: Contour, follower: Follower, at: Real) -> dict[str, Any]:
         """Centres of the cutter at the motion's angles, or at angles as close as the tolerance asks."""
-        assert self.cutter is not None, "only asked for with a cutter"
+        assert self.cutter is not None, "needs `cutter`"
         cutter, rotation = self.cutter, self.mechanism.rotation
 
         def centres(theta: Real) -> NDArray[np.complex128]:
@@ -251,7 +252,7 @@ FLAT = 1e-6
 class FollowerSeries(Answer):
     """The follower over the positions; null where it touches nothing."""
 
-    position: list[float | None] = Field(description="Lengths, or degrees of an arm.")
+    position: list[float | None] = Field(description="Displacement, length units, or degrees of an arm.")
     velocity: list[float | None]
     acceleration: list[float | None]
 
@@ -266,9 +267,11 @@ class CurvePoints(Answer):
 class ForceSeries(Answer):
     """Forces of the load over the positions."""
 
-    along: list[float | None] = Field(description="Along the follower's motion; not above zero: contact is lost.")
-    normal: list[float | None] = Field(description="Between the surfaces.")
-    torque: list[float | None] = Field(description="That turns the camshaft.")
+    along: list[float | None] = Field(
+        description="Force along the follower's motion; contact is lost where it is not positive."
+    )
+    normal: list[float | None] = Field(description="Force between the surfaces.")
+    torque: list[float | None] = Field(description="Torque that turns the camshaft.")
 
 
 class ResponseSeries(Answer):
@@ -278,7 +281,7 @@ class ResponseSeries(Answer):
     frequency_ratio: float
     resonant: bool
     too_slow: bool = Field(description="The natural frequency is below ten times the speed.")
-    lag: list[float | None] = Field(description="Of the mass behind the cam's displacement; length or radians.")
+    lag: list[float | None] = Field(description="Deviation of the mass from the cam's displacement; length or radians.")
     acceleration: list[float | None]
     contact_force: list[float | None]
     least_contact_force: float | None
@@ -294,7 +297,7 @@ class CutterPath(Answer):
 
 
 class ProfileFacts(Answer):
-    """What the points alone tell."""
+    """Properties of the profile points alone."""
 
     size: float = Field(description="Greatest radius.")
     least_convex_radius: float | None
@@ -304,16 +307,18 @@ class ProfileFacts(Answer):
 
 
 class CamAnalysis(DrivenAnalysis):
-    """Everything that the analysis core measures on a cam over the motion."""
+    """Analysis of a cam over the motion."""
 
     valid: list[bool]
     follower: FollowerSeries
     contact: CurvePoints
     play: list[float | None] | None = Field(
-        description="In a groove, from the inner wall to the outer; negative where the roller does not fit."
+        description="Play in a groove from the inner to the outer wall; negative if the roller does not fit."
     )
-    pressure_angle: list[float | None] = Field(description="Degrees, without sign.")
-    radius_of_curvature: list[float | None] = Field(description="Of the profile at the contact, convex positive.")
+    pressure_angle: list[float | None] = Field(description="Magnitude, degrees.")
+    radius_of_curvature: list[float | None] = Field(
+        description="Radius of curvature of the profile at the contact, positive if convex."
+    )
     forces: ForceSeries | None
     response: ResponseSeries | None
     cutter_path: CutterPath | None

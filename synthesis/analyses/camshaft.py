@@ -26,7 +26,9 @@ Share = Annotated[float, Field(strict=True, gt=0.0, le=1.0)]
 
 def _plate(cam: Any) -> Any:
     if isinstance(cam, dict) and cam.get("type", "cam") != "cam":
-        raise PydanticCustomError("no_plate_cam", "only plate cams turn on a camshaft; analyse others by themselves")
+        raise PydanticCustomError(
+            "no_plate_cam", "a camshaft carries plate cams only; analyse other cams by themselves"
+        )
     return cam
 
 
@@ -44,7 +46,7 @@ class GivenCamshaft(Statement):
     type: Literal["camshaft"]
     cams: Annotated[list[ShaftCam], Field(min_length=1, max_length=24)]
     fluctuation: Share | None = Field(
-        default=None, description="(ω_max − ω_min)/ω that a flywheel shall keep; null: no flywheel is sized."
+        default=None, description="Maximum (ω_max − ω_min)/ω with a flywheel; null: no flywheel is sized."
     )
 
 
@@ -78,9 +80,9 @@ class CamshaftAnalysisRequest(DrivenRequest[GivenCamshaft]):
         """What no single field shows."""
         faults = super().faults()
         if self.motion.rate <= 0.0:
-            faults.append(("/motion/speed", "the shaft must turn with a speed that is positive"))
+            faults.append(("/motion/speed", "the shaft needs a positive speed"))
         if self.motion.acceleration != 0.0:
-            faults.append(("/motion/acceleration", "the torques are those of a steady speed; leave it out"))
+            faults.append(("/motion/acceleration", "the torques are for a constant speed; leave it out"))
         return faults
 
     def answer(self) -> dict[str, Any]:
@@ -116,17 +118,19 @@ def _finite(value: float) -> float | None:
 
 
 class CamshaftAnalysis(Answer):
-    """What several cams ask of their shaft at a steady speed."""
+    """Torque of several cams on their shaft at a constant speed."""
 
     input_angle: list[float]
     torque: list[float]
-    torques: list[list[float]] = Field(description="Of each cam alone.")
+    torques: list[list[float]] = Field(description="Results for each cam alone.")
     mean_torque: float
     min_torque: float
     max_torque: float
-    min_contact_forces: list[float] = Field(description="Of each cam; not above zero: its follower jumps.")
+    min_contact_forces: list[float] = Field(
+        description="Minimum contact force of each cam; its follower jumps if this is not positive."
+    )
     jump_speeds: list[float | None] = Field(description="Speed at which each follower first leaves its cam, rad/s.")
-    least_preloads: list[float] = Field(description="With which each follower just stays on its cam.")
+    least_preloads: list[float] = Field(description="Minimum preload that keeps each follower on its cam.")
     energy_fluctuation: float
     flywheel_inertia: float | None
 

@@ -81,7 +81,7 @@ class ContourFollower(Answer):
 
 
 class Peaks(Answer):
-    """Greatest displacement, velocity and acceleration over a turn, by the radian of cam rotation."""
+    """Maximum displacement, velocity and acceleration over a turn, per radian of cam rotation."""
 
     s: float
     v: float
@@ -89,13 +89,13 @@ class Peaks(Answer):
 
 
 class ContourCamAnalysis(DrivenAnalysis):
-    """What a cam of specified contour does to its follower."""
+    """Motion of the follower of a cam of specified contour."""
 
     follower: ContourFollower
-    pressure_angle: list[float] = Field(description="Degrees, positive while rising without offset.")
+    pressure_angle: list[float] = Field(description="Pressure angle, degrees, positive while rising without offset.")
     base_radius: float
     prime_radius: float | None
-    least_radius: float = Field(description="Least convex radius of curvature of the contour.")
+    least_radius: float = Field(description="Minimum convex radius of curvature of the contour.")
     joints: list[float] = Field(description="Cam angles at which the follower passes from one part to the next.")
     max_pressure_angle: float
     peaks: Peaks

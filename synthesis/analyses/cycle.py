@@ -31,7 +31,7 @@ def listed_branches(mechanism: Mechanism) -> list[Branch]:
         Where they cannot be listed, or not while a client waits.
     """
     if effort(mechanism) > MAX_EFFORT:
-        raise TopologyError("there are too many assemblies, or turns until all repeats, to be listed at once")
+        raise TopologyError("too many assemblies, or too many turns until the motion repeats, to list all circuits")
     return branches(mechanism)
 
 

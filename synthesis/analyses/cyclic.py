@@ -1,4 +1,4 @@
-"""What is told of a force over a closed cycle: mean, rms, harmonics, and the flywheel that evens the drive."""
+"""Reported properties of a force over a closed cycle: mean, rms, harmonics, and a flywheel for the drive."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ AGAIN = 1e-6
 """Share of its peak by which the drive may differ at the ends of a cycle: rounding, magnified near a toggle."""
 
 MOST_ORDERS = 24
-"""Harmonics told at most."""
+"""Maximum number of reported harmonics."""
 
 
 def closes(mechanism: Mechanism, at: Real, drive: Real, turns: int) -> bool:
-    """Whether the motion is a whole number of cycles of so many turns, and what drives it is again what it was."""
+    """Return whether the motion is a whole number of cycles of ``turns`` turns with a drive that repeats."""
     if mechanism.driven_by_slide or len(at) < 3 or not turns:
         return False
     cycles = abs(float(at[-1] - at[0])) / (FULL_TURN * turns)
@@ -52,7 +52,7 @@ def rms(values: Real, closed: bool) -> float | None:
 
 
 def _orders(values: NDArray[Any], turns: float) -> list[tuple[str, complex, complex]]:
-    """Fourier coefficients of values over a closed run of so many turns: order, of it and of its negative."""
+    """Compute Fourier coefficients of values over a closed run of ``turns`` turns, for each order and its negative."""
     count = len(values) - 1
     found = np.fft.fft(values[:-1]) / count
     most = min(MOST_ORDERS * round(turns), (count - 1) // 2)

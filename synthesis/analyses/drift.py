@@ -1,4 +1,4 @@
-"""How far a train is from the ratio that is wanted of it, as a clock shows it: seconds a day."""
+"""Drift of a train from its required ratio, as of a clock: seconds per day."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from synthesis.model.ratio_target import parse_target
 SECONDS_PER_DAY = 86_400.0
 
 ACCURATE = 256
-"""Bits to which the wanted ratio is enclosed: errors are told to all digits of a float."""
+"""Number of bits of the required ratio's enclosure: errors are correct to all digits of a float."""
 
 WANTED = (
     "The ratio that the train ought to have, a number or an exact expression such as `354375/12000`: the answer then "
@@ -22,11 +22,11 @@ WANTED = (
 
 
 class Drift(Answer):
-    """What the output of a train gains or loses against one of exactly the wanted ratio, its input kept to time."""
+    """Gain or loss of a train's output against a train with exactly the required ratio and the same input."""
 
-    relative_error: float = Field(description="Of the ratio, with its sign.")
-    seconds_per_day: float = Field(description="Positive: the output is fast.")
-    days_per_second: float | None = Field(description="Days until it is a second off; null where it never is.")
+    relative_error: float = Field(description="Relative error of the ratio, with its sign.")
+    seconds_per_day: float = Field(description="Seconds per day; positive if the output is fast.")
+    days_per_second: float | None = Field(description="Days until the error is one second; null if it never is.")
     opposite: bool | None = optional(
         "True where ratio and wanted ratio differ in sign: the train turns the other way, or about axes that are not "
         "parallel. The rest is then that of their sizes."
@@ -34,7 +34,7 @@ class Drift(Answer):
 
 
 def drifting(ratio: Fraction | None, wanted: float | str | None) -> dict[str, Any]:
-    """The field ``drift`` for a train of exactly this ratio; nothing where none is wanted."""
+    """Return the field ``drift`` for a train of exactly this ratio; empty without a required ratio."""
     if ratio is None or wanted is None:
         return {}
     sign, target = parse_target(wanted)

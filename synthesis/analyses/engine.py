@@ -27,7 +27,7 @@ class GivenEngine(Statement):
     """A crankshaft with its cylinders; of a design's other fields none is needed."""
 
     type: Literal["engine"]
-    crank: PositiveLength = Field(description="Radius of the throws.")
+    crank: PositiveLength = Field(description="Radius of the crank throws.")
     rod: PositiveLength
     cylinders: Annotated[list[GivenCylinder], Field(min_length=1, max_length=24)]
     layout: Any = None
@@ -44,7 +44,7 @@ class PistonMotion(Answer):
 
 
 class EngineAnalysis(DrivenAnalysis):
-    """What is known of an engine in motion."""
+    """Analysis of an engine in motion."""
 
     valid: list[bool]
     cylinders: list[PistonMotion]
@@ -54,7 +54,7 @@ class EngineAnalysisRequest(DrivenRequest[GivenEngine]):
     """A piston engine and how its crank turns."""
 
     model_config = ConfigDict(
-        title="Piston engine, how it turns",
+        title="Piston engine: motion of its pistons",
         json_schema_extra={
             "examples": [
                 {

@@ -25,7 +25,7 @@ class GivenFlywheel(Statement):
 
 
 class FlywheelAnalysis(DrivenAnalysis):
-    """What is known of a flywheel in motion."""
+    """Analysis of a flywheel in motion."""
 
     valid: list[bool]
     angle: list[float]
@@ -40,7 +40,7 @@ class FlywheelAnalysisRequest(DrivenRequest[GivenFlywheel]):
     """A flywheel and how it turns."""
 
     model_config = ConfigDict(
-        title="Flywheel, how it turns",
+        title="Flywheel: energy and stress",
         json_schema_extra={
             "examples": [
                 {
@@ -59,7 +59,7 @@ class FlywheelAnalysisRequest(DrivenRequest[GivenFlywheel]):
 
     length_unit: LengthUnit = "mm"
     units: Literal["si", "consistent"] = Field(
-        default="si", description="`si`: lengths are converted to metres; `consistent`: nothing is."
+        default="si", description="`si`: lengths are converted to metres; `consistent`: nothing is converted."
     )
 
     def faults(self) -> list[tuple[str, str]]:

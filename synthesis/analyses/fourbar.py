@@ -43,7 +43,7 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 Topic = Literal["cognates", "centrodes", "curvature", "coupler_curve"]
-"""What can be asked for."""
+"""Results that can be requested."""
 
 ASSEMBLY = {OPEN: "open", CROSSED: "crossed"}
 KIND = {CRUNODE: "crunode", CUSP: "cusp", ACNODE: "acnode"}
@@ -68,8 +68,8 @@ class FourbarCognates(Answer):
 class Centrodes(Answer):
     """The coupler's pole over the positions."""
 
-    fixed: Points = Field(description="In the global frame.")
-    moving: Points = Field(description="In the coupler's frame: origin at A, x axis towards B.")
+    fixed: Points = Field(description="Coordinates in the global frame.")
+    moving: Points = Field(description="Coordinates in the coupler's frame: origin at A, x axis towards B.")
 
 
 class Curvature(Answer):
@@ -109,7 +109,7 @@ class CouplerCurve(Answer):
 
 
 class FourbarAnalysis(Answer):
-    """What was asked for of a fourbar; the rest is null."""
+    """Requested results for a fourbar; all others are null."""
 
     cognates: FourbarCognates | None = None
     centrodes: Centrodes | None = None

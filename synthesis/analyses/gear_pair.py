@@ -36,10 +36,10 @@ class GivenHelicalPair(Statement):
     teeth: tuple[ToothNumber, ToothNumber]
     normal_module: PositiveNumber
     helix_angle: Annotated[float, Field(strict=True, gt=-85.0, lt=85.0)] = Field(
-        description="Of the first gear, degrees; positive for one hand, negative for the other."
+        description="Helix angle of the first gear, degrees; its sign gives the hand."
     )
     shaft_angle: Annotated[float, Field(strict=True, ge=0.0, le=90.0)] = Field(
-        default=0.0, description="Between the shafts, degrees; the helix angles add up to it."
+        default=0.0, description="Angle between the shafts, degrees: the sum of both helix angles."
     )
     normal_pressure_angle: PressureAngle = 20.0
     face_width: PositiveNumber | None = None
@@ -61,8 +61,10 @@ class GivenBevelPair(Statement):
     """Two straight bevel gears on shafts at a right angle."""
 
     type: Literal["bevel_pair"]
-    teeth: tuple[ToothNumber, ToothNumber] = Field(description="Pinion and gear; the gear has no fewer teeth.")
-    module: PositiveNumber = Field(description="At the large end.")
+    teeth: tuple[ToothNumber, ToothNumber] = Field(
+        description="Teeth of pinion and gear; the gear has at least as many as the pinion."
+    )
+    module: PositiveNumber = Field(description="Module at the large end.")
     pressure_angle: PressureAngle = 20.0
     tooth_system: Literal["rao", "gleason"] = Field(
         default="rao",
@@ -88,12 +90,12 @@ class PairedGear(Answer):
 
     teeth: int
     pitch_diameter: float
-    outside_diameter: float | None = Field(description="Null where no tooth depth is stated.")
+    outside_diameter: float | None = Field(description="Null without a tooth depth.")
     addendum: float | None
     dedendum: float | None
-    helix_angle: float | None = Field(description="Of helical gears and of a worm set.")
-    pitch_cone_angle: float | None = Field(description="Of bevel gears.")
-    virtual_teeth: float | None = Field(description="Of the spur gear with the same teeth, not rounded.")
+    helix_angle: float | None = Field(description="Helix angle; only for helical gears and worm sets.")
+    pitch_cone_angle: float | None = Field(description="Cone angle; only for bevel gears.")
+    virtual_teeth: float | None = Field(description="Teeth of the equivalent spur gear, not rounded.")
     circular_pitch: float = Field(description="In the plane of rotation, at the large end.")
     tooth_thickness: float | None
     speed: float = Field(description="rad/s")
@@ -102,22 +104,22 @@ class PairedGear(Answer):
 class GearPairAnalysis(Answer):
     """Dimensions of a pair of gears."""
 
-    ratio: float = Field(description="Speed of the first over the second, without sign.")
+    ratio: float = Field(description="Speed of the first gear over the second, without sign.")
     centre_distance: float | None = Field(description="Null for bevel gears, whose shafts meet.")
     cone_distance: float | None = Field(description="From the apex of bevel gears to the large end.")
-    tooth_system: str | None = Field(description="Of bevel gears: whose proportions the teeth have.")
+    tooth_system: str | None = Field(description="Tooth proportions of bevel gears.")
     whole_depth: float | None
-    transverse_contact_ratio: float | None = Field(description="Of helical gears on parallel shafts.")
-    face_contact_ratio: float | None = Field(description="Face over axial pitch, where the face width is stated.")
-    least_face_width: float | None = Field(description="For an overlap of 1.15 pitches.")
-    lead: float | None = Field(description="Of a worm.")
+    transverse_contact_ratio: float | None = Field(description="Only for helical gears on parallel shafts.")
+    face_contact_ratio: float | None = Field(description="Face width over axial pitch, if a face width is given.")
+    least_face_width: float | None = Field(description="Face width for an overlap of 1.15 pitches.")
+    lead: float | None = Field(description="Only for a worm set.")
     lead_angle: float | None
-    self_locking: bool | None = Field(description="Whether the worm's gear cannot drive it, with square threads.")
+    self_locking: bool | None = Field(description="Whether the gear cannot drive the worm, with square threads.")
     gears: list[PairedGear]
 
 
 class _PairRequest(AnalysisRequest):
-    speed_rpm: Number = Field(default=1.0, description="Speed of the first gear, revolutions a minute.")
+    speed_rpm: Number = Field(default=1.0, description="Speed of the first gear, revolutions per minute.")
 
     @classmethod
     def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
@@ -182,7 +184,7 @@ class BevelPairRequest(_PairRequest):
     def faults(self) -> list[tuple[str, str]]:
         """A gear that is smaller than its pinion."""
         if self.mechanism.teeth[0] > self.mechanism.teeth[1]:
-            return [("/mechanism/teeth", "state the pinion first; the gear has no fewer teeth")]
+            return [("/mechanism/teeth", "give the pinion first; the gear has at least as many teeth")]
         return []
 
     def answer(self) -> dict[str, Any]:

@@ -34,14 +34,14 @@ from synthesis.model.gear_strength import CARRYING_TYPES, StrengthMethod
 from synthesis.model.statement import Number
 
 SAME_DISTANCE = 1e-6
-"""Share of a centre distance by which a stated one may differ from that of the teeth."""
+"""Relative tolerance of a given centre distance against that of the teeth."""
 
 
 class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
     """A gear train, how its input turns, and what it carries."""
 
     model_config = ConfigDict(
-        title="Gear train, how it is driven",
+        title="Gear train: speeds and torques",
         json_schema_extra={
             "examples": [
                 {
@@ -63,7 +63,7 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
     length_unit: Literal["mm", "cm", "m", "in"] = "mm"
     input_torque: Number = Field(
         default=1.0,
-        description="Torque on the input shaft, N m; against its speed at the first position the output drives.",
+        description="Torque on the input shaft, N·m; if opposite to its speed at the first position, output drives.",
     )
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.0, le=1.0)] | None = Field(
         default=None,
@@ -71,7 +71,8 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         "their own friction; from the friction where left out.",
     )
     friction: Annotated[float, Field(strict=True, ge=0.0, le=1.0)] = Field(
-        default=USUAL_FRICTION, description="Friction coefficient between the teeth; of a worm it is the stage's own."
+        default=USUAL_FRICTION,
+        description="Friction coefficient between the teeth; a worm has its own, given by the stage.",
     )
     wanted_ratio: ExactRatio | None = Field(default=None, description=WANTED)
     strength: StrengthMethod | None = Field(
@@ -100,7 +101,7 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         if not faults:
             faults += self._holding()
         if self.mesh_efficiency is not None and all(stage.type == "worm" for stage in self.mechanism.stages):
-            faults.append(("/mesh_efficiency", "the loss of a worm is that of its own friction; leave it out"))
+            faults.append(("/mesh_efficiency", "the loss of a worm follows from its own friction; leave it out"))
         return faults
 
     @property
@@ -117,7 +118,7 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
         detail = "the gear cannot drive the worm" if back else "the worm cannot drive its gear, whatever the torque"
         faults = [(f"/mechanism/stages/{k}/friction", f"with so much of it {detail}") for k in worms]
         if back and not worms and any(0.0 in stage for stage in shares_of(self)):
-            detail = "with so much of it a mesh loses all power, so that the output drives nothing"
+            detail = "with this friction a mesh loses all power, so that the output cannot drive"
             faults.append(("/friction", detail))
         return faults
 
@@ -148,10 +149,13 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
             if stage.type not in CARRYING_TYPES
         ]
         if self.input_torque == 0.0 or float(self.motion.inputs()[1][0]) == 0.0:
-            faults.append(("/strength", "state a torque and a speed; no power is carried without"))
+            faults.append(("/strength", "give a torque and a speed; without them no power is transmitted"))
         if stated.allowable_bending is None and stated.allowable_contact is None:
             faults += [
-                (f"/mechanism/stages/{number}/face_width", "state it, or the allowable stresses that it follows from")
+                (
+                    f"/mechanism/stages/{number}/face_width",
+                    "give it, or the allowable stresses from which it is computed",
+                )
                 for number, stage in enumerate(self.mechanism.stages)
                 if stage.face_width is None
             ]
@@ -196,8 +200,8 @@ class TurningGear(TurningPart):
     outside_diameter: float
     root_diameter: float
     base_diameter: float | None = Field(description="Null of bevel gears and of a worm.")
-    tooth_thickness: float = Field(description="On the pitch circle.")
-    undercut: bool = Field(description="By a rack that cuts it.")
+    tooth_thickness: float = Field(description="Value on the pitch circle.")
+    undercut: bool = Field(description="Whether a rack that cuts the gear undercuts it.")
 
 
 class Shaft(Answer):
@@ -211,16 +215,16 @@ class Shaft(Answer):
 
 
 class GearTrainAnalysis(DrivenAnalysis):
-    """What the analysis core knows of a gear train; degrees, rad/s, length units."""
+    """Analysis of a gear train; degrees, rad/s, length units."""
 
     valid: list[bool]
     ratio: Ratio
-    efficiency: float | None = Field(description="Power that leaves over power that enters.")
+    efficiency: float | None = Field(description="Output power over input power.")
     shafts: list[Shaft]
     gears: list[TurningGear]
     meshes: list[LoadedMesh]
-    centre_distances: list[float] = Field(description="Of the shafts of each stage, idlers in line.")
-    drift: Drift | None = optional("Where a ratio is wanted.")
+    centre_distances: list[float] = Field(description="Distance of the shafts of each stage, with idlers in line.")
+    drift: Drift | None = optional("Given if a required ratio is given.")
 
 
 def _analysis(request: GearTrainAnalysisRequest) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""The analyses of gearboxes: the speeds of all shafts with given pairs engaged, and every speed that there is."""
+"""Analyses of gearboxes: speeds of all shafts with given pairs engaged, and all possible output speeds."""
 
 from __future__ import annotations
 
@@ -93,19 +93,19 @@ class EngagedSpeed(Answer):
 
 
 class GearboxAnalysis(DrivenAnalysis):
-    """What the analysis core knows of a gearbox with given pairs engaged."""
+    """Analysis of a gearbox with given pairs engaged."""
 
     valid: list[bool]
     engaged: list[int]
     shafts: list[TurningShaft]
-    speeds: list[EngagedSpeed] = Field(description="Everything that can be engaged, slowest output first.")
+    speeds: list[EngagedSpeed] = Field(description="All combinations that can be engaged, slowest output first.")
 
 
 class GearboxAnalysisRequest(DrivenRequest[GivenGearbox]):
     """A machine-tool gearbox, the pairs that are engaged, and how the input turns."""
 
     model_config = ConfigDict(
-        title="Gearbox, how it is driven",
+        title="Gearbox: speeds and torques",
         json_schema_extra={
             "examples": [
                 {
@@ -124,7 +124,7 @@ class GearboxAnalysisRequest(DrivenRequest[GivenGearbox]):
     )
 
     engaged: list[Place] | None = Field(
-        default=None, max_length=6, description="The engaged pair of each stage, from 0; null: the first of each."
+        default=None, max_length=6, description="Engaged pair of each stage, from 0; null: the first pair of each."
     )
 
     def faults(self) -> list[tuple[str, str]]:
@@ -156,7 +156,7 @@ class LayshaftAnalysisRequest(DrivenRequest[GivenLayshaftGearbox]):
     """A layshaft gearbox, the gear that is engaged, and how the input turns."""
 
     model_config = ConfigDict(
-        title="Layshaft gearbox, how it is driven",
+        title="Layshaft gearbox: speeds and torques",
         json_schema_extra={
             "examples": [
                 {
@@ -180,7 +180,7 @@ class LayshaftAnalysisRequest(DrivenRequest[GivenLayshaftGearbox]):
         faults = super().faults()
         for k, gear in enumerate(self.mechanism.gears):
             if (gear.layshaft is None) != (gear.mainshaft is None):
-                faults.append((f"/mechanism/gears/{k}", "give both gears, or none for direct drive"))
+                faults.append((f"/mechanism/gears/{k}", "give both gears, or neither for direct drive"))
         if self.gear == "reverse" and self.mechanism.reverse is None:
             faults.append(("/gear", "there is no reverse gear"))
         elif self.gear != "reverse" and self.gear > len(self.mechanism.gears):

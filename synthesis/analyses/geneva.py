@@ -23,7 +23,7 @@ class GivenDragLink(Statement):
     input: PositiveLength
     coupler: PositiveLength
     output: PositiveLength
-    crank_offset: Degrees = Field(default=0.0, description="From the output to the crank.")
+    crank_offset: Degrees = Field(default=0.0, description="Angle from the output to the crank.")
     input_pivot: Any = None
     entry_angle: Any = None
 
@@ -34,12 +34,12 @@ class GivenGeneva(Statement):
     type: Literal["geneva_external", "geneva_internal", "geneva_spherical"]
     stations: Annotated[Count, Field(ge=3, le=1000)]
     rollers: Annotated[Count, Field(ge=1, le=5)] = 1
-    center_distance: PositiveLength | None = Field(default=None, description="Of a drive in the plane.")
+    center_distance: PositiveLength | None = Field(default=None, description="Only for a plane drive.")
     crank_radius: PositiveLength | None = Field(
-        default=None, description="Of a drive in the plane; that of shock-free entry where it is left out."
+        default=None, description="Only for a plane drive; by default the value for shock-free entry."
     )
     cone_angle: Degrees | None = Field(
-        default=None, description="Of a spherical drive; that of shock-free entry where it is left out."
+        default=None, description="Only for a spherical drive; by default the value for shock-free entry."
     )
     drag_link: GivenDragLink | None = None
     sphere_radius: Any = None
@@ -60,12 +60,12 @@ class GivenGeneva(Statement):
 
 
 class GenevaAnalysis(DrivenAnalysis):
-    """What is known of a Geneva drive in motion."""
+    """Analysis of a Geneva drive in motion."""
 
     valid: list[bool]
     moves: list[bool] = Field(description="Whether a roller is in a slot.")
-    crank: list[float] = Field(description="Angle of the crank, degrees, since then.")
-    angle: list[float] = Field(description="Of the wheel, degrees, since the entry of a roller at input angle 0.")
+    crank: list[float] = Field(description="Angle of the crank since the roller's entry, degrees.")
+    angle: list[float] = Field(description="Angle of the wheel since the entry of a roller at input angle 0, degrees.")
     omega: list[float] = Field(description="rad/s")
     alpha: list[float] = Field(description="rad/s²")
 
@@ -74,7 +74,7 @@ class GenevaAnalysisRequest(DrivenRequest[GivenGeneva]):
     """A Geneva drive and how its crank turns; at input angle 0 the first roller enters a slot."""
 
     model_config = ConfigDict(
-        title="Geneva drive, how its crank turns",
+        title="Geneva drive: motion of its wheel",
         json_schema_extra={
             "examples": [
                 {
@@ -96,7 +96,7 @@ class GenevaAnalysisRequest(DrivenRequest[GivenGeneva]):
                 faults.append(("/mechanism/drag_link", "a drag link drives plane Geneva drives only"))
         elif given.crank_radius is not None:
             if given.center_distance is None:
-                faults.append(("/mechanism/center_distance", "state it with the crank's radius"))
+                faults.append(("/mechanism/center_distance", "give it together with the crank's radius"))
             elif not math.sin(step) * (1.0 - ENTERS) <= given.crank_radius / given.center_distance < 1.0:
                 least = given.center_distance * math.sin(step)
                 faults.append(("/mechanism/crank_radius", f"must be from {least:.9g} to below the center distance"))
@@ -125,7 +125,12 @@ def _drag_link_faults(link: GivenDragLink) -> list[tuple[str, str]]:
     lengths = (link.input, link.coupler, link.output)
     if min(lengths) > link.ground * (1.0 + ENTERS) and link.ground + 2.0 * max(lengths) < sum(lengths) * (1.0 - ENTERS):
         return []
-    return [("/mechanism/drag_link", "the ground must be the shortest link, and with the longest below the others")]
+    return [
+        (
+            "/mechanism/drag_link",
+            "the ground must be the shortest link, and ground plus longest link shorter than the other two together",
+        )
+    ]
 
 
 FAMILY = Family(GenevaAnalysisRequest, GenevaAnalysis)

@@ -1,4 +1,4 @@
-"""An ordinary gear train as it is given: its stages, its idlers, and the ratio that is stated beside them."""
+"""A given ordinary gear train: its stages, its idlers, and optionally its ratio."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from synthesis.model.gear_statement import (
 from synthesis.model.statement import Number, PositiveNumber, Statement
 
 SAME_RATIO = 1e-9
-"""Share by which the number that is stated beside a ratio's numerator and denominator may differ from them."""
+"""Relative tolerance of a ratio's decimal value against its numerator and denominator."""
 
 
 class GivenShifts(Statement):
@@ -52,7 +52,7 @@ class GivenStage(StageForm):
     )
     shift: GivenShifts | None = None
     centre_distance: PositiveNumber | None = Field(
-        default=None, description="As in a design: it has to be that of the teeth without play."
+        default=None, description="As in a design; it must equal the distance of the teeth without play."
     )
     face_width: PositiveNumber | None = Field(
         default=None,
@@ -63,7 +63,7 @@ class GivenStage(StageForm):
     )
     addendum: GivenAddenda | None = Field(
         default=None,
-        description="Of an internal stage; left out: the ring's is as long as the pinion's flank lets it be.",
+        description="Addenda of an internal stage; by default the ring has the maximum that the pinion permits.",
     )
 
     @field_validator("driver")
@@ -82,7 +82,7 @@ class GivenStage(StageForm):
         if self.type not in ("external", "helical") and self.shift is not None:
             faults.append(("/shift", f"a stage that is {self.type} has no shift"))
         if self.type != "internal" and self.addendum is not None:
-            faults.append(("/addendum", "only an internal stage has other addenda than a module"))
+            faults.append(("/addendum", "only an internal stage can have addenda other than one module"))
         if self.type == "internal" and self.driver == self.driven:
             faults.append(("/driven", "a ring has more teeth than its pinion"))
         return faults

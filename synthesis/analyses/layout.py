@@ -17,7 +17,7 @@ from synthesis.model.layout import LayoutSizes
 from synthesis.model.linkage_answer import Layout, LayoutClash
 
 DRIVEN = 181
-"""Inputs at which it is seen whether the mechanism can be driven through the motion at all."""
+"""Number of inputs at which to test whether the mechanism can be driven through the motion."""
 
 WHOLE = 1e-9
 """Share of a cycle by which a motion may miss it and be closed: rounding."""
@@ -41,11 +41,11 @@ def layout_of(mechanism: Mechanism, stated: LayoutSizes, used: tuple[float, floa
         if stated.over == "cycle":
             used = cycle_of(mechanism)
         if used is None:
-            return _without("no motion leads through the used range")
+            return _without("the mechanism cannot move through the used range")
         low, high = sorted(used)
         inputs = np.linspace(low, high, DRIVEN + 2)[1:-1] if high > low else np.array([low])
         if not drive(mechanism, inputs, order=0).valid.all():
-            return _without("the mechanism cannot be assembled all over the motion")
+            return _without("the mechanism cannot be assembled over the whole motion")
         turn = math.inf if slides else cycle_from_reference(mechanism)
         found = core.laid_out(
             mechanism,

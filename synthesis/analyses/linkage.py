@@ -41,20 +41,20 @@ _GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 
 
 class LinkPoint(StatedCouplerPoint):
-    """A point of a link by its distance and angle there, as P is stated of a coupler.
+    """A point of a link by its distance and angle there, as P on a coupler.
 
     The distance is from the joint at which the link's angle is measured: the first in its list, of the input its pivot;
     the angle from the line to the second joint to the line to the point, degrees.
     """
 
-    link: str = Field(min_length=1, max_length=50, description="A link in motion, by the name that the answer has.")
+    link: str = Field(min_length=1, max_length=50, description="Name of a moving link, as in the answer.")
 
 
 class LinkageAnalysisRequest(AnalysisRequest):
     """A mechanism and how it is driven; a full turn in 360 steps by default."""
 
     model_config = ConfigDict(
-        title="Linkage, how it is driven",
+        title="Linkage: motion and forces",
         json_schema_extra={
             "examples": [
                 {
@@ -74,33 +74,34 @@ class LinkageAnalysisRequest(AnalysisRequest):
     mechanism: GivenMechanism
     motion: StatedMotion = Field(
         default=Sweep(),
-        description="By default a full turn in 360 steps; a driven slider goes from toggle to toggle.",
+        description="Motion of the input; by default a full turn in 360 steps, or for a slider from toggle to toggle.",
     )
     include: list[Topic | Literal["branches"]] = Field(
         default=[],
         max_length=5,
-        description="What else is wanted. `branches`: where the joints are along every branch of every circuit. "
-        "The others are of a pin-jointed fourbar only.",
+        description="Additional results. `branches`: positions of the joints along every branch of every circuit. "
+        "The others are available for pin-jointed fourbars only.",
     )
 
     points: dict[Annotated[str, Field(min_length=1, max_length=50)], LinkPoint] = Field(
-        default={}, max_length=20, description="Further points, by names of the client's; `points` has their motion."
+        default={}, max_length=20, description="Further points by names of your choice; `points` contains their motion."
     )
     layout: LayoutSizes | None = Field(
         default=None,
-        description="Lay the mechanism out in the fewest planes in which it can be built; over the motion, as used.",
+        description="Arrange the mechanism in the fewest planes in which it can be built, over the given motion.",
     )
     targets: list[StatedTarget] = Field(
         default=[],
         max_length=MOST_TARGETS,
-        description="What the mechanism is to do: how far it misses each of them, and what `manufacture` holds it to.",
+        description="Targets of the mechanism: its error at each is reported, and `manufacture` refers to them.",
     )
     manufacture: Exactness | None = Field(
-        default=None, description="How exactly the mechanism is made: what becomes of it at its targets."
+        default=None, description="Manufacturing accuracy of the mechanism, evaluated at its targets."
     )
-    length_unit: LengthUnit = Field(default="mm", description="Of all lengths; `dynamics` converts them.")
+    length_unit: LengthUnit = Field(default="mm", description="Unit of all lengths; `dynamics` converts them.")
     dynamics: DynamicsBlock | None = Field(
-        default=None, description="Masses and loads: the forces in all joints, the drive, and what shakes the frame."
+        default=None,
+        description="Masses and loads, from which joint forces, drive, and shaking force and moment are computed.",
     )
 
     def faults(self) -> list[tuple[str, str]]:
@@ -126,10 +127,12 @@ class LinkageAnalysisRequest(AnalysisRequest):
         """Everything over the motion, in the shape of :class:`LinkageAnalysis`."""
         mechanism = self.mechanism.mechanism()
         if decompose(mechanism).left and effort(mechanism) > MAX_EFFORT:
-            raise MechanismError("", "this has too many links that no dyads close to be followed at once")
+            raise MechanismError("", "this mechanism has too many links outside dyads to be solved at once")
         slide, motion = mechanism.driven_by_slide, self.motion
         if slide and motion.speed_rpm is not None:
-            raise MechanismError("", "a slider drives this; state its speed as `speed`, length units a second")
+            raise MechanismError(
+                "", "a slider drives this mechanism; give its speed as `speed`, length units per second"
+            )
         if slide and isinstance(motion, Sweep) and None in (motion.start, motion.end):
             toggles = dict(zip(("start", "end"), cycle_of(mechanism), strict=True))
             stated = {name: getattr(motion, name) for name in toggles if getattr(motion, name) is not None}
@@ -220,8 +223,8 @@ class BranchRange(Answer):
     reference: bool = Field(description="Whether the reference configuration lies on it.")
     joints: dict[str, Points] | None = Field(
         default=None,
-        description="Where the joints are along it, if `include` has asked for `branches`; null too where no "
-        "assemblies tell the branches apart (class III, or a slider that drives).",
+        description="Positions of the joints along the branch, if `include` contains `branches`; null if no "
+        "assemblies distinguish the branches (class III, or a driving slider).",
     )
 
 
@@ -232,7 +235,7 @@ class CircuitBranches(Answer):
 
 
 class LinkageAnalysis(Answer):
-    """Everything the analysis core knows of the mechanism over the motion; degrees, rad/s, length units per second."""
+    """Analysis of a mechanism over the motion; degrees, rad/s, length units per second."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
 
@@ -241,22 +244,22 @@ class LinkageAnalysis(Answer):
     valid: list[bool]
     links: dict[str, Series]
     joints: dict[str, Track]
-    points: dict[str, Track] = Field(description="The further points that the request names.")
+    points: dict[str, Track] = Field(description="The further points of the request.")
     slides: dict[str, Travel]
-    transmission_angle: list[float | None] = Field(description="Least of the transmission angles, degrees.")
+    transmission_angle: list[float | None] = Field(description="Minimum of the transmission angles, degrees.")
     transmission_angles: dict[str, list[float | None]] = Field(
-        description="At each dyad and each leg of a triad, by its link."
+        description="Transmission angle at each dyad and each leg of a triad, by link."
     )
     torque_ratio: dict[str, list[float | None]] = Field(
         description="Output torque over input torque without losses: the mechanical advantage of each grounded link. "
-        "A slider that drives brings a force in place of the torque."
+        "For a driving slider the input torque is a force."
     )
     force_ratio: dict[str, list[float | None]] = Field(
         description="Output force over input torque (or over a driving slider's force) without losses, of each slide "
         "on the ground; per length unit."
     )
     instant_centers: dict[str, Points] = Field(
-        description="Of every two links, as `link-link`; null where they move parallel. For a single position only."
+        description="Instant centre of every two links, as `link-link`; null if parallel. For a single position only."
     )
     classification: Classification
     toggles: list[float]
@@ -264,14 +267,14 @@ class LinkageAnalysis(Answer):
     limits: dict[str, list[float] | None] = Field(
         description="Extreme angles (positions) of the grounded links (slides) on the reference's branch; null: turns."
     )
-    notes: list[str] = Field(description="What is left out, by the name of the field, and why.")
-    fourbar: FourbarAnalysis | None = Field(description="What `include` has asked for.")
-    targets: list[MetTarget] | None = optional("How far it misses each of the `targets` that the request states.")
-    manufacture: Manufactured | None = optional("What becomes of it as it is made, if the request states that.")
-    yield_: Yield | None = optional("Of `manufacture`, where it has tolerances and a quality.", alias="yield")
-    layout: Layout | None = optional("The planes in which it can be built, if the request states a `layout`.")
-    skeleton: Skeleton | None = optional("The reference configuration to which the places of `dynamics` belong.")
-    dynamics: DynamicsAnswer | None = optional("Forces, if the request states `dynamics`.")
+    notes: list[str] = Field(description="Names of missing fields, with the reason.")
+    fourbar: FourbarAnalysis | None = Field(description="Results requested by `include`.")
+    targets: list[MetTarget] | None = optional("Errors at each of the requested `targets`.")
+    manufacture: Manufactured | None = optional("Properties as manufactured, if the request contains `manufacture`.")
+    yield_: Yield | None = optional("Yield, if `manufacture` has tolerances and a quality.", alias="yield")
+    layout: Layout | None = optional("Arrangement in planes, if the request contains a `layout`.")
+    skeleton: Skeleton | None = optional("The reference configuration to which points of `dynamics` refer.")
+    dynamics: DynamicsAnswer | None = optional("Forces, if the request contains `dynamics`.")
 
 
 FAMILY = Family(LinkageAnalysisRequest, LinkageAnalysis)

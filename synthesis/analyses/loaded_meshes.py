@@ -55,15 +55,17 @@ class LoadedMesh(MeshGeometry):
     """A mesh with its contact and its load."""
 
     path_of_contact: float
-    approach: float = Field(description="Part of the path before the pitch point, with the driver driving.")
+    approach: float = Field(description="Part of the contact path before the pitch point, with the driver driving.")
     recess: float
     clearance: float
-    efficiency: float | None = Field(description="Null where fewer than one pair of teeth is in contact.")
+    efficiency: float | None = Field(description="Null if fewer than one pair of teeth is in contact.")
     pitch_line_velocity: float = Field(
         description="At the first position, length units per second; of a worm that of its own threads."
     )
     tangential_force: float = Field(description="N; of a worm that on the gear, which is axial on the worm.")
-    radial_force: float = Field(description="N, which pushes the gears apart; of bevel gears on the driver.")
+    radial_force: float = Field(
+        description="Radial force that separates the gears, N; for bevel gears the one on the driver."
+    )
     radial_forces: OfGears | None = optional(
         "N, of bevel gears: on the driver and on the driven gear, each towards its axis. Of all others both are "
         "`radial_force`."
@@ -74,7 +76,7 @@ class LoadedMesh(MeshGeometry):
         "stages the `axis` in `shafts`, otherwise the input's) while the input's speed is positive, and against it "
         "while that is negative; of bevel gears positive away from the apex; of a worm its size."
     )
-    strength: PairStrength | None = optional("Stresses, where a method is stated.")
+    strength: PairStrength | None = optional("Stresses, if a method is given.")
 
 
 def loaded_meshes(flow: Flow, strength: StrengthMethod | None, widths: Sequence[float | None]) -> list[dict[str, Any]]:

@@ -31,7 +31,7 @@ class OnePosition(Driving):
 
 
 class TimeSpan(Statement):
-    """Start, end and step of a run, seconds."""
+    """Start, end and step of a motion in time, seconds."""
 
     start: Number = 0.0
     end: Number
@@ -39,7 +39,7 @@ class TimeSpan(Statement):
 
 
 class Run(Driving):
-    """A run in time with constant input acceleration, from an angle at time 0."""
+    """Motion in time with constant input acceleration, from an angle at time 0."""
 
     time: TimeSpan
     at: Number = Field(default=0.0, description="Input angle at time 0, degrees.")
@@ -48,7 +48,7 @@ class Run(Driving):
         """A run backwards, or of too many positions, beside what every motion may have."""
         faults, span = super().faults(), self.time
         if span.end < span.start:
-            faults.append(("/motion/time/end", "the end lies before the start"))
+            faults.append(("/motion/time/end", "the end must not lie before the start"))
         elif (span.end - span.start) / span.step > MAX_POSITIONS - 1:
             faults.append(("/motion/time/step", f"more than {MAX_POSITIONS} positions; take larger steps"))
         return faults

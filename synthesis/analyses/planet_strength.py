@@ -22,7 +22,7 @@ Share = Annotated[float, Field(strict=True, gt=0.0, le=1.5)]
 
 
 class MadeTrain(Statement):
-    """What strength needs of a design besides its teeth."""
+    """Fields of a design besides its teeth that the strength needs."""
 
     planets: Annotated[Count, Field(ge=1, le=12)]
     module: Module
@@ -50,20 +50,28 @@ def made(mechanism: Any) -> MadeTrain:
 
 
 def strength_faults(mechanism: Any, stated: PlanetStrength) -> list[tuple[str, str]]:
-    """What is wrong with a mechanism, itself without faults, whose strength is asked for."""
+    """Return errors of a valid mechanism whose strength is requested."""
     faults = [(f"/strength{path}", detail) for path, detail in stated.faults()]
     arrangement = ARRANGEMENTS.get(mechanism.arrangement)
     if arrangement is None:
-        return [*faults, ("/strength", "state an arrangement; of meshes alone the gears are not known")]
+        return [*faults, ("/strength", "give an arrangement; meshes alone do not define the gears")]
     if arrangement.bevel:
-        return [*faults, ("/strength", "only spur teeth are judged, not those of a bevel differential")]
+        return [
+            *faults,
+            ("/strength", "the strength of a bevel differential is not estimated, only that of spur teeth"),
+        ]
     if not is_coaxial(arrangement, mechanism.teeth):
-        faults.append(("/mechanism/teeth", "unshifted gears with these teeth are not coaxial; no other is judged"))
+        faults.append(
+            (
+                "/mechanism/teeth",
+                "unshifted gears with these teeth are not coaxial; strength is estimated for unshifted gears only",
+            )
+        )
     faces, planes = mechanism.face_widths, planes_of(arrangement)
     if faces is not None and len(faces) != planes:
         faults.append(("/mechanism/face_widths", f"expected {planes}, one for each plane"))
     if faces is None and not stated.kept:
-        faults.append(("/mechanism/face_widths", "state it, or the allowable stresses that it follows from"))
+        faults.append(("/mechanism/face_widths", "give it, or the allowable stresses from which it is computed"))
     try:
         whole = made(mechanism)
     except ValidationError as error:

@@ -50,18 +50,21 @@ class GivenMesh(Statement):
     first_teeth: ToothCount
     second_teeth: ToothCount
     internal: Flag = Field(
-        default=False, description="One of them has internal teeth, or is the far side gear of a bevel differential."
+        default=False,
+        description="Whether one gear has internal teeth or is the far side gear of a bevel differential.",
     )
 
 
 class GivenPlanetaryTrain(Statement):
-    """An arrangement with teeth, or meshes of the client's own. The other fields of a design may stand beside them."""
+    """An arrangement with teeth, or custom meshes. Other fields of a design are accepted, too."""
 
     type: Literal["planetary_train"]
     arrangement: str | None = None
     teeth: dict[str, ToothCount] | None = None
     meshes: list[GivenMesh] | None = Field(default=None, min_length=1, max_length=MAX_MESHES)
-    planet_bodies: list[Body] = Field(default=[], max_length=24, description="With `meshes`: bodies that turn free.")
+    planet_bodies: list[Body] = Field(
+        default=[], max_length=24, description="Bodies that rotate freely; only with `meshes`."
+    )
     input: Body | None = None
     output: Body | None = None
     fixed: Body | None = None
@@ -71,10 +74,10 @@ class GivenPlanetaryTrain(Statement):
     pressure_angle: Any = None
     addendum: Any = None
     face_widths: list[PositiveNumber | None] | None = Field(
-        default=None, max_length=8, description="As in a design: of each plane, for `strength`."
+        default=None, max_length=8, description="Face width of each plane, as in a design, for `strength`."
     )
     ratio: GivenRatio | None = Field(
-        default=None, description="As in a design: compared with the teeth where all three members are stated."
+        default=None, description="As in a design; compared with the teeth if all three members are given."
     )
 
     def train(self) -> Train:
@@ -124,7 +127,7 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
     """A planetary train, the speeds that are known, and what it carries."""
 
     model_config = ConfigDict(
-        title="Planetary train, how it is driven",
+        title="Planetary train: speeds and torques",
         json_schema_extra={
             "examples": [
                 {
@@ -150,7 +153,9 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
         description="Known speeds by body, in any one unit, 0 for a body that is held; in place of the input and fixed "
         "member turning by `motion`.",
     )
-    locked: list[tuple[Body, Body]] = Field(default=[], max_length=24, description="Bodies that a clutch joins.")
+    locked: list[tuple[Body, Body]] = Field(
+        default=[], max_length=24, description="Pairs of bodies that a clutch connects."
+    )
     torques: dict[Body, Number] | None = Field(
         default=None, max_length=24, description="Known torques from outside by member; null: 1 on the input."
     )
@@ -161,7 +166,7 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
         "and the output.",
     )
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.5, le=1.0)] = Field(
-        default=0.99, description="Of every mesh as an ordinary pair."
+        default=0.99, description="Efficiency of every mesh as an ordinary pair."
     )
     include: list[Literal["shift_table"]] = Field(
         default=[],
@@ -177,7 +182,7 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
         "shaft on a member.",
     )
     wanted_ratio: ExactRatio | None = Field(default=None, description=WANTED)
-    length_unit: Literal["mm", "cm", "m", "in"] = Field(default="mm", description="Of the module, for `strength`.")
+    length_unit: Literal["mm", "cm", "m", "in"] = Field(default="mm", description="Unit of the module, for `strength`.")
     strength: PlanetStrength | None = Field(
         default=None,
         description="Stresses of every mesh of an arrangement with its `module` and `planets`, under the `torques` "
@@ -210,22 +215,24 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
             if body not in train.members
         ]
         if self.speeds is None and self.mechanism.input is None and not self.include:
-            faults.append(("/speeds", "state known speeds, or the mechanism's input and fixed member"))
+            faults.append(("/speeds", "give known speeds, or the mechanism's input and fixed member"))
         return faults or [*self._wrong_table(), *self._wrong_ratio(), *self._wrong_strength()]
 
     def _wrong_strength(self) -> list[tuple[str, str]]:
-        """What is missing where the strength is asked for."""
+        """Return missing fields if the strength is requested."""
         if self.strength is None:
             return []
         faults = strength_faults(self.mechanism, self.strength)
         if self.mechanism.input is None:
-            faults.append(("/mechanism/input", "state it; it turns with the speed of the motion"))
+            faults.append(("/mechanism/input", "give it; it turns with the speed of the motion"))
         if self.speeds is not None:
-            faults.append(("/speeds", "strength needs the speed of the motion; state input and fixed member instead"))
+            faults.append(("/speeds", "strength needs the speed of the motion; give input and fixed member instead"))
         if self.locked:
-            faults.append(("/locked", "no mesh tells what a clutch carries; strength is not known with one"))
+            faults.append(
+                ("/locked", "the torque of a clutch is unknown, so that no strength can be computed; leave one out")
+            )
         if not any((self.torques or {}).values()) or float(self.motion.inputs()[1][0]) == 0.0:
-            faults.append(("/strength", "state a torque and a speed; no power is carried without"))
+            faults.append(("/strength", "give a torque and a speed; without them no power is transmitted"))
         return faults
 
     def _wrong_ratio(self) -> list[tuple[str, str]]:
@@ -234,10 +241,10 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
             return faults
         if self.wanted_ratio is None or (self.mechanism.input is not None and self.mechanism.output is not None):
             return []
-        return [("/wanted_ratio", "state the mechanism's input and output too, whose ratio is meant")]
+        return [("/wanted_ratio", "give the mechanism's input and output, too")]
 
     def _wrong_table(self) -> list[tuple[str, str]]:
-        """What is wrong with the shift table that is asked for."""
+        """Return errors of a requested shift table."""
         if not self.include:
             return [] if self.elements is None else [("/elements", 'ask for the table too: "include": ["shift_table"]')]
         train, driving, driven = self.mechanism.train(), self.mechanism.input, self.mechanism.output
@@ -248,11 +255,11 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
             if body not in train.members
         ]
         if driven is None:
-            faults.append(("/mechanism/output", "state the output of the shift table"))
+            faults.append(("/mechanism/output", "give the mechanism's output for the shift table"))
         elif driven == driving:
             faults.append(("/mechanism/output", f"{driven} is the input"))
         if driving is None and self.elements is None:
-            faults.append(("/elements", "state the mechanism's input, or clutches from the input shaft to members"))
+            faults.append(("/elements", "give the mechanism's input, or clutches from the input shaft to members"))
         faults += element_faults(train, driving, self.elements or [])
         if not faults and (states := states_of(train, driving, self._elements())) > MOST_STATES:
             faults.append(("/elements", f"{states} choices of engaged elements are more than {MOST_STATES}"))
@@ -276,15 +283,17 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
 
 
 class TurningBody(Answer):
-    """A body and its motion; the series are there where the input turns by the stated motion."""
+    """A body and its motion; series are given if the input moves by the requested motion."""
 
     name: str
     planet: bool
-    speed: float | None = Field(description="In the unit of the known speeds; null where it does not follow from them.")
-    exact_speed: str | None = Field(description="The same as a fraction, e.g. -5/2.")
-    torque: float | None = Field(description="From outside, positive in the direction of positive speeds.")
-    power: float | None = Field(description="Torque times speed: positive where power enters.")
-    angle: list[float] | None = Field(description="From the position at input angle 0, degrees.")
+    speed: float | None = Field(
+        description="Speed in the unit of the known speeds; null if it does not follow from them."
+    )
+    exact_speed: str | None = Field(description="Speed as a fraction, e.g. -5/2.")
+    torque: float | None = Field(description="External torque, positive in the direction of positive speeds.")
+    power: float | None = Field(description="Torque times speed; positive if power enters.")
+    angle: list[float] | None = Field(description="Angle from the position at input angle 0, degrees.")
     omega: list[float] | None = Field(description="rad/s")
     alpha: list[float] | None = Field(description="rad/s²")
 
@@ -300,28 +309,28 @@ class LoadedPlanetaryMesh(Answer):
     rolling_power: float | None
     loss: float | None
     strength: PairStrength | None = optional(
-        "Stresses of one copy of the mesh, where a method is stated; left out of a mesh that carries nothing."
+        "Stresses of one copy of the mesh, if a method is given; left out for an unloaded mesh."
     )
 
 
 class PlanetaryAnalysis(DrivenAnalysis):
-    """What the analysis core knows of a planetary train."""
+    """Analysis of a planetary train."""
 
     valid: list[bool] = Field(description="Whether the known speeds agree with the train and determine all others.")
-    freedom: int = Field(description="Speeds that can be chosen before all others follow.")
-    open_speeds: int = Field(description="Speeds that the known ones leave open.")
+    freedom: int = Field(description="Number of speeds that can be chosen freely.")
+    open_speeds: int = Field(description="Speeds that the known ones do not determine.")
     contradiction: str | None = Field(description="The first known speed that the train does not allow.")
     ratio: float | None = Field(description="Input speed over output speed.")
     exact_ratio: str | None
-    efficiency: float | None = Field(description="Power that leaves over power that enters.")
+    efficiency: float | None = Field(description="Output power over input power.")
     self_locking: bool | None
     rolling_power: float | None = Field(description="Largest power of a mesh over the input power, without losses.")
     branch_power: float | None = Field(description="Largest power between a row and a member, over the input power.")
     circulating_power: bool | None = Field(description="A warning: a member carries more power than is put in.")
     bodies: list[TurningBody]
     meshes: list[LoadedPlanetaryMesh]
-    shift_table: list[ShiftState] | None = optional("Where `include` asks for it: the largest ratio first.")
-    drift: Drift | None = optional("Where a ratio is wanted.")
+    shift_table: list[ShiftState] | None = optional("Shift table, largest ratio first, if requested by `include`.")
+    drift: Drift | None = optional("Given if a required ratio is given.")
 
 
 def _analysis(request: PlanetaryAnalysisRequest) -> dict[str, Any]:

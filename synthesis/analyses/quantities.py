@@ -173,11 +173,9 @@ def _undefined(mechanism: Mechanism, sines: dict[str, Real]) -> list[str]:
             "path of its own; torque_ratio and force_ratio say how force is passed on"
         )
     elif mechanism.redundant:
-        notes.append(
-            "transmission_angle: constraints are redundant, and which of the links pushes the others is not determined"
-        )
+        notes.append("transmission_angle: constraints are redundant, so that the pushing link is not determined")
     elif not sines:
-        notes.append("transmission_angle: nothing closes here, for gears alone drive every link")
+        notes.append("transmission_angle: the mechanism has no closure, as gears alone drive every link")
     if given_up(mechanism):
         notes.append(
             "valid: links of very different lengths; the motion was followed for a great many steps, and where it was "
@@ -195,7 +193,7 @@ def _global(mechanism: Mechanism, tracked: bool, notes: list[str]) -> dict[str, 
     scale = (lambda x: x) if mechanism.driven_by_slide else math.degrees
     here = holding_reference(mechanism, branches)
     if here is None:
-        notes = [*notes, "limits: the reference stands where several branches meet, or on none"]
+        notes = [*notes, "limits: the reference lies where several branches meet, or on none"]
     circuits: dict[int, list[dict[str, Any]]] = {}
     for branch in branches:
         listed = circuits.setdefault(branch.circuit, [])

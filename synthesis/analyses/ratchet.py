@@ -27,10 +27,10 @@ class GivenRatchet(Statement):
 
     type: Literal["ratchet"]
     teeth: Annotated[Count, Field(ge=4, le=1000)]
-    wheel_radius: PositiveLength = Field(description="To the tips.")
+    wheel_radius: PositiveLength = Field(description="Radius at the tips.")
     tooth_height: PositiveLength
     face_angle: Annotated[float, Field(strict=True, ge=0.0, le=60.0, allow_inf_nan=False)] = 0.0
-    pawl_length: PositiveLength = Field(description="From the middle of the held face to the pawl's pivot.")
+    pawl_length: PositiveLength = Field(description="Distance from the middle of the held face to the pawl's pivot.")
     pawls: list[GivenPawl] = Field(default_factory=lambda: [GivenPawl()], min_length=1, max_length=64)
     stations: Any = None
     overlap: Any = None
@@ -41,11 +41,11 @@ class GivenRatchet(Statement):
 class PawlMotion(Answer):
     """A pawl over the positions."""
 
-    lift: list[float] = Field(description="Degrees from where it holds the wheel.")
+    lift: list[float] = Field(description="Angle from the position in which the pawl holds the wheel, degrees.")
 
 
 class RatchetAnalysis(DrivenAnalysis):
-    """What is known of a ratchet in motion."""
+    """Analysis of a ratchet in motion."""
 
     valid: list[bool]
     pawls: list[PawlMotion]
@@ -55,7 +55,7 @@ class RatchetAnalysisRequest(DrivenRequest[GivenRatchet]):
     """A ratchet and how its wheel turns, on from where the first pawl holds it."""
 
     model_config = ConfigDict(
-        title="Ratchet, how its wheel turns",
+        title="Ratchet: motion of its pawls",
         json_schema_extra={
             "examples": [
                 {

@@ -25,7 +25,7 @@ class GivenUnbalance(Statement):
 
     unbalance: Annotated[NonNegative, UNBALANCE] = Field(description="Mass times radius: g·mm, or consistent units.")
     angle: Degrees = 0.0
-    z: Coordinate = Field(default=0.0, description="Place along the axis.")
+    z: Coordinate = Field(default=0.0, description="Position along the axis.")
 
 
 class GivenCorrection(GivenUnbalance):
@@ -43,7 +43,9 @@ class GivenRotor(Statement):
     type: Literal["rotor"]
     unbalances: list[GivenUnbalance] = Field(min_length=1, max_length=500)
     corrections: list[GivenCorrection] = Field(default=[], max_length=500)
-    bearings: tuple[Coordinate, Coordinate] | None = Field(default=None, description="Their places along the axis.")
+    bearings: tuple[Coordinate, Coordinate] | None = Field(
+        default=None, description="Positions of the bearings along the axis."
+    )
     planes: Any = None
 
 
@@ -70,7 +72,7 @@ class RotorRequest(DrivenRequest[GivenRotor]):
         },
     )
 
-    length_unit: LengthUnit = Field(default="mm", description="Of places along the axis.")
+    length_unit: LengthUnit = Field(default="mm", description="Unit of positions along the axis.")
     units: Literal["si", "consistent"] = Field(
         default="si", description="`si`: g·mm, N and N·m. `consistent`: nothing is converted."
     )
@@ -79,7 +81,7 @@ class RotorRequest(DrivenRequest[GivenRotor]):
         """What no single field shows."""
         bearings = self.mechanism.bearings
         alike = bearings is not None and bearings[0] == bearings[1]
-        same = [("/mechanism/bearings", "two bearings at one place carry no couple")] if alike else []
+        same = [("/mechanism/bearings", "two bearings at the same position cannot carry a couple")] if alike else []
         return [*super().faults(), *same]
 
     def answer(self) -> dict[str, Any]:
@@ -134,14 +136,16 @@ class BearingLoad(Answer):
 
 
 class RotorAnalysis(DrivenAnalysis):
-    """What a rotor exerts; N and N·m, or the consistent units."""
+    """Forces and moments of a rotor; N and N·m, or the consistent units."""
 
-    force: TurningVector = Field(description="On the frame, of all unbalances and corrections.")
-    moment: TurningVector = Field(description="Σ z F: the plane in which it acts turns with the rotor.")
-    moment_about: float = Field(description="The place along the axis about which that is: the first bearing, or 0.")
-    bearings: list[BearingLoad] = Field(description="Empty where none are stated.")
+    force: TurningVector = Field(description="Force of all unbalances and corrections on the frame.")
+    moment: TurningVector = Field(description="Moment Σ z F; its plane rotates with the rotor.")
+    moment_about: float = Field(
+        description="Position along the axis about which the moment is taken: the first bearing, or 0."
+    )
+    bearings: list[BearingLoad] = Field(description="Empty without bearings.")
     unbalance: float = Field(description="The sum of all moments, g·mm or in the consistent units.")
-    unbalance_angle: float = Field(description="Degrees, in the rotor.")
+    unbalance_angle: float = Field(description="Angle in the rotor, degrees.")
 
 
 FAMILY = Family(RotorRequest, RotorAnalysis)

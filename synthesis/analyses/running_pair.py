@@ -65,7 +65,7 @@ class RunningPair:
 
     @property
     def clearance(self) -> float:
-        """The smaller room between a tip and the mate's root."""
+        """The smaller clearance between a tip and the mate's root."""
         distance, (one, two), roots = self.contact.mesh.centre_distance, self.gears, self.root_radii
         if two.internal:
             return min(roots[1] - distance - one.tip_radius, two.tip_radius - distance - roots[0])
@@ -77,20 +77,20 @@ class GivenGearPair(Statement):
 
     type: Literal["gear_pair"]
     teeth: tuple[ToothNumber, ToothNumber]
-    module: PositiveNumber = Field(default=1.0, description="In the normal plane where teeth are helical.")
+    module: PositiveNumber = Field(default=1.0, description="Module; of helical teeth in the normal plane.")
     shift: tuple[ShiftCoefficient, ShiftCoefficient] = Field(
-        default=(0.0, 0.0), description="Profile shifts in modules, positive outwards, of a ring too."
+        default=(0.0, 0.0), description="Profile shifts in modules, positive outwards, for a ring, too."
     )
     addendum: tuple[Addendum, Addendum] = Field(
         default=(FULL_DEPTH_ADDENDUM, FULL_DEPTH_ADDENDUM),
         description="Of both gears, modules. Full-depth teeth of a ring reach below the involute that a rack leaves on "
         "the pinion; rings are made with less.",
     )
-    internal: Flag = Field(default=False, description="The second gear is a ring.")
+    internal: Flag = Field(default=False, description="Whether the second gear is a ring.")
     helix_angle: Annotated[float, Field(strict=True, gt=-60.0, lt=60.0)] = Field(default=0.0, description="Degrees.")
-    pressure_angle: PressureAngle = Field(default=20.0, description="In the normal plane, degrees.")
+    pressure_angle: PressureAngle = Field(default=20.0, description="Pressure angle in the normal plane, degrees.")
     centre_distance: PositiveNumber | None = Field(
-        default=None, description="Left out: the distance at which the gears run without play."
+        default=None, description="Centre distance; by default the distance without play."
     )
     face_width: PositiveNumber | None = None
     cutter_teeth: ToothNumber | None = Field(
@@ -147,25 +147,25 @@ class RunningGear(Answer):
 
     teeth: int
     shift: float = Field(description="Modules.")
-    speed: float = Field(description="rad/s; of two external gears the second turns the other way.")
+    speed: float = Field(description="Speed, rad/s; the second of two external gears turns the other way.")
     pitch_diameter: float
     working_pitch_diameter: float
     base_diameter: float
     tip_diameter: float
-    root_diameter: float = Field(description="As the rack, or the cutter of a ring, leaves it.")
+    root_diameter: float = Field(description="Radius left by the rack, or by the cutter of a ring.")
     form_diameter: float = Field(
-        description="Where the involute ends; of an undercut gear where its fillet crosses the flank."
+        description="Radius at which the involute ends; for an undercut gear where its fillet crosses the flank."
     )
-    tooth_thickness: float = Field(description="On the pitch circle.")
-    tip_thickness: float | None = Field(description="Null where a ring's tips lie below its base circle.")
-    least_shift: float | None = Field(description="Below which the rack undercuts; null for a ring.")
+    tooth_thickness: float = Field(description="Value on the pitch circle.")
+    tip_thickness: float | None = Field(description="Null if a ring's tips lie below its base circle.")
+    least_shift: float | None = Field(description="Profile shift below which the rack undercuts; null for a ring.")
     undercut: bool
     involute_left: float = Field(
         description="Length of the line of action between the deepest contact and the fillet; negative: contact in it."
     )
     fillet_interference: bool = Field(description="Whether the mate's tip reaches below the involute of this gear.")
     specific_sliding: float | None = Field(
-        description="Sliding over rolling at the deepest contact; null where that is at or below the base circle."
+        description="Ratio of sliding to rolling at the deepest contact; null at or below the base circle."
     )
 
 
@@ -181,28 +181,30 @@ class ToothSpace(Answer):
 
 
 class RunningPairAnalysis(Answer):
-    """How two gears run with one another; degrees, lengths in the module's unit."""
+    """Analysis of two gears in mesh; degrees, lengths in the module's unit."""
 
-    ratio: float = Field(description="Speed of the first over the second, without sign.")
+    ratio: float = Field(description="Speed of the first gear over the second, without sign.")
     centre_distance: float
-    standard_distance: float = Field(description="Of the pitch circles.")
-    tight_distance: float = Field(description="At which there is no play.")
+    standard_distance: float = Field(description="Centre distance of the pitch circles.")
+    tight_distance: float = Field(description="Centre distance without play.")
     working_pressure_angle: float = Field(description="In the plane of rotation.")
     backlash: float = Field(description="Play on the working pitch circles; negative: the teeth would overlap.")
-    contact_ratio: float = Field(description="In the plane of rotation, as the tips give it.")
+    contact_ratio: float = Field(description="Contact ratio in the plane of rotation, limited by the tips.")
     overlap_ratio: float | None = Field(description="Face width over axial pitch of helical teeth.")
-    tip_shortening: float = Field(description="What the tips of shifted external gears lose so that clearance stays.")
-    clearance: float = Field(description="The smaller room between a tip and the mate's root.")
-    interference: bool = Field(description="Whether a tip meets the mate where it has no involute at all.")
-    tips_foul: bool = Field(description="Whether the tips of an internal pair meet outside the line of action.")
-    cutter_teeth: int | None = Field(description="Of the cutter that shapes a ring.")
-    ring_trimmed: bool | None = Field(description="Whether that cutter takes off tips of the ring.")
+    tip_shortening: float = Field(
+        description="Shortening of the tips of shifted external gears that keeps the clearance."
+    )
+    clearance: float = Field(description="The smaller clearance between a tip and the mate's root.")
+    interference: bool = Field(description="Whether a tip touches the mate where it has no involute.")
+    tips_foul: bool = Field(description="Whether the tips of an internal pair collide off the line of action.")
+    cutter_teeth: int | None = Field(description="Teeth of the cutter that shapes a ring.")
+    ring_trimmed: bool | None = Field(description="Whether that cutter trims the tips of the ring.")
     sound: bool = Field(
         description="No undercut, no contact in a fillet, no fouling or pointed tips, no overlap, and at least one "
         "pair of teeth in contact."
     )
     gears: list[RunningGear]
-    strength: PairStrength | None = optional("Stresses under a stated power.")
+    strength: PairStrength | None = optional("Stresses under the given power.")
     profiles: list[ToothSpace | None] | None = optional(
         "Where `include` asks for it: involutes and the fillets that the rack of the normal plane leaves, a ring "
         "without those of its cutter; null where the rack's tooth would come to a point."
@@ -213,7 +215,7 @@ class RunningPairRequest(AnalysisRequest):
     """Two gears, and how fast the first one turns."""
 
     model_config = ConfigDict(
-        title="Pair of gears as it runs",
+        title="Running pair of gears",
         json_schema_extra={
             "examples": [
                 {
@@ -231,11 +233,11 @@ class RunningPairRequest(AnalysisRequest):
     )  # fmt: skip
 
     mechanism: GivenGearPair
-    speed_rpm: Number = Field(default=1.0, description="Speed of the first gear, revolutions a minute.")
-    length_unit: Literal["mm", "cm", "m", "in"] = Field(default="mm", description="Of the module, for `strength`.")
+    speed_rpm: Number = Field(default=1.0, description="Speed of the first gear, revolutions per minute.")
+    length_unit: Literal["mm", "cm", "m", "in"] = Field(default="mm", description="Unit of the module, for `strength`.")
     strength: StatedStrength | None = Field(
         default=None,
-        description="A power that the gears carry: stresses over the face width, or over the least that carries it.",
+        description="Power that the gears carry; stresses are for the face width, or for the minimum that carries it.",
     )
     include: list[Literal["profiles"]] = Field(
         default=[], max_length=1, description="`profiles`: the true outlines of the teeth of both gears."
@@ -250,7 +252,7 @@ class RunningPairRequest(AnalysisRequest):
         """What no single field shows."""
         given, faults = self.mechanism, []
         if given.internal and given.teeth[1] <= given.teeth[0]:
-            faults.append(("/mechanism/teeth", "a ring has more teeth than its pinion; state the ring second"))
+            faults.append(("/mechanism/teeth", "a ring has more teeth than its pinion; give the ring second"))
         if given.cutter_teeth is not None and not given.internal:
             faults.append(("/mechanism/cutter_teeth", "only a ring is shaped by a cutter; leave it out"))
         if given.cutter_teeth is not None and given.cutter_teeth >= given.teeth[1]:
@@ -266,11 +268,11 @@ class RunningPairRequest(AnalysisRequest):
             wrong += stated.faults_of_helix()
         faults = [(f"/strength{path}", detail) for path, detail in wrong]
         if given.helix_angle != 0.0 and given.internal:
-            faults.append(("/strength", "helical teeth of rings are not judged; leave the helix angle out"))
+            faults.append(("/strength", "the strength of helical rings is not estimated; leave the helix angle out"))
         if self.speed_rpm == 0.0:
-            faults.append(("/speed_rpm", "no power is carried at rest"))
+            faults.append(("/speed_rpm", "no power is transmitted at rest"))
         if given.face_width is None and stated.allowable_bending is None and stated.allowable_contact is None:
-            faults.append(("/mechanism/face_width", "state it, or the allowable stresses that it follows from"))
+            faults.append(("/mechanism/face_width", "give it, or the allowable stresses from which it is computed"))
         return faults
 
     def answer(self) -> dict[str, Any]:

@@ -25,7 +25,7 @@ INPUT = "input"
 """The name of the input shaft in a clutch, where the input does not sit on a member."""
 
 MOST_STATES = 5000
-"""Choices of engaged elements at most."""
+"""Maximum number of choices of engaged elements."""
 
 Name = Annotated[str, Field(min_length=1, max_length=40)]
 
@@ -34,9 +34,9 @@ class GivenElement(Statement):
     """A brake or a clutch; exactly one of `brake` and `clutch`."""
 
     name: Name
-    brake: Name | None = Field(default=None, description="The member that it holds.")
+    brake: Name | None = Field(default=None, description="Member that the brake holds.")
     clutch: tuple[Name, Name] | None = Field(
-        default=None, description="The two members that it joins; `input` for the input shaft."
+        default=None, description="The two members that the clutch connects; `input` for the input shaft."
     )
 
     @property
@@ -52,14 +52,14 @@ class GivenElement(Statement):
 
 
 class ShiftState(Answer):
-    """Elements that are engaged together, and what the train does then."""
+    """Elements that are engaged together, and the resulting ratio and speeds."""
 
     engaged: list[str]
     ratio: float = Field(description="Input speed over output speed.")
     exact_ratio: str
-    speeds: dict[str, float] = Field(description="Of all bodies, over the input's.")
+    speeds: dict[str, float] = Field(description="Speeds of all bodies over the speed of the input.")
     efficiency: float | None = Field(
-        description="Where one member takes the power in; null with clutches between members, of which no mesh tells."
+        description="Efficiency if one member receives the power; null with clutches between members (unknown torque)."
     )
 
 
@@ -74,13 +74,13 @@ def usual_elements(train: Train, driving: str, driven: str) -> list[GivenElement
 
 
 def element_faults(train: Train, driving: str | None, elements: Sequence[GivenElement]) -> list[tuple[str, str]]:
-    """What is wrong with stated elements, by their place in the request."""
+    """Return errors of the given elements, by their index in the request."""
     faults = []
     known = [*train.members, *([INPUT] if driving is None and INPUT not in train.members else [])]
     for k, element in enumerate(elements):
         path = f"/elements/{k}"
         if (element.brake is None) == (element.clutch is None):
-            faults.append((path, "state either the member that a brake holds or the two that a clutch joins"))
+            faults.append((path, "give either the member that a brake holds or the two members that a clutch connects"))
             continue
         if element.name in [other.name for other in elements[:k]]:
             faults.append((f"{path}/name", "another element has this name"))
@@ -89,9 +89,9 @@ def element_faults(train: Train, driving: str | None, elements: Sequence[GivenEl
         if unknown or (element.brake == INPUT and INPUT not in train.members):
             faults.append((f"{path}/{part}", f"expected members of {', '.join(known)}"))
         elif len(set(element.bodies)) < len(element.bodies):
-            faults.append((f"{path}/clutch", "joins a member with itself"))
+            faults.append((f"{path}/clutch", "a clutch must connect two different members"))
         elif driving is None and element.clutch is not None and INPUT in element.clutch and INPUT in train.members:
-            told = "a member is named input: give it another name, or state the mechanism's input"
+            told = "a member is named input: give it another name, or give the mechanism's input"
             faults.append((f"{path}/clutch", told))
     return faults
 

@@ -1,4 +1,4 @@
-"""A given fourbar or slider-crank at targets, and as a shop makes it: the same as is told of designs."""
+"""A given fourbar or slider-crank at targets, and as manufactured: the same results as for designs."""
 
 from __future__ import annotations
 
@@ -19,35 +19,37 @@ from synthesis.model.stated_targets import MetTarget, StatedTarget
 Real = NDArray[np.float64]
 
 LOOKED_AT = 1440
-"""Inputs of a turn at which the nearest to a target is looked for at first."""
+"""Number of inputs per turn on the first grid of the search for the input nearest to a target."""
 
-NOT_BUILT = "is built for fourbars and slider-cranks by their dimensions, whose crank drives"
+NOT_BUILT = "only fourbars and slider-cranks given by their dimensions and driven by the crank are supported"
 
 
 def target_faults(mechanism: Any, targets: Sequence[StatedTarget], block: Exactness | None) -> list[tuple[str, str]]:
     """What no single field shows: (path, detail)."""
     if not targets:
-        return [("/targets", "missing: a linkage as it is made is held to targets")] if block is not None else []
+        return [("/targets", "missing: the analysis of manufacture needs targets")] if block is not None else []
     linkage = linkage_of(mechanism)
     if linkage is None:
         return [("/targets", NOT_BUILT)]
     sorts = [target.sort for target in targets]
     faults = [
-        (f"/targets/{k}", "is of another sort than the first target; state all alike")
+        (f"/targets/{k}", "differs in form from the first target; give all targets in the same form")
         for k, sort in enumerate(sorts)
         if sort != sorts[0]
     ]
     if sorts[0] == "poses" and mechanism.reference_input_angle is None:
-        detail = "missing: the body stands in the reference as it is stated there; give it, or no angles of the body"
+        detail = "missing: needed for the angles of the body; give it, or leave these angles out"
         faults.append(("/mechanism/reference_input_angle", detail))
     if block is None:
         return faults
     turns = sorts[0] == "poses" or (sorts[0] == "outputs" and linkage.slide_angle is None)
     made = Made(sorts[0] != "outputs" or not turns, turns, sorts[0] != "outputs", len(targets))
     if block.quality is not None and block.quality.yield_ is not None:
-        faults.append(("/manufacture/quality/yield", "is a demand on designs; the answer says what the yield is"))
+        faults.append(
+            ("/manufacture/quality/yield", "only designs can have a required yield; the answer contains the yield")
+        )
     if block.tolerances is None:
-        faults.append(("/manufacture/tolerances", "missing: say how exactly the linkage is made"))
+        faults.append(("/manufacture/tolerances", "missing: give the manufacturing accuracy of the linkage"))
     return faults + [(f"/manufacture{path}", detail) for path, detail in block.faults_beside(made)]
 
 

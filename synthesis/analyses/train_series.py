@@ -1,4 +1,4 @@
-"""The analysis of trains in series: each unit as its own family tells it, and the shafts between them."""
+"""Analysis of trains in series: each unit by its own family, and the shafts between them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class GivenTrainSeries(Statement):
 
     type: Literal["train_series"]
     units: list[GivenUnit] = Field(min_length=1, max_length=8)
-    ratio: GivenRatio | None = Field(default=None, description="As in a design: compared with that of the teeth.")
+    ratio: GivenRatio | None = Field(default=None, description="As in a design; compared with the ratio of the teeth.")
 
     def driven_ratio(self) -> Fraction:
         """Input speed of the first unit over output speed of the last, of units without faults."""
@@ -44,7 +44,7 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
     """Trains in series, how their input turns, and what it carries."""
 
     model_config = ConfigDict(
-        title="Trains in series, how they are driven",
+        title="Trains in series: speeds and torques",
         json_schema_extra={
             "examples": [
                 {
@@ -72,11 +72,11 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
     length_unit: Literal["mm", "cm", "m", "in"] = "mm"
     input_torque: Number = Field(
         default=1.0,
-        description="Torque on the first input, N m; against its speed at the first position the output drives.",
+        description="Torque on the first input, N·m; if opposite to its speed at the first position, output drives.",
     )
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.5, le=1.0)] = Field(
         default=0.99,
-        description="Of every mesh as an ordinary pair, but those of worms, whose loss is that of their own friction.",
+        description="Efficiency of every mesh as an ordinary pair, except worms, which have their own friction.",
     )
     wanted_ratio: ExactRatio | None = Field(default=None, description=WANTED)
 
@@ -93,7 +93,7 @@ class TrainSeriesAnalysisRequest(DrivenRequest[GivenTrainSeries]):
                 if not own:
                     own = PlanetaryAnalysisRequest(mechanism=unit).faults()
                 if not own and unit.driven_ratio() is None:
-                    own = [("/mechanism", "with these members the train does not pass its motion on")]
+                    own = [("/mechanism", "with these members the train transmits no motion")]
             else:
                 # Its meshes lose what is stated here, its worms what their own friction takes.
                 driving = GearTrainAnalysisRequest(mechanism=unit, input_torque=_torque(self.flows_back), friction=0.0)
@@ -132,13 +132,13 @@ class TrainSeriesAnalysis(DrivenAnalysis):
 
     valid: list[bool]
     ratio: Ratio
-    efficiency: float | None = Field(description="Power that leaves over power that enters.")
-    self_locking: bool = Field(description="What drives cannot turn the other end, whatever its torque.")
+    efficiency: float | None = Field(description="Output power over input power.")
+    self_locking: bool = Field(description="Whether the driving end cannot turn the other end at any torque.")
     shafts: list[SeriesShaft] = Field(description="The input, the shafts between the units, the output.")
     units: list[PlanetaryAnalysis | GearTrainAnalysis] = Field(
-        description="In the order of the power, for one position of the own input."
+        description="Units in the order of the power flow, each for one position of its own input."
     )
-    drift: Drift | None = optional("Where a ratio is wanted.")
+    drift: Drift | None = optional("Given if a required ratio is given.")
 
 
 def _analysis(request: TrainSeriesAnalysisRequest) -> dict[str, Any]:

@@ -22,7 +22,7 @@ class StatedJoint(Statement):
     """One universal joint."""
 
     angle: Annotated[float, Field(strict=True, ge=0.0, lt=90.0)] = Field(
-        description="Between the shafts that it joins, degrees."
+        description="Angle between the shafts that the joint connects, degrees."
     )
     offset: Number = Field(
         default=0.0,
@@ -32,7 +32,7 @@ class StatedJoint(Statement):
 
 
 class SpeedLimits(Statement):
-    """How uneven the output may be: by its fluctuation, or by limits of the speed ratio."""
+    """Limits on the unevenness of the output: its fluctuation, or limits of the speed ratio."""
 
     fluctuation: NonNegative | None = Field(default=None, description="(ω_max − ω_min)/ω_mean.")
     least_ratio: Annotated[float, Field(strict=True, ge=0.0, le=1.0)] = 0.0
@@ -44,8 +44,10 @@ class GivenUniversalJoint(Statement):
 
     type: Literal["universal_joint"]
     joints: Annotated[list[StatedJoint], Field(min_length=1, max_length=8)]
-    inertia: NonNegative | None = Field(default=None, description="That turns with the output shaft, e.g. kg m².")
-    torque: Number = Field(default=0.0, description="Steady load on the output shaft, e.g. N m.")
+    inertia: NonNegative | None = Field(
+        default=None, description="Moment of inertia that rotates with the output shaft, e.g. kg·m²."
+    )
+    torque: Number = Field(default=0.0, description="Constant load on the output shaft, e.g. N·m.")
 
     def core(self) -> list[Joint]:
         """The joints of the analysis core."""
@@ -69,15 +71,17 @@ class UniversalJointRequest(DrivenRequest[GivenUniversalJoint]):
 
     motion: StatedMotion = Field(
         default=Sweep(),
-        description="Of the input, its angle from where the driver's fork lies in the plane of the first two shafts.",
+        description="Motion of the input; its angle is 0 with the driver's fork in the plane of the first two shafts.",
     )
-    limits: SpeedLimits | None = Field(default=None, description="Asks for the largest angle of one joint within them.")
+    limits: SpeedLimits | None = Field(
+        default=None, description="Limits for which to find the largest angle of one joint."
+    )
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
         faults, limits = super().faults(), self.limits
         if limits is not None and (limits.fluctuation, limits.greatest_ratio, limits.least_ratio) == (None, None, 0.0):
-            faults.append(("/limits", "state the fluctuation, or a least or greatest ratio"))
+            faults.append(("/limits", "give the fluctuation, or a minimum or maximum ratio"))
         if self.mechanism.joints[0].offset != 0.0:
             faults.append(
                 ("/mechanism/joints/0/offset", "the first joint has no shaft with forks before it; leave it out")
@@ -137,7 +141,7 @@ class UniversalJointRequest(DrivenRequest[GivenUniversalJoint]):
 
 
 class JointExtremes(Answer):
-    """Extremes over a turn of an input at the stated speed, without acceleration."""
+    """Extremes over a turn of an input at the given speed, without acceleration."""
 
     greatest_ratio: float
     least_ratio: float
@@ -148,22 +152,26 @@ class JointExtremes(Answer):
     least_speed: float
     greatest_acceleration: float = Field(description="Magnitude, rad/s².")
     greatest_acceleration_at: list[float] = Field(description="Input angles, degrees.")
-    torques: list[float] | None = Field(description="Least and greatest of the output shaft; null without inertia.")
+    torques: list[float] | None = Field(
+        description="Minimum and maximum torque of the output shaft; null without inertia."
+    )
 
 
 class UniversalJointAnalysis(DrivenAnalysis):
-    """What universal joints do; degrees, rad/s, and the units of the stated inertia and torque."""
+    """Analysis of universal joints; degrees, rad/s, and the units of the given inertia and torque."""
 
-    output_angle: list[float] = Field(description="Rotation from where the output stands at input angle 0, degrees.")
+    output_angle: list[float] = Field(description="Rotation of the output from its position at input angle 0, degrees.")
     speed_ratio: list[float] = Field(description="Output speed over input speed.")
     output_speed: list[float]
     output_acceleration: list[float]
-    output_torque: list[float] | None = Field(description="Load and inertia; null without inertia.")
-    input_torque: list[float] | None = Field(description="Without losses; null without inertia.")
+    output_torque: list[float] | None = Field(description="Torque of load and inertia; null without inertia.")
+    input_torque: list[float] | None = Field(description="Torque of the input without losses; null without inertia.")
     extremes: JointExtremes
-    equivalent_angle: float = Field(description="Angle of the one joint that moves likewise, degrees.")
-    constant_velocity: bool = Field(description="Whether output and input have one speed at every instant.")
-    largest_angle: float | None = Field(description="Of one joint within `limits`, degrees; null without limits.")
+    equivalent_angle: float = Field(description="Angle of the single joint with the same motion, degrees.")
+    constant_velocity: bool = Field(description="Whether output and input always have the same speed.")
+    largest_angle: float | None = Field(
+        description="Largest angle of one joint within `limits`, degrees; null without limits."
+    )
 
 
 FAMILY = Family(UniversalJointRequest, UniversalJointAnalysis)

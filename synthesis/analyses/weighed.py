@@ -52,7 +52,7 @@ def weighed_faults(
     except KinematicsError as error:
         return [("/mechanism", str(error))]
     if shaft and built.driven_by_slide:
-        return [("/mechanism", "a slider drives this; a shaft has to")]
+        return [("/mechanism", "a slider drives this mechanism; a shaft must drive it")]
     return request.faults()
 
 
@@ -65,7 +65,9 @@ def driven_faults(
         return None, faults
     built = weighed_request(mechanism, dynamics, unit).mechanism.mechanism()
     if built.driven_by_slide and motion.speed_rpm is not None:
-        faults.append(("/motion/speed_rpm", "a slider drives this; state its speed as `speed`, length units a second"))
+        faults.append(
+            ("/motion/speed_rpm", "a slider drives this mechanism; give its speed as `speed`, length units per second")
+        )
     return built, faults
 
 

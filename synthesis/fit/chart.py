@@ -35,7 +35,7 @@ from kinematics.compiling import njit
 Real = NDArray[np.float64]
 
 OPTIONS: Any = {"cache": True, "nogil": True, "error_model": "numpy"}
-"""How the kernels of fits are compiled: a division by zero is no exception, as the result is looked at."""
+"""Compiler options of the fits' kernels: division by zero raises no exception, since results are checked for NaN."""
 
 DOUBLE_CRANK, CRANK_ROCKER, DOUBLE_ROCKER, FOURBAR, SLIDER_CRANK, SLIDER_ROCKER, GEARED_FIVEBAR = range(7)
 """Families of linkages. Below :data:`FOURBAR` it is also the number of the shortest link, in the order d, a, b, c."""

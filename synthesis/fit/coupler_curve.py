@@ -224,6 +224,7 @@ def sweep(
         natural(family, x[i], lengths, chart)
         good[i] = True
         step = (end[i] - begin[i]) / (steps if ring[i] else steps - 1)
+        # Rotate unit vectors step by step: one product replaces a sine and a cosine.
         crank, onward = unit(begin[i]), unit(step)
         second = unit(second_angle(family, x[i], ratio, begin[i]))
         turning = unit(ratio * step) if family == GEARED_FIVEBAR else 1.0 + 0j
@@ -240,11 +241,13 @@ def sweep(
 @njit(**OPTIONS)
 def crank_range(d: float, a: float, b: float, c: float) -> tuple[float, float]:
     """Least and greatest |φ| at which the loop closes: 0 and π for a crank; the greatest below the least for none."""
+    # Coupler and output close the loop if the diagonal from O4 to A lies between |b − c| and b + c.
     low, high = 0.0, math.pi
     near, far = abs(b - c), b + c
     if abs(d - a) < near:
         if d + a <= near:
             return 1.0, 0.0
+        # The law of cosines in half-angle form, which keeps its digits near 0 and π.
         low = 2.0 * math.atan(math.sqrt((near * near - (d - a) ** 2) / ((d + a) ** 2 - near * near)))
     if d + a > far:
         if abs(d - a) >= far:

@@ -35,7 +35,7 @@ from synthesis.fit.coupler_curve import place_with_slopes
 Real = NDArray[np.float64]
 
 FAMILY, SIGN, WHOLE = range(3)
-"""Places in a setting: the chart's family, the assembly sign, and whether the crank turns through."""
+"""Indices in a setting: the chart's family, the assembly sign, and whether the crank rotates fully."""
 
 LINKS, RATIO, BOXES, POINT_BOX, COSINE, CHANGE_POINT, GIVEN, MOVING = 3, 5, 6, 14, 18, 19, 20, 24
 """Places of demands in a setting: least and most length, link ratio, boxes (x from, to, y from, to) of O2 and O4, of P
@@ -44,7 +44,7 @@ coordinates (O2, O4; NaN where open), box of both A and B. Infinite where nothin
 share."""
 
 DEMANDS = 28
-"""Number of entries of a setting that are demands; a fit's own entries come after them."""
+"""Number of entries of a setting that are constraints; a fit's own entries follow them."""
 
 EQUATIONS = 4
 """Number of margins, the last ones, that must be zero: coordinates of given pivots."""
@@ -61,7 +61,7 @@ Grashof, given pivots."""
 def margins(
     x: Real, lengths: Real, slopes: Real, ends: Real, turn: Real, setting: Real, values: Real, gradients: Real
 ) -> None:
-    """The margins of a fourbar's demands, and their derivatives by the unknowns.
+    """Compute the margins of a fourbar's constraints, and their derivatives by the unknowns.
 
     Parameters
     ----------

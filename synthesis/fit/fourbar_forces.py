@@ -48,7 +48,7 @@ AIM = 0.005
 """Share by which forces are kept below their limits: peaks lie between the positions."""
 
 PLENTY = 1.0
-"""Margins above this are not told apart: a force of a third of its limit is none that matters."""
+"""Maximum margin: larger ones are cut off, because a force of a third of its limit does not matter."""
 
 DIFFERENCE = 1e-6
 """Step of the derivatives: of angles, logarithms of lengths and places in task sizes."""

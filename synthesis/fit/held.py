@@ -15,7 +15,7 @@ from synthesis.numerics.status import Status
 Real = NDArray[np.float64]
 
 NEARLY = 0.5 * AIM
-"""Violation of a room, in task sizes, that is none: it is aimed at more narrowly than it is checked."""
+"""Violation of a workspace, in task sizes, that counts as none, because fits aim beyond the checked limits."""
 
 
 def held(
@@ -33,7 +33,7 @@ def held(
     rounds: int,
     steps: int,
 ) -> tuple[Status, float]:
-    """Descend in place to a minimum at which all demands hold; returns the status, and the cost there.
+    """Descend in place to a minimum at which all constraints hold; return the status and the cost there.
 
     Parameters
     ----------

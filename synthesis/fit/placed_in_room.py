@@ -30,7 +30,7 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 DRAWN, SWEPT, MOVED = 3000, 60, 3
-"""Places that are drawn, those of them that are looked at over the motion, and those that are moved from there."""
+"""Numbers of positions that are sampled, of those checked over the motion, and of those then improved."""
 
 ITERATIONS = 120
 """Steps of the simplex method."""
@@ -42,7 +42,7 @@ SPREAD = 0.7
 """Standard deviation of the logarithm of a drawn size, where no two zones tell it."""
 
 AWAY = 2.0
-"""Standard deviation of a drawn place from the origin, in ground links, where neither zones nor a box tell it."""
+"""Standard deviation of a sampled position from the origin, in ground links, without zones and box."""
 
 
 class Moving(NamedTuple):
@@ -69,7 +69,7 @@ class Moving(NamedTuple):
 def placed_in_room(
     space: Space, linkage: Moving, boxes: Boxes, sizes: tuple[float, float], preferred: Placing
 ) -> Placing | None:
-    """A place where all margins of the room are kept; None where none is found.
+    """Find a position that satisfies all margins of the workspace, or None.
 
     One that breaks limits of size or boxes does not count: it would be rejected for a reason that is not the true one.
 
@@ -90,6 +90,7 @@ def placed_in_room(
     room = packed(space, 0j, scale)
     if not len(room):
         return preferred
+    # Trace the linkage once in its own frame; every placement only transforms these points.
     x = np.zeros(9)
     begin, end, ring, _ = way_of(linkage.lengths, linkage.ends, False, room)
     own, home = np.zeros((steps_of(ring), PLACES), np.complex128), np.zeros(PLACES, np.complex128)
@@ -106,6 +107,7 @@ def placed_in_room(
         return preferred
     tried = np.concatenate([here[None], _drawn(space, scale, home)])
     tried[:, 2] = np.clip(tried[:, 2], low, high)
+    # Zones cost no motion: use them to discard most samples before the expensive margins along the motion.
     zones = zones_alone(room)
     if len(zones):
         kept = margins(tried, zones)
@@ -143,6 +145,7 @@ def _moved(start: Real, margin: Callable[[Real], float]) -> tuple[Real, float]:
 
 def _drawn(space: Space, scale: float, home: Complex) -> Real:
     """Places (x, y, logarithm of the size, direction) with one or two pivots in their zones, shape (n, 4)."""
+    # A fixed seed: the result must not depend on the order in which linkages are placed.
     rng = np.random.default_rng(0)
     fixed, moving = space.fixed_pivots, space.moving_pivots
     stated = [
@@ -156,6 +159,7 @@ def _drawn(space: Space, scale: float, home: Complex) -> Real:
         for joint, zone in stated
         if zone is not None
     ]
+    # Two pivots with sampled positions determine the similarity; with fewer, size and direction are sampled, too.
     if len(drawn) > 1:
         (p, at), (q, other) = drawn[:2]
         along = (other - at) / (q - p)

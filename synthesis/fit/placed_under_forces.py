@@ -18,17 +18,17 @@ from synthesis.numerics.placing import Placing
 Real = NDArray[np.float64]
 
 SIZES, TURNS = 49, 12
-"""Sizes and directions that are looked at."""
+"""Numbers of sizes and directions of the grid."""
 
 WIDEST = 10.0
 """By how many times a size differs from the preferred one at most, where no limit of length is nearer."""
 
 TURNED = 0.05
-"""What a turn of a radian counts for, beside the logarithm of a size, in which of the places is nearest."""
+"""Weight of a rotation by one radian relative to the logarithm of a size, in the distance between placements."""
 
 
 def placed_under_forces(forces: Real, linkage: Moving, sizes: tuple[float, float], preferred: Placing) -> Placing:
-    """The place nearest to a preferred one that keeps the limits; the one that breaks them least where none does.
+    """Find the placement nearest to a preferred one within the limits, or the one that violates them least.
 
     Parameters
     ----------

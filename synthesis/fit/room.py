@@ -41,7 +41,7 @@ WINDOWS, STEPS = 12, 4
 """Windows of the motion, and steps in each."""
 
 AIM = 1e-4
-"""Share of the task's size by which everything is kept more narrowly than it is checked."""
+"""Extra margin of all fits beyond the checked limits, as a share of the task's size."""
 
 NARROW = 0.2
 """Of a zone that is small beside that: the share of its half width by which it is drawn in at most."""
@@ -89,7 +89,7 @@ def packed(
     spare: float = np.inf,
     forces: Real = NO_LIMITS,
 ) -> Real:
-    """A room in task coordinates, with ``origin`` at 0 and ``size`` at 1; empty where nothing is demanded.
+    """Pack a workspace in task coordinates, with ``origin`` at 0 and ``size`` at 1; empty without constraints.
 
     Parameters
     ----------

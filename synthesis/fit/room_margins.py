@@ -1,4 +1,4 @@
-"""Margins of a room along a motion, and their derivatives by whatever moves the joints.
+"""Margins of a workspace along a motion, and their derivatives by the unknowns that move the joints.
 
 A motion is given by where its joints are at equal steps: shape (n, 6), in the order O2, A, B, O4, P and, of a linkage
 that carries a body, the turn e^{iα} of the body from how it is drawn. Between the steps joints, and corners of the
@@ -55,7 +55,7 @@ ROW = WEIGHTS + 2 * PLACES
 """Numbers of a row."""
 
 FAR = 0.25
-"""Distances beyond this, in task sizes, are not told apart."""
+"""Maximum distance, in task sizes: larger ones are cut off."""
 
 CLOSE = 0.1
 """Margins above this, in task sizes, are lower bounds without a row: no limit bears a load there."""
@@ -67,7 +67,7 @@ a step, is the same place."""
 
 @njit(**OPTIONS)
 def margins_of(room: Real) -> int:
-    """How many margins a room has."""
+    """Return the number of margins of a workspace."""
     return int(room[COUNT]) if len(room) else 0
 
 
@@ -79,7 +79,7 @@ def steps_of(ring: bool) -> int:
 
 @njit(**OPTIONS)
 def room_margins(room: Real, places: Complex, ring: bool, home: Complex, values: Real, rows: Real) -> None:
-    """The margins of a motion, and their rows.
+    """Compute the margins of a motion, and their rows.
 
     Parameters
     ----------
@@ -143,6 +143,7 @@ def add_derivative(row: Real, share: float, slopes: Complex, out: Real) -> None:
 @njit(**OPTIONS)
 def parabola(step: int, share: float, ring: bool, n: int) -> tuple[tuple[int, int, int], tuple[float, float, float]]:
     """The steps whose places make up the place a share of a step off a step, and how much of each."""
+    # At the ends of an open range the parabola is that of the nearest inner step.
     k = step if ring else min(max(step, 1), n - 2)
     t = share + (step - k)
     return ((k - 1) % n, k, (k + 1) % n), (0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0))
@@ -170,10 +171,12 @@ def _of_zones(room: Real, home: Complex, values: Real, rows: Real) -> int:
         joint, on_body, radius, aim = int(room[at]), room[at + 1] > 0.0, room[at + 2], room[at + 3]
         corners = room[at + 5 : at + 5 + 2 * int(room[at + 4])].view(np.complex128)
         at += 5 + 2 * len(corners)
+        # Zones of one pivot are adjacent and share a margin: the best of them counts.
         if joint != pivot:
             pivot, m = joint, m + 1
             values[m] = -math.inf
         z = home[joint]
+        # A zone on the body is drawn for the requested first position: map the pivot back to it.
         if on_body:
             z = drawn + (home[joint] - home[P]) * home[TURN].conjugate()
         if len(corners) == 1:
@@ -208,6 +211,7 @@ def _nearer(before: float, here: float, after: float) -> float:
 @njit(**OPTIONS)
 def _span(room: Real, window: int, ring: bool, n: int) -> tuple[int, int]:
     """The steps of a window, from and to before; the last takes the end of the motion too."""
+    # A whole turn ends one step before its start; an open range has one more step, which the last window takes.
     last = n if not ring and window == WINDOWS - 1 else (window + 1) * STEPS
     return window * STEPS, last
 
@@ -260,6 +264,7 @@ def _of_box(room: Real, places: Complex, ring: bool, values: Real, rows: Real, f
         begin, end = _span(room, window, ring, n)
         for side in range(4):
             step = begin + int(np.argmin(depths[side, begin:end]))
+            # Refine the lowest step by a parabola, so that the margin is a smooth function of the unknowns.
             share = 0.0
             if ring or 0 < step < n - 1:
                 share = _nearer(depths[side, (step - 1) % n], depths[side, step], depths[side, (step + 1) % n])
@@ -292,7 +297,7 @@ def _core(room: Real, part: int, record: int, here: Complex, core: Complex) -> i
 
 @njit(**OPTIONS)
 def _of_obstacles(room: Real, places: Complex, ring: bool, values: Real, rows: Real, first: int) -> None:
-    """The least distance of each part from each group of obstacles in each window, less what is wanted."""
+    """Write the minimum distance of each part from each group of obstacles in each window, minus the required one."""
     links, groups = int(room[PARTS]), int(room[GROUPS])
     record = int(room[BODY_AT])
     longest, end = 3, record
@@ -322,7 +327,7 @@ def _of_obstacles(room: Real, places: Complex, ring: bool, values: Real, rows: R
 
 @njit(**OPTIONS)
 def _gap(room: Real, core: Complex, radius: float, piece: int, weights: Real) -> tuple[float, complex]:
-    """Signed distance of a part from a piece less what is wanted, and its direction."""
+    """Return the signed distance of a part from a piece minus the required one, and its direction."""
     corners = room[piece + 6 : piece + 6 + 2 * int(room[piece + 5])].view(np.complex128)
     apart, normal = separation(core, corners, weights)
     return apart - radius - room[piece + 1] - room[WANTED], normal

@@ -64,9 +64,11 @@ def _along_sides(first: Complex, second: Complex) -> tuple[float, complex, int, 
             if height < least:
                 least, corner = height, j
         length = math.sqrt(side.real * side.real + side.imag * side.imag)
+        # Sides of rounding length have no direction. Compare products to avoid a division per side.
         if length > SHORT and least > best * length:
             best, normal = least / length, complex(side.imag, -side.real) / length
             on, after = corner, corner
+    # The orientation of the first core decides on which side its outward normals point.
     turn = -1.0 if k > 2 and _area(first) < 0.0 else 1.0
     for n in range(k if k > 1 else 0):
         start, end = first[n], n + 1 if n + 1 < k else 0
@@ -125,10 +127,12 @@ def inside(z: complex, corners: Complex) -> tuple[float, complex]:
             toward = offset / least if least > 0.0 else 0j
             if not least > 0.0:
                 on_edge = 1j * (b - a) / abs(b - a)
+        # Even–odd rule: count the crossings of the ray to the right.
         if (a.imag > z.imag) != (b.imag > z.imag):
             crossing = a.real + (z.imag - a.imag) / (b.imag - a.imag) * (b.real - a.real)
             if z.real < crossing:
                 within = not within
+    # Exactly on an edge the offset has no direction: use the inward normal of that edge.
     if not least > 0.0:
         return 0.0, on_edge
     return (least, toward) if within else (-least, -toward)

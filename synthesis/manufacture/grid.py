@@ -56,7 +56,7 @@ INNER = 6
 """Dimensions that one batch runs over."""
 
 CHOICES = 64
-"""Choices of links in stock that are looked at, those first whose links are most like the design's."""
+"""Maximum number of choices of links in stock, those most similar to the design first."""
 
 AROUND = 6
 """Of these, the best around which a grid is searched."""
@@ -97,7 +97,7 @@ def nearest_on_grid(
     used: tuple[float, float] | None,
     limits: Limits = (math.inf, math.inf),
 ) -> Near | str:
-    """The linkages on the grid, or of the stock, that come nearest to what a design is held to.
+    """Find the linkages on the grid, or from the stock, that best satisfy a design's requirements.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def _has_own(held: Held) -> bool:
 
 
 def _candidates(row: Real, names: list[str], stated: Manufacture, kept: frozenset[str]) -> list[Real]:
-    """Values of each dimension on the grid; the stated one alone where it is kept."""
+    """Return the grid values of each dimension; only the given value for a fixed dimension."""
     assert stated.round is not None
     values = []
     for at, name in zip(row, names, strict=True):
@@ -299,7 +299,7 @@ Mechanism = TypeVar("Mechanism", FourbarMechanism, SliderCrankMechanism)
 
 
 def with_dimensions(mechanism: Mechanism, row: Real) -> Mechanism:
-    """A mechanism whose stated dimensions are those of ``row`` to the last digit, which its joints have to rounding."""
+    """Return a mechanism with exactly the dimensions ``row``; its joints agree with them to rounding."""
     at = [float(value) for value in row]
     update: dict[str, object]
     if isinstance(mechanism, FourbarMechanism):

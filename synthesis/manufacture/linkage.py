@@ -1,4 +1,4 @@
-"""A finished fourbar or slider-crank by its dimensions, and what it is held to, as the compiled variants take them."""
+"""Dimensions and requirements of a finished fourbar or slider-crank, in the form of the compiled variants."""
 
 from __future__ import annotations
 
@@ -157,7 +157,7 @@ class Product:
 
 
 def task_of(linkage: Linkage, held: Held, units: tuple[float, float]) -> Task | str:
-    """The task of what a linkage is held to, with the inputs as drawn; in words why there is none."""
+    """Build the task from a linkage's requirements, with the nominal inputs; a message if there is none."""
     sort: Sort = "outputs" if held.points is None else "points" if held.angles is None else "poses"
     task = Task(
         sort,
@@ -174,7 +174,7 @@ def task_of(linkage: Linkage, held: Held, units: tuple[float, float]) -> Task | 
     if sort == "poses":
         angles = _coupler_angles(linkage, task, held)
         if angles is None:
-            return "the linkage cannot be assembled in its reference"
+            return "the linkage cannot be assembled in its reference configuration"
         task = dataclasses.replace(task, angles=angles)
     return task
 
@@ -196,7 +196,7 @@ def demanded(
 
 
 def product(linkage: Linkage, held: Held, stated: Exactness, used: tuple[float, float] | None) -> Product | str:
-    """A linkage with what it is held to; in words why there is none.
+    """Build a linkage with its requirements; a message if this is not possible.
 
     Parameters
     ----------
@@ -227,13 +227,13 @@ def product(linkage: Linkage, held: Held, stated: Exactness, used: tuple[float, 
 
 
 def units_of(quality: Quality) -> tuple[float, float]:
-    """Its limits of distance and of angle, radians; infinite where none is stated."""
+    """Return the quality's limits of distance and of angle (radians); infinite if not given."""
     angle = math.inf if quality.max_angle_error is None else math.radians(quality.max_angle_error)
     return quality.max_error or math.inf, angle
 
 
 def _units(stated: Exactness, held: Held) -> tuple[float, float]:
-    """What errors are measured in: the quality; where none is stated, the size of the task and a radian."""
+    """Return the units of errors: the quality's limits, or the size of the task and one radian by default."""
     if stated.quality is not None:
         return units_of(stated.quality)
     places = held.points if held.points is not None else held.travels

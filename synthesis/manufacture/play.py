@@ -38,7 +38,7 @@ CORNERS = 24
 """Corners of an outline."""
 
 DIRECTIONS = 720
-"""Directions in which the farthest place is looked for: it is missed by a hundred-thousandth."""
+"""Number of directions in which the farthest point is searched; its distance is accurate to 1e-5."""
 
 SAFE = 1.5
 """What the first order leaves out is quadratic; half as much again covers what lies between what is driven."""

@@ -1,4 +1,4 @@
-"""What a design does as it is made, as an answer has it: yield, corners, derivatives, and what tolerances matter."""
+"""Manufacturing report of a design: yield, worst case, sensitivities, and the tolerances that matter."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ MATTER = 0.8
 
 
 class Reported(NamedTuple):
-    """A design as it is made, and its yield where there is one."""
+    """Manufacturing results of a design, and its yield, if sampled."""
 
     manufactured: Manufactured
     yield_: Yield | None
 
 
 def reported(mechanism: Any, held: Held, stated: Exactness, seed: int, used: tuple[float, float] | None) -> Reported:
-    """All that is said of a design as it is made.
+    """Report all manufacturing results of a design.
 
     Parameters
     ----------
@@ -56,11 +56,11 @@ def reported(mechanism: Any, held: Held, stated: Exactness, seed: int, used: tup
     off = offs(stated, linkage.pivots(guides=made.task.guides))
     share, rates = _shares(made, off)
     listed = [_sensitivity(made, rates, k, float(off[k]), float(share[k])) for k in np.argsort(-share, kind="stable")]
-    remark = None if np.isfinite(rates.rates).all() else "the linkage stands at a toggle at a target"
+    remark = None if np.isfinite(rates.rates).all() else "the linkage is at a toggle at a target"
     clearance = 0.0 if stated.tolerances is None else stated.tolerances.pin_clearance
     play = plays(made, clearance) if clearance > 0.0 else []
     if play is None:
-        remark = "with the clearances of its pins the linkage reaches a toggle at a target"
+        remark = "within the clearances of its pins the linkage reaches a toggle at a target"
     allocated: list[Allocation] = []
     if isinstance(stated, Manufacture) and stated.widest:
         allocated = widest(made, stated, seed if stated.seed is None else stated.seed, _squares(made, rates), off)

@@ -58,7 +58,7 @@ def good(product: Product, variants: Real) -> int:
 
 
 def sampled_yield(product: Product, stated: Exactness, seed: int) -> Yield:
-    """The yield of a linkage with a stated quality."""
+    """Sample the yield of a linkage with a required quality."""
     off = offs(stated, product.linkage.pivots(guides=product.task.guides))
     share = drawn(stated.distribution, seed, stated.samples, len(off))
     count = good(product, product.nominal + share * off)

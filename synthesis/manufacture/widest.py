@@ -23,16 +23,16 @@ from synthesis.model.manufacture_answer import Allocation, Yield
 Real = NDArray[np.float64]
 
 WIDEST = 10.0
-"""Times a stated tolerance beyond which none is widened: more is no tolerance of that shop."""
+"""Maximum widening of a given tolerance: a larger one would be unrealistic for that shop."""
 
 ROUGH = 10_000
-"""Samples, at most, by which the width is looked for."""
+"""Maximum number of samples in the search of the width."""
 
 STEPS = 9
 """Bisections of a factor of two: to a seventh of a per cent."""
 
 DOUBLED = 8
-"""Doublings, or halvings, in which the width is looked for."""
+"""Maximum number of doublings or halvings in the search of the width."""
 
 NARROWED, TRIES = 0.98, 25
 """What a width is lessened by where all samples show less than the rough ones did, and how often."""
@@ -93,7 +93,7 @@ def _by_sort(squares: Real, open_ones: NDArray[np.bool_], pivots: NDArray[np.boo
 def _scaled(
     made: Product, stated: Exactness, seed: int, demanded: float, shape: Real, off: Real
 ) -> tuple[Real, Yield] | None:
-    """The widest tolerances of a shape, and the yield with them; None where none is small enough."""
+    """Find the widest tolerances of a given proportion, and their yield; None if none is small enough."""
     rough = min(stated.samples, ROUGH)
     unit = shape * float(np.median(off[off > 0.0] / shape[off > 0.0]))
 

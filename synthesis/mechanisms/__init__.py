@@ -56,7 +56,7 @@ GivenMechanism = Annotated[
     | Annotated[GivenSkeleton, Tag(_tag(GivenSkeleton))],
     Discriminator(lambda statement: _tag(_model_of(statement))),
 ]
-"""Any stated mechanism; the field ``type`` tells which."""
+"""Any given mechanism, identified by its field ``type``."""
 
 __all__ = [
     "GivenFourbar",

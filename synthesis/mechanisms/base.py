@@ -1,4 +1,4 @@
-"""What several stated mechanisms share: how they are put together, and what is refused."""
+"""Common parts of given mechanisms: their assembly, and the refusal of contradictory dimensions."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.model.stated_linkage import AGREES
 
 FIRST_TRIED = 30
-"""Degree from which a configuration is looked for: along the ground line many linkages have a change point."""
+"""First input angle, degrees, to try for a configuration: many linkages have a change point along the ground line."""
 
 
 class MechanismError(ValueError):
-    """A stated mechanism that does not exist; carries the field's path below the mechanism."""
+    """Raised for a given mechanism that cannot exist; carries the field's path below the mechanism."""
 
     def __init__(self, path: str, detail: str) -> None:
         self.path = path

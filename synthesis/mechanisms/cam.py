@@ -41,7 +41,7 @@ def follower_type(follower: core.Follower) -> FollowerType:
 
 
 def dimensions_of(kind: type[core.Follower]) -> dict[str, Any]:
-    """Names of a follower's own dimensions, and what they are where nothing is stated."""
+    """Return the names of a follower's own dimensions and their defaults."""
     return {field.name: 0.0 if field.default is MISSING else field.default for field in fields(kind)[1:]}
 
 
@@ -64,11 +64,13 @@ def follower_by_dimensions(name: FollowerType, radius: float, stated: object) ->
 
 
 class GivenFollower(Statement):
-    """A follower: what belongs to its type must be given."""
+    """A follower; all dimensions of its type must be given."""
 
     type: FollowerType
     roller_radius: Annotated[NonNegative, LENGTH] | None = Field(default=None, description="0 for a knife edge.")
-    offset: Coordinate | None = Field(default=None, description="Of a translating follower's slide; 0 if left out.")
+    offset: Coordinate | None = Field(
+        default=None, description="Offset of a translating follower's slide; 0 by default."
+    )
     arm: PositiveLength | None = None
     pivot_distance: PositiveLength | None = None
     face_offset: Coordinate | None = Field(default=None, description="0 if left out.")
@@ -91,7 +93,7 @@ class GivenFollower(Statement):
         radius = prime_radius if roller else base_radius
         if radius is None:
             name = "prime_radius" if roller else "base_radius"
-            raise MechanismError(f"/{name}", "where the displacement is zero is not stated without it")
+            raise MechanismError(f"/{name}", "needed to define zero displacement")
         try:
             return follower_by_dimensions(self.type, radius, self)
         except DimensionError as error:
@@ -106,13 +108,13 @@ class GivenCurve(Statement):
     angle: list[Degrees] | None = Field(default=None, max_length=MAX_POINTS)
 
     def points(self, path: str) -> NDArray[np.complex128]:
-        """As complex numbers; faults are told under its path."""
+        """Return the points as complex numbers; errors are reported under ``path``."""
         if len(self.x) != len(self.y):
-            raise MechanismError(f"{path}/y", "as many as x are needed")
+            raise MechanismError(f"{path}/y", "expected as many values as x")
         return np.array(self.x) + 1j * np.array(self.y)
 
     def contour(self, path: str) -> Contour:
-        """The curve of the analysis core; its faults are told under its path."""
+        """Build the curve of the analysis core; errors are reported under ``path``."""
         points = self.points(path)
         try:
             return Contour(points)
@@ -121,17 +123,19 @@ class GivenCurve(Statement):
 
 
 class GivenCam(Statement):
-    """A finished cam: its profile and its follower. Pitch curve and program of a design are taken and not looked at."""
+    """A finished cam: its profile and its follower. Pitch curve and program of a design are accepted and ignored."""
 
     type: Literal["cam"]
     follower: GivenFollower
-    prime_radius: PositiveLength | None = Field(default=None, description="Of a roller follower's cam.")
-    base_radius: PositiveLength | None = Field(default=None, description="Of a flat-faced follower's cam.")
+    prime_radius: PositiveLength | None = Field(default=None, description="Radius of the cam of a roller follower.")
+    base_radius: PositiveLength | None = Field(default=None, description="Radius of the cam of a flat-faced follower.")
     rotation: Literal["ccw", "cw"] = "ccw"
     profile: GivenCurve
-    outer_wall: GivenCurve | None = Field(default=None, description="Of a groove; the profile is its inner wall.")
+    outer_wall: GivenCurve | None = Field(
+        default=None, description="Outer wall of a groove; the profile is its inner wall."
+    )
     pitch_curve: Any = None
-    second: Any = Field(default=None, description="The other one of conjugate cams, which is not looked at.")
+    second: Any = Field(default=None, description="The other one of conjugate cams; ignored.")
     program: Any = None
 
     def core_follower(self) -> core.Follower:
@@ -157,11 +161,11 @@ class GivenBarrelFollower(Statement):
 
 
 class GivenBarrelCam(Statement):
-    """A finished barrel cam: both walls of its groove, unrolled. Pitch curve and program are not looked at."""
+    """A finished barrel cam: both walls of its groove, unrolled. Pitch curve and program are ignored."""
 
     type: Literal["barrel_cam"]
     follower: GivenBarrelFollower
-    cylinder_radius: PositiveLength = Field(description="Of the cylinder on which the roller's middle runs.")
+    cylinder_radius: PositiveLength = Field(description="Radius of the cylinder on which the roller's middle runs.")
     rotation: Literal["ccw", "cw"] = "ccw"
     lower_wall: GivenCurve
     upper_wall: GivenCurve
@@ -184,7 +188,7 @@ class EccentricContour(Statement):
 class _Nosed(Statement):
     base_radius: PositiveLength
     nose_radius: PositiveLength
-    nose_distance: PositiveLength = Field(description="From the cam's centre to the nose's.")
+    nose_distance: PositiveLength = Field(description="Distance from the cam's centre to the centre of the nose.")
 
 
 class TangentContour(_Nosed):
@@ -203,14 +207,14 @@ class ArcContour(_Nosed):
     shape: Literal["circular_arc"]
     flank_radius: Coordinate | None = Field(default=None, description="Negative for hollow flanks.")
     half_action_angle: Annotated[PositiveNumber, ANGLE] | None = Field(
-        default=None, description="From the nose to the flank's end, degrees."
+        default=None, description="Angle from the nose to the end of the flank, degrees."
     )
 
     def core(self) -> contours.SpecifiedContour:
         """The contour of the analysis core."""
         radius = self.flank_radius
         if (radius is None) == (self.half_action_angle is None):
-            raise MechanismError("/contour/flank_radius", "give either it or the half action angle")
+            raise MechanismError("/contour/flank_radius", "give either this or the half action angle")
         if radius is None:
             angle = math.radians(self.half_action_angle or 0.0)
             radius = contours.flank_radius_of(self.base_radius, self.nose_radius, self.nose_distance, angle)
@@ -223,7 +227,7 @@ class GivenContourCam(Statement):
     type: Literal["contour_cam"]
     contour: Annotated[EccentricContour | TangentContour | ArcContour, Discriminator("shape")]
     roller_radius: Annotated[NonNegative, LENGTH] | None = Field(
-        default=None, description="Of a roller follower; null: a flat face."
+        default=None, description="Radius of a roller follower; null: a flat face."
     )
     offset: Coordinate = 0.0
     rotation: Literal["ccw", "cw"] = "ccw"

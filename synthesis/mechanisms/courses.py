@@ -1,6 +1,6 @@
-"""Loads of the analysis core from stated ones: tables over the input, resistance, and gas on a piston.
+"""Conversion of requested loads for the analysis core: tables over the input, resistance, and gas on a piston.
 
-Tables are told in the units of a statement; courses take the core's input (radians, or metres along the input slide).
+Tables are in the units of the statement; the core's load functions take its input (radians, or metres along the slide).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def turns_of(course: ForceCourse | TorqueCourse, mechanism: Mechanism) -> int:
 
 
 def repeated_after(block: WeighedLinkage, mechanism: Mechanism) -> int:
-    """Turns of the input after which the mechanism and all its loads repeat; 0 where none do, or a slide drives."""
+    """Return the turns of the input after which mechanism and loads repeat; 0 if they never do or a slide drives."""
     if mechanism.driven_by_slide:
         return 0
     try:
@@ -58,7 +58,7 @@ def course_faults(course: ForceCourse | TorqueCourse, mechanism: Mechanism) -> I
         return
     if slide:
         if course.interpolation != "linear":
-            yield "/interpolation", "the place of a slide is not periodic; take linear"
+            yield "/interpolation", "the position of a slide is not periodic; use linear"
         if course.turns is not None:
             yield "/turns", "a slide does not turn"
         return
@@ -93,7 +93,7 @@ def along_slide(table: Real, scale: float) -> Course:
 
 
 def course_of(course: ForceCourse | TorqueCourse, mechanism: Mechanism, scale: float) -> Course:
-    """The course of a stated table or constant."""
+    """Build the load function of a table or a constant."""
     if course.table is not None:
         table = np.array(course.table, np.float64)
         if course.by == "input_position":
@@ -118,12 +118,12 @@ def top_dead_centre(mechanism: Mechanism, slide: int) -> tuple[float, complex]:
         Where no crank turns through, or the joint does not move.
     """
     if mechanism.driven_by_slide:
-        raise ValueError("gas acts on a piston that a crank moves; a slide drives this mechanism")
+        raise ValueError("gas pressure needs a piston moved by a crank; a slide drives this mechanism")
     name = mechanism.slide_names[slide]
     at = 2.0 * math.pi * np.arange(STEPS) / STEPS
     motion = drive(mechanism, at, order=0)
     if not motion.valid.all():
-        raise ValueError("gas acts on a piston that a crank moves; the input does not turn through")
+        raise ValueError("gas pressure needs a piston moved by a crank; the input cannot make a full turn")
     along = motion.slides[name][0]
     line = mechanism.slides[slide]
     direction = complex(np.exp(1j * line.angle))

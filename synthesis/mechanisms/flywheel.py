@@ -1,9 +1,10 @@
 """How much a flywheel must store: energy of the fluctuation of a torque over a cycle, and the inertia that evens it.
 
-The driver gives the mean torque T̄ all the time; what the machine takes more or less goes through the flywheel's energy.
-With W(θ) = ∫ (T − T̄) dθ, its fluctuation is E = max W − min W (Norton, *Design of Machinery*, eq. 11.18-11.20: W stands
-at its extremes where T crosses T̄, and no single pulse need be as large as E). Then ω² = ω₀² − 2 W / I, and to first
-order in the coefficient k = (ω_max − ω_min)/ω̄ of fluctuation I = E/(k ω̄²) (11.22). Exactly, ω̄ is the mean over time.
+The driver gives the mean torque T̄ all the time; what the machine takes more or less goes through the flywheel's
+energy. With W(θ) = ∫ (T − T̄) dθ, its fluctuation is E = max W − min W (Norton, *Design of Machinery*, eq. 11.18-11.20:
+W stands at its extremes where T crosses T̄, and no single pulse need be as large as E). Then ω² = ω₀² − 2 W / I, and to
+first order in the coefficient k = (ω_max − ω_min)/ω̄ of fluctuation I = E/(k ω̄²) (11.22). Exactly, ω̄ is the mean over
+time.
 """
 
 from __future__ import annotations
@@ -149,7 +150,7 @@ def extreme_speeds(found: Fluctuation, inertia: float, speed: float) -> tuple[fl
 
 
 def exact_inertia(found: Fluctuation, speed: float, coefficient: float) -> float:
-    """Inertia of which the coefficient of fluctuation is as wanted, exactly: it falls as the inertia grows."""
+    """Find the inertia with exactly the required coefficient of fluctuation, which decreases as the inertia grows."""
     if found.energy == 0.0:
         return 0.0
     guess = first_order_inertia(found.energy, speed, coefficient)

@@ -23,13 +23,13 @@ from synthesis.model.statement import Degrees, Number, PositiveLength, Statement
 Real = NDArray[np.float64]
 
 SAMPLES, MOST_SAMPLES = 720, 200_000
-"""Input angles for each turn of the faster pin, and at most, at which an assembly is looked for."""
+"""Number of input angles per turn of the faster pin, and their maximum, at which an assembly is tried."""
 
 ANGLE_RESOLUTION = 1e-15
 """Radians at which a search for the best angle ends: no float of an angle is finer."""
 
 BEST = 16
-"""How many of the places where the pins are farthest inside are looked at closely."""
+"""Maximum number of the best input angles that are refined."""
 
 
 class FivebarLengths(Statement):
@@ -58,7 +58,7 @@ class GivenGearedFivebar(GivenByDimensions):
         o2, o5 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
         agree("/links/ground", self.links.ground, abs(o5 - o2))
         if o2 == o5:
-            raise MechanismError("/fixed_pivots/output", "equal to the input's pivot; no ground link is left")
+            raise MechanismError("/fixed_pivots/output", "both fixed pivots coincide; they must be different")
         return assembled(
             lambda angle: catalogue.geared_fivebar(
                 o2,

@@ -1,4 +1,4 @@
-"""A Geneva drive by its dimensions, whatever holds them: an answer, or what a client states."""
+"""A Geneva drive by its dimensions, from an answer or from a client's request."""
 
 from __future__ import annotations
 

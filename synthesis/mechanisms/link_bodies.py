@@ -1,4 +1,4 @@
-"""What links weigh, from their stated mass properties or shapes: bodies in the unit of the forces."""
+"""Bodies of links from their given mass properties or shapes, in the unit of the forces."""
 
 from __future__ import annotations
 
@@ -73,11 +73,11 @@ class LinkBodies:
                 plate = plate.plus(shapes.disc(joints[joint], self.scale * diameter / 2.0), -1.0)
             path = f"/dynamics/bodies/{token(link)}/shape"
             if not plate.area > 0.0 or not math.isfinite(plate.polar):
-                raise BlockError(path, "nothing is left of the plate; is the polygon flat, or are the holes too wide?")
+                raise BlockError(path, "the plate has no area; the polygon is flat, or the holes are too wide")
             for joint, diameter in shape.holes.items():
                 wider = 0.0 if shape.width is None else diameter - shape.width
                 if wider > 0.0 and self._at_edge(link, joint, wider):
-                    raise BlockError(f"{path}/holes/{token(joint)}", "the hole is wider than the plate around it")
+                    raise BlockError(f"{path}/holes/{token(joint)}", "the hole extends beyond the edge of the plate")
             bodies.append(plate.body(shape.heaviness, self.scale * shape.thickness))
         return joined(bodies)
 

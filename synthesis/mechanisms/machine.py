@@ -1,4 +1,4 @@
-"""The analysis core's machine from a stated mechanism and its block ``dynamics``; faults that no single field shows.
+"""Conversion of a mechanism with its block ``dynamics`` to the analysis core's machine, and errors in the block.
 
 Everything is formed in the unit of the forces: in metres for SI, else in the length unit as it is.
 """
@@ -63,7 +63,7 @@ def _named_faults(block: WeighedLinkage, mechanism: Mechanism) -> Iterator[Fault
                 if joint not in mechanism.links[name]:
                     yield f"{path}/shape/holes/{token(joint)}", f"no joint of {name}"
             if stated.shape.ends == "square" and len(mechanism.links[name]) != 2:
-                yield f"{path}/shape/ends", "only a bar of two joints has ends"
+                yield f"{path}/shape/ends", "only a bar with two joints has ends"
     for n, mass in enumerate(block.point_masses):
         if mass.joint not in mechanism.joints:
             yield f"/dynamics/point_masses/{n}/joint", no_joint
@@ -82,7 +82,7 @@ def _friction_faults(block: WeighedLinkage, mechanism: Mechanism) -> Iterator[Fa
     if block.friction is None:
         return
     if mechanism.redundant:
-        yield "/dynamics/friction", "constraints are redundant: the forces that make friction are not unique"
+        yield "/dynamics/friction", "constraints are redundant, so that the forces that cause friction are not unique"
     rubbing = rubbing_joints(mechanism)
     for joint in block.friction.pins:
         if joint not in rubbing:
@@ -97,11 +97,11 @@ def _friction_faults(block: WeighedLinkage, mechanism: Mechanism) -> Iterator[Fa
 
 def _report_faults(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[Fault]:
     if block.report is not None and "joint_force_index" in block.report and not block.loads:
-        yield "/dynamics/report", "the joint force index is that of the first of the loads; state one"
+        yield "/dynamics/report", "the joint force index needs at least one load"
     if block.report is not None and "joint_force_index" in block.report and mechanism.redundant:
-        yield "/dynamics/report", "constraints are redundant: the forces of the joint force index are not unique"
+        yield "/dynamics/report", "constraints are redundant, so that the joint forces of the index are not unique"
     if mechanism.driven_by_slide:
-        detail = "a flywheel is on the shaft that drives; a slide drives this mechanism"
+        detail = "a flywheel needs a driving shaft; a slide drives this mechanism"
         if block.flywheel is not None:
             yield "/dynamics/flywheel", detail
         elif block.reports("flywheel"):
@@ -141,7 +141,11 @@ def _drive_faults(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[Fault]
     if isinstance(stated, DrivenSlide):
         drives = [n for n, s in enumerate(mechanism.slides) if s.joint == mechanism.input and s.link == GROUND]
         if stated.slide not in drives:
-            detail = f"the slide that drives is {drives[0]}" if drives else "a torque on the input link drives this"
+            detail = (
+                f"the slide that drives is {drives[0]}"
+                if drives
+                else "a torque on the input link drives this mechanism"
+            )
             yield "/dynamics/drive/slide", detail
 
 
@@ -324,7 +328,7 @@ class _Reader(LinkBodies):
             abs(complex(a - b)) for a in self.mechanism.joints.values() for b in self.mechanism.joints.values()
         )
         if abs(complex(second - first)) <= NO_LENGTH * size and (stated.free_length > 0.0 or stated.preload != 0.0):
-            raise BlockError(f"{path}/ends", "both ends are at one place in the reference: the force has no direction")
+            raise BlockError(f"{path}/ends", "both ends coincide in the reference, so that the force has no direction")
         return Spring(
             (stated.ends[0].link, stated.ends[1].link),
             (first, second),

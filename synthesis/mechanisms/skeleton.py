@@ -20,7 +20,7 @@ MOST_SHOWN = 6
 
 
 def assembled_skeleton(stated: StatedSkeleton, degrees: float | None = None) -> Mechanism:
-    """The mechanism in the reference configuration, where gears are told the turn of a stated input angle."""
+    """Build the mechanism in the reference configuration; a given input angle fixes the turn count of gears."""
     assembled = _made(stated, 0)
     if degrees is None or not assembled.gears or assembled.driven_by_slide:
         return assembled
@@ -30,7 +30,7 @@ def assembled_skeleton(stated: StatedSkeleton, degrees: float | None = None) -> 
 def _made(stated: StatedSkeleton, turns: int) -> Mechanism:
     names = [link.name for link in stated.links]
     if len(set(names)) != len(names):
-        raise MechanismError("/skeleton/links", "each link needs a name of its own")
+        raise MechanismError("/skeleton/links", "the names of the links must be different")
     try:
         return Mechanism(
             {name: complex(*point) for name, point in stated.joints.items()},
@@ -66,7 +66,7 @@ def skeleton_of(mechanism: Mechanism) -> dict[str, Any]:
 
 
 class GivenSkeleton(Statement):
-    """Any planar linkage by its skeleton; ``links`` and ``fixed_pivots`` beside it must be its own."""
+    """Any planar linkage by its skeleton, with which ``links`` and ``fixed_pivots`` must agree."""
 
     type: Literal[
         "skeleton",
@@ -103,13 +103,15 @@ class GivenSkeleton(Statement):
         "where none has the name, of any link.",
     )
     fixed_pivots: dict[str, Point] = Field(
-        default={}, max_length=20, description="Each is a joint of the skeleton's ground, by any name."
+        default={},
+        max_length=20,
+        description="Fixed pivots by any name; each must be a joint of the skeleton's ground.",
     )
     coupler_point: StatedCouplerPoint | None = Field(
-        default=None, description="P of a coupler with the pins A and B; it must be the skeleton's own."
+        default=None, description="P of a coupler with the pins A and B; it must agree with the skeleton."
     )
     reference_input_angle: Degrees | None = Field(
-        default=None, description="Angle of the input link in the skeleton, absolute, degrees; it must be its own."
+        default=None, description="Absolute angle of the input link, degrees; it must agree with the skeleton."
     )
     reference_body_angle: Degrees | None = Field(default=None, description=BODY)
 
@@ -133,7 +135,7 @@ class GivenSkeleton(Statement):
         for name, pivot in self.fixed_pivots.items():
             ground = [complex(assembled.joints[joint]) for joint in assembled.links[GROUND]]
             if not any(abs(complex(*pivot) - z) <= AGREES * size for z in ground):
-                raise MechanismError(f"/fixed_pivots/{name}", "no joint of the skeleton's ground lies there")
+                raise MechanismError(f"/fixed_pivots/{name}", "the skeleton's ground has no joint there")
         self._agree(assembled)
         return assembled
 
@@ -146,19 +148,20 @@ class GivenSkeleton(Statement):
             a, b, p = (complex(assembled.joints[name]) for name in ("A", "B", "P"))
             point = a + self.coupler_point.vector * (b - a) / abs(b - a)
             if abs(point - p) > AGREES * max(abs(p - a), abs(b - a)):
-                raise MechanismError(
-                    "/coupler_point", "the skeleton has P elsewhere; leave the field out or correct it"
-                )
+                raise MechanismError("/coupler_point", "the skeleton has another P; leave the field out or correct it")
         if self.reference_input_angle is not None:
             if assembled.driven_by_slide:
-                raise MechanismError("/reference_input_angle", "a slide drives this; leave the field out")
+                raise MechanismError("/reference_input_angle", "a slide drives this mechanism; leave the field out")
             off = math.remainder(math.degrees(float(assembled.reference_input)) - self.reference_input_angle, 360.0)
             if abs(off) > AGREES * 360.0:
-                raise MechanismError("/reference_input_angle", "the skeleton's input link stands at another angle")
+                raise MechanismError(
+                    "/reference_input_angle",
+                    "the skeleton's input link has another angle; leave the field out or correct it",
+                )
 
 
 class GivenByDimensions(Statement, ABC):
-    """A type whose dimensions say it all. A skeleton beside them must have the same links, and is what is driven."""
+    """A type with complete dimensions. If a skeleton is also given, it must have the same links, and it is driven."""
 
     type: str
     reference_input_angle: Degrees | None = Field(

@@ -102,7 +102,7 @@ class GivenInvertedSliderCrank(GivenByDimensions):
         agree("/links/ground", self.links.ground, abs(o4 - o2))
         if self.coupler_point is not None:
             if self.reference_input_angle is None:
-                raise MechanismError("/reference_input_angle", "the coupler point is stated for it; it must be given")
+                raise MechanismError("/reference_input_angle", "missing: it defines the direction of the coupler point")
             return self._with_body(assembled(self._at, self.reference_input_angle, ()), self.coupler_point.vector)
         nearest = abs(self.links.output * math.sin(math.radians(self.slide.angle)))
         between = reaching(self.links.input, o2, o4, nearest, math.inf)
@@ -158,7 +158,8 @@ class GivenQuickReturn(GivenByDimensions):
         agree("/links/ground", self.links.ground, abs(o4 - o2))
         if (self.links.crank > abs(o4 - o2)) != (self.type == "whitworth"):
             raise MechanismError(
-                "/links/crank", "a crank-shaper's crank is shorter than the ground, a Whitworth's is longer"
+                "/links/crank",
+                "a crank-shaper needs a crank shorter than the ground, a Whitworth mechanism a longer one",
             )
         return assembled(
             lambda angle: catalogue.quick_return(

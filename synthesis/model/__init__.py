@@ -1,1 +1,1 @@
-"""What every statement and every answer is made of, whatever the kind."""
+"""Models of statements and answers that all kinds share."""

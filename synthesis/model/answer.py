@@ -1,4 +1,4 @@
-"""What every answer is made of, whatever the kind of its problem."""
+"""Parts of every answer, for all kinds of problems."""
 
 from __future__ import annotations
 
@@ -22,39 +22,42 @@ def _blank(value: object) -> bool:
 
 
 def optional(description: str | None = None, alias: str | None = None) -> Any:
-    """A field of an answer that is left out where it has no value; ``alias`` is its name where Python has none such."""
+    """Return a field of an answer that is left out if it has no value.
+
+    ``alias`` is its name in JSON if that is no Python identifier.
+    """
     return Field(default=None, exclude_if=_blank, description=description, alias=alias)
 
 
 class Check(Answer):
-    """One measured property. ``value`` and ``limit`` are left out where the property has none."""
+    """One verified property. ``value`` and ``limit`` are left out if the property has none."""
 
     name: str
     passed: bool
     value: float | None = optional()
     limit: float | None = optional()
-    dimension: Dimension | None = optional("What value and limit measure; left out for a pure number.")
+    dimension: Dimension | None = optional("Dimension of value and limit; left out for a pure number.")
 
 
 class Verification(Answer):
-    """What the analysis core found when it drove the mechanism; ``passed`` means that every check passed."""
+    """Result of driving the finished mechanism with the analysis core; ``passed`` means that every check passed."""
 
     passed: bool
     checks: list[Check]
 
     @classmethod
     def of(cls, checks: list[Check]) -> Self:
-        """The verification that checks make."""
+        """Return the verification that consists of these checks."""
         return cls(passed=all(check.passed for check in checks), checks=checks)
 
 
 class Search(Answer):
-    """How the answer was found and how complete it is.
+    """How the answer was found and whether the search was complete.
 
-    ``complete`` is a promise: every solution of the stated problem was found, so that an empty list of designs is a
-    proof that none exists. ``candidates`` = ``accepted`` + all ``rejected``; ``accepted`` were driven and passed every
-    check. In a search ``outranked`` counts pairs of dyads that passed the screening but were not driven, because better
-    ones that differ from them were.
+    ``complete`` is a guarantee: every solution of the problem was found, so that an empty list of designs proves that
+    none exists. ``candidates`` = ``accepted`` + all ``rejected``; accepted candidates were driven and passed every
+    check. ``outranked`` counts candidates that passed the screening but were not driven because enough better and
+    different ones were.
     """
 
     method: str
@@ -69,31 +72,31 @@ Design = TypeVar("Design", bound=Answer)
 
 
 class Gap(Answer):
-    """By how much a check is broken; of a demand without a measure, such as a class of linkage, there is the name."""
+    """A failed check with its value and its limit; a requirement without a measure, such as a class, has neither."""
 
     check: str
     value: float | None = optional()
     limit: float | None = optional()
-    dimension: Dimension | None = optional("What value and limit measure; left out for a pure number.")
+    dimension: Dimension | None = optional("Dimension of value and limit; left out for a pure number.")
 
 
 class Reachable(Answer):
-    """The best values of demands that were met where all others hold; those that are no trouble are left out."""
+    """Best values found while all other constraints hold; constraints that can be satisfied are left out."""
 
     min_transmission_angle: Annotated[float, ANGLE] | None = optional("Degrees.")
     max_link_ratio: float | None = optional()
-    tolerance: float | None = optional("Of a gear ratio: the least relative error.")
-    dwell_angle: Annotated[float, ANGLE] | None = optional("Degrees of the crank: the longest dwell that was found.")
+    tolerance: float | None = optional("Smallest relative error of a gear ratio.")
+    dwell_angle: Annotated[float, ANGLE] | None = optional("Longest dwell found, degrees of the crank.")
     dwell_angles: list[Annotated[float, ANGLE]] | None = optional(
-        "The same of several dwells, each of its own length: the longest of which all were found, by one share of each."
+        "Longest dwells found if several are requested, degrees of the crank; all are shortened by the same share."
     )
 
 
 class NearestMiss(Answer, Generic[Design]):
-    """Where no design satisfies all demands: the one that was found to break them least."""
+    """The design that violates the constraints least; given if no design satisfies all of them."""
 
     design: Design
-    gaps: list[Gap] = Field(description="The checks that it breaks.")
+    gaps: list[Gap] = Field(description="The checks that the design fails.")
     reachable: Reachable
 
 
@@ -104,5 +107,5 @@ class Result(Answer, Generic[Design]):
     search: Search
     summary: str
     nearest_miss: NearestMiss[Design] | None = Field(
-        default=None, description="Where no design passed: what comes nearest. Null where one passed."
+        default=None, description="The nearest miss if no design passed; null otherwise."
     )

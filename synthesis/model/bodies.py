@@ -1,4 +1,4 @@
-"""What the links of a linkage weigh, as a client states it: by mass properties, or by shape. Data alone."""
+"""Requested masses of a linkage's links, by mass properties or by shape. Data only."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from synthesis.model.dimension import DENSITY, INERTIA, LENGTH, MASS
 from synthesis.model.statement import Degrees, NonNegative, Point, PositiveLength, PositiveNumber, Statement
 
 MOST_CORNERS = 500
-"""Corners of a stated polygon at most."""
+"""Maximum number of corners of a polygon."""
 
 Name = Annotated[str, Field(min_length=1, max_length=50)]
 
@@ -23,14 +23,14 @@ DENSITIES: dict[Material, float] = {"steel": 7850.0, "aluminium": 2700.0, "PETG"
 
 
 class PolarPlace(Statement):
-    """A place on a link by its distance from the link's first joint, and its angle from the line to the second one."""
+    """A point of a link: distance from the link's first joint, and angle from the line to its second joint, degrees."""
 
     distance: Annotated[NonNegative, LENGTH]
     angle: Degrees = 0.0
 
     @property
     def vector(self) -> complex:
-        """The place in the link's frame."""
+        """The point in the link's frame, complex, length units."""
         return cmath.rect(self.distance, math.radians(self.angle))
 
 
@@ -38,21 +38,25 @@ Place = Annotated[
     Annotated[Point, Tag("<point>")] | Annotated[PolarPlace, Tag("<polar>")],
     Discriminator(lambda stated: "<polar>" if isinstance(stated, dict | PolarPlace) else "<point>"),
 ]
-"""A place on a link in the reference configuration: in the plane's coordinates, or from the link's first joint."""
+"""A point of a link in the reference configuration: in the plane's coordinates, or from the link's first joint."""
 
 
 class Part(Statement):
     """A prism or a (hollow) cylinder that is part of a link."""
 
     form: Literal["prism", "cylinder"]
-    at: Place = Field(description="Its centre, in the reference configuration.")
-    length: PositiveLength = Field(description="Of a prism in the plane; of a cylinder along its axis.")
-    width: PositiveLength | None = Field(default=None, description="Of a prism, in the plane.")
-    thickness: PositiveLength | None = Field(default=None, description="Of a prism, square to the plane.")
-    diameter: PositiveLength | None = Field(default=None, description="Of a cylinder.")
+    at: Place = Field(description="Centre of the part in the reference configuration.")
+    length: PositiveLength = Field(description="Length of a prism in the plane, or of a cylinder along its axis.")
+    width: PositiveLength | None = Field(default=None, description="Width of a prism in the plane.")
+    thickness: PositiveLength | None = Field(default=None, description="Height of a prism, perpendicular to the plane.")
+    diameter: PositiveLength | None = Field(default=None, description="Diameter of a cylinder.")
     bore: Annotated[NonNegative, LENGTH] = Field(default=0.0, description="Inner diameter of a cylinder.")
-    axis: Literal["normal", "in_plane"] = Field(default="normal", description="Of a cylinder, to the plane or in it.")
-    density: Annotated[PositiveNumber, DENSITY] | None = Field(default=None, description="By default the shape's.")
+    axis: Literal["normal", "in_plane"] = Field(
+        default="normal", description="Direction of a cylinder's axis: normal to the plane, or in it."
+    )
+    density: Annotated[PositiveNumber, DENSITY] | None = Field(
+        default=None, description="Density of the part; by default that of the shape."
+    )
 
     @model_validator(mode="after")
     def _sizes(self) -> Self:
@@ -60,41 +64,44 @@ class Part(Statement):
         for form, names in needed.items():
             for name in names:
                 if (getattr(self, name) is None) == (form == self.form):
-                    raise ValueError(f"a {self.form} has {' and '.join(needed[self.form])} beside its length")
+                    raise ValueError(f"a {self.form} needs {' and '.join(needed[self.form])} besides its length")
         if self.bore > 0.0 and self.bore >= (self.diameter or 0.0):
-            raise ValueError("a bore is of a cylinder, and narrower than that")
+            raise ValueError("only a cylinder has a bore, and its bore must be smaller than its diameter")
         return self
 
 
 class Shape(Statement):
-    """A link's shape: a bar or the hull of its joints by a `width`, a `polygon`, or `parts`.
+    """Shape of a link: a bar or the hull of its joints given by a `width`, a `polygon`, or `parts`.
 
-    Without a polygon a link of two joints is a bar, and one of more the convex hull of its joints widened by half the
-    width all round.
+    Without a polygon a link with two joints is a bar. A link with more joints is the convex hull of its joints, widened
+    by half the width on all sides.
     """
 
     density: Annotated[PositiveNumber, DENSITY] | None = None
     material: Material | None = Field(
         default=None,
-        description="In place of a density, in SI units: steel 7850, aluminium 2700, PETG 1270 kg/m³.",
+        description="Material, instead of a density; SI units only: steel 7850, aluminium 2700, PETG 1270 kg/m³.",
     )
-    thickness: PositiveLength | None = Field(default=None, description="Of the plate; not of parts.")
+    thickness: PositiveLength | None = Field(default=None, description="Thickness of the plate, not of parts.")
     width: PositiveLength | None = None
-    ends: Literal["round", "square"] = Field(default="round", description="Of a bar of two joints.")
+    ends: Literal["round", "square"] = Field(default="round", description="Ends of a bar with two joints.")
     overhang: Annotated[NonNegative, LENGTH] = Field(
-        default=0.0, description="By which a bar with square ends stands over its joints."
+        default=0.0, description="Length by which a bar with square ends extends beyond its joints."
     )
     polygon: list[Place] | None = Field(
-        default=None, min_length=3, max_length=MOST_CORNERS, description="Corners in order, in the reference."
+        default=None,
+        min_length=3,
+        max_length=MOST_CORNERS,
+        description="Corners of the plate in order, in the reference configuration.",
     )
     holes: dict[Name, PositiveLength] = Field(
-        default={}, max_length=20, description="Diameters by joint; each takes its disc away."
+        default={}, max_length=20, description="Diameters of holes by joint; each hole is removed from the plate."
     )
-    parts: list[Part] = Field(default=[], max_length=50, description="Prisms and cylinders, added to the plate.")
+    parts: list[Part] = Field(default=[], max_length=50, description="Prisms and cylinders added to the plate.")
 
     @property
     def heaviness(self) -> float:
-        """Its density, or that of its material."""
+        """Density of the shape or of its material."""
         return DENSITIES[self.material] if self.density is None and self.material is not None else self.density or 0.0
 
     @model_validator(mode="after")
@@ -111,31 +118,31 @@ class Shape(Statement):
         if not plate and not self.parts:
             raise ValueError("give a width, a polygon, or parts")
         if plate != (self.thickness is not None):
-            raise ValueError("a plate of a width or a polygon has a thickness; parts have their own")
+            raise ValueError("a plate, given by a width or a polygon, needs a thickness; parts have their own sizes")
         if not plate and self.holes:
-            raise ValueError("holes are taken from a plate; give it a width or a polygon")
+            raise ValueError("only a plate can have holes; give a width or a polygon")
         if self.ends == "square" and self.width is None:
-            raise ValueError("ends are those of a bar of a width")
+            raise ValueError("only a bar, given by a width, can have square ends")
         if self.overhang > 0.0 and self.ends != "square":
-            raise ValueError("an overhang is that of square ends")
+            raise ValueError("only square ends can have an overhang")
         return self
 
 
 class LinkShape(Shape):
-    """The shape of all links, whose `width` and `thickness` are those of the problem's `layout` where left out."""
+    """Shape of all links; if left out, `width` and `thickness` are those of the problem's `layout`."""
 
     @model_validator(mode="after")
     def _one_plate(self) -> Self:
-        """Known where the layout is: :meth:`filled`."""
+        """Postpone the validation of the plate until the layout is known: :meth:`filled`."""
         return self
 
     def filled(self, width: float | None, thickness: float | None) -> Shape:
-        """The shape with the sizes of a layout, where there is one.
+        """Return the shape with missing sizes taken from a layout (length units), if there is one.
 
         Raises
         ------
         pydantic.ValidationError
-            Where it is none.
+            If the result is no valid shape.
         """
         stated = {name: value for name, value in self.model_dump(exclude_unset=True).items() if value is not None}
         if self.polygon is None and not self.parts and width is not None:
@@ -146,7 +153,7 @@ class LinkShape(Shape):
 
 
 class StatedBody(Statement):
-    """A moving link's mass: given with the centre of gravity and the moment of inertia about it, or from a shape."""
+    """Mass of a moving link: mass, centre of gravity and moment of inertia, or a shape from which they follow."""
 
     mass: Annotated[NonNegative, MASS] | None = None
     cg: Place | None = Field(default=None, description="Centre of gravity in the reference configuration.")

@@ -1,16 +1,17 @@
-"""Numbers in sentences: how many of what, with digits in groups of three, and one or many."""
+"""Counts in sentences: digits in groups of three, and singular or plural."""
 
 from __future__ import annotations
 
 GROUPED = 10_000
-"""Whole numbers from here on have their digits in groups of three."""
+"""Smallest whole number whose digits are grouped in threes."""
 
 SPACE = "\u202f"
-"""Between groups (ISO 80000-1, 7.3.1): no line ends there, and it is no decimal sign in any language."""
+"""Narrow no-break space between groups (ISO 80000-1, 7.3.1): no line breaks there, and no language reads it as a
+decimal sign."""
 
 
 def grouped(number: int) -> str:
-    """A whole number for reading.
+    """Format a whole number for a sentence.
 
     >>> grouped(9216), grouped(-14002477).replace(SPACE, " ")
     ('9216', '−14 002 477')
@@ -20,12 +21,12 @@ def grouped(number: int) -> str:
 
 
 def agreeing(number: int, one: str, many: str) -> str:
-    """The word that goes with so many: ``one`` with exactly one."""
+    """Return the word that agrees with a number: ``one`` for exactly 1, otherwise ``many``."""
     return one if number == 1 else many
 
 
 def counted(number: int, one: str, many: str = "") -> str:
-    """So many of something; without ``many`` the plural of ``one`` ends in s.
+    """Format a number and its noun; without ``many`` the plural of ``one`` ends in s.
 
     >>> counted(1, "linkage"), counted(0, "linkage"), counted(2, "series", "series")
     ('1 linkage', '0 linkages', '2 series')

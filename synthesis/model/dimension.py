@@ -1,9 +1,9 @@
-"""What a number measures: said once, on the field that holds it, or on the check that compares it.
+"""Dimensions of numbers, declared once: on the field that holds the number or on the check that compares it.
 
-``Annotated[float, LENGTH]`` is a number of length units; the annotation may stand anywhere in a field's type, so that
-``list[Length]`` and ``Point | None`` have a dimension too. A number without one is pure: a ratio, a count, a share.
-Two dimensions depend on the problem: a *displacement* is that of a cam's follower, a length or degrees of its arm; an
-*output* is the angle of a link or the place of a slider.
+``Annotated[float, LENGTH]`` is a number in length units. The annotation may stand anywhere in a field's type, so that
+``list[Length]`` and ``Point | None`` have a dimension, too. A number without one is pure: a ratio, a count, a share.
+Two dimensions depend on the problem: a *displacement* of a cam's follower is a length, or degrees of its arm; an
+*output* is the angle of a link or the position of a slider.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pydantic_core import CoreSchema
 
 
 class Dimension(StrEnum):
-    """What a number measures; its unit follows from the units of the problem."""
+    """Dimension of a number; its unit follows from the units of the problem."""
 
     LENGTH = "length"
     AREA = "area"
@@ -111,9 +111,9 @@ Percent = Annotated[float, PERCENT]
 
 
 class Measured(BaseModel):
-    """Base of every model whose numbers have dimensions: its JSON schema says them, as ``x-dimension``."""
+    """Base of every model whose numbers have dimensions: its JSON schema gives them as ``x-dimension``."""
 
-    # A worker's start would be a fifth longer if it built the validators of all kinds before its first job.
+    # Building the validators of all kinds before the first job would lengthen a worker's start by a fifth.
     model_config = ConfigDict(defer_build=True)
 
     @classmethod
@@ -127,12 +127,12 @@ class Measured(BaseModel):
 
 @cache
 def dimensions(model: type[BaseModel]) -> dict[str, Dimension]:
-    """The dimension of each field of a model that holds numbers of one; fields that hold models have none.
+    """Return the dimension of each field of a model that has one; fields that hold models have none.
 
     Raises
     ------
     TypeError
-        If a field holds numbers of two dimensions: it is two fields.
+        If a field holds numbers of two dimensions; it must be split.
     """
     measured = {}
     for name, field in model.model_fields.items():
@@ -145,7 +145,7 @@ def dimensions(model: type[BaseModel]) -> dict[str, Dimension]:
 
 
 def _within(annotation: Any) -> Iterator[Dimension]:
-    """The dimensions in a type: in the metadata of what is annotated, and in the members of unions and containers."""
+    """Yield the dimensions in a type: in its metadata, and in the members of unions and containers."""
     for part in (*getattr(annotation, "__metadata__", ()), *get_args(annotation)):
         if isinstance(part, Dimension):
             yield part

@@ -1,4 +1,4 @@
-"""The block ``dynamics`` of a statement: masses and loads (docs/dynamics.md). Data alone."""
+"""Block ``dynamics`` of a statement: masses, loads, friction and speed (docs/dynamics.md). Data only."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ class Gravity(Statement):
     """Acceleration of gravity."""
 
     magnitude: Annotated[NonNegative, GRAVITY] = Field(default=9.80665, description="m/s², or in the consistent units.")
-    angle: Degrees = Field(default=270.0, description="Direction in which it pulls.")
+    angle: Degrees = Field(default=270.0, description="Direction of gravity, degrees.")
 
     @property
     def vector(self) -> complex:
-        """Its components."""
+        """Components x + iy of the acceleration."""
         return cmath.rect(self.magnitude, math.radians(self.angle))
 
 
 class DrivenSlide(Statement):
-    """The slide that drives, by its number."""
+    """The driving slide, by its number in the skeleton."""
 
     slide: Annotated[int, Field(strict=True, ge=0, le=9)]
 
@@ -57,28 +57,28 @@ class StatedFriction(Statement):
 
 
 LEAST_COEFFICIENT = 1e-6
-"""Coefficients of fluctuation below this are no shaft's: they would be lost in the rounding of its speed."""
+"""Minimum coefficient of fluctuation: smaller ones are unrealistic and would be lost in the rounding of the speed."""
 
 
 class StatedFlywheel(Statement):
-    """The fluctuation of speed that a flywheel on the input shaft is to leave."""
+    """Permitted fluctuation of speed for which to size a flywheel on the input shaft."""
 
     coefficient: Annotated[float, Field(strict=True, ge=LEAST_COEFFICIENT, le=1.0, allow_inf_nan=False)] = Field(
         description="(ω_max − ω_min)/ω_mean."
     )
     existing_inertia: Annotated[NonNegative, INERTIA] = Field(
-        default=0.0, description="Moment of inertia that the shaft has already."
+        default=0.0, description="Moment of inertia that the shaft already has."
     )
 
 
 Reported = Literal["joint_forces", "drive", "shaking", "flywheel", "joint_force_index", "harmonics"]
 
 ALWAYS: tuple[Reported, ...] = ("joint_forces", "drive", "shaking")
-"""What is reported where a statement does not say."""
+"""Results that are reported by default."""
 
 
 class WeighedLinkage(Statement):
-    """What a linkage weighs and carries."""
+    """Masses and loads of a linkage."""
 
     units: Literal["si", "consistent"] = Field(
         default="si",
@@ -86,37 +86,37 @@ class WeighedLinkage(Statement):
         "`consistent`: nothing is converted.",
     )
     gravity: Gravity | None = None
-    bodies: dict[Name, StatedBody] = Field(default={}, max_length=20, description="By moving link.")
+    bodies: dict[Name, StatedBody] = Field(default={}, max_length=20, description="Masses by moving link.")
     point_masses: list[PointMass] = Field(default=[], max_length=40)
     loads: list[StatedLoad] = Field(default=[], max_length=50)
     springs: list[StatedSpring] = Field(default=[], max_length=50, description="Springs and dampers between two links.")
     friction: StatedFriction | None = None
     moment_about: Point | None = Field(
-        default=None, description="Point about which the shaking moment is taken; by default the first fixed pivot."
+        default=None, description="Reference point of the shaking moment; by default the first fixed pivot."
     )
 
     @model_validator(mode="after")
     def _materials(self) -> Self:
         shapes = [*(stated.shape for stated in self.bodies.values()), getattr(self, "links", None)]
         if self.units != "si" and any(shape is not None and shape.material is not None for shape in shapes):
-            raise ValueError("materials are in SI units; state densities in the consistent ones")
+            raise ValueError("materials are defined in SI units; with consistent units give densities")
         return self
 
     def scale(self, unit: LengthUnit) -> float:
-        """The length unit in the unit of forces over stiffnesses: metres, or as it is."""
+        """Return the factor from the length unit to the length unit of forces: metres for SI, otherwise 1."""
         return METRES[unit] if self.units == "si" else 1.0
 
 
 class DynamicsBlock(WeighedLinkage):
-    """What a linkage weighs and carries, and which forces are wanted."""
+    """Masses and loads of a linkage, and the forces to report."""
 
     drive: Literal["torque"] | DrivenSlide | None = Field(
-        default=None, description="What drives; it must be what the mechanism states."
+        default=None, description="The drive; it must agree with the input of the mechanism."
     )
     minimum_norm: bool = Field(
         default=False,
         strict=True,
-        description="Where constraints are redundant, and forces in joints not unique: give those of the least sum of "
+        description="If redundant constraints make joint forces ambiguous, report the forces with the minimum sum of "
         "squares.",
     )
     flywheel: StatedFlywheel | None = Field(default=None, description="Size a flywheel on the input shaft.")
@@ -124,38 +124,40 @@ class DynamicsBlock(WeighedLinkage):
         default=None,
         min_length=1,
         max_length=6,
-        description="What is reported; by default forces in the joints, the drive and what shakes the frame. "
-        "`joint_force_index` is that of the first of the loads.",
+        description="Results to report; by default joint forces, drive, and shaking force and moment. "
+        "`joint_force_index` refers to the first load.",
     )
 
     def reports(self, name: Reported) -> bool:
-        """Whether a part of the answer is wanted."""
+        """Return whether a part of the answer is requested."""
         stated = name in (ALWAYS if self.report is None else self.report)
         return stated or (name == "flywheel" and self.flywheel is not None)
 
 
 class DesignDynamics(WeighedLinkage):
-    """What every design of a problem weighs and carries, and how fast it is driven."""
+    """Masses and loads of every design of a problem, and its input speed."""
 
     links: LinkShape | None = Field(
         default=None,
-        description="The shape of each moving link that `bodies` does not name, whatever it is called. Width and "
-        "thickness are those of the problem's `layout` where they are left out.",
+        description="Shape of each moving link that `bodies` does not name. If left out, width and thickness are those "
+        "of the problem's `layout`.",
     )
-    speed_rpm: Annotated[Number, ROTATIONAL_SPEED] | None = Field(default=None, description="Of an input that turns.")
+    speed_rpm: Annotated[Number, ROTATIONAL_SPEED] | None = Field(
+        default=None, description="Speed of a rotating input, revolutions per minute."
+    )
     speed: Annotated[Number, LENGTH] | None = Field(
-        default=None, description="Of an input that slides, length units a second."
+        default=None, description="Speed of a sliding input, length units per second."
     )
 
     _plate: Shape | None = PrivateAttr(default=None)
 
     @property
     def plate(self) -> Shape | None:
-        """The shape of the links with its sizes; None where there is none, or these are not known."""
+        """Shape of the links with all sizes; None if there is no shape or a size is unknown."""
         return self._plate
 
     def laid_out(self, layout: LayoutSizes | None) -> str | None:
-        """Take sizes of links that are not stated from a layout; what is then missing, or None."""
+        """Take missing sizes of the links from a layout; return a message if one is still missing, otherwise None."""
         if self.links is None:
             return None
         width, thickness = (None, None) if layout is None else (layout.link_width, layout.thickness)
@@ -163,27 +165,27 @@ class DesignDynamics(WeighedLinkage):
             self._plate = self.links.filled(width, thickness)
         except ValidationError as error:
             reason = error.errors(include_url=False)[0]["msg"].removeprefix("Value error, ")
-            return reason if layout is not None else f"{reason}; or state a layout, whose plates they then are"
+            return reason if layout is not None else f"{reason}; or give a layout, whose sizes are then used"
         return None
 
     @model_validator(mode="after")
     def _known_alone(self) -> Self:
-        """Sizes that are all stated need no layout."""
+        """Complete the shape of the links if all sizes are given; a layout may complete it later."""
         self.laid_out(None)
         return self
 
     @model_validator(mode="after")
     def _driven(self) -> Self:
         if self.speed_rpm is None and self.speed is None:
-            raise ValueError("state speed_rpm, or speed where the input slides; 0 is statics")
+            raise ValueError("give speed_rpm, or speed for a sliding input; 0 means statics")
         return self
 
 
 class DesignForcesBlock(DesignDynamics, DynamicsBlock):
-    """What one design weighs and carries, how fast it is driven, and which of its forces are wanted."""
+    """Masses and loads of one design, its input speed, and the forces to report."""
 
 
 class DesignForcesRequest(Statement):
-    """A call for the forces of one design."""
+    """Request for the forces of one design."""
 
     dynamics: DesignForcesBlock

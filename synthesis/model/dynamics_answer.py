@@ -1,4 +1,4 @@
-"""Forces of a linkage in motion, as an answer has them: arrays over the positions, null where there are none."""
+"""Reported forces of a linkage in motion: arrays over the positions, with null where a force is unknown."""
 
 from __future__ import annotations
 
@@ -20,32 +20,32 @@ class ForceSeries(Answer):
 
 
 class SlideForces(Answer):
-    """What the line of a slide does to the pin on it."""
+    """Force of a slide's line on the pin that moves along it."""
 
     joint: str
     normal: Annotated[Series, FORCE] = Field(
-        description="Along the slide's direction turned by +90°; the opposite acts on the line's link."
+        description="Component along the slide's direction rotated by +90°; the opposite force acts on the line's link."
     )
-    friction: Annotated[Series, FORCE] = Field(description="Along the slide's direction.")
+    friction: Annotated[Series, FORCE] = Field(description="Component along the slide's direction.")
 
 
 class GearTorques(Answer):
-    """The torque that a gear pair puts on its second link; −ratio times that acts on the first."""
+    """Torque of a gear pair on its second link; −ratio times this torque acts on the first link."""
 
     torque: Annotated[Series, Dimension.TORQUE]
 
 
 class Rubbing(Answer):
-    """Friction of the pins, and what all friction takes."""
+    """Friction moments of the pins, and the power lost to all friction."""
 
     pins: dict[str, dict[str, Annotated[Series, Dimension.TORQUE]]] = Field(
-        description="Moment of each pin's friction on each of its links; a slide's block hands it to the line's link."
+        description="Friction moment of each pin on each of its links; a slide's block passes it to the line's link."
     )
     power: Series = Field(description="Power lost, never negative.")
 
 
 class Shaking(Answer):
-    """Sum of the forces of the mechanism on the frame, and their moment about a point less the drive's torque."""
+    """Sum of the mechanism's forces on the frame, and their moment about a point minus the drive's torque."""
 
     force: ForceSeries
     moment: Annotated[Series, Dimension.TORQUE]
@@ -53,10 +53,10 @@ class Shaking(Answer):
 
 
 class DriveExtremes(Answer):
-    """Greatest and least drive, refined between the positions; mean and rms over a closed cycle, else null."""
+    """Maximum and minimum drive, refined between the positions; mean and rms over a closed cycle, otherwise null."""
 
     max: float | None
-    at: Annotated[float | None, OUTPUT] = Field(description="Input angle (degrees) or place of the input slide.")
+    at: Annotated[float | None, OUTPUT] = Field(description="Input angle (degrees) or position of the input slide.")
     min: float | None
     at_min: Annotated[float | None, OUTPUT]
     mean: float | None
@@ -64,7 +64,7 @@ class DriveExtremes(Answer):
 
 
 class Peak(Answer):
-    """The greatest magnitude, refined between the positions, and the input at which it stands."""
+    """Maximum magnitude, refined between the positions, and the input at which it occurs."""
 
     max: float | None
     at: Annotated[float | None, OUTPUT]
@@ -74,20 +74,20 @@ class Extremes(Answer):
     """Extremes over the motion."""
 
     drive: DriveExtremes
-    joints: dict[str, Peak] = Field(description="Of the largest force of each joint's pin on one of its links.")
+    joints: dict[str, Peak] = Field(description="Maximum force of each joint's pin on any of its links.")
     shaking_force: Peak
     shaking_moment: Peak
 
 
 class Power(Answer):
-    """Drive times speed of the input: greatest magnitude, and mean over a closed cycle."""
+    """Power of the drive: maximum magnitude, and mean over a closed cycle."""
 
     peak: float | None
     mean: float | None
 
 
 class Pulse(Answer):
-    """Where the torque stays above its mean, or below, and the area between both."""
+    """Range of the input over which the torque stays above or below its mean, and the area between both."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
 
@@ -97,32 +97,36 @@ class Pulse(Answer):
 
 
 class Flywheel(Answer):
-    """Fluctuation of the drive over a cycle, and the flywheel that evens the speed; null without a closed cycle."""
+    """Fluctuation of the drive over a cycle, and the flywheel that limits it; null without a closed cycle."""
 
-    energy: float | None = Field(description="Largest less smallest energy taken from the flywheel.")
+    energy: float | None = Field(description="Maximum minus minimum energy drawn from the flywheel.")
     mean_torque: Annotated[float | None, Dimension.TORQUE]
-    inertia: float | None = optional("E/(k ω²), less what the shaft has; to first order in the coefficient.")
-    inertia_exact: float | None = optional("Of which the coefficient is exact, by the speed's mean over time.")
-    coefficient_exact: float | None = optional("That of `inertia`.")
+    inertia: float | None = optional(
+        "Required moment of inertia E/(k ω²) minus that of the shaft, to first order in the coefficient."
+    )
+    inertia_exact: float | None = optional(
+        "Moment of inertia with exactly the requested coefficient, referred to the mean speed over time."
+    )
+    coefficient_exact: float | None = optional("Exact coefficient of fluctuation with `inertia`.")
     pulses: list[Pulse]
 
 
 class Turning(Answer):
-    """A harmonic of a vector: magnitudes of the parts that turn with the input and against it."""
+    """Harmonic of a vector: magnitudes of the parts that rotate with the input and against it."""
 
     forward: Annotated[float, FORCE]
     backward: Annotated[float, FORCE]
 
 
 class Wave(Answer):
-    """A harmonic of a torque (or of the drive): amplitude · cos(order · input − phase)."""
+    """Harmonic of a torque or of the drive: amplitude · cos(order · input − phase)."""
 
     amplitude: float
     phase: Annotated[float, ANGLE]
 
 
 class Harmonics(Answer):
-    """Harmonics over a closed cycle by their order, in periods a turn of the input; null without a closed cycle."""
+    """Harmonics over a closed cycle by order, in periods per turn of the input; null without a closed cycle."""
 
     shaking_force: dict[str, Turning] | None
     shaking_moment: dict[str, Wave] | None
@@ -130,11 +134,12 @@ class Harmonics(Answer):
 
 
 class BalanceChecks(Answer):
-    """Largest disagreement of the reactions with balances that know none, as shares of the peaks."""
+    """Maximum difference between results from reactions and from balances without reactions, as shares of the peaks."""
 
-    virtual_work: float | None = Field(description="Drive by reactions against the balance of energy.")
+    virtual_work: float | None = Field(description="Drive from the reactions compared with the balance of energy.")
     momentum: float | None = Field(
-        description="Shaking force and moment by reactions against the balances of momentum and angular momentum."
+        description="Shaking force and moment from the reactions compared with the balances of linear and angular "
+        "momentum."
     )
 
 
@@ -144,31 +149,34 @@ Status = Literal[
 
 
 class DynamicsAnswer(Answer):
-    """Forces over the motion, in the units of the request; null where `status` is neither `ok` nor `stick`.
+    """Forces over the motion, in the units of the request; null at positions whose `status` is not `ok` or `stick`.
 
-    Where it is `statically_indeterminate` constraints are redundant: null are the forces in joints that are not unique,
-    unless `minimum_norm` is stated; all others stand.
+    If the status is `statically_indeterminate`, constraints are redundant. Joint forces that are not unique are then
+    null unless `minimum_norm` is requested; all others are given.
     """
 
     units: Literal["si", "consistent"]
     length_unit: Literal["mm", "cm", "m", "in"] = Field(
-        description="Of the request's lengths; forces of `si` were formed in metres."
+        description="Length unit of the request; with `si` units forces were computed in metres."
     )
     drive: Series | None = optional("Torque of the ground on the input link, or force along the input slide.")
-    virtual_work_drive: Series | None = optional("The same from the balance of energy.")
+    virtual_work_drive: Series | None = optional("The drive computed from the balance of energy.")
     joints: dict[str, dict[str, ForceSeries]] | None = optional("Force of each joint's pin on each of its links.")
     slides: list[SlideForces] | None = optional()
     gears: list[GearTorques] | None = optional()
-    friction: Rubbing | None = optional("If the request states `friction`.")
+    friction: Rubbing | None = optional("Given if the request contains `friction`.")
     shaking: Shaking | None = optional()
     extremes: Extremes
     power: Power
-    flywheel: Flywheel | None = optional("If the request states a `flywheel` or wants it reported.")
+    flywheel: Flywheel | None = optional("Given if the request contains a `flywheel` or reports it.")
     harmonics: Harmonics | None = optional()
     joint_force_index: Series | None = optional(
-        "Largest force in a joint over the first load, without masses, springs and friction; per length of a torque."
+        "Maximum joint force divided by the first load, without masses, springs and friction; per unit length if the "
+        "load is a torque."
     )
-    max_joint_force_index: float | None = optional("Its largest value; left out where a dead centre makes it infinite.")
+    max_joint_force_index: float | None = optional(
+        "Maximum joint force index over the motion; left out if a dead centre makes it infinite."
+    )
     status: list[Status]
     checks: BalanceChecks
     warnings: list[str]

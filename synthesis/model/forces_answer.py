@@ -1,4 +1,4 @@
-"""Forces of a finished linkage as a part of its answer: the peaks that demands are held against."""
+"""Reported forces of a finished linkage: the peaks that are compared with its force limits."""
 
 from __future__ import annotations
 
@@ -9,32 +9,32 @@ from synthesis.model.dimension import FORCE, POWER, TORQUE, Angle, Length
 
 
 class AtInput(Answer):
-    """The input at which a peak stands."""
+    """Input at which a peak occurs."""
 
-    at: Angle | None = optional("Input angle; left out where the input slides.")
-    at_place: Length | None = optional("Place of an input that slides, along its line; left out where it turns.")
+    at: Angle | None = optional("Input angle; left out if the input slides.")
+    at_place: Length | None = optional("Position of a sliding input along its line; left out if the input rotates.")
 
 
 class TorquePeak(AtInput):
-    """The greatest magnitude of a torque, and the input at which it stands."""
+    """Maximum magnitude of a torque, and the input at which it occurs."""
 
     max: Annotated[float, TORQUE]
 
 
 class ForcePeak(AtInput):
-    """The greatest magnitude of a force, and the input at which it stands."""
+    """Maximum magnitude of a force, and the input at which it occurs."""
 
     max: Annotated[float, FORCE]
 
 
 class JointForcePeak(ForcePeak):
-    """The same of the joint that bears most."""
+    """Maximum joint force: its joint, magnitude and input."""
 
     joint: str
 
 
 class PowerPeak(AtInput):
-    """The greatest power of the drive, either way, and the input at which it stands."""
+    """Maximum power of the drive in either direction, and the input at which it occurs."""
 
     max: Annotated[float, POWER]
 
@@ -44,16 +44,18 @@ class DesignForces(Answer):
 
     units: Literal["si", "consistent"]
     over: Literal["cycle", "used"] | None = optional(
-        "The motion that was looked at: a whole cycle where the input turns through, else the used range."
+        "Motion over which forces were computed: a whole cycle if the input rotates fully, otherwise the used range."
     )
-    drive_torque: TorquePeak | None = optional("Of an input that turns.")
-    drive_force: ForcePeak | None = optional("Of an input that slides.")
-    joint_force: JointForcePeak | None = optional("Of all pins on all of their links.")
-    shaking_force: ForcePeak | None = optional("Of the mechanism on its frame.")
-    shaking_moment: TorquePeak | None = optional("The same, about the first fixed pivot or `moment_about`.")
-    power: PowerPeak | None = optional("Of the drive.")
+    drive_torque: TorquePeak | None = optional("Drive torque of a rotating input.")
+    drive_force: ForcePeak | None = optional("Drive force of a sliding input.")
+    joint_force: JointForcePeak | None = optional("Maximum over all pins and all of their links.")
+    shaking_force: ForcePeak | None = optional("Force of the mechanism on its frame.")
+    shaking_moment: TorquePeak | None = optional(
+        "Moment of the mechanism on its frame about the first fixed pivot or `moment_about`."
+    )
+    power: PowerPeak | None = optional("Power of the drive.")
     joint_force_index: float | None = optional(
-        "Largest force in any joint over the first of the loads, without masses (per metre of a torque); left out "
-        "where there is no load, or a dead centre makes it infinite."
+        "Maximum joint force divided by the first load, without masses (per metre if the load is a torque); left out "
+        "without loads, or if a dead centre makes it infinite."
     )
-    remark: str | None = optional("Why there are no peaks: what is not determined, and where.")
+    remark: str | None = optional("Reason why there are no peaks: what is undetermined, and at which input.")

@@ -1,4 +1,4 @@
-"""What answers about gears are made of: exact ratios, pairs of gears, and the geometry of their meshes."""
+"""Parts of answers about gears: exact ratios, pairs of gears, and the geometry of their meshes."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from synthesis.model.dimension import Angle, Length
 from synthesis.model.mesh_limits import usual_cutter
 
 ON_LIMIT = 1e-9
-"""Share of the module or the centre distance within which a limit of teeth counts as kept: rounding, of teeth on it."""
+"""Tolerance of a limit of teeth, as a share of the module or the centre distance: rounding of teeth exactly on it."""
 
 SHOWN = 10
-"""Decimals of an angle that was stated in degrees, after it has been radians."""
+"""Decimals of an angle that was given in degrees and converted to radians and back."""
 
 
 class Ratio(Answer):
-    """Input speed over output speed as a reduced fraction; negative where they turn in opposite directions."""
+    """Input speed over output speed as a reduced fraction; negative if they turn in opposite directions."""
 
     numerator: int
     denominator: int
@@ -34,12 +34,12 @@ class Ratio(Answer):
 
     @classmethod
     def of(cls, ratio: Fraction) -> Self:
-        """The ratio of exact speeds."""
+        """Return the ratio equal to an exact fraction."""
         return cls(numerator=ratio.numerator, denominator=ratio.denominator, value=float(ratio))
 
     @property
     def exact(self) -> Fraction:
-        """The fraction that is stated."""
+        """The ratio as an exact fraction."""
         return Fraction(self.numerator, self.denominator)
 
 
@@ -72,7 +72,7 @@ class LengthOfGears(Answer):
 
 
 class SuggestedShift(Answer):
-    """Profile shift, in modules, that would make a mesh sound; nothing of it is in the mechanism."""
+    """Profile shift, in modules, that would remove interference and undercut; the mechanism does not contain it."""
 
     driver: float
     driven: float
@@ -83,61 +83,70 @@ class SuggestedShift(Answer):
 class MeshGeometry(Answer):
     """One mesh of full-depth teeth at the distance of the pitch circles, or fitted by a profile shift.
 
-    Helical teeth are looked at in the plane of rotation, bevel teeth as the spur gears of their back cones, a worm gear
-    in its middle plane, where the worm is a rack. A ring's teeth are shortened for its pinion.
+    Helical teeth are evaluated in the plane of rotation, bevel teeth as the spur gears of their back cones, a worm gear
+    in its middle plane, where the worm is a rack. The teeth of a ring are shortened for its pinion.
     """
 
     stage: int
-    driver: int = Field(description="Teeth; of an idler where one lies between.")
+    driver: int = Field(description="Teeth of the driving gear, which may be an idler.")
     driven: int
-    centre_distance: Length = Field(description="Of the shafts; 0 where they meet.")
+    centre_distance: Length = Field(description="Distance of the shafts; 0 if they intersect.")
     contact_ratio: float
-    interferes: bool = Field(description="Whether a tip digs into the flank of this very mate.")
-    undercut: bool = Field(description="Whether a rack that cuts the smaller gear takes away from its flanks.")
+    interferes: bool = Field(description="Whether a tip digs into the flank of its mate.")
+    undercut: bool = Field(description="Whether the rack that cuts the smaller gear removes part of its flanks.")
     suggested_shift: SuggestedShift | None = Field(
-        default=None, description="Where the mesh interferes or is undercut and a profile shift would save it."
+        default=None, description="Profile shift that would remove interference and undercut, if there is one."
     )
-    working_pressure_angle: Angle | None = optional("Degrees; from here on where teeth are fitted.")
+    working_pressure_angle: Angle | None = optional(
+        "Degrees; this field and those down to `backlash` are given for fitted teeth."
+    )
     tip_diameter: LengthOfGears | None = optional()
-    tip_shortening: Length | None = optional("What the tips of shifted gears lose so that the clearance stays.")
+    tip_shortening: Length | None = optional("Shortening of the tips of shifted gears that keeps the clearance.")
     tip_thickness: LengthOfGears | None = optional()
-    specific_sliding: OfGears | None = optional("Sliding over rolling where it is greatest on each flank; negative.")
+    specific_sliding: OfGears | None = optional("Maximum ratio of sliding to rolling on each flank; negative.")
     backlash: Length | None = optional("Play on the working pitch circles.")
-    type: StageKind | None = optional("Of the stage, where it is not one of external spur gears; so is what follows.")
-    pitch_diameter: LengthOfGears | None = optional("Of bevel gears at the large end.")
-    addendum: OfGears | None = optional("Of an internal pair, modules: the ring's teeth are shortened for the pinion.")
-    ring_trimmed: bool | None = optional("Of an internal pair: whether the usual cutter takes off tips of the ring.")
-    helix_angle: AngleOfGears | None = optional("Of helical gears, positive for right-handed ones.")
-    transverse_module: Length | None = optional("Of helical gears, in the plane of rotation.")
-    virtual_teeth: OfGears | None = optional("Of spur gears with the same teeth: in the normal plane, on back cones.")
-    overlap_ratio: float | None = optional("Face width over axial pitch of helical teeth, where a width is stated.")
-    total_contact_ratio: float | None = optional("Contact ratio and overlap together.")
-    cone_angle: AngleOfGears | None = optional("Between axis and pitch cone of bevel gears.")
-    cone_distance: Length | None = optional("From the apex of bevel gears to the large end.")
-    lead: Length | None = optional("Of a worm.")
-    lead_angle: Angle | None = optional("Of a worm, degrees.")
-    efficiency: float | None = optional("Share of the power that a worm passes on, with the stated friction.")
+    type: StageKind | None = optional(
+        "Type of the stage; this field and those that follow are left out for external spur gears."
+    )
+    pitch_diameter: LengthOfGears | None = optional("Pitch diameters; of bevel gears at the large end.")
+    addendum: OfGears | None = optional(
+        "Addenda of an internal pair, modules; the ring's teeth are shortened for the pinion."
+    )
+    ring_trimmed: bool | None = optional("Whether the default cutter trims the tips of the ring of an internal pair.")
+    helix_angle: AngleOfGears | None = optional("Helix angles of helical gears, positive for right-handed ones.")
+    transverse_module: Length | None = optional("Module of helical gears in the plane of rotation.")
+    virtual_teeth: OfGears | None = optional(
+        "Teeth of the equivalent spur gears: in the normal plane of helical gears, on the back cones of bevel gears."
+    )
+    overlap_ratio: float | None = optional("Face width over axial pitch of helical teeth, if a face width is given.")
+    total_contact_ratio: float | None = optional("Sum of contact ratio and overlap ratio.")
+    cone_angle: AngleOfGears | None = optional("Angle between axis and pitch cone of bevel gears.")
+    cone_distance: Length | None = optional("Distance from the apex of bevel gears to the large end.")
+    lead: Length | None = optional("Lead of a worm.")
+    lead_angle: Angle | None = optional("Lead angle of a worm, degrees.")
+    efficiency: float | None = optional("Share of the power that a worm transmits, with the given friction.")
     self_locking: bool | None = optional("Whether the gear cannot drive the worm.")
 
 
 def tool_contact(mesh: Mesh, ring: ShapedRing | None = None, helix_angle: float = 0.0) -> Contact:
-    """A mesh with the involutes that its tools leave: racks on external gears, undercut ones too, a cutter on a ring.
+    """Return a mesh with the involutes left by its tools: a rack for external gears, even undercut, a cutter for a
+    ring.
 
-    ``helix_angle``: radians, of helical gears.
+    ``helix_angle``: helix angle of helical gears, radians.
     """
     ends = involute_start(mesh.gear, helix_angle) if ring is None else ring.form
     return Contact(mesh, (involute_start(mesh.pinion, helix_angle), ends))
 
 
 class Helix(NamedTuple):
-    """The pressure angle of the normal plane, and the helix angle; radians."""
+    """Pressure angle in the normal plane, and helix angle; radians."""
 
     pressure_angle: float
     helix_angle: float
 
 
 def rack_undercuts(mesh: Mesh, helix: Helix | None = None) -> tuple[bool, bool]:
-    """Whether the rack of full-depth teeth takes away from the flanks of the pinion, and of the gear."""
+    """Return whether the rack of full-depth teeth undercuts the pinion, and whether it undercuts the gear."""
     angle = mesh.pinion.pressure_angle if helix is None else helix.pressure_angle
     depth = rack_depth(angle, 0.0 if helix is None else helix.helix_angle)
     one, two = (rack_cut_form(gear, depth) < -ON_LIMIT * mesh.centre_distance for gear in (mesh.pinion, mesh.gear))
@@ -145,27 +154,27 @@ def rack_undercuts(mesh: Mesh, helix: Helix | None = None) -> tuple[bool, bool]:
 
 
 def reaches_fillet(mesh: Mesh) -> bool:
-    """Whether contact goes below an involute: of gears as a rack cuts them, of a ring as the usual cutter shapes it."""
+    """Return whether contact extends below an involute, as cut by a rack, or for a ring by the default cutter."""
     ring = shaped_ring(mesh) if mesh.gear.internal else None
     return min(tool_contact(mesh, ring).margins) < -ON_LIMIT * mesh.centre_distance
 
 
 def shaped_ring(mesh: Mesh) -> ShapedRing:
-    """The ring of a mesh with the usual cutter."""
+    """Return the ring of a mesh as shaped by the default cutter."""
     return ShapedRing(mesh.gear, int(usual_cutter(mesh.gear.teeth)))
 
 
 def rack_depth(pressure_angle: float, helix_angle: float = 0.0) -> float:
-    """How far the straight flank of the rack of full-depth teeth reaches below its reference line, modules.
+    """Compute the depth of the straight flank of the full-depth rack below its reference line, in modules.
 
-    Radians; of helical teeth ``pressure_angle`` is that of the normal plane, and so is the rack, and the modules are
-    those of the plane of rotation.
+    Angles in radians. For helical teeth ``pressure_angle`` and the rack are those of the normal plane, while the
+    modules are those of the plane of rotation.
     """
     return straight_depth(pressure_angle, FULL_DEPTH_DEDENDUM) * math.cos(helix_angle)
 
 
 def fitted_geometry(stage: int, driver: int, driven: int, mesh: Mesh, helix: Helix | None = None) -> MeshGeometry:
-    """Geometry of a mesh whose teeth are fitted; contact in a fillet is interference too."""
+    """Describe a mesh with fitted teeth; contact in a fillet counts as interference, too."""
     contact = tool_contact(mesh, helix_angle=0.0 if helix is None else helix.helix_angle)
     slack = ON_LIMIT * mesh.centre_distance
     one, two = (mesh.pinion, mesh.gear) if driver <= driven else (mesh.gear, mesh.pinion)
@@ -193,16 +202,16 @@ def _tip_thickness(gear: Gear) -> float:
 
 
 def mesh_geometries(train: OrdinaryTrain, fitted: bool = False) -> list[MeshGeometry]:
-    """Geometry of every mesh, with a shift that would save it where it is not sound.
+    """Describe every mesh of a train, with a suggested shift for meshes that interfere or are undercut.
 
-    Of shifted stages, and of all where teeth are ``fitted``, more is told, and no shift is suggested.
+    Shifted stages, and all stages if teeth are ``fitted``, are described in more detail and get no suggestion.
     """
     found = []
     for number, (stage, meshes) in enumerate(zip(train.stages, train.meshes, strict=True), 1):
         if stage.kind == "worm":
             found.append(_worm_geometry(number, stage, train.pressure_angle))
             continue
-        # Rings and bevel gears are never fitted: they stand as their pitch circles and cones do.
+        # Rings and bevel gears are never fitted: their pitch circles and cones determine their positions.
         shifted = stage.kind not in ("internal", "bevel") and (fitted or stage.shifts != (0.0, 0.0))
         for (driver, driven), mesh in zip(itertools.pairwise(stage.gears), meshes, strict=True):
             if shifted:
@@ -215,7 +224,7 @@ def mesh_geometries(train: OrdinaryTrain, fitted: bool = False) -> list[MeshGeom
 
 
 def _standard_geometry(stage: int, driver: int, driven: int, mesh: Mesh, shrunk: float) -> MeshGeometry:
-    """A mesh without shift; ``shrunk`` are normal modules in modules of the plane of rotation."""
+    """Describe a mesh without shift; ``shrunk`` is the normal module over the module of the plane of rotation."""
     return MeshGeometry(
         stage=stage,
         driver=driver,
@@ -229,7 +238,7 @@ def _standard_geometry(stage: int, driver: int, driven: int, mesh: Mesh, shrunk:
 
 
 def _of_type(stage: TrainStage, mesh: Mesh, pressure_angle: float) -> dict[str, Any]:
-    """What is told of stages that are not of external spur gears, and where it is another than of those."""
+    """Return the fields of the mesh that differ from, or are added to, those of external spur gears."""
     if stage.kind == "external":
         return {}
     told: dict[str, Any] = {"type": stage.kind}
@@ -265,7 +274,7 @@ def _of_type(stage: TrainStage, mesh: Mesh, pressure_angle: float) -> dict[str, 
 
 
 def _worm_geometry(number: int, stage: TrainStage, pressure_angle: float) -> MeshGeometry:
-    """A worm and its gear in the middle plane: a rack that cuts the gear is what meshes with it."""
+    """Describe a worm and its gear in the middle plane, where the worm is the very rack that cuts the gear."""
     worm = stage.worm(pressure_angle)
     pair, undercut = worm.dimensions, worm.gear.is_undercut
     return MeshGeometry(

@@ -1,4 +1,4 @@
-"""What tells one stage of a gear train from another, as a client states it and as the analysis core takes it."""
+"""Types of stages of a gear train, as requested by a client and as used by the analysis core."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from synthesis.model.statement import PositiveLength, Statement
 RIGHT_ANGLE = 90.0
 
 MOST_THREADS = 6
-"""Threads of a worm."""
+"""Maximum number of threads of a worm."""
 
 ROUND = 6
-"""Digits to which a shortened addendum is written; whole multiples of :data:`mesh_limits.ADDENDUM_STEP`."""
+"""Decimals of a shortened addendum, which is a multiple of :data:`mesh_limits.ADDENDUM_STEP`."""
 
 OF_TYPES: dict[str, tuple[StageKind, ...]] = {
     "helix_angle": ("helical",),
@@ -31,7 +31,7 @@ OF_TYPES: dict[str, tuple[StageKind, ...]] = {
     "hand": ("worm",),
     "friction": ("worm",),
 }
-"""Which types of stages have these fields."""
+"""Types of stages that have each field."""
 
 USUAL: dict[str, Any] = {
     "shaft_angle": RIGHT_ANGLE,
@@ -39,7 +39,7 @@ USUAL: dict[str, Any] = {
     "hand": "right",
     "friction": USUAL_FRICTION,
 }
-"""What those fields are where they are left out."""
+"""Default values of those fields."""
 
 HelixAngle = Annotated[float, ANGLE, Field(strict=True, ge=-45.0, le=45.0)]
 
@@ -53,50 +53,50 @@ Hand = Literal["right", "left"]
 
 
 class StageForm(Statement):
-    """The type of a stage and what belongs to it; what another type has is refused."""
+    """Type of a stage and the fields of that type; fields of other types are refused."""
 
     type: StageKind = Field(
         default="external",
-        description="external: two spur gears, which turn opposite ways. internal: a pinion in a ring, which turn "
-        "alike; "
-        "the ring's teeth are as short as the pinion's flank demands. helical: two helical gears on parallel shafts. "
-        "bevel: two straight bevel gears, the shafts meet. worm: a worm that drives its gear, the shafts cross at a "
-        "right angle.",
+        description="external: two spur gears that turn in opposite directions. internal: a pinion in a ring, both "
+        "turning in the same direction; "
+        "the ring's teeth are shortened to suit the pinion's flank. helical: two helical gears on parallel shafts. "
+        "bevel: two straight bevel gears whose shafts intersect. worm: a worm that drives its gear; the shafts cross "
+        "at a right angle.",
     )
     helix_angle: HelixAngle | None = Field(
         default=None,
-        description="Of helical gears, degrees: of the driver, positive for a right-handed one; the driven gear has "
-        "the other hand. The module is then that of the normal plane.",
+        description="Helix angle of the driver of a helical pair, degrees, positive if right-handed; the driven gear "
+        "has the opposite hand. The module is then that of the normal plane.",
     )
     face_width: PositiveLength | None = Field(
-        default=None, description="Of helical gears, for the overlap of their teeth."
+        default=None, description="Face width of helical gears, for the overlap of their teeth."
     )
     shaft_angle: ShaftAngle | None = Field(
-        default=None, description=f"Of bevel gears, degrees between the shafts; {RIGHT_ANGLE:g} where left out."
+        default=None, description=f"Angle between the shafts of bevel gears, degrees; {RIGHT_ANGLE:g} by default."
     )
     diameter_quotient: Quotient | None = Field(
         default=None,
-        description=f"Of a worm: its pitch diameter over its axial module; {USUAL_QUOTIENT:g} where left out.",
+        description=f"Pitch diameter of a worm over its axial module; {USUAL_QUOTIENT:g} by default.",
     )
-    hand: Hand | None = Field(default=None, description="Of a worm's threads; right where left out.")
+    hand: Hand | None = Field(default=None, description="Hand of a worm's threads; right by default.")
     friction: Friction | None = Field(
         default=None,
-        description=f"Coefficient between a worm and its gear, {USUAL_FRICTION:g} where left out: for the efficiency, "
-        "and whether the gear can drive the worm.",
+        description=f"Coefficient of friction between a worm and its gear, {USUAL_FRICTION:g} by default. It "
+        "determines the efficiency and whether the gear can drive the worm.",
     )
 
     @classmethod
     def types_with(cls, name: str) -> tuple[StageKind, ...]:
-        """Which types of stages have a field."""
+        """Return the types of stages that have a field."""
         return OF_TYPES[name]
 
     def or_usual(self, name: str) -> Any:
-        """What a field says, or what it is of such a stage where it is left out; None where it has none."""
+        """Return the value of a field, or its default for this type of stage; None if the type has no such field."""
         stated = getattr(self, name)
         return USUAL.get(name) if stated is None and self.type in self.types_with(name) else stated
 
     def meeting_cones(self, driver: int, driven: int) -> bool:
-        """Whether bevel gears of so many teeth have pitch cones that are less than flat."""
+        """Return whether bevel gears with these numbers of teeth have proper pitch cones, less than flat."""
         try:
             BevelCones(driver, driven, 1.0, math.radians(self.or_usual("shaft_angle")))
         except DimensionError as error:
@@ -104,14 +104,14 @@ class StageForm(Statement):
         return True
 
     def faults_of_type(self) -> list[tuple[str, str]]:
-        """Fields that another type has, and those that are missing, by their path below the stage."""
+        """Return fields of other types and missing fields, by their path below the stage."""
         faults = [
-            (f"/{name}", f"a stage that is {self.type} has none; leave it out")
+            (f"/{name}", f"stages of type {self.type} have no such field; leave it out")
             for name in OF_TYPES
             if self.type not in self.types_with(name) and getattr(self, name) is not None
         ]
         if self.type == "helical" and not self.helix_angle:
-            faults.append(("/helix_angle", "state the helix angle of the driver, other than 0"))
+            faults.append(("/helix_angle", "a helical stage needs the helix angle of its driver, other than 0"))
         driver, driven = getattr(self, "driver", None), getattr(self, "driven", None)
         if (
             self.type == "bevel"
@@ -119,17 +119,17 @@ class StageForm(Statement):
             and isinstance(driven, int)
             and not self.meeting_cones(driver, driven)
         ):
-            faults.append(("/shaft_angle", f"bevel gears of {driver} and {driven} teeth have no cones at this angle"))
+            faults.append(("/shaft_angle", f"bevel gears with {driver} and {driven} teeth cannot mesh at this angle"))
         return faults
 
 
 def train_stage(stage: Any, pressure_angle: float, idlers: tuple[int, ...] = ()) -> TrainStage:
-    """A stage as it is stated, or as it stands in a design, for the analysis core.
+    """Convert a requested stage, or a stage of a design, for the analysis core.
 
     Parameters
     ----------
     stage : object
-        With teeth, module, and whatever else tells stages apart; None where nothing is said.
+        With teeth, module and the fields of all types; None for fields that are left out.
     pressure_angle : float
         Radians.
     """
@@ -164,7 +164,7 @@ def _or(stated: float | None, usual: float) -> float:
 
 
 def ring_addenda(driver: int, driven: int, pressure_angle: float) -> tuple[float, float]:
-    """Addenda of driver and driven gear of an internal stage, modules: the ring's is cut short for its pinion."""
+    """Return the addenda of driver and driven gear of an internal stage, modules; the ring's is shortened."""
     pinion, ring = (np.array([float(teeth)]) for teeth in sorted((driver, driven)))
     short = round(float(mesh_limits.ring_addendum(pinion, ring, pressure_angle, fillets=True)[0]), ROUND)
     return (1.0, short) if driver <= driven else (short, 1.0)

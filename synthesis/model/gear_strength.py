@@ -1,7 +1,7 @@
-"""Stresses in the teeth of a pair that carries a power: what is stated and told, and the width that carries it.
+"""Tooth stresses of a pair of gears under load: request, answer, and the face width that carries the power.
 
-It is a first estimate: the equations of Lewis and of AGMA (:mod:`kinematics.gear.strength`) with factors that a client
-states, or that formulas of the textbook give. It knows no bearings, no lubricant, no wear and no life.
+This is a first estimate by the equations of Lewis and AGMA (:mod:`kinematics.gear.strength`), with factors given by the
+client or by textbook formulas. It ignores bearings, lubrication, wear and life.
 """
 
 from __future__ import annotations
@@ -29,145 +29,157 @@ from synthesis.model.statement import PositiveNumber, Statement
 Positive = Annotated[float, Field(strict=True, ge=1e-6, le=1e6)]
 
 ESTIMATE = (
-    "A first estimate by textbook formulas: life, temperature, lubrication, mounting and material data beyond the "
-    "stated allowable stresses are not looked at. Size gears by the standard that applies."
+    "A first estimate by textbook formulas: life, temperature, lubrication, mounting and material data other than the "
+    "given allowable stresses are ignored. Size gears by the applicable standard."
 )
 
 OF_AGMA = ("size", "load_distribution", "rim", "bending_geometry", "contact_geometry", "elastic")
-"""Factors that Lewis's equation does not have."""
+"""Factors of the AGMA equations that Lewis's equation does not have."""
 
 CARRYING_TYPES = ("external", "internal", "helical")
 """Types of stages whose strength is estimated."""
 
 BENT_BOTH_WAYS = 0.7
-"""Share of the allowable bending stress that teeth bear which are bent both ways in every turn, as an idler's are, by
-AGMA (Shigley, Sec. 14-4)."""
+"""Share of the allowable bending stress for teeth that are bent in both directions in every turn, such as an idler's,
+by AGMA (Shigley, Sec. 14-4)."""
 
 EQUAL = 1e-12
-"""Share by which a mesh may fall short of the power in rounding."""
+"""Relative deficit of power that counts as rounding."""
 
 WIDTHS = 400
-"""Widths that are tried, in equal ratios, in search of the least that carries the load."""
+"""Number of face widths, in equal ratios, that are tried to find the minimum that carries the load."""
 
 
 class StatedFactors(Statement):
-    """Factors in place of those that formulas give; pairs are of the first gear and the second."""
+    """Factors that replace computed ones; pairs are for the first and the second gear."""
 
     form: tuple[Positive, Positive] | None = Field(
-        default=None, description="Lewis's Y, for the size factor too; from the true profile with the load at the tip."
+        default=None,
+        description="Lewis's Y, also used by the size factor; by default from the true profile, loaded at the tip.",
     )
     overload: Positive = 1.0
     dynamic: Positive | None = Field(
-        default=None, description="Lewis: (1200 + V)/1200 of cut teeth, V in ft/min. AGMA: by the quality number."
+        default=None,
+        description="Dynamic factor; by default (1200 + V)/1200 for cut teeth with V in ft/min (Lewis), or by the "
+        "quality number (AGMA).",
     )
-    size: tuple[Positive, Positive] | None = Field(default=None, description="1.192 (F √Y / P)^0.0535, at least 1.")
+    size: tuple[Positive, Positive] | None = Field(
+        default=None, description="Size factor; by default 1.192 (F √Y / P)^0.0535, at least 1."
+    )
     load_distribution: Positive | None = Field(
-        default=None, description="Of uncrowned teeth close to both bearings, in a commercial enclosed unit."
+        default=None,
+        description="Load distribution factor; by default for uncrowned teeth close to both bearings, in a commercial "
+        "enclosed unit.",
     )
     rim: Positive = 1.0
     bending_geometry: tuple[Positive, Positive] | None = Field(
         default=None,
-        description="AGMA's J; from the true profile. Its fillets have the 0.38 modules of ISO 53: tables for racks of "
-        "0.25 have values about a tenth lower. Of rings and helical gears it is known only where it is stated.",
+        description="AGMA's J; by default from the true profile. Fillets have a radius of 0.38 modules (ISO 53); "
+        "tables for racks with 0.25 give about a tenth less. For rings and helical gears it has to be given.",
     )
     contact_geometry: Positive | None = Field(
-        default=None, description="AGMA's I; of helical gears known over faces of an axial pitch or more."
+        default=None,
+        description="AGMA's I; for helical gears it has to be given if the face is narrower than an axial pitch.",
     )
-    elastic: Positive | None = Field(default=None, description="AGMA's C_p, √MPa; 191 of steel on steel.")
+    elastic: Positive | None = Field(default=None, description="AGMA's C_p, √MPa; by default 191, for steel on steel.")
 
 
 class StrengthMethod(Statement):
-    """The method, its factors, and what the material may bear."""
+    """Strength method, its factors, and the allowable stresses of the material."""
 
     method: Literal["lewis", "agma"] = "agma"
     quality: Annotated[float, Field(strict=True, ge=3.0, le=11.5)] = Field(
         default=6.0, description="AGMA's quality number Q_v, for the dynamic factor."
     )
     factors: StatedFactors = StatedFactors()
-    allowable_bending: tuple[Positive, Positive] | None = Field(default=None, description="MPa, of both gears.")
-    allowable_contact: tuple[Positive, Positive] | None = Field(default=None, description="MPa, of both; AGMA only.")
+    allowable_bending: tuple[Positive, Positive] | None = Field(
+        default=None, description="Allowable bending stress of both gears, MPa."
+    )
+    allowable_contact: tuple[Positive, Positive] | None = Field(
+        default=None, description="Allowable contact stress of both gears, MPa; AGMA only."
+    )
     max_face_width: Annotated[float, Field(strict=True, ge=1.0, le=100.0)] = Field(
-        default=16.0, description="The widest face in search of the least, in modules."
+        default=16.0, description="Maximum face width, in modules, when the minimum width is searched."
     )
 
     def faults(self) -> list[tuple[str, str]]:
-        """What no single field shows, by the path below this statement."""
+        """Return errors that no single field shows, by the path below this statement."""
         if self.method != "lewis":
             return []
         faults = []
         if self.allowable_contact is not None:
-            faults.append(("/allowable_contact", "Lewis's equation knows no contact stress; leave it out or take agma"))
+            faults.append(("/allowable_contact", "Lewis's equation has no contact stress; leave it out or use agma"))
         if _is_stated(self, "quality"):
-            faults.append(("/quality", "Lewis's equation knows no quality number; leave it out or take agma"))
+            faults.append(("/quality", "Lewis's equation has no quality number; leave it out or use agma"))
         return faults + [
-            (f"/factors/{name}", "Lewis's equation has no such factor; leave it out or take agma")
+            (f"/factors/{name}", "Lewis's equation has no such factor; leave it out or use agma")
             for name in OF_AGMA
             if _is_stated(self.factors, name)
         ]
 
     def faults_of_ring(self) -> list[tuple[str, str]]:
-        """What is wrong where the second gear is a ring: no formula here gives the shape of its teeth."""
+        """Return errors for a pair whose second gear is a ring: no formula here gives the shape of its teeth."""
         name = "form" if self.method == "lewis" else "bending_geometry"
         if self.allowable_bending is None or getattr(self.factors, name) is not None:
             return []
-        return [("/allowable_bending", f"the bending stress of a ring is not known without factors/{name}; state that")]
+        return [("/allowable_bending", f"the bending stress of a ring needs factors/{name}; give it")]
 
     def faults_of_helix(self) -> list[tuple[str, str]]:
-        """What is wrong where the teeth are helical: what shares the load is read from charts, or not known."""
+        """Return errors for helical teeth, whose load sharing is read from charts or unknown."""
         if self.method == "lewis":
-            return [("/method", "Lewis's equation is of spur teeth; take agma for helical ones")]
+            return [("/method", "Lewis's equation is for spur teeth; use agma for helical ones")]
         if self.allowable_bending is None or self.factors.bending_geometry is not None:
             return []
-        detail = "the bending stress of helical teeth is not known without factors/bending_geometry; state that"
+        detail = "the bending stress of helical teeth needs factors/bending_geometry; give it"
         return [("/allowable_bending", detail)]
 
     @property
     def kept(self) -> list[str]:
-        """Names of the safeties for which allowable stresses are stated."""
+        """Names of the safety factors for which allowable stresses are given."""
         stated = {"bending_safety": self.allowable_bending, "contact_safety": self.allowable_contact}
         return [name for name, allowable in stated.items() if allowable is not None]
 
 
 def _is_stated(statement: Statement, name: str) -> bool:
-    """Whether a field says anything but what it says where it is left out."""
+    """Return whether a field differs from its default."""
     return bool(getattr(statement, name) != type(statement).model_fields[name].default)
 
 
 class StatedStrength(StrengthMethod):
-    """The power besides, where it is not known from a torque and a speed."""
+    """Strength method and the transmitted power, for pairs without a torque and a speed."""
 
     power_kw: PositiveNumber
 
 
 class CarriedPower(StatedStrength):
-    """What a train that is looked for has to carry; pairs are of the driving gear of every mesh and the driven one."""
+    """Power that a train has to carry; pairs are for the driving and the driven gear of every mesh."""
 
     speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] = Field(
-        description="Of the input shaft, revolutions a minute."
+        description="Speed of the input shaft, revolutions per minute."
     )
 
     @property
     def power(self) -> float:
-        """On the input shaft, and without losses on all others, W."""
+        """Power on the input shaft and, as losses are neglected, on all others, W."""
         return 1000.0 * self.power_kw
 
     @property
     def speed(self) -> float:
-        """Of the input shaft, rad/s."""
+        """Speed of the input shaft, rad/s."""
         return self.speed_rpm * math.pi / 30.0
 
     def faults(self) -> list[tuple[str, str]]:
-        """What no single field shows, by the path below this statement."""
+        """Return errors that no single field shows, by the path below this statement."""
         if self.kept:
             return super().faults()
-        return [*super().faults(), ("/allowable_bending", "state it, or allowable_contact: what the teeth may bear")]
+        return [*super().faults(), ("/allowable_bending", "give allowable_bending or allowable_contact, in MPa")]
 
 
 class StressedGear(Answer):
-    """One gear: stresses in MPa, and how far below what it may bear; null where nothing is stated or known."""
+    """Stresses (MPa) and safety factors of one gear; null if an input is missing or a value unknown."""
 
     form: float | None = Field(
-        description="Lewis's Y; null for a ring of which none is stated; of helical gears that of the normal plane."
+        description="Lewis's Y; null for a ring without a given value; of helical gears in the normal plane."
     )
     size_factor: float | None
     bending_geometry: float | None
@@ -176,12 +188,12 @@ class StressedGear(Answer):
     bending_safety: float | None = Field(description="Allowable over actual bending stress.")
     contact_safety: float | None = Field(description="Allowable over actual contact stress.")
     bent_both_ways: bool | None = optional(
-        f"True of an idler, and of a planet gear that meshes on both flanks: every turn bends its teeth both ways, and "
-        f"they bear {BENT_BOTH_WAYS} of the allowable bending stress; `bending_safety` counts that."
+        f"True for an idler, and for a planet gear that meshes on both flanks. Every turn bends its teeth in both "
+        f"directions, so that `bending_safety` uses {BENT_BOTH_WAYS} of the allowable bending stress."
     )
     bending_judged: bool | None = optional(
-        "False of a ring of a planetary train whose geometry factor is not stated: its bending is not known, and no "
-        "part of what is judged."
+        "False for a ring of a planetary train without a given geometry factor: its bending stress is unknown and not "
+        "checked."
     )
 
 
@@ -190,33 +202,35 @@ class PairStrength(Answer):
 
     method: str
     estimate: str
-    tangential_force: float = Field(description="On the working pitch circles, N.")
+    tangential_force: float = Field(description="Tangential force on the working pitch circles, N.")
     pitch_line_velocity: float = Field(description="m/s")
     dynamic: float
     load_distribution: float | None
     contact_geometry: float | None
     sharing_ratio: float | None = optional(
-        "AGMA's m_N of helical teeth: the face over the least length of all lines of contact. Left out where the face "
-        "overlaps by less than an axial pitch: the contact stress is then not known, unless `contact_geometry` is "
-        "stated."
+        "AGMA's m_N of helical teeth: face width over the minimum total length of the lines of contact. Left out if "
+        "the face is narrower than an axial pitch; without `contact_geometry` the contact stress is then unknown."
     )
-    face_width: Length | None = Field(description="As stated, or the least that carries the load; the module's unit.")
+    face_width: Length | None = Field(
+        description="Given face width, or the minimum that carries the load; in the unit of the module."
+    )
     least_face_width: Length | None = optional(
-        "The least that keeps all stated allowable stresses; left out where none are stated, where no width up to "
-        "`max_face_width` keeps them, or where one of the stresses is not known."
+        "Minimum face width within all given allowable stresses; left out if none is given, if no width up to "
+        "`max_face_width` suffices, or if a stress is unknown."
     )
     load_sharing: float | None = optional(
-        "Of planetary trains: the force on the most loaded planet over an equal share of it; the force and all "
-        "stresses have it."
+        "Load sharing factor of planetary trains: force on the most loaded planet over an equal share. The force and "
+        "all stresses include it."
     )
     gears: list[StressedGear]
 
 
 class Loaded(NamedTuple):
-    """A pair in millimetres and what it carries; which of its gears are bent both ways.
+    """A pair of gears in millimetres, its power (W), the speed of its first gear (rad/s), and its reversed bending.
 
-    ``spares_rings``: the bending of a ring is no part of what is judged, where it is not known. Helical gears are those
-    of the plane of rotation, with their ``helix_angle``, radians.
+    ``both_ways`` states which of the gears are bent in both directions. With ``spares_rings`` the unknown bending
+    stress of a ring is not judged. Helical gears are those of the plane of rotation, with their ``helix_angle`` in
+    radians.
     """
 
     contact: Contact
@@ -228,11 +242,11 @@ class Loaded(NamedTuple):
 
     @property
     def module(self) -> float:
-        """That of the normal plane."""
+        """Module in the normal plane, millimetres."""
         return self.contact.mesh.pinion.module * math.cos(self.helix_angle)
 
     def in_normal_plane(self, gear: Gear) -> Gear:
-        """A gear of the pair, of a helical one the spur gear that the normal plane shows: z / cos³ β teeth."""
+        """Return a gear of the pair, replacing a helical one by its equivalent spur gear with z / cos³ β teeth."""
         if self.helix_angle == 0.0:
             return gear
         shrunk = math.cos(self.helix_angle)
@@ -247,7 +261,7 @@ class Loaded(NamedTuple):
         )
 
     def sharing(self, width: float) -> float | None:
-        """AGMA's m_N over a face of this width: 1 of spur teeth, None of a face that overlaps by less than a pitch."""
+        """Compute AGMA's m_N for a face width: 1 for spur teeth, None if the face is narrower than an axial pitch."""
         if self.helix_angle == 0.0:
             return 1.0
         mesh = self.contact.mesh
@@ -264,14 +278,14 @@ class Loaded(NamedTuple):
         return 2.0 * mesh.pinion.pitch_radius * wide, 2.0 * mesh.gear.pitch_radius * wide
 
     def load(self, width: float) -> Load:
-        """The tangential load, N and m/s, over a face of this width."""
+        """Compute the tangential load (N, m/s) over a face of this width, millimetres."""
         diameters = self.working_diameters
         velocity = self.speed * 0.5e-3 * diameters[0]
         return Load(self.power / velocity, velocity, width, self.contact.mesh.pinion.module, min(diameters))
 
 
 class Stresses(NamedTuple):
-    """What a width leads to: the load, factors common to both gears, and rows of each gear."""
+    """Stresses at a face width: the load, factors common to both gears, and a row of values for each gear."""
 
     load: Load
     dynamic: float
@@ -281,17 +295,17 @@ class Stresses(NamedTuple):
     sharing: float | None = None
 
     def safeties(self, names: list[str]) -> list[tuple[str, float | None]]:
-        """The safeties of these names of both gears, by name, but for those that are not judged."""
+        """Return the named safety factors of both gears, by name, except those that are not judged."""
         judged = [(row, name) for row in self.gears for name in names]
         return [(name, row[name]) for row, name in judged if name != "bending_safety" or "bending_judged" not in row]
 
     def keep(self, names: list[str]) -> bool:
-        """Whether the safeties of these names are known of both gears, and at least 1."""
+        """Return whether the named safety factors of both gears are known and at least 1."""
         return all(safety is not None and safety >= 1.0 for _, safety in self.safeties(names))
 
 
 class Judge:
-    """The stresses of a pair over widths; what does not depend on the width is found once."""
+    """Stresses of a pair over its face width; quantities that do not depend on the width are computed once."""
 
     def __init__(self, loaded: Loaded, stated: StrengthMethod) -> None:
         self._loaded, self._stated = loaded, stated
@@ -305,14 +319,14 @@ class Judge:
 
     @staticmethod
     def _form(gear: Gear) -> float | None:
-        """Lewis's factor; None of a ring, and of a tooth that is no beam."""
+        """Compute Lewis's form factor; None for a ring, and for a tooth whose profile is no beam."""
         try:
             return None if gear.internal else strength.lewis_form(gear)
         except DimensionError:
             return None
 
     def _geometry(self, gear: Gear, place: int) -> float | None:
-        """AGMA's factor; None as above, and where it is not asked for."""
+        """Compute AGMA's bending geometry factor; None if it is unknown or not needed by the method."""
         try:
             known = self._stated.method == "agma" and not gear.internal and self._loaded.helix_angle == 0.0
             return strength.bending_geometry(self._loaded.contact, place == 1) if known else None
@@ -320,13 +334,14 @@ class Judge:
             return None
 
     def under(self, power: float, turning: float) -> Judge:
-        """The same pair under another power, W, its first gear turning so fast, rad/s."""
+        """Return the same pair with another power (W) and another speed of its first gear (rad/s)."""
+        # A shallow copy shares the geometry factors, and the cached maximum force, which do not depend on the power.
         other = copy(self)
         other._loaded = self._loaded._replace(power=power, speed=turning)
         return other
 
     def at(self, width: float) -> Stresses:
-        """Stresses over a face of this width, millimetres."""
+        """Compute the stresses over a face of this width, millimetres."""
         stated, factors, load = self._stated, self._stated.factors, self._loaded.load(width)
         mesh = self._loaded.contact.mesh
         if stated.method == "lewis":
@@ -381,27 +396,28 @@ class Judge:
 
     @cached_property
     def bearable(self) -> float:
-        """The greatest tangential force times dynamic factor that a face up to the widest bears, N.
+        """Maximum tangential force times dynamic factor that a permitted face width bears, N; 0 if a stress is unknown.
 
-        It is the widest that bears most: over faces of 100 modules at most K_m and K_s rise together by less than the
-        0.83rd power of the width. Bending stress rises with the force, contact stress with its root. 0 where one of the
-        stresses is not known.
+        The widest face bears most: up to 100 modules K_m and K_s together grow more slowly than the 0.83rd power of the
+        width. Bending stress is proportional to the force, contact stress to its square root.
         """
         names, found = self._stated.kept, self.at(self._widths()[-1])
         shares = found.safeties(names)
+        # The contact safety is squared because contact stress rises with the square root of the force.
         known = [0.0 if s is None else s * s if name == "contact_safety" else s for name, s in shares]
         return min(known, default=0.0) * found.load.force * found.dynamic
 
     def carried_power(self, turning: float) -> float:
-        """The greatest power, W, that a face up to the widest carries where the first gear turns so fast, rad/s.
+        """Compute the maximum power (W) that a permitted face width carries at a speed of the first gear (rad/s).
 
-        The force falls with the speed by more than its dynamic factor rises, so that this power rises with the speed.
+        With rising speed the force falls by more than the dynamic factor rises, so that this power rises with the
+        speed.
         """
         load = self._loaded._replace(power=1.0, speed=turning).load(1.0)
         return self.bearable / (load.force * self._dynamic(load))
 
     def _widths(self) -> list[float]:
-        """Widths in equal ratios up to the widest, millimetres."""
+        """Return face widths in equal ratios up to the maximum, millimetres."""
         most = self._stated.max_face_width * self._loaded.module
         return [most * math.pow(1e-3, 1.0 - k / WIDTHS) for k in range(WIDTHS + 1)]
 
@@ -414,15 +430,16 @@ class Judge:
         return strength.dynamic_factor(load.speed, stated.quality)
 
     def least_width(self) -> float | None:
-        """The least width that keeps the allowable stresses, millimetres.
+        """Find the minimum face width within the allowable stresses, millimetres.
 
-        None where no width up to the widest does, where none are stated, or where one of the stresses is not known.
+        None if no width up to the maximum suffices, if no allowable stress is given, or if a stress is unknown.
         """
         names, before = self._stated.kept, 0.0
         if not names:
             return None
         for width in self._widths():
             if self.at(width).keep(names):
+                # Bisect between the last width that fails and the first that suffices, down to rounding.
                 for _ in range(60):
                     middle = 0.5 * (before + width)
                     kept = middle > 0.0 and self.at(middle).keep(names)
@@ -433,55 +450,56 @@ class Judge:
 
 
 def common_width(judges: list[Judge], names: list[str]) -> float | None:
-    """The least width, millimetres, over which all pairs keep the safeties of these names; None: there is none."""
+    """Find the minimum width, millimetres, at which all pairs have the named safety factors; None if none exists."""
     least = [judge.least_width() for judge in judges]
     known = [width for width in least if width is not None]
     if len(known) < len(least):
         return None
     width = max(known)
+    # Factors depend on the width, so that a wider face of one pair has to be verified for the others.
     return width if all(judge.at(width).keep(names) for judge in judges) else None
 
 
 def carrying_words(failed: int) -> str:
-    """That the power decided, and how many trains it ruled out."""
-    before = counted(failed, "train does not", "trains do not") if failed else "all do"
-    return f"It carries the power, by a first estimate; of those judged {before}."
+    """Describe that the design carries the power, and how many trains were rejected because they do not."""
+    before = counted(failed, "better train does not", "better trains do not") if failed else "all trains checked do"
+    return f"It carries the power by a first estimate; {before}."
 
 
 def too_weak_words(stated: CarriedPower, failed: int, every: bool, strongest: float) -> str:
-    """That no train carries the power, and what the strongest does, W; 0 where that is not known."""
-    which = f"the {failed} trains there are" if every else f"the first {failed} trains"
+    """Describe that no train carries the power; ``strongest`` is the power of the strongest, W, or 0 if unknown."""
+    which = f"the {failed} possible trains" if every else f"the best {failed} trains"
     told = f"None of {which} carries {stated.power_kw:.6g} kW with a face of {stated.max_face_width:g} modules."
     if strongest:
-        told += f" The strongest carries {strongest / 1000.0:.3g} kW, by a first estimate."
-    return told if every else f"{told} Others were not judged."
+        told += f" The strongest carries {strongest / 1000.0:.3g} kW by a first estimate."
+    return told if every else f"{told} Further trains were not checked."
 
 
 def stage_contact(stage: TrainStage, place: int, pressure_angle: float, unit: float) -> Contact:
-    """A mesh of a stage in millimetres, its gears as they stand in the order of the power.
+    """Build a mesh of a stage in millimetres, with its gears in the order of the power flow.
 
     Parameters
     ----------
     place : int
-        Of the mesh in the stage, counted from 0; more than one with idlers.
+        Index of the mesh in the stage, from 0; stages with idlers have several meshes.
     unit : float
-        Millimetres in the unit of the module.
+        Millimetres per unit of the module.
     """
     gears = replace(stage, module=stage.module * unit).cut_gears(pressure_angle)
     return tool_contact(Mesh(gears[place], gears[place + 1]), helix_angle=stage.helix_angle)
 
 
 def bent_both_ways(stage: TrainStage, place: int) -> tuple[bool, bool]:
-    """Which gears of a mesh of a stage, counted from 0, are idlers."""
+    """Return which of both gears of a mesh are idlers; ``place`` is the index of the mesh in the stage, from 0."""
     return place > 0, place + 2 < len(stage.gears)
 
 
 def told(loaded: Loaded, stated: StrengthMethod, face_width: float | None, unit: float) -> dict[str, Any]:
-    """The strength of a pair in the shape of :class:`PairStrength`; widths in units of ``unit`` millimetres."""
+    """Describe the strength of a pair by the fields of :class:`PairStrength`; ``unit`` is the length unit in mm."""
     judge = Judge(loaded, stated)
     least = judge.least_width()
     width = least if face_width is None else face_width * unit
-    # Without any width the load and what belongs to it are told, and no stresses.
+    # Without a width only the load and the factors that do not depend on it are reported, at an arbitrary 1 mm.
     found = judge.at(1.0 if width is None else width)
     rows = found.gears
     if width is None:

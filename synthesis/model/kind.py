@@ -1,4 +1,4 @@
-"""What a kind of problem declares of itself: its statement, its answer and its solver."""
+"""Declaration of a kind of problem: its statement, its answer and its solver."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from synthesis.model.mechanism_types import mechanism_types, models_within
 from synthesis.model.statement import StatedProblem
 
 Progress = Callable[[float, str], None]
-"""Called with the fraction done, 0 to 1, and a short message."""
+"""Callback with the fraction done, 0 to 1, and a short message."""
 
 
 def part_of(progress: Progress, begin: float, end: float) -> Progress:
-    """The progress of a part of the work, which begins and ends at these shares of the whole."""
+    """Return a progress callback for a part of the work that begins and ends at these shares of the whole."""
     return lambda share, message: progress(begin + (end - begin) * share, message)
 
 
@@ -24,12 +24,12 @@ R = TypeVar("R", bound=Result[Any])
 
 
 def never(_problem: StatedProblem) -> bool:
-    """No statement is."""
+    """Return False for every statement."""
     return False
 
 
 def always(_problem: StatedProblem) -> bool:
-    """Every statement is."""
+    """Return True for every statement."""
     return True
 
 
@@ -41,11 +41,11 @@ Group = Literal[
     "Lift and rest",
     "Run smoothly",
 ]
-"""What a person wants, in the order of the studio's gallery."""
+"""Purposes of a mechanism, in the order of the studio's gallery."""
 
 
 class Named(NamedTuple):
-    """An example as a person looks for it: its name, what it is for, and what it shows in a sentence."""
+    """Example for the gallery: its name, its purpose, and one sentence on what it shows."""
 
     name: str
     group: Group
@@ -54,36 +54,36 @@ class Named(NamedTuple):
 
 @dataclass(frozen=True)
 class Kind(Generic[P, R]):
-    """One kind of problem.
+    """Declaration of one kind of problem.
 
     Attributes
     ----------
     name : str
-        What the field ``kind`` of its statements holds.
+        Value of the field ``kind`` of its statements.
     problem, result : type
-        The models of the statement and of the answer.
+        Models of the statement and of the answer.
     solve : callable
-        From a consistent statement to its answer. It imports the solver when it is called: whoever only needs the
-        models does not wait for the compiled kernels.
+        Solves a consistent statement. It imports the solver only when called, so that code that needs only the models
+        does not wait for the compiled kernels.
     warm_up : callable, optional
-        Loads what most jobs need, in the time of one brief job; every new worker calls it beside its first jobs. Where
-        it is left out the examples of the kind are solved instead. All examples are solved where the kernels are
-        compiled ahead of time.
+        Loads the kernels that most jobs need, in the time of one brief job. Every new worker calls it alongside its
+        first jobs. If left out, the examples of the kind are solved instead. When kernels are compiled ahead of time,
+        all examples are solved.
     verify : callable, optional
-        Measures a finished mechanism against a statement: the design, or None where it cannot be driven. It tells how
-        far the answers to a statement that asks for less are from the one that was asked.
+        Measures a finished mechanism against a statement and returns the design, or None if it cannot be driven. It
+        shows how far designs of a relaxed statement are from the original statement.
     nearer : callable, optional
-        Designs of a statement by continuation from designs of a looser one, in a fraction of the time of a search: how
-        a limit out of reach is approached. None for statements that it has none for; those are searched.
+        Continues designs of a looser statement to designs of a stricter one, in a fraction of the time of a search, to
+        approach a limit that cannot be reached. Returns None for statements without continuation; those are searched.
     nearly : callable, optional
-        Measures a finished mechanism against a statement of which it meets as nearly as it can what designs must meet
-        exactly: from the statement, a design that does, and another mechanism, the design of that; None where it cannot
-        be driven.
+        Measures a finished mechanism that satisfies only approximately what designs must satisfy exactly, for example
+        after rounding. Takes the statement, an exact design and the other mechanism, and returns the design of the
+        latter, or None if it cannot be driven.
     gallery : tuple of Named
-        Its examples by name, in their order.
+        Examples with their names, in the order of the statement's examples.
     brief : callable, optional
-        Whether the answer to a statement takes a fraction of a second, as a rule. The service computes such ones beside
-        searches that take long; where it is left out none is brief.
+        Whether solving a statement usually takes a fraction of a second. The service runs such jobs alongside long
+        searches. By default no statement is brief.
     """
 
     name: str
@@ -99,13 +99,13 @@ class Kind(Generic[P, R]):
 
     @property
     def mechanisms(self) -> list[str]:
-        """The types of mechanisms that its designs can have, in the order of the models of its answer."""
+        """Types of mechanisms that its designs can have, in the order of the models of its answer."""
         designs = models_within(self.result.model_fields["designs"].annotation)
         return [name for design in designs for name in mechanism_types(design)]
 
     @property
     def metrics(self) -> list[str]:
-        """The names of what is measured of its designs beside checks, in the order of the models of its answer."""
+        """Names of the metrics of its designs, in the order of the models of its answer."""
         designs = models_within(self.result.model_fields["designs"].annotation)
         measured = [model for design in designs for model in models_within(design.model_fields["metrics"].annotation)]
         named = [field.alias or name for model in measured for name, field in model.model_fields.items()]
@@ -113,7 +113,7 @@ class Kind(Generic[P, R]):
 
     @property
     def examples(self) -> list[dict[str, Any]]:
-        """Runnable statements, as a client would post them; the first is the plainest."""
+        """Runnable statements, as a client would post them; the first is the simplest."""
         schema_extra = self.problem.model_config["json_schema_extra"]
         assert isinstance(schema_extra, dict)
         stated = schema_extra["examples"]

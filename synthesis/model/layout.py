@@ -1,4 +1,4 @@
-"""The block ``layout`` of a statement: what links are made of, and the planes that they are put in (docs/layout.md)."""
+"""Block ``layout`` of a statement: sizes of links and pins, and their arrangement in planes (docs/layout.md)."""
 
 from __future__ import annotations
 
@@ -11,40 +11,43 @@ from synthesis.model.dimension import LENGTH
 from synthesis.model.statement import Count, NonNegative, PositiveLength, Statement
 
 MOST_PLANES = 20
-"""Planes that may be stated; no linkage has as many links."""
+"""Maximum number of planes that may be requested; no linkage has that many links."""
 
 
 class LayoutSizes(Statement):
-    """What the links are made of, and how they are put in planes (docs/layout.md)."""
+    """Sizes of links and pins, and their arrangement in planes (docs/layout.md)."""
 
-    link_width: PositiveLength = Field(description="A link is the hull of its joints widened by half of this.")
-    pin_diameter: PositiveLength = Field(description="Of pins and shafts; not wider than the links.")
-    thickness: PositiveLength = Field(description="Of a plane.")
+    link_width: PositiveLength = Field(
+        description="Width of the links: a link is the hull of its joints, widened by half of this."
+    )
+    pin_diameter: PositiveLength = Field(description="Diameter of pins and shafts; at most the width of the links.")
+    thickness: PositiveLength = Field(description="Thickness of a plane.")
     gap: Annotated[NonNegative, LENGTH] = Field(
-        default=0.0, description="What two parts in one plane keep apart, and one plane from the next."
+        default=0.0, description="Minimum distance between two parts in one plane, and distance between planes."
     )
     shafts: Literal["one_side", "both_sides"] = Field(
         default="one_side",
-        description="Whether shafts at fixed pivots stand on a base below all links, or pass all planes to a second "
-        "base above them.",
+        description="Support of the shafts at fixed pivots: one_side: on a base below all links; both_sides: through "
+        "all planes to a second base above them.",
     )
     over: Literal["used", "cycle"] = Field(
         default="used",
-        description="The motion that is looked at: the used range of the input, or all of its cycle: a whole turn, or "
-        "from toggle to toggle.",
+        description="Motion that is checked: used: the used range of the input; cycle: a whole turn of the input, or "
+        "its range from toggle to toggle.",
     )
 
     @field_validator("pin_diameter")
     @classmethod
     def _within_links(cls, diameter: float, stated: ValidationInfo) -> float:
         if diameter > stated.data.get("link_width", math.inf):
-            raise ValueError("a pin is not wider than the links that it joins")
+            raise ValueError("pin_diameter must not exceed link_width")
         return diameter
 
 
 class StatedLayout(LayoutSizes):
-    """The same of designs, which may be held to a number of planes."""
+    """Sizes of links and pins of each design, their arrangement in planes, and the maximum number of planes."""
 
     max_planes: Annotated[Count, Field(ge=1, le=MOST_PLANES)] | None = Field(
-        default=None, description="Planes of moving links and gears, at most; designs that need more are rejected."
+        default=None,
+        description="Maximum number of planes for moving links and gears; designs that need more are rejected.",
     )

@@ -1,7 +1,6 @@
-"""Linkages as answers: dimensions that their users know them by, the skeleton, and what was measured on them.
+"""Linkages in answers: their usual dimensions, their skeleton, and their measured properties.
 
-The numbers of a mechanism are dimensions only; what was measured on it stands beside it in ``targets``,
-``verification`` and ``metrics``.
+A mechanism contains dimensions only; its measured properties are in ``targets``, ``verification`` and ``metrics``.
 """
 
 from __future__ import annotations
@@ -16,9 +15,9 @@ from synthesis.model.forces_answer import DesignForces
 from synthesis.model.manufacture_answer import MANUFACTURE, Manufactured, Yield
 
 _BODY_ANGLE = optional(
-    "Angle of the body's line at the first target, absolute, degrees; left out where it is the demanded one exactly."
+    "Absolute angle of the body's line at the first target, degrees; left out if it equals the requested angle exactly."
 )
-"""The same field of every mechanism that carries a body."""
+"""Field that all mechanisms that carry a body share."""
 
 
 class Link(Answer):
@@ -45,7 +44,7 @@ class GearPair(Answer):
 
 
 class Skeleton(Answer):
-    """The configuration at the first target, from which the mechanism can be rebuilt with rigid links alone."""
+    """Configuration at the first target, from which the mechanism can be rebuilt with rigid links alone."""
 
     joints: dict[str, Point]
     links: list[Link]
@@ -107,7 +106,7 @@ class SliderCrankLinks(Answer):
 class SliderCrankMechanism(Answer):
     """A slider-crank whose coupler carries the body: pin A on the crank, pin B on the slide.
 
-    ``open``: B is the farther along the slide's direction of the two places that the coupler reaches.
+    ``open``: of the two positions that the coupler reaches, B is the one farther along the slide's direction.
     """
 
     type: Literal["slider_crank"] = "slider_crank"
@@ -115,7 +114,7 @@ class SliderCrankMechanism(Answer):
     links: SliderCrankLinks
     slide: Line = Field(description="The line of pin B on the ground.")
     offset: Length = Field(
-        description="Distance of the fixed pivot from the slide's line, positive where the pivot is to the line's left."
+        description="Distance of the fixed pivot from the slide's line, positive if the pivot lies left of the line."
     )
     coupler_point: CouplerPoint
     assembly: Literal["open", "crossed"]
@@ -134,7 +133,7 @@ class InvertedLinks(Answer):
 
 
 class BlockSlide(Answer):
-    """The line on which pin A moves in the block: through B, parallel to the body's line that the block guides."""
+    """Line on which pin A moves in the block: through B, parallel to the line of the body that the block guides."""
 
     link: Literal["output"] = "output"
     angle: Angle = Field(description="Angle of the line from the line O4 → B, degrees.")
@@ -177,7 +176,7 @@ class GearedFivebarMechanism(Answer):
     type: Literal["geared_fivebar"] = "geared_fivebar"
     fixed_pivots: FixedPivots = Field(description="O2 (input) and O5 (output).")
     links: FivebarLinks
-    gear_ratio: float = Field(description="Rotation of the output over that of the input.")
+    gear_ratio: float = Field(description="Rotation of the output over rotation of the input.")
     phase: Angle = Field(description="Output angle from the ground line when the input lies along it, degrees.")
     coupler_point: CouplerPoint = Field(description="P on coupler 1: its angle is from the line A → C.")
     assembly: Literal["open", "crossed"]
@@ -187,22 +186,23 @@ class GearedFivebarMechanism(Answer):
 
 
 class SixbarMechanism(Answer):
-    """A sixbar of Watt's or Stephenson's chain, by its skeleton.
+    """A sixbar of Watt's or Stephenson's chain, described by its skeleton.
 
-    A fourbar with a driver dyad: crank O6–D and link D–C, where C is a point of the driven link; a Watt II sixbar, two
-    fourbars in series, where input or output is driven, a Stephenson III sixbar where the coupler is. Or a linkage that
-    carries the body by a link that is joined neither to the ground nor to the fourbar alone: the one with P. Or a
-    function generator, which has no P. ``links`` are lengths by name; the skeleton says all.
+    It is one of three designs. First, a fourbar with a driver dyad: crank O6–D and link D–C, where C is a point of the
+    driven link. This is a Watt II sixbar (two fourbars in series) if the input or output is driven, and a Stephenson
+    III sixbar if the coupler is driven. Second, a linkage in which a link that is joined neither to the ground nor to
+    the fourbar alone carries the body; this link has P. Third, a function generator, which has no P. ``links`` holds
+    lengths by name; only the skeleton is a complete description.
     """
 
     type: Literal["watt_1", "watt_2", "stephenson_1", "stephenson_2", "stephenson_3"]
     fixed_pivots: dict[str, Point] = Field(description="By the names of the joints: O2, O4, O6.")
     links: dict[str, Length] = Field(
         description="ground, input, coupler and output of the fourbar; crank and driver_coupler of the driver; "
-        "driver_ground, its fixed pivot's distance from the driven link's (from O2 where the coupler is driven); "
-        "driver_arm, C's distance from that pivot (from A where the coupler is driven). Without a driver: each link by "
-        "its name, from its first pin to its second, and of links with three pins the distances from these to the "
-        "third, with _arm and _side."
+        "driver_ground, the distance of its fixed pivot from the driven link's (from O2 if the coupler is driven); "
+        "driver_arm, the distance of C from that pivot (from A if the coupler is driven). Without a driver: the length "
+        "of each link between its first two pins, by its name; for links with three pins also their distances from the "
+        "third, by names ending in _arm and _side."
     )
     reference_body_angle: Angle | None = _BODY_ANGLE
     skeleton: Skeleton
@@ -212,178 +212,183 @@ LinkageMechanism = Annotated[
     FourbarMechanism | SliderCrankMechanism | InvertedSliderCrankMechanism | GearedFivebarMechanism | SixbarMechanism,
     Discriminator("type"),
 ]
-"""Any linkage that an answer may hold; the field ``type`` tells which."""
+"""Any linkage that an answer may contain, identified by its field ``type``."""
 
 
 class DrivenTo(Answer):
-    """Where the input stands at a target: an input that turns at an angle, one that slides at a place of its line."""
+    """Input at a target: an angle if the input rotates, a position along its line if it slides."""
 
     index: int
     input_angle: Angle | None = optional(
         "Absolute input angle, degrees, continuous along the motion from the first target; "
-        "left out where the input slides."
+        "left out if the input slides."
     )
     input_place: Length | None = optional(
-        "Place of an input that slides, along its line from the line's point, length units; "
-        "left out where the input turns."
+        "Position of a sliding input along its line, from the line's point, length units; "
+        "left out if the input rotates."
     )
 
     @property
     def at(self) -> float:
-        """The input as an analysis takes it: degrees, or length units."""
+        """Input for an analysis, degrees or length units."""
         stated = self.input_place if self.input_angle is None else self.input_angle
         assert stated is not None
         return stated
 
 
 class Target(DrivenTo):
-    """One demanded position as the driven mechanism meets it."""
+    """Input and errors of the driven mechanism at one requested position."""
 
     residual: float = Field(
-        description="Larger of the distance to the demanded point, as a share of the task's size, "
-        "and the difference to the demanded angle in radians."
+        description="Larger of two errors: the distance from the requested point as a share of the task's size, "
+        "and the difference from the requested angle in radians."
     )
-    point_residual: Length = Field(description="Distance of P from the demanded point, length units.")
+    point_residual: Length = Field(description="Distance of P from the requested point, length units.")
     angle_residual: Angle | None = optional(
-        "Difference of the body's angle to the demanded angle, degrees, where an angle is demanded."
+        "Difference between the body's angle and the requested angle, degrees, if an angle is requested."
     )
 
 
 class UsedRange(Answer):
-    """The motion that a linkage was verified along, by its input."""
+    """Range of the input over which a linkage was verified."""
 
     used_range: tuple[Angle, Angle] | None = optional(
-        "First and last input of the verified motion, absolute, degrees, continuous; left out where the input slides, "
-        "and where no motion leads through the targets."
+        "First and last input angle of the verified motion, absolute, degrees, continuous; left out if the input "
+        "slides or if no motion passes through the targets."
     )
     used_stroke: tuple[Length, Length] | None = optional(
-        "The same of an input that slides: places along its line, length units; left out where it turns."
+        "First and last position of a sliding input along its line, length units; left out if the input rotates."
     )
 
 
 class MotionMetrics(UsedRange):
-    """What is measured of every driven linkage (:class:`synthesis.proof.measures.Measures`), whatever it is for.
+    """Measured properties of every driven linkage (:class:`synthesis.proof.measures.Measures`), for every task.
 
-    Angles are those of the motion that the design was verified along: from the first target to the last, or the whole
-    turn of a crank that turns through. The size is that at the targets, where there are any.
+    Angles refer to the motion over which the design was verified: from the first target to the last, or the whole turn
+    of a crank that rotates fully. The size is measured at the targets, if there are any.
     """
 
     grashof: (
         Literal["double_crank", "crank_rocker", "double_rocker", "rocker_crank", "rocker_rocker", "change_point"] | None
-    ) = Field(description="Of the fourbar that the linkage is or contains; null for others.")
+    ) = Field(description="Class of the fourbar that the linkage is or contains; null for other linkages.")
     barker: str | None = Field(description="Barker's code of that fourbar, e.g. GCRR.")
-    min_transmission_angle: Angle = Field(description="Over the verified motion, degrees.")
+    min_transmission_angle: Angle = Field(description="Minimum transmission angle over the verified motion, degrees.")
     transmission_angles: dict[str, Angle] = Field(
-        description="The least over that motion, degrees: at each dyad of links by the name of its first link, and at "
+        description="Minimum over that motion, degrees, at each dyad by the name of its first link, and at "
         "each leg of a triad (Stephenson II, and a fourbar driven at its coupler) by its name."
     )
     full_rotation: bool
-    link_ratio: float = Field(description="Longest link over shortest.")
+    link_ratio: float = Field(description="Longest link over shortest link.")
     reach: float | None = optional(
-        "Greatest distance between two joints of one link, in sizes of the task (docs/ranking.md); left out where a "
-        "task has no size."
+        "Maximum distance between two joints of one link, in sizes of the task (docs/ranking.md); left out if the task "
+        "has no size."
     )
     size: Length = Field(
-        description="Diagonal of the box around all joints and the point P at all targets; where there are none, over "
+        description="Diagonal of the box around all joints and the point P at all targets; without targets, over "
         "the verified motion."
     )
     quality: float = Field(description="Between 0 and 1; see docs/ranking.md.")
 
 
 class LinkageMetrics(MotionMetrics):
-    """Measured properties of a linkage that were not demanded."""
+    """Measured properties of a linkage beyond its checks."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True, serialize_by_alias=True)
 
     same_branch: bool
     visits_in_order: bool
     input_rotation: Angle | None = optional(
-        "Rotation of the input from the first target to the last, degrees; left out where it slides."
+        "Rotation of the input from the first target to the last, degrees; left out if the input slides."
     )
-    input_stroke: Length | None = optional("The same of an input that slides, length units; left out where it turns.")
+    input_stroke: Length | None = optional(
+        "Displacement of a sliding input from the first target to the last, length units; left out if it rotates."
+    )
     input_travel: Angle | None = optional(
-        "What the input turns over the used range, either way, degrees; of linkages that carry a body, where it turns."
+        "Total rotation of the input over the used range, degrees; only for linkages that carry a body and have a "
+        "rotating input."
     )
     body_travel_ratio: float | None = optional(
-        "Length of P's path over the used range over that of the straight ways between its positions; of linkages that "
-        "carry a body, where P moves."
+        "Length of P's path over the used range, divided by the sum of the straight distances between its positions; "
+        "only for linkages that carry a body whose P moves."
     )
     body_turn_ratio: float | None = optional(
-        "All that the body turns over the used range, to and fro, over the sum of the turns that are needed; of "
-        "linkages that carry a body, where it is to turn."
+        "Total rotation of the body over the used range, back and forth, divided by the sum of the required rotations; "
+        "only for linkages that carry a body that has to rotate."
     )
     rms_residual: float = Field(
-        description="Root mean square over the targets of P's distance as a share of the task's size and, where an "
-        "angle is demanded, its difference in radians, added in squares."
+        description="Root mean square residual over the targets. A target's residual combines in squares the distance "
+        "of P as a share of the task's size and, if an angle is requested, its error in radians."
     )
     yield_: Yield | None = optional(
-        "Share of the linkages made that are good, where the problem states tolerances and a quality.", alias="yield"
+        "Share of manufactured linkages that are good, if the problem gives tolerances and a quality.", alias="yield"
     )
 
 
 class LayoutClash(Answer):
-    """Two parts that meet in the planes of a layout, and where they come nearest."""
+    """Two parts that collide in the planes of a layout, and the input at which they are closest."""
 
-    parts: tuple[str, str] = Field(description="Links and gears by their names, a pin as `pin O2`, by its joint.")
-    distance: Length = Field(description="Of the two, there; less than 0 where they overlap.")
-    input_angle: Angle | None = optional("Degrees; left out where the input slides.")
-    input_place: Length | None = optional("Of an input that slides, length units.")
+    parts: tuple[str, str] = Field(description="Names of links or gears; a pin is named by its joint, as in `pin O2`.")
+    distance: Length = Field(description="Distance of the parts there; negative if they overlap.")
+    input_angle: Angle | None = optional("Degrees; left out if the input slides.")
+    input_place: Length | None = optional("Position of a sliding input, length units.")
 
 
 class Layout(Answer):
-    """A linkage laid out in planes (docs/layout.md)."""
+    """Arrangement of a linkage in planes (docs/layout.md)."""
 
-    buildable: bool = Field(description="Whether nothing clashes over the whole motion.")
+    buildable: bool = Field(description="Whether no parts collide over the whole motion.")
     planes: dict[str, int] = Field(
-        description="Of each link and gear, from 1; the base is plane 0. Where not all of the motion is free, for the "
-        "free part of it."
+        description="Plane of each link and gear, from 1; the base is plane 0. If parts collide, the planes hold for "
+        "the free part of the motion."
     )
     count: int = Field(description="The number of planes.")
-    least: bool = Field(description="Whether it is proved that there is no way with fewer.")
-    height: Length = Field(description="Of all planes, each with a gap below it.")
+    least: bool = Field(description="Whether the number of planes is proved to be the minimum.")
+    height: Length = Field(description="Height of all planes, each with a gap below it.")
     pins: dict[str, tuple[int, int]] = Field(
-        description="The lowest and the highest plane that each pin joins, by its joint; 0 is the base, and one more "
-        "than there are planes the second base."
+        description="Lowest and highest plane that each pin joins, by its joint; 0 is the base, and `count` + 1 the "
+        "second base."
     )
-    stub_shafts: list[str] = Field(
-        description="Joints at which a shaft cannot pass all planes, because a link meets it."
-    )
+    stub_shafts: list[str] = Field(description="Joints at which a shaft cannot pass all planes because a link hits it.")
     crossings: list[tuple[str, str]] = Field(
-        description="Links and gears that cross in the motion, and those that pass over pins, as far as no pin joins "
-        "them."
+        description="Pairs of links and gears that cross during the motion or pass over each other's pins, unless a "
+        "pin joins them."
     )
-    clashes: list[LayoutClash] = Field(description="What these planes do not keep apart; empty where it is buildable.")
+    clashes: list[LayoutClash] = Field(
+        description="Collisions that remain in these planes; empty if the linkage is buildable."
+    )
     free_range: tuple[Angle, Angle] | None = optional(
-        "Inputs, degrees, between which nothing clashes, the longest such range: all of the motion where it is "
-        "buildable. Left out where there is none, and where the input slides."
+        "Longest range of the input without collisions, degrees: the whole motion if the linkage is buildable. Left "
+        "out if there is none or the input slides."
     )
-    free_stroke: tuple[Length, Length] | None = optional("The same of an input that slides, places along its line.")
-    remark: str | None = optional("Why there is no layout.")
+    free_stroke: tuple[Length, Length] | None = optional(
+        "Longest range of a sliding input without collisions, positions along its line."
+    )
+    remark: str | None = optional("Reason why there is no layout.")
 
 
-LAYOUT = optional("The planes in which it can be built; left out where the problem states no `layout`.")
-"""The same field of every design."""
+LAYOUT = optional("Arrangement in planes; left out if the problem has no `layout`.")
+"""Field that all designs share."""
 
-PEAKS = optional("Its forces; left out where the problem states no `dynamics`.")
-"""The same field of every design."""
+PEAKS = optional("Peak forces of the design; left out if the problem has no `dynamics`.")
+"""Field that all designs share."""
 
 
 class ExactDesign(Answer):
-    """The design that a linkage on the grid of a shop stands for, as it was found."""
+    """The design as found, before it was rounded to the grid of a shop."""
 
     mechanism: LinkageMechanism
-    rms_residual: float = Field(description="As that of the metrics.")
-    max_error: Length | None = optional("Greatest distance from a target.")
-    max_angle_error: Angle | None = optional("Greatest difference of an angle at a target, degrees.")
+    rms_residual: float = Field(description="Root mean square residual, defined as in the metrics.")
+    max_error: Length | None = optional("Maximum distance from a target.")
+    max_angle_error: Angle | None = optional("Maximum difference of an angle at a target, degrees.")
     min_transmission_angle: Angle
 
 
-EXACT = optional("The design before it was rounded; left out where `manufacture` states neither `round` nor `stock`.")
-"""The same field of every design."""
+EXACT = optional("The design before rounding; left out if `manufacture` has neither `round` nor `stock`.")
+"""Field that all designs share."""
 
 
 class LinkageDesign(Answer):
-    """A mechanism with the proof of what it does."""
+    """A mechanism with its verified behaviour."""
 
     mechanism: LinkageMechanism
     targets: list[Target]
@@ -402,28 +407,27 @@ ERRORS = {
     "steering_error": "steering_error",
     "rms_residual": "rms",
 }
-"""How the error of a design is told: its field in the metrics, the first that there is, and its name in the front."""
+"""Fields of the metrics that hold the error of a design, and the error's name in the front; the first present counts.
+"""
 
 
 class Front(Answer):
-    """The trade-off between designs as data: those that no other beats.
+    """Pareto front of the designs: those that no other dominates.
 
-    A design beats another that it is no worse than in any of the quantities and better than in one.
+    A design dominates another if it is no worse in any of the quantities and better in one.
     """
 
     quantities: list[str] = Field(
-        description="What is weighed up, by its field in the metrics: the error of the kind (rms for rms_residual) "
-        "and the size, less is better; the least transmission angle, more is better."
+        description="Quantities that are compared, by field of the metrics: the error of the kind (rms for "
+        "rms_residual) and the size, to be minimized; the minimum transmission angle, to be maximized."
     )
-    designs: list[int] = Field(description="Indices of the designs that no other of the answer beats.")
+    designs: list[int] = Field(description="Indices of the designs that no other design of the answer dominates.")
 
 
 Linkage = TypeVar("Linkage", bound=Answer)
 
 
 class LinkageResult(Result[Linkage], Generic[Linkage]):
-    """The answer to a problem of linkages, with the trade-off among its designs."""
+    """The answer to a problem of linkages, with the Pareto front of its designs."""
 
-    front: Front | None = optional(
-        "Which of the designs nothing beats in all of these quantities; left out for fewer than two."
-    )
+    front: Front | None = optional("Pareto front of the designs; left out for fewer than two.")

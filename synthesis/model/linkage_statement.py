@@ -1,4 +1,4 @@
-"""What problems of linkages share: constraints, the order of the answers, and the shapes that regions have."""
+"""Fields that all linkage problems share: constraints, order of the designs, and regions."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from synthesis.model.statement import (
 from synthesis.model.zones import ON_EDGE, MovingZone
 
 Force = Literal["drive_torque", "joint_force", "shaking_force", "shaking_moment", "power", "joint_force_index"]
-"""What may be demanded of a linkage's forces (docs/dynamics.md)."""
+"""Quantities of a linkage's forces that can be limited (docs/dynamics.md)."""
 
 FORCES: tuple[Force, ...] = get_args(Force)
 
 RankBy = Literal["quality", "accuracy", "size", "transmission_angle", "planes", "yield"] | Force
-"""What designs of linkages are ordered by (docs/ranking.md)."""
+"""Criteria by which designs of linkages can be ordered (docs/ranking.md)."""
 
 
 class Region(Statement):
@@ -43,41 +43,41 @@ class Region(Statement):
     y: Annotated[Interval, LENGTH]
 
     def contains(self, point: complex) -> bool:
-        """Whether a point lies in the region, its edges (to rounding) included."""
+        """Return whether a point lies in the region or, to rounding, on its edge."""
         (left, right), (low, high) = self.x, self.y
         slack = ON_EDGE * max(abs(left), abs(right), abs(low), abs(high))
         return bool(left - slack <= point.real <= right + slack and low - slack <= point.imag <= high + slack)
 
     def contains_each(self, points: NDArray[np.complex128]) -> NDArray[np.bool_]:
-        """The same of points of any shape."""
+        """Return a mask of the points (any shape) that lie in the region or, to rounding, on its edge."""
         (left, right), (low, high) = self.x, self.y
         slack = ON_EDGE * max(abs(left), abs(right), abs(low), abs(high))
         across = (left - slack <= points.real) & (points.real <= right + slack)
         return np.asarray(across & (low - slack <= points.imag) & (points.imag <= high + slack))
 
     def distance_each(self, points: NDArray[np.complex128]) -> NDArray[np.float64]:
-        """How far points of any shape lie outside; 0 within."""
+        """Compute the distance of points (any shape) from the region, length units; 0 inside."""
         (left, right), (low, high) = self.x, self.y
         across = np.maximum(np.maximum(left - points.real, points.real - right), 0.0)
         along = np.maximum(np.maximum(low - points.imag, points.imag - high), 0.0)
         return np.where(self.contains_each(points), 0.0, np.hypot(across, along))
 
     def sampled(self, rng: np.random.Generator, count: int) -> NDArray[np.complex128]:
-        """Points spread evenly over the region, shape (count,)."""
+        """Sample points uniformly from the region, complex, shape (count,)."""
         return np.asarray(rng.uniform(*self.x, count) + 1j * rng.uniform(*self.y, count))
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
-        """The region itself: x from, to, y from, to."""
+        """Bounds of the region: minimum and maximum x, minimum and maximum y."""
         return *self.x, *self.y
 
     def widened(self, margin: float) -> Self:
-        """The region with a margin on all sides, in length units."""
+        """Return the region with a margin (length units) added on all sides."""
         (left, right), (low, high) = self.x, self.y
         return self.model_copy(update={"x": (left - margin, right + margin), "y": (low - margin, high + margin)})
 
     def distance(self, point: complex) -> float:
-        """How far a point lies outside the region; 0 within."""
+        """Compute the distance of a point from the region, length units; 0 inside."""
         if self.contains(point):
             return 0.0
         (left, right), (low, high) = self.x, self.y
@@ -86,7 +86,7 @@ class Region(Statement):
 
 
 class LengthLimits(Statement):
-    """Shortest and longest link allowed, in length units."""
+    """Minimum and maximum length of a link, in length units."""
 
     min: Annotated[float, LENGTH, Field(strict=True, ge=0.0, le=ABSURD, allow_inf_nan=False), Sizable] = 0.0
     max: PositiveLength | None = None
@@ -99,59 +99,62 @@ class LengthLimits(Statement):
 
 
 class Constraints(Statement):
-    """What a usable linkage must satisfy; everything has a default that demands nothing beyond a sound motion."""
+    """Constraints on a linkage; the defaults require only a sound motion."""
 
     min_transmission_angle: Annotated[float, ANGLE, Field(strict=True, ge=0.0, lt=90.0)] | None = Field(
-        default=None, description="Least transmission angle over the used range of the input, degrees."
+        default=None, description="Minimum transmission angle over the used range of the input, degrees."
     )
     grashof: Literal["any", "crank_rocker", "double_crank", "double_rocker", "non_grashof"] = "any"
-    full_rotation: Flag = Field(default=False, description="The input link must be able to turn through.")
+    full_rotation: Flag = Field(default=False, description="The input link must be able to make a full turn.")
     same_branch: Flag = Field(default=True, description="No toggle position between the targets.")
-    in_order: Flag = Field(default=True, description="The input, turning one way, visits the targets in order.")
+    in_order: Flag = Field(default=True, description="The input visits the targets in order while turning one way.")
     link_length: LengthLimits | None = None
     max_link_ratio: Annotated[float, Field(strict=True, ge=1.0, le=ABSURD)] | None = Field(
-        default=None, description="Longest link over shortest link, at most."
+        default=None, description="Maximum ratio of the longest link to the shortest."
     )
     fixed_pivot_region: Region | None = None
-    moving_pivot_region: Region | None = Field(default=None, description="For the moving pivots in the first position.")
+    moving_pivot_region: Region | None = Field(
+        default=None, description="Region of the moving pivots in the first position."
+    )
 
     max_drive_torque: Annotated[PositiveNumber, TORQUE] | None = Field(
-        default=None, description="Greatest torque of the drive, either way; needs `dynamics`, like the following."
+        default=None,
+        description="Maximum drive torque in either direction; this and the following limits need `dynamics`.",
     )
     max_joint_force: Annotated[PositiveNumber, FORCE] | None = Field(
-        default=None, description="Greatest force of any pin on a link."
+        default=None, description="Maximum force of any pin on a link."
     )
     max_shaking_force: Annotated[PositiveNumber, FORCE] | None = Field(
-        default=None, description="Greatest force on the frame."
+        default=None, description="Maximum force on the frame."
     )
     max_shaking_moment: Annotated[PositiveNumber, TORQUE] | None = Field(
-        default=None, description="Greatest moment on the frame."
+        default=None, description="Maximum moment on the frame."
     )
     max_power: Annotated[PositiveNumber, POWER] | None = Field(
-        default=None, description="Greatest power of the drive, either way."
+        default=None, description="Maximum power of the drive in either direction."
     )
     max_joint_force_index: PositiveNumber | None = Field(
-        default=None, description="Largest joint force over the first of the loads, without masses."
+        default=None, description="Maximum joint force divided by the first load, without masses."
     )
 
     @property
     def of_forces(self) -> dict[Force, float]:
-        """The limits on forces that are stated."""
+        """The given limits on forces."""
         limits = {name: getattr(self, f"max_{name}") for name in FORCES}
         return {name: limit for name, limit in limits.items() if limit is not None}
 
     def contradictions(self) -> list[Contradiction]:
-        """Demands that exclude one another, with paths below the problem."""
+        """Return constraints that exclude one another, with paths below the problem."""
         if self.full_rotation and self.grashof in ("double_rocker", "non_grashof"):
-            detail = f"the input of a {self.grashof} linkage does not turn through; drop one of the demands"
+            detail = f"the input of a {self.grashof} linkage cannot make a full turn; drop full_rotation or grashof"
             return [Contradiction("/constraints/full_rotation", detail)]
         return []
 
     def of_another_class(self, classes: Collection[str], reason: str) -> list[Contradiction]:
-        """The refusal of a class that no linkage of a problem can have: all of them are of ``classes``."""
+        """Return the contradiction of a required class that is not among the possible ``classes``, if there is one."""
         if self.grashof == "any" or self.grashof in classes:
             return []
-        return [Contradiction("/constraints/grashof", f"{reason}; drop the demand")]
+        return [Contradiction("/constraints/grashof", f"{reason}; drop the constraint")]
 
 
 class LinkageProblem(StatedProblem):
@@ -159,14 +162,16 @@ class LinkageProblem(StatedProblem):
 
     constraints: Constraints = Constraints()
     layout: StatedLayout | None = Field(
-        default=None, description="Lay each design out in the fewest planes in which it can be built."
+        default=None, description="Arrange each design in the fewest planes in which it can be built."
     )
-    space: Space | None = Field(default=None, description="The room that the linkage must fit into, with its motion.")
+    space: Space | None = Field(
+        default=None, description="The workspace into which the linkage must fit during its whole motion."
+    )
     dynamics: DesignDynamics | None = Field(
-        default=None, description="What each design weighs and carries, and how fast it is driven: its forces."
+        default=None, description="Masses, loads and speed of each design, from which its forces are computed."
     )
     manufacture: Manufacture | None = Field(
-        default=None, description="How exactly a shop makes each design, and what it must then still do."
+        default=None, description="Manufacturing accuracy of each design, and the quality that it must keep."
     )
     rank_by: RankBy = "quality"
 
@@ -174,36 +179,36 @@ class LinkageProblem(StatedProblem):
 
     @model_validator(mode="after")
     def _links_of_the_layout(self) -> Self:
-        """Links whose sizes `dynamics` leaves out are the plates of the layout."""
+        """Take link sizes that `dynamics` leaves out from the layout."""
         if self.dynamics is not None:
             self.dynamics.laid_out(self.layout)
         return self
 
     @property
     def listed_later(self) -> bool:
-        """Whether more designs are looked for than are listed: what is found is ordered anew, and then cut."""
+        """Whether more designs are searched than listed: the designs are sorted again and then cut off."""
         return self._listed_later
 
     def listing_later(self, order: str, most: int) -> Self:
-        """The statement with an order, and with so many designs at least, which are not all listed."""
+        """Return the statement with another order and at least ``most`` designs, which are cut off later."""
         asked = self.model_copy(update={"rank_by": order, "max_designs": max(self.max_designs, most)})
         asked._listed_later = True
         return asked
 
     @property
     def force_units(self) -> Literal["si", "consistent"]:
-        """Those of the block `dynamics`, by default SI."""
+        """Units of the block `dynamics`, SI by default."""
         return "si" if self.dynamics is None else self.dynamics.units
 
     @property
     def input_slides(self) -> bool:
-        """Whether the input of every linkage for the task slides, so that a force drives it and no torque."""
+        """Whether all linkages for the task have a sliding input, which is driven by a force instead of a torque."""
         return False
 
     @property
     def made(self) -> Made | str:
-        """What is demanded at the targets of the task, for the block ``manufacture``; or why that is not built."""
-        return f"is built for motion, path and function; {self.kind} does not take it"
+        """Requirements at the targets of the task, for the block ``manufacture``, or a message if not supported."""
+        return f"only motion, path and function support `manufacture`, not {self.kind}; leave it out"
 
     @property
     def guides_a_point(self) -> bool:
@@ -211,51 +216,51 @@ class LinkageProblem(StatedProblem):
         return True
 
     def held_to(self, _design: Any) -> Held:
-        """What a design of this task is held to at its targets, where :attr:`made` says that there is such."""
-        raise NotImplementedError(f"{self.kind} says nothing of its targets")
+        """Return the requirements on a design at its targets, for kinds that support :attr:`made`."""
+        raise NotImplementedError(f"{self.kind} has no requirements at targets")
 
     @property
     def first_pose(self) -> tuple[complex, float] | None:
-        """Where a body that is carried is first: its point P, and its angle in degrees. None where none is."""
+        """First pose of a carried body: its point P and its angle in degrees. None for tasks without a body."""
         return None
 
     def contradicting_demands(self) -> list[Contradiction]:
-        """Demands that exclude one another, or that no linkage for the task can be asked for."""
+        """Return constraints that exclude one another, or that no linkage for the task can satisfy."""
         listed = self.constraints.contradictions()
         if self.rank_by == "planes" and self.layout is None:
-            listed.append(Contradiction("/rank_by", "planes are counted where a layout is stated; state one"))
+            listed.append(Contradiction("/rank_by", "ranking by planes needs a `layout`"))
         missing = None if self.dynamics is None else self.dynamics.laid_out(self.layout)
         if missing is not None:
             listed.append(Contradiction("/dynamics/links", missing))
         listed += self._forces_without_loads()
         if self.rank_by == "yield" and (self.manufacture is None or not self.manufacture.sampled):
-            detail = "a yield is sampled where manufacture has tolerances and a quality; state them"
+            detail = "ranking by yield needs `manufacture` with tolerances and a quality"
             listed.append(Contradiction("/rank_by", detail))
         listed += self._faults_of_manufacture()
         if self.space is None or self.first_pose is not None:
             return listed
         if self.space.body is not None:
-            listed.append(Contradiction("/space/body", "only a body that is carried through positions has an outline"))
+            listed.append(Contradiction("/space/body", "only tasks that carry a body through positions have a body"))
         for side in ("input", "output"):
             zones = getattr(self.space.moving_pivots, side, None)
             if any(zone.frame == "body" for zone in ([zones] if isinstance(zones, MovingZone) else zones or [])):
-                detail = "only a body that is carried through positions has places of its own; leave the frame out"
+                detail = "frame body needs a task that carries a body through positions; leave the frame out"
                 listed.append(Contradiction(f"/space/moving_pivots/{side}", detail))
         return listed
 
     def _forces_without_loads(self) -> list[Contradiction]:
-        """Demands on forces that nothing is stated for."""
+        """Return force limits and orders for which `dynamics`, loads or the right kind of input are missing."""
         demanded = {f"/constraints/max_{name}": name for name in self.constraints.of_forces}
         if self.rank_by in FORCES:
             demanded["/rank_by"] = self.rank_by
         if self.dynamics is None:
-            detail = "forces are known where `dynamics` states masses, loads and a speed; state it"
+            detail = "forces need `dynamics` with masses, loads and a speed"
             return [Contradiction(path, detail) for path in demanded]
         missing: dict[str, str] = {}
         if not self.dynamics.loads:
-            missing["joint_force_index"] = "the joint force index is that of the first of the loads; state one"
+            missing["joint_force_index"] = "the joint force index needs at least one load in `dynamics`"
         if self.input_slides:
-            missing["drive_torque"] = "the input slides, and a force drives it; demand joint_force or power"
+            missing["drive_torque"] = "a force drives the sliding input, no torque; limit joint_force or power instead"
         return [Contradiction(path, missing[name]) for path, name in demanded.items() if name in missing]
 
     def _faults_of_manufacture(self) -> list[Contradiction]:
@@ -268,5 +273,5 @@ class LinkageProblem(StatedProblem):
 
     @property
     def error_measure(self) -> str | None:
-        """The field of the metrics that tells how near a design is to this task, where the task chooses it."""
+        """Field of the metrics that measures the error of a design, if it depends on the task."""
         return None

@@ -1,6 +1,6 @@
-"""The one place between the models (degrees, pairs, names) and the analysis core (radians, complex numbers).
+"""Conversion between the models (degrees, pairs, names) and the analysis core (radians, complex numbers).
 
-Joints carry the field's names: O2, O4 fixed pivots, A, B moving pivots, P the coupler point.
+Joints have the usual names: O2, O4 fixed pivots, A, B moving pivots, P the coupler point.
 """
 
 from __future__ import annotations
@@ -42,11 +42,11 @@ class FourbarConfiguration(NamedTuple):
 
     @property
     def lengths(self) -> tuple[float, float, float, float]:
-        """Input, coupler, output and ground."""
+        """Lengths of input, coupler, output and ground."""
         return abs(self.a - self.o2), abs(self.b - self.a), abs(self.b - self.o4), abs(self.o4 - self.o2)
 
     def has_no_link_below(self, share: float) -> bool:
-        """Whether every link is longer than this share of the longest: else it is no linkage."""
+        """Return whether every link is longer than this share of the longest; otherwise it is no linkage."""
         return min(self.lengths) > share * max(self.lengths)
 
 
@@ -55,12 +55,12 @@ FOURBAR_LINKS = {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", 
 
 
 def to_point(z: complex) -> Point:
-    """The pair (x, y) of a complex number."""
+    """Return a complex number as a pair (x, y)."""
     return (float(z.real), float(z.imag))
 
 
 def to_complex(point: tuple[float, float]) -> complex:
-    """The complex number of a pair (x, y)."""
+    """Return a pair (x, y) as a complex number."""
     return complex(*point)
 
 
@@ -72,7 +72,7 @@ def skeleton(
     gears: Sequence[GearPair] = (),
     input_link: str = "input",
 ) -> Skeleton:
-    """The skeleton whose joints stand as given at the first target, by the joints on each link."""
+    """Build a skeleton from the joints at the first target and the names of the joints on each link."""
     return Skeleton(
         joints={name: to_point(z) for name, z in joints.items()},
         links=[Link(name=name, joints=list(listed)) for name, listed in links.items()],
@@ -83,12 +83,12 @@ def skeleton(
 
 
 def slide(joint: str, link: str, point: complex, angle: float) -> Slide:
-    """A joint that stays on the line through a point at an angle, radians, fixed in a link."""
+    """Build a slide: a joint that stays on a line fixed in a link, through a point at an angle (radians)."""
     return Slide(joint=joint, link=link, point=to_point(point), angle=math.degrees(angle))
 
 
 def coupler_point(a: complex, b: complex, p: complex) -> CouplerPoint:
-    """P by its distance from A and its angle from the line A → B."""
+    """Build the coupler point from the positions of A, B and P."""
     point = (p - a) / ((b - a) / abs(b - a))
     return CouplerPoint(distance=abs(point), angle=math.degrees(cmath.phase(point)))
 
@@ -97,7 +97,7 @@ Pinned = TypeVar("Pinned", FourbarMechanism, SliderCrankMechanism)
 
 
 def without_coupler_point(mechanism: Pinned) -> Pinned:
-    """A mechanism that guides no point: P is no joint of its skeleton."""
+    """Return the mechanism without the joint P in its skeleton, for tasks that guide no point."""
     bare = skeleton(
         {name: to_complex(place) for name, place in mechanism.skeleton.joints.items() if name != "P"},
         {link.name: [joint for joint in link.joints if joint != "P"] for link in mechanism.skeleton.links},
@@ -108,10 +108,10 @@ def without_coupler_point(mechanism: Pinned) -> Pinned:
 
 
 def fourbar_mechanism(joints: FourbarConfiguration, body_angle: float | None = None) -> FourbarMechanism:
-    """Dimensions of the fourbar whose joints stand as given at the first target.
+    """Build the fourbar with the given joints at the first target.
 
-    The joints must not coincide where a link lies between them. A configuration exactly on a toggle counts as open.
-    ``body_angle``, degrees, is that of the body there, where it is not the demanded one.
+    Joints connected by a link must not coincide. A configuration exactly on a toggle counts as open. ``body_angle``
+    (degrees) is the angle of the body there, if it differs from the requested one.
     """
     o2, a, b, o4, p = joints
     crank, coupler, output, diagonal = a - o2, b - a, b - o4, o4 - a
@@ -136,7 +136,7 @@ def slider_crank_mechanism(
     driven_by: Literal["crank", "slider"] = "crank",
     body_angle: float | None = None,
 ) -> SliderCrankMechanism:
-    """Dimensions of the slider-crank whose joints stand as given at the first target; the slide's angle in radians.
+    """Build the slider-crank with the given joints at the first target; the angle of the slide is in radians.
 
     The joints of crank and coupler must not coincide. A configuration exactly at the limit of the crank's reach counts
     as open.
@@ -165,10 +165,10 @@ def slider_crank_mechanism(
 def inverted_slider_crank_mechanism(
     o2: complex, a: complex, o4: complex, line_angle: float, p: complex, *, body_angle: float | None = None
 ) -> InvertedSliderCrankMechanism:
-    """Dimensions of the inverted slider-crank as it stands at the first target.
+    """Build the inverted slider-crank with the given joints at the first target.
 
-    The body has the pin A, and its line at ``line_angle`` (radians) slides through the block at O4. In the block A
-    moves on a parallel line; B is the foot of O4 on it. A must not coincide with O2 or O4.
+    The body has the pin A, and its line at ``line_angle`` (radians) slides through the block at O4. Relative to the
+    block, A moves on a parallel line; B is the foot of O4 on it. A must not coincide with O2 or O4.
     """
     crank, reach = a - o2, a - o4
     along = cmath.exp(1j * line_angle)
@@ -194,13 +194,13 @@ def inverted_slider_crank_mechanism(
 
 
 def body_shift(mechanism: LinkageMechanism, demanded: float) -> float:
-    """How far the body is turned in the reference from the first demanded angle (degrees), radians in [−π, π]."""
+    """Return the body's rotation in the reference from the first requested angle (degrees), radians in [−π, π]."""
     stands = mechanism.reference_body_angle
     return 0.0 if stands is None else math.radians(math.remainder(stands - demanded, 360.0))
 
 
 class DrivenFourbar(NamedTuple):
-    """A fourbar ready to be driven: the linkage, the assembly sign and the input angle (radians) of the reference."""
+    """A fourbar for the analysis core: linkage, assembly sign and input angle (radians) of the reference."""
 
     linkage: Fourbar
     assembly: int
@@ -208,7 +208,7 @@ class DrivenFourbar(NamedTuple):
 
 
 def driven_fourbar(mechanism: FourbarMechanism) -> DrivenFourbar:
-    """The analysis core's value of a fourbar's dimensions; the skeleton is not looked at."""
+    """Convert the dimensions of a fourbar for the analysis core, ignoring its skeleton."""
     links, point = mechanism.links, mechanism.coupler_point
     linkage = Fourbar(
         to_complex(mechanism.fixed_pivots.input),

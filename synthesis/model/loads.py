@@ -1,6 +1,6 @@
-"""Loads on a linkage as a client states them: forces at points of links and at joints, torques on links. Data alone.
+"""Requested loads on a linkage: forces at points of links and at joints, torques on links. Data only.
 
-Loads are a closed list of forms: constant, by a table over the input, against the motion, and gas pressure.
+A load has one of four forms: constant, a table over the input, against the motion, or gas pressure.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from synthesis.model.dimension import FORCE, TORQUE
 from synthesis.model.statement import Count, Degrees, NonNegative, Number, PositiveLength, Statement
 
 MOST_ROWS = 2000
-"""Rows of a table at most."""
+"""Maximum number of rows of a table."""
 
 FULL_TURN = 360.0
 
@@ -28,7 +28,7 @@ Turns = Annotated[Count, Field(ge=1, le=100)]
 def _ascending(rows: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
     for n, (row, following) in enumerate(pairwise(rows)):
         if not row[0] < following[0]:
-            raise ValueError(f"the first column must increase from row to row; row {n + 1} does not lie after row {n}")
+            raise ValueError(f"the first column must increase from row to row; row {n + 1} does not exceed row {n}")
     return rows
 
 
@@ -39,26 +39,26 @@ PairRows = Annotated[list[tuple[Number, Number]], Field(min_length=2, max_length
 
 
 CLOSES = 1e-9
-"""Share of a table's largest value by which its first and last rows may differ and be one."""
+"""Maximum difference between equal first and last rows of a table, as a share of its largest value."""
 
 
 def period_fault(rows: Sequence[tuple[float, ...]], period: float) -> str | None:
-    """What is wrong with a table over an angle that repeats: longer than its period, or ends that contradict."""
+    """Return an error message for a periodic table that exceeds its period or has contradictory ends, else None."""
     first, last = rows[0], rows[-1]
     span = last[0] - first[0]
     if span > period:
         return f"the rows span {span:g}°, more than the {period:g}° after which they repeat"
     apart = max(abs(end - start) for start, end in zip(first[1:], last[1:], strict=True))
     if span == period and apart > CLOSES * max(abs(value) for row in rows for value in row[1:]):
-        return "the last row is the first one a cycle on, and must be equal to it"
+        return "the last row lies one period after the first row and must have equal values"
     return None
 
 
 class AgainstMotion(Statement):
-    """A force (or torque) against the motion: its magnitude forward and backward; nothing at rest.
+    """A force or torque against the motion: magnitude for forward and for backward motion; 0 at rest.
 
-    Forward is along the direction of a slide on the ground that carries the joint, else as the input moves positively;
-    of a link, counter-clockwise.
+    Forward is the direction of the ground slide that carries the joint; without such a slide it is the motion for a
+    positive motion of the input. For a link, forward is counter-clockwise.
     """
 
     forward: NonNegative
@@ -66,33 +66,37 @@ class AgainstMotion(Statement):
 
 
 class GasPressure(Statement):
-    """Gas on a piston: gauge pressure times the area of the bore, from top dead centre towards the crank."""
+    """Gas force on a piston: gauge pressure times the area of the bore, from top dead centre towards the crank."""
 
-    cycle: Literal[360, 720] = Field(default=360, description="Degrees of the crank; 720 of a four-stroke engine.")
-    bore: PositiveLength = Field(description="Diameter.")
+    cycle: Literal[360, 720] = Field(
+        default=360, description="Cycle in degrees of the crank; 720 for a four-stroke engine."
+    )
+    bore: PositiveLength = Field(description="Diameter of the bore.")
     pressure: PairRows = Field(
         description="Crank angle after top dead centre in the sense of rotation (°) and gauge pressure (Pa, or in the "
         "consistent units)."
     )
     interpolation: Interpolation = "linear"
     phase: Degrees = Field(
-        default=0.0, description="Angle of the cycle at the top dead centre that lies in the first turn of the input."
+        default=0.0, description="Angle of the cycle at the top dead centre within the first turn of the input."
     )
 
 
 class _Course(Statement):
-    """What a load may be over the input by a table; the strength itself is a field of each."""
+    """Common fields of loads over the input; the magnitudes are fields of the subclasses."""
 
     by: Literal["input_angle", "input_position"] = Field(
         default="input_angle",
-        description="First column of the table: absolute input angle, degrees, or the place of the slide that drives.",
+        description="First column of the table: absolute input angle, degrees, or the position of the driving slide.",
     )
     interpolation: Interpolation = Field(
         default="linear",
-        description="Round the cycle; by the place of a slide `linear`, and as at its ends beyond them.",
+        description="Interpolation of the table over the cycle. A table over a slide's position is `linear` and "
+        "constant beyond its ends.",
     )
     turns: Turns | None = Field(
-        default=None, description="Turns of the input after which a table repeats; by default as the mechanism does."
+        default=None,
+        description="Turns of the input after which a table repeats; by default the period of the mechanism.",
     )
     against_motion: AgainstMotion | None = None
 
@@ -102,11 +106,11 @@ class _Course(Statement):
             raise ValueError(f"give one of {', '.join(forms)}")
         stated = (self.by, self.interpolation, self.turns) != ("input_angle", "linear", None)
         if given != ["table"] and stated:
-            raise ValueError("by, interpolation and turns are those of a table")
+            raise ValueError("only a table has by, interpolation and turns")
 
 
 class ForceCourse(_Course):
-    """What a force is over the motion."""
+    """Force over the motion: constant, table, against the motion, or gas pressure."""
 
     constant: Annotated[tuple[Number, Number], FORCE] | None = None
     table: ForceRows | None = Field(default=None, description="Rows of the input and the force's x and y.")
@@ -119,7 +123,7 @@ class ForceCourse(_Course):
 
 
 class TorqueCourse(_Course):
-    """What a torque is over the motion; counter-clockwise positive."""
+    """Torque over the motion, counter-clockwise positive: constant, table, or against the motion."""
 
     constant: Annotated[Number, TORQUE] | None = None
     table: PairRows | None = Field(default=None, description="Rows of the input and the torque.")
@@ -135,10 +139,10 @@ class StatedLoad(Statement):
 
     link: Name | None = None
     joint: Name | None = None
-    point: Place | None = Field(default=None, description="Of the link, in the reference configuration.")
+    point: Place | None = Field(default=None, description="Point of the link in the reference configuration.")
     frame: Literal["global", "link"] = Field(
         default="global",
-        description="`link`: the force's components are those in the reference and turn with the link.",
+        description="`link`: the force is given in the reference configuration and rotates with the link.",
     )
     force: ForceCourse | None = None
     torque: TorqueCourse | None = None
@@ -152,11 +156,11 @@ class StatedLoad(Statement):
         if self.torque is not None and self.link is None:
             raise ValueError("a torque acts on a link, not on a joint")
         if (self.point is not None) != (self.link is not None and self.force is not None):
-            raise ValueError("a force on a link needs its point; a torque and a joint have none")
+            raise ValueError("a force on a link needs a point; a torque and a force on a joint have none")
         if self.frame == "link" and self.point is None:
-            raise ValueError("only a force on a link can turn with it")
+            raise ValueError("only a force on a link can rotate with it")
         if self.force is not None and self.joint is None:
             for form in ("against_motion", "gas"):
                 if getattr(self.force, form) is not None:
-                    raise ValueError(f"a force by {form} acts on a joint")
+                    raise ValueError(f"a force of the form {form} needs a joint")
         return self

@@ -1,6 +1,7 @@
-"""The block ``manufacture`` of a statement: how exactly a shop makes a linkage, and what it must then still do.
+"""Block ``manufacture`` of a statement: manufacturing accuracy of a linkage and the quality that it must keep.
 
-See docs/manufacture.md. What a kind says of its task to it, and what a design is held to at its targets, are here too.
+See docs/manufacture.md. This module also defines how a kind describes its task to the block, and the requirements on a
+design at its targets.
 """
 
 from __future__ import annotations
@@ -19,183 +20,190 @@ from synthesis.model.statement import Contradiction, Count, Flag, NonNegative, P
 Real = NDArray[np.float64]
 
 MOST_SAMPLES = 1_000_000
+"""Maximum number of linkages sampled for a yield."""
 
 MOST_STOCK = 20
-"""Lengths of links that may be in stock."""
+"""Maximum number of link lengths in stock."""
 
 MOST_DRIVEN = 5_000_000
-"""Samples of a design times its targets: some seconds of one core."""
+"""Maximum number of samples times targets of a design: a few seconds of one core."""
 
 CONFIDENCE = 0.99
-"""Of the interval of a yield."""
+"""Confidence level of the interval of a yield."""
 
 
 class Rounding(Statement):
-    """The grid of a shop: dimensions are whole multiples of these."""
+    """Grid of a shop: dimensions are whole multiples of these steps."""
 
-    length: PositiveLength = Field(description="Of every link, and of P's place on its link, along it and across.")
-    coordinates: PositiveLength = Field(description="Of fixed pivots, and of the offset of a slide.")
+    length: PositiveLength = Field(
+        description="Step of every link length, and of the position of P along its link and across it."
+    )
+    coordinates: PositiveLength = Field(
+        description="Step of the coordinates of fixed pivots, and of the offset of a slide."
+    )
 
 
 class Stock(Statement):
-    """Links that there are."""
+    """Available links."""
 
     links: Annotated[list[PositiveLength], Field(min_length=1, max_length=MOST_STOCK)] = Field(
-        description="Lengths of moving links; every link of a design has one of them."
+        description="Lengths of available moving links; every moving link of a design has one of these lengths."
     )
 
 
 class Tolerances(Statement):
-    """How far dimensions may be off, either way; each of them independently of all others."""
+    """Maximum errors of dimensions in either direction; all errors are independent."""
 
     length: Annotated[NonNegative, LENGTH] = Field(
-        default=0.0, description="Of every link, and of P's place on its link, along it and across."
+        default=0.0, description="Tolerance of every link length, and of P's position along its link and across it."
     )
     pivot: Annotated[NonNegative, LENGTH] = Field(
-        default=0.0, description="Of each coordinate of a fixed pivot, and of the offset of a slide."
+        default=0.0, description="Tolerance of each coordinate of a fixed pivot, and of the offset of a slide."
     )
     pin_clearance: Annotated[NonNegative, LENGTH] = Field(
         default=0.0,
-        description="How far the centre of each pin may lie from that of its hole: half of their diameters' "
-        "difference.",
+        description="Maximum distance of the centre of each pin from that of its hole: half the difference of their "
+        "diameters.",
     )
 
     @property
     def off(self) -> bool:
-        """Whether any dimension is off."""
+        """Whether any dimension has a tolerance above 0."""
         return self.length > 0.0 or self.pivot > 0.0
 
 
 class Quality(Statement):
-    """What a linkage must still do as it is made, to be good."""
+    """Requirements for a manufactured linkage to be good."""
 
     model_config = ConfigDict(populate_by_name=True, serialize_by_alias=True)
 
     max_error: PositiveLength | None = Field(
-        default=None, description="Greatest distance of P from each target, or of a slider from its place."
+        default=None, description="Maximum distance of P from each target, or of a slider from its target position."
     )
     max_angle_error: Annotated[float, ANGLE, Field(strict=True, gt=0.0, le=180.0), Sizable] | None = Field(
-        default=None, description="Greatest difference of the body's angle, or the output's, at each target, degrees."
+        default=None, description="Maximum error of the body's or the output's angle at each target, degrees."
     )
     yield_: Annotated[float, Field(strict=True, gt=0.0, lt=1.0)] | None = Field(
         default=None,
         alias="yield",
-        description="Share of the linkages made that must be good: a demand. It counts as kept where the lower end of "
-        "the interval of the sampled yield reaches it.",
+        description="Required share of good linkages. It counts as satisfied if the lower end of the confidence "
+        "interval of the sampled yield reaches it.",
     )
 
 
 class Exactness(Statement):
-    """How exactly a linkage is made, and what it must then still do (docs/manufacture.md)."""
+    """Manufacturing accuracy of a linkage, and the quality that it must keep (docs/manufacture.md)."""
 
     tolerances: Tolerances | None = None
     distribution: Literal["uniform", "normal"] = Field(
         default="uniform",
-        description="Of every dimension: evenly within its tolerance, or normal with a third of the tolerance as its "
-        "standard deviation.",
+        description="Distribution of every dimension: uniform within its tolerance, or normal with a third of the "
+        "tolerance as standard deviation.",
     )
     quality: Quality | None = None
     input: Literal["adjusted", "fixed"] | None = Field(
         default=None,
-        description="adjusted: the input is set to where the linkage comes nearest to each target; fixed: it stands "
-        "as drawn. Left out: adjusted, and fixed where the task states inputs.",
+        description="adjusted: at each target the input is set so that the linkage comes nearest; fixed: the input is "
+        "that of the exact design. By default adjusted, but fixed if the task gives inputs.",
     )
     samples: Annotated[Count, Field(ge=100, le=MOST_SAMPLES)] = Field(
-        default=100_000, description="Linkages that are drawn by chance for the yield of a design."
+        default=100_000, description="Number of random linkages that are sampled for the yield of a design."
     )
     seed: Annotated[Count, Field(ge=0, le=2**53 - 1)] | None = Field(
-        default=None, description="Of what is drawn by chance; left out, that of the problem."
+        default=None, description="Seed of the random samples; by default that of the problem."
     )
 
     @property
     def sampled(self) -> bool:
-        """Whether there is a yield: some dimension is off, and something is to be kept."""
+        """Whether a yield is sampled: some dimension has a tolerance, and a quality is required."""
         return self.tolerances is not None and self.tolerances.off and self.quality is not None
 
     @property
     def gridded(self) -> bool:
-        """Whether linkages are looked for on a grid, or of a stock."""
+        """Whether linkages are searched on a grid or from a stock."""
         return False
 
     def faults_beside(self, task: Made) -> list[Contradiction]:
-        """What is stated and the task does not have, or too much of it, with paths below the block."""
+        """Return fields that do not suit the task or exceed a limit, with paths below the block."""
         listed = []
         tolerances = self.tolerances
         if tolerances is not None and not tolerances.off and tolerances.pin_clearance == 0.0:
-            listed.append(Contradiction("/tolerances", "nothing is off: state one above 0"))
+            listed.append(Contradiction("/tolerances", "at least one tolerance must be above 0"))
         judged = self.quality is not None and (not self.gridded or self.quality.yield_ is not None)
         if tolerances is not None and tolerances.pin_clearance > 0.0 and not tolerances.off and judged:
-            detail = "a quality is kept or not by how far dimensions are off: state length or pivot"
+            detail = "a quality needs tolerances of dimensions: give length or pivot"
             listed.append(Contradiction("/tolerances", detail))
         if self.input == "adjusted" and not task.free_inputs:
-            listed.append(Contradiction("/input", "the task states the inputs at its targets; leave it out, or fixed"))
+            listed.append(Contradiction("/input", "the task gives the inputs at its targets; use fixed"))
         quality = self.quality
         if quality is not None and quality.max_error is None and quality.max_angle_error is None:
-            detail = "says not when a linkage is good; state max_error or max_angle_error"
+            detail = "a quality needs max_error or max_angle_error"
             listed.append(Contradiction("/quality", detail))
         if quality is not None and quality.max_error is not None and not task.distances:
-            detail = "the task asks for angles alone; state max_angle_error"
+            detail = "the task has only angles; give max_angle_error instead"
             listed.append(Contradiction("/quality/max_error", detail))
         if quality is not None and quality.max_angle_error is not None and not task.angles:
-            detail = "the task asks for no angles; state max_error"
+            detail = "the task has no angles; give max_error instead"
             listed.append(Contradiction("/quality/max_angle_error", detail))
         if self.sampled and self.samples * task.targets > MOST_DRIVEN:
             most = MOST_DRIVEN // task.targets
-            detail = f"for {task.targets} targets are too many; state {most} at most"
+            detail = f"with {task.targets} targets at most {most} samples are possible"
             listed.append(Contradiction("/samples", detail))
         return listed
 
 
 class Manufacture(Exactness):
-    """How a linkage is made, and what is asked of it as it is made (docs/manufacture.md)."""
+    """Manufacture of a linkage, and the quality that it must keep (docs/manufacture.md)."""
 
     round: Rounding | None = Field(
-        default=None, description="Find the best linkage on this grid beside each design; it is what is answered."
+        default=None, description="Replace each design by the best linkage on this grid near it."
     )
-    stock: Stock | None = Field(default=None, description="Find the best linkage of these links beside each design.")
+    stock: Stock | None = Field(
+        default=None, description="Replace each design by the best linkage near it that uses these links."
+    )
     widest: Flag = Field(
         default=False,
-        description="Find the widest tolerances that still give the demanded yield to each design, the cheapest first.",
+        description="Find the widest tolerances that still give each design the required yield, the cheapest first.",
     )
 
     @property
     def demanded_yield(self) -> float | None:
-        """The yield that designs are held to."""
+        """The required yield, or None."""
         return None if self.quality is None else self.quality.yield_
 
     @property
     def gridded(self) -> bool:
-        """Whether designs are looked for on a grid, or of a stock."""
+        """Whether designs are searched on a grid or from a stock."""
         return self.round is not None or self.stock is not None
 
     def faults(self, task: Made) -> list[Contradiction]:
-        """What no single field shows, with paths below the block."""
+        """Return errors that no single field shows, with paths below the block."""
         listed = [*self._missing(), *self.faults_beside(task)]
         if self.gridded and task.ungridded:
             listed.append(Contradiction("/round" if self.round is not None else "/stock", task.ungridded))
         wanted = self.demanded_yield
         if self.widest and (wanted is None or not self.sampled):
-            detail = "asks for what still gives a yield; state tolerances of dimensions, and quality.yield"
+            detail = "widest needs tolerances of dimensions and quality.yield"
             listed.append(Contradiction("/widest", detail))
         if wanted is not None and self.samples < (needed := needed_samples(wanted)):
-            listed.append(Contradiction("/samples", f"cannot show a yield of {wanted:g}; {needed} or more can"))
+            listed.append(Contradiction("/samples", f"a yield of {wanted:g} needs at least {needed} samples"))
         return listed
 
     def _missing(self) -> list[Contradiction]:
-        """Blocks that say nothing, or ask what cannot be told."""
+        """Return errors of a block that is empty or lacks what its other fields need."""
         if self.tolerances is not None or (self.gridded and self.demanded_yield is None):
             return []
         if self.gridded:
-            return [Contradiction("/tolerances", "missing: what is made exactly has no yield")]
+            return [Contradiction("/tolerances", "missing: a yield needs tolerances")]
         if self.quality is None:
-            return [Contradiction("", "says nothing of how it is made; state tolerances, round or stock")]
-        return [Contradiction("/tolerances", "missing: a quality is kept or not by how exactly a linkage is made")]
+            return [Contradiction("", "the block is empty; give tolerances, round or stock")]
+        return [Contradiction("/tolerances", "missing: a quality needs tolerances")]
 
 
 def kept_pivots(
     fixed: tuple[tuple[float | None, float | None] | None, tuple[float | None, float | None] | None],
 ) -> frozenset[str]:
-    """Names of the coordinates that are stated of the fixed pivots of input and output, of any type of mechanism."""
+    """Return the names of the given coordinates of the fixed pivots, under the field names of every mechanism type."""
     named = ("fixed_pivots.input", "fixed_pivot"), ("fixed_pivots.output",)
     return frozenset(
         f"{name}.{axis}"
@@ -207,23 +215,24 @@ def kept_pivots(
 
 
 def needed_samples(demanded: float) -> int:
-    """Samples of which, if all are good, a yield is shown."""
+    """Return the number of samples that prove a yield if all of them are good."""
+    # Two-sided interval: all n good samples prove the yield y if yⁿ ≤ (1 − confidence)/2.
     return math.ceil(math.log(0.5 * (1.0 - CONFIDENCE)) / math.log(demanded))
 
 
 class Made(NamedTuple):
-    """What a kind says of its task to the block: what is demanded at its targets, and how many there are.
+    """Description of a task for the block ``manufacture``.
 
     Attributes
     ----------
     distances, angles : bool
-        Whether places, and whether angles, are demanded.
+        Whether the targets have positions, and whether they have angles.
     free_inputs : bool
         Whether the inputs at the targets are free.
     targets : int
-        Their number.
+        Number of targets.
     ungridded : str
-        Why no linkage on a grid can keep what is stated; empty where one can.
+        Reason why no linkage on a grid can satisfy the statement; empty if one can.
     """
 
     distances: bool
@@ -235,33 +244,32 @@ class Made(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """What a design is held to at its t targets, and the inputs at which it stands there.
+    """Requirements on a design at its t targets, and its inputs there.
 
     Attributes
     ----------
     inputs : float, shape (t,)
-        Radians, in one run.
+        Input angles, radians, continuous.
     points : complex, shape (t,), or None
-        Demanded places of P.
+        Required positions of P.
     angles : float, shape (t,), or None
-        Demanded absolute angles of the body where there are points, else of the output, radians.
+        Required absolute angles, radians: of the body if there are points, otherwise of the output.
     travels : float, shape (t,), or None
-        Demanded places of a slider along its line, from the foot of the fixed pivot.
+        Required positions of a slider along its line, from the foot of the fixed pivot.
     body : float
-        Absolute angle of the body where the linkage stands in its reference, radians.
+        Absolute angle of the body in the reference configuration, radians.
     free : bool
         Whether the inputs are free.
     limits : float, shape (t, 3), or None
-        How far the design may be off in x, y and angle (radians) by the task's own tolerances; 0 and infinite where
-        there is none.
+        Tolerances of the task itself in x, y and angle (radians): 0 for exact, infinite for unlimited.
     around : bool
-        Whether the limit in x is one of the distance, in any direction.
+        Whether the limit in x is a limit of the distance in any direction.
     size : float
-        The length that counts as much as a radian where errors of both are added.
+        Length that is equivalent to one radian when errors of both are added.
     on_ground : pair of bool
-        Whether input, and output, are counted from the ground line, and turn with it on a grid.
+        Whether the angles of input and output are counted from the ground line, and rotate with it on a grid.
     kept : set of str
-        Names of the dimensions that are stated, and stay as they are on a grid.
+        Names of the dimensions given by the task, which a grid leaves unchanged.
     """
 
     inputs: Real

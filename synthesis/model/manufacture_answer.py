@@ -1,4 +1,4 @@
-"""What an answer says of a design as it is made (docs/manufacture.md)."""
+"""Reported properties of a manufactured design (docs/manufacture.md)."""
 
 from __future__ import annotations
 
@@ -15,96 +15,110 @@ def _none(listed: object) -> bool:
 
 
 class Yield(Answer):
-    """Share of the linkages made that are good, by sampling."""
+    """Sampled share of manufactured linkages that are good."""
 
     value: float
-    low: float = Field(description="Lower end of the interval that holds the yield with 99 % confidence.")
-    high: float = Field(description="Its upper end.")
+    low: float = Field(description="Lower end of the interval that contains the yield with 99 % confidence.")
+    high: float = Field(description="Upper end of that interval.")
     samples: int
 
 
 class WorstCase(Answer):
-    """The greatest errors of the linkages of which every dimension is at one end of its tolerance."""
+    """Maximum errors over all linkages whose dimensions are each at one end of their tolerance."""
 
-    assembles: bool = Field(description="Whether all of them can be assembled at the targets, and stay on the branch.")
-    max_error: Length | None = optional("Greatest distance from a target; left out where some cannot be assembled.")
-    max_angle_error: Angle | None = optional("Greatest difference of an angle, degrees; left out likewise.")
+    assembles: bool = Field(
+        description="Whether all of these linkages can be assembled at the targets and stay on the branch."
+    )
+    max_error: Length | None = optional("Maximum distance from a target; left out if some cannot be assembled.")
+    max_angle_error: Angle | None = optional(
+        "Maximum difference of an angle, degrees; left out if some cannot be assembled."
+    )
 
 
 class Sensitivity(Answer):
-    """How what is measured at the targets follows one dimension: derivatives, where the input follows as it is set."""
+    """Derivatives of the measured quantities at the targets by one dimension; the input is readjusted if it is free."""
 
-    dimension: str = Field(description="By its field of the mechanism; P's place is along A → B and across.")
+    dimension: str = Field(description="Field of the mechanism; P has one dimension along A → B and one across.")
     tolerance: Length
-    x: list[float] | None = optional("Of P's x at each target.")
-    y: list[float] | None = optional("Of P's y at each target.")
-    travel: list[float] | None = optional("Of the slider's place at each target.")
+    x: list[float] | None = optional("Derivative of P's x at each target.")
+    y: list[float] | None = optional("Derivative of P's y at each target.")
+    travel: list[float] | None = optional("Derivative of the slider's position at each target.")
     angle: Annotated[list[float], ANGLE_PER_LENGTH] | None = optional(
-        "Of the body's angle, or the output's, at each target."
+        "Derivative of the body's or the output's angle at each target."
     )
     transmission: Annotated[float, ANGLE_PER_LENGTH] | None = optional(
-        "Of the least transmission angle over the used range."
+        "Derivative of the minimum transmission angle over the used range."
     )
     share: float = Field(
-        description="What its tolerance adds to the sum of the squares of all errors, in the first order and in the "
-        "units of the quality, as a share of what all tolerances do."
+        description="Contribution of its tolerance to the sum of squares of all errors, to first order and in the "
+        "units of the quality, as a share of the contribution of all tolerances."
     )
 
 
 class Allocation(Answer):
-    """Tolerances with which a linkage has the yield that is demanded, as wide as they can be in their proportion."""
+    """Tolerances with which a linkage has the required yield, as wide as their proportion permits."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True, serialize_by_alias=True)
 
     by: Literal["dimension", "sort", "scale"] = Field(
-        description="dimension: each dimension has its own; sort: one for all lengths and one for all pivots; scale: "
-        "as they are stated, all widened or narrowed alike."
+        description="dimension: each dimension has its own tolerance; sort: one for all lengths and one for all "
+        "pivots; scale: the given tolerances, all multiplied by one factor."
     )
-    tolerances: Annotated[dict[str, float], LENGTH] = Field(description="By dimension, as of `sensitivities`.")
+    tolerances: Annotated[dict[str, float], LENGTH] = Field(
+        description="Tolerance by dimension, named as in `sensitivities`."
+    )
     cost: float = Field(
-        description="The mean of stated over allocated tolerance: what it costs against what is stated, where the cost "
-        "of a tolerance is as its inverse."
+        description="Relative cost: mean ratio of given to allocated tolerance, as the cost of a tolerance is "
+        "inversely proportional to it."
     )
-    yield_: Yield = Field(alias="yield", description="With these tolerances, by the same samples.")
+    yield_: Yield = Field(alias="yield", description="Yield with these tolerances, from the same samples.")
 
 
 class Play(Answer):
-    """What the clearances of the pins let the linkage do at a target, with its input held: no more than this."""
+    """Upper bound of the motion that the pins' clearances permit at a target with the input fixed."""
 
     index: int
-    max_error: Length | None = optional("Greatest distance of P, or of the slider, from where it stands as drawn.")
-    max_angle_error: Angle | None = optional("What the body, or the output, may turn either way, degrees.")
-    outline: list[Point] | None = optional("Corners of a convex area that holds every place that P can take.")
+    max_error: Length | None = optional("Maximum displacement of P or of the slider from its nominal position.")
+    max_angle_error: Angle | None = optional(
+        "Maximum rotation of the body or of the output in either direction, degrees."
+    )
+    outline: list[Point] | None = optional("Corners of a convex area that contains every possible position of P.")
 
 
 class RoundingCost(Answer):
-    """What a linkage on the grid has more of than the exact design that it stands for; less is below 0."""
+    """Increase of each quantity by rounding, relative to the exact design; negative for a decrease."""
 
     rms_residual: float
-    max_error: Length | None = optional("Greatest distance from a target.")
-    max_angle_error: Angle | None = optional("Greatest difference of an angle, degrees.")
-    min_transmission_angle: Angle = Field(description="Here more is better.")
+    max_error: Length | None = optional("Increase of the maximum distance from a target.")
+    max_angle_error: Angle | None = optional("Increase of the maximum difference of an angle, degrees.")
+    min_transmission_angle: Angle = Field(
+        description="Increase of the minimum transmission angle; here an increase is an improvement."
+    )
 
 
 class Manufactured(Answer):
-    """A design as a shop makes it."""
+    """Properties of a design as manufactured."""
 
     dimensions: Annotated[dict[str, float], LENGTH] | None = optional(
-        "What is made, on the grid or of the stock, by the field of the mechanism; P's place along A → B and across."
+        "Manufactured dimensions, on the grid or from the stock, by field of the mechanism; P has one dimension along "
+        "A → B and one across."
     )
-    cost: RoundingCost | None = optional("What rounding cost, against `exact`.")
-    seed: int | None = optional("Of the samples of the yield.")
-    play: list[Play] = Field(default=[], exclude_if=_none, description="Of the pins, at each target.")
-    worst_case: WorstCase | None = optional("With every dimension at an end of its tolerance.")
+    cost: RoundingCost | None = optional("Cost of rounding, relative to `exact`.")
+    seed: int | None = optional("Seed of the samples of the yield.")
+    play: list[Play] = Field(default=[], exclude_if=_none, description="Play of the pins at each target.")
+    worst_case: WorstCase | None = optional("Worst case with every dimension at an end of its tolerance.")
     matter: list[str] = Field(
-        default=[], description="The dimensions whose tolerances matter, the first most: four fifths of the errors."
+        default=[],
+        description="Dimensions whose tolerances cause four fifths of the errors, the most important first.",
     )
     widest: list[Allocation] = Field(
-        default=[], exclude_if=_none, description="The cheapest first, where the block asks for it."
+        default=[], exclude_if=_none, description="Widest tolerances, the cheapest first, if requested."
     )
-    sensitivities: list[Sensitivity] = Field(default=[], description="Of each dimension, in the order of the shares.")
-    remark: str | None = optional("Why there is less.")
+    sensitivities: list[Sensitivity] = Field(
+        default=[], description="Sensitivity to each dimension, in decreasing order of their shares."
+    )
+    remark: str | None = optional("Reason why some results are missing.")
 
 
-MANUFACTURE = optional("The design as it is made; left out where the problem states no `manufacture`.")
-"""The same field of every design."""
+MANUFACTURE = optional("Properties as manufactured; left out if the problem has no `manufacture`.")
+"""Field that all designs share."""

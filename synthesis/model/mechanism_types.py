@@ -1,4 +1,4 @@
-"""The types of mechanisms that a model with a field ``mechanism`` can hold: read from the model, told nowhere else."""
+"""Types of mechanisms in the field ``mechanism`` of a model, read from the model itself."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from pydantic import BaseModel
 
 
 def mechanism_types(model: type[BaseModel]) -> list[str]:
-    """What the field ``type`` of its mechanism may be: of a design, or of a request for an analysis."""
+    """Return the possible values of ``mechanism.type`` in a model of a design or of an analysis request."""
     mechanisms = models_within(model.model_fields["mechanism"].annotation)
     return [name for mechanism in mechanisms for name in get_args(mechanism.model_fields["type"].annotation)]
 
 
 def models_within(annotation: Any) -> list[type[BaseModel]]:
-    """The models that a type is made of."""
+    """Return the models that occur in a type annotation."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
     return [model for part in get_args(annotation) for model in models_within(part)]

@@ -1,8 +1,8 @@
-"""What the meshes of a planetary train carry: the shares of its planets, and which of their teeth are bent both ways.
+"""Loads of the meshes of a planetary train: load sharing of the planets, and reversed bending of teeth.
 
-The stresses are those of any pair (:mod:`synthesis.model.gear_strength`). A mesh stands on the train as many times as
-there are planets, and each copy has an equal share of its torque, raised by how unevenly planets share. Relative to the
-carrier it is an ordinary pair: what it carries there is its rolling power, and its pitch-line speed is the one there.
+Stresses are computed as for any pair (:mod:`synthesis.model.gear_strength`). Each mesh exists once per planet. Every
+copy carries an equal share of the torque, multiplied by the load sharing factor. Relative to the carrier it is an
+ordinary pair that transmits its rolling power at its pitch-line velocity there.
 """
 
 from __future__ import annotations
@@ -21,56 +21,56 @@ from synthesis.model.gear_strength import CarriedPower, Loaded, StrengthMethod, 
 from synthesis.model.statement import Statement
 
 SHARED_EQUALLY = 3
-"""Planets up to which a member that floats lets all of them carry alike."""
+"""Maximum number of planets that share the load equally with a floating member."""
 
 SHARING = {4: 1.2, 5: 1.3}
-"""Load sharing factor of more planets by the rules of the American Bureau of Shipping."""
+"""Load sharing factors of four and five planets, by the rules of the American Bureau of Shipping."""
 
 SHARING_OF_MANY = 1.4
-"""The same of six planets and more."""
+"""Load sharing factor of six and more planets, by the same rules."""
 
 UNLOADED = 1e-9
-"""Share of the greatest mesh torque below which a torque is what rounding has left of none."""
+"""Share of the largest mesh torque below which a torque is rounding."""
 
 PAIRS = (
-    "Pairs are of the first gear of every mesh and the second, as the arrangement has them: sun before planet, planet "
-    "before planet, planet before ring. Bending of a ring is not judged unless the factor of its teeth is stated: "
+    "Pairs are for the first and the second gear of every mesh, in the order of the arrangement: sun before planet, "
+    "planet before planet, planet before ring. Bending of a ring is not checked unless its tooth factor is given: "
     "`form` (Lewis) or `bending_geometry` (AGMA)."
 )
 
 
 class SharedByPlanets(Statement):
-    """How evenly the planets share the load."""
+    """Load sharing of the planets."""
 
     load_sharing: Annotated[float, Field(strict=True, ge=1.0, le=12.0)] | None = Field(
         default=None,
-        description="Load on the most loaded planet over an equal share. Left out: 1 of up to 3 planets, 1.2 of 4, 1.3 "
-        "of 5, 1.4 of more (rules of the American Bureau of Shipping for gears).",
+        description="Load on the most loaded planet over an equal share. By default 1 for up to 3 planets, 1.2 for 4, "
+        "1.3 for 5, 1.4 for more (rules of the American Bureau of Shipping for gears).",
     )
 
     def sharing(self, planets: int) -> float:
-        """The factor of so many planets."""
+        """Return the load sharing factor for a number of planets."""
         if self.load_sharing is not None:
             return self.load_sharing
         return 1.0 if planets <= SHARED_EQUALLY else SHARING.get(planets, SHARING_OF_MANY)
 
     def faults_of_planets(self, planets: int) -> list[tuple[str, str]]:
-        """What is wrong with so many planets."""
+        """Return errors of the load sharing factor for a number of planets."""
         if self.load_sharing is None or self.load_sharing <= planets:
             return []
-        return [("/load_sharing", f"one of {planets} planets carries at most all, {planets} times an equal share")]
+        return [("/load_sharing", f"with {planets} planets the factor is at most {planets}: one planet carries all")]
 
 
 class PlanetStrength(SharedByPlanets, StrengthMethod):
-    """The method, its factors, what the material may bear, and how evenly planets share."""
+    """Strength method, its factors, allowable stresses, and load sharing of the planets."""
 
 
 class PlanetPower(SharedByPlanets, CarriedPower):
-    """What a planetary train that is looked for has to carry."""
+    """Power that a planetary train has to carry."""
 
 
 class MeshLoad(NamedTuple):
-    """What a mesh carries with all its copies: torques on both gears, and the first one's speed past the carrier.
+    """Load of a mesh with all its copies: torques on both gears, and speed of the first gear relative to the carrier.
 
     Torques are signed, seen from one side of the train.
     """
@@ -80,20 +80,20 @@ class MeshLoad(NamedTuple):
 
 
 def planetary_contact(gears: tuple[Gear, Gear]) -> Contact:
-    """A mesh as the formulas of strength take it: they look at no end of an involute, so that none is found here."""
+    """Build a mesh for the strength formulas, which do not need the ends of the involutes."""
     return Contact(Mesh(*gears), (-math.inf, math.inf if gears[1].internal else -math.inf))
 
 
 def in_millimetres(gear: Gear, unit: float) -> Gear:
-    """A gear whose module is in a unit of so many millimetres."""
+    """Convert a gear to millimetres; ``unit`` is the length unit of its module in millimetres."""
     return replace(gear, module=gear.module * unit)
 
 
 def both_ways(arrangement: Arrangement, loads: Sequence[MeshLoad]) -> list[tuple[bool, bool]]:
-    """Which gears of each mesh are bent both ways: those that meshes turn one way and the other.
+    """Return which gears of each mesh are bent in both directions: those loaded by torques of both signs.
 
-    The sign of a torque tells the flank that is pressed, so that of a simple planet both are, and of a stepped one with
-    one mesh a gear the same one always.
+    The sign of a torque determines the loaded flank. Both flanks of a simple planet are loaded; a gear of a stepped
+    planet with a single mesh is always loaded on the same flank.
     """
     least = UNLOADED * max((abs(torque) for load in loads for torque in load.torques), default=0.0)
     senses: dict[str, set[bool]] = {}
@@ -105,12 +105,12 @@ def both_ways(arrangement: Arrangement, loads: Sequence[MeshLoad]) -> list[tuple
 
 
 def powers(loads: Sequence[MeshLoad], teeth: Sequence[tuple[int, int]], share: float) -> list[float]:
-    """Power that one copy of each mesh carries past its carrier, W; 0 of a mesh that carries nothing.
+    """Compute the power that one copy of each mesh carries relative to its carrier, W; 0 for an unloaded mesh.
 
     Parameters
     ----------
     teeth : sequence of pairs
-        Of each mesh.
+        Teeth of each mesh.
     share : float
         Load sharing factor over the number of planets.
     """
@@ -125,12 +125,12 @@ def powers(loads: Sequence[MeshLoad], teeth: Sequence[tuple[int, int]], share: f
 
 
 def plane_of(arrangement: Arrangement, mesh: tuple[str, str]) -> int:
-    """The plane in which a mesh lies, counted from 0; gears of one plane have one face."""
+    """Return the plane of a mesh, counted from 0; all gears of a plane have the same face width."""
     return min(set(arrangement.places[mesh[0]].planes) & set(arrangement.places[mesh[1]].planes)) - 1
 
 
 def planes_of(arrangement: Arrangement) -> int:
-    """In how many planes an arrangement of spur gears has meshes."""
+    """Return the number of planes with meshes in an arrangement of spur gears."""
     return 1 + max(plane_of(arrangement, mesh) for mesh in arrangement.meshes)
 
 
@@ -143,18 +143,18 @@ def strengths(
     faces: Sequence[float | None] | None,
     unit: float,
 ) -> list[dict[str, Any] | None]:
-    """The strength of every mesh in the shape of ``PairStrength``; None of one that carries nothing.
+    """Describe the strength of every mesh by the fields of ``PairStrength``; None for an unloaded mesh.
 
     Parameters
     ----------
     gears : mapping
         The gears by name, in the problem's unit of length.
     loads : sequence of MeshLoad
-        Of each mesh, N m and rad/s.
+        Loads of each mesh, N·m and rad/s.
     faces : sequence of float or None, or None
-        Widths of the planes; None, of one or of all: the least that each mesh needs.
+        Face widths of the planes; None for the minimum that each mesh needs.
     unit : float
-        Millimetres in the unit of length.
+        Millimetres per unit of length.
     """
     sharing = stated.sharing(planets)
     teeth = [(int(gears[one].teeth), int(gears[other].teeth)) for one, other in arrangement.meshes]

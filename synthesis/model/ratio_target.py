@@ -1,21 +1,21 @@
 """Exact target ratios: rational numbers, and products with π, e and square roots.
 
-A target is stated as a JSON number or as text in a small grammar::
+A target is a JSON number or a text in a small grammar::
 
     target    =  ["-" | "+"] factor { ("*" | "/") factor }
     factor    =  number | constant | number constant
     constant  =  "pi" | "e" | "sqrt(" number ")"
     number    =  digits ["." digits]
 
-so ``127/50``, ``3.14159265358979``, ``pi/2``, ``3pi/2``, ``2*sqrt(2)``; after "/" a factor is a number or a constant
-alone, because ``1/3pi`` means two things. Text is kept exact. A JSON number is taken as the
-shortest decimal that denotes it, which is the decimal that was written. Nothing is evaluated as code.
+for example ``127/50``, ``3.14159265358979``, ``pi/2``, ``3pi/2``, ``2*sqrt(2)``. After "/" a factor is a number or a
+constant, not both, because ``1/3pi`` is ambiguous. Text is kept exact. A JSON number is read as the shortest decimal
+that denotes it, which is the decimal that was written. Nothing is evaluated as code.
 
 A target is q · π^a · e^b · √r with rational q and r. It is compared with rational ratios without rounding: its
-enclosure between two rational numbers is narrowed until the comparison is decided. A target that equals the rational
-number cannot be told apart by narrowing; that happens for a = b = 0 only if r is a square, which is found exactly.
-Otherwise the number is irrational, as far as mathematics knows: √r, π^a √r and e^b √r are; of products of powers of
-both π and e it is not known, and :data:`DEEPEST` bits count as equality there.
+enclosure between two rational numbers is narrowed until the comparison is decided. Narrowing never decides the case of
+equality. For a = b = 0 equality requires that r is a square, which is detected exactly. √r, π^a √r and e^b √r are
+otherwise irrational. For products of powers of both π and e this is an open question; there, agreement to
+:data:`DEEPEST` bits counts as equality.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ from fractions import Fraction
 from functools import cache, lru_cache
 
 LONGEST = 120
-"""Characters of a statement at most; more is an attack."""
+"""Maximum number of characters of a target; longer texts are attacks."""
 
 SMALLEST, LARGEST = Fraction(1, 10**9), Fraction(10**9)
-"""Ratios beyond are typing errors; the same limit as for all numbers."""
+"""Minimum and maximum ratio, the same limits as for all numbers; ratios beyond are typing errors."""
 
 DEEPEST = 1 << 14
-"""Bits at which a narrowing ends; two numbers of some hundred digits that differ are told apart long before."""
+"""Maximum number of bits of an enclosure; different numbers of about a hundred digits differ much earlier."""
 
 CLEARLY = 1e-14
-"""Floats of two numbers that differ by more than this share are in the order of the numbers: some forty roundings."""
+"""Relative difference above which two floats have the same order as the exact numbers: about forty rounding errors."""
 
 _SIZE = 64
 """Bits of the first enclosure."""
@@ -46,7 +46,7 @@ _TOKEN = re.compile(rf"\s*(?:({_NUMBER})|(pi|e)(?![a-z])|sqrt\(\s*({_NUMBER})\s*
 
 
 class TargetSyntaxError(ValueError):
-    """A text that is no target; the message says what was expected."""
+    """Raised for a text that is no target; the message describes the expected syntax."""
 
 
 @dataclass(frozen=True)
@@ -60,15 +60,16 @@ class Target:
 
     @property
     def rational(self) -> Fraction | None:
-        """The number itself where it is rational."""
+        """The exact number if it is rational, otherwise None."""
         return self.factor if self.pi == self.e == 0 and self.radicand == 1 else None
 
     def enclosure(self, bits: int) -> tuple[Fraction, Fraction]:
-        """Lower and upper bound, about 2^-bits of the number apart."""
+        """Return a lower and an upper bound whose relative difference is about 2^-bits."""
         return _enclosure(self, bits)
 
     def compared(self, ratio: Fraction) -> int:
-        """Sign of target − ratio, decided in exact arithmetic."""
+        """Return the sign of target − ratio, decided in exact arithmetic."""
+        # Floats decide almost every comparison; exact arithmetic is needed only for nearly equal numbers.
         apart = self.parts()[0] - float(ratio)
         if abs(apart) > CLEARLY * float(ratio):
             return 1 if apart > 0.0 else -1
@@ -85,7 +86,7 @@ class Target:
         return 0
 
     def nearer(self, first: Fraction, second: Fraction) -> int:
-        """−1 where ``first`` lies nearer to the target than ``second``, +1 where farther, 0 where equally near."""
+        """Return −1 if ``first`` is closer to the target than ``second``, +1 if it is farther, 0 if both are equal."""
         if first == second:
             return 0
         low, high = min(first, second), max(first, second)
@@ -101,12 +102,12 @@ class Target:
         return -1 if nearest == first else 1
 
     def within(self, ratio: Fraction, tolerance: Fraction) -> bool:
-        """Whether |ratio − target| ≤ tolerance × target."""
+        """Return whether |ratio − target| ≤ tolerance × target."""
         over = self.compared(ratio / (1 + tolerance)) >= 0
         return over and (tolerance >= 1 or self.compared(ratio / (1 - tolerance)) <= 0)
 
     def relative_error(self, ratio: Fraction) -> float:
-        """Ratio / target − 1, correct to all digits of a float."""
+        """Compute ratio / target − 1, correct to all digits of a float."""
         if self.rational is not None:
             return float(ratio / self.rational - 1)
         bits = 4 * _SIZE
@@ -119,7 +120,7 @@ class Target:
             bits *= 4
 
     def parts(self) -> tuple[float, float]:
-        """The number as an unevaluated sum of two floats, good to 2^-105 of it."""
+        """Return the number as an unevaluated sum of two floats, with a relative error of 2^-105."""
         return _parts(self)
 
     def __float__(self) -> float:
@@ -153,12 +154,12 @@ def _parts(target: Target) -> tuple[float, float]:
 
 
 def parse_target(stated: float | str) -> tuple[int, Target]:
-    """Sign and size of a stated ratio.
+    """Parse a ratio into its sign and its magnitude.
 
     Raises
     ------
     TargetSyntaxError
-        For a text outside the grammar, zero, or a size beyond 1e-9 ... 1e9.
+        For a text outside the grammar, for zero, or for a magnitude outside 1e-9 ... 1e9.
     """
     if isinstance(stated, str):
         sign, target = _parse(stated)
@@ -168,12 +169,12 @@ def parse_target(stated: float | str) -> tuple[int, Target]:
     if target.factor == 0:
         raise TargetSyntaxError("a ratio must not be zero")
     if target.compared(SMALLEST) < 0 or target.compared(LARGEST) > 0:
-        raise TargetSyntaxError("a ratio must be between 1e-9 and 1e9 in size")
+        raise TargetSyntaxError("the magnitude of a ratio must be between 1e-9 and 1e9")
     return sign, target
 
 
 def decimal(number: float) -> Fraction:
-    """A JSON number as the decimal that was written: the shortest that denotes the same float."""
+    """Return a JSON number as the decimal that was written: the shortest that denotes the same float."""
     return Fraction(repr(number))
 
 
@@ -219,7 +220,7 @@ def _unexpected(body: str, place: int) -> TargetSyntaxError:
 
 
 def _root(radicand: Fraction) -> tuple[Fraction, Fraction]:
-    """√radicand as (rational, what is left under the root)."""
+    """Split √radicand into a rational factor and the remaining radicand."""
     up, down = math.isqrt(radicand.numerator), math.isqrt(radicand.denominator)
     if Fraction(up * up, down * down) == radicand:
         return Fraction(up, down), Fraction(1)
@@ -228,7 +229,8 @@ def _root(radicand: Fraction) -> tuple[Fraction, Fraction]:
 
 @cache
 def _pi(bits: int) -> tuple[int, int]:
-    """⌊π 2^bits⌋ or a unit less, and a bound above: Machin's π = 16 atan(1/5) − 4 atan(1/239)."""
+    """Return integer bounds of π 2^bits, by Machin's π = 16 atan(1/5) − 4 atan(1/239)."""
+    # Guard bits absorb the truncation error of each term of the series.
     guard = 32
     unit = 1 << (bits + guard)
     value = 16 * _atan_of_inverse(5, unit) - 4 * _atan_of_inverse(239, unit)
@@ -246,7 +248,7 @@ def _atan_of_inverse(n: int, unit: int) -> int:
 
 @cache
 def _e(bits: int) -> tuple[int, int]:
-    """Bounds of e 2^bits by its series."""
+    """Return integer bounds of e 2^bits, by the series of e."""
     guard = 32
     term, total, k = 1 << (bits + guard), 0, 0
     while term:
@@ -257,7 +259,7 @@ def _e(bits: int) -> tuple[int, int]:
 
 
 def as_stated(ratio: str | float) -> str:
-    """A ratio for a sentence: an expression as it was written, a number without zeros that say nothing.
+    """Format a ratio for a sentence: an expression as written, a number without superfluous zeros.
 
     >>> as_stated("sqrt(2)"), as_stated(25.0), as_stated(332.96886)
     ('sqrt(2)', '25', '332.96886')

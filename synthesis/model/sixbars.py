@@ -1,4 +1,4 @@
-"""Sixbars of Watt's and Stephenson's chains as answers, by their joints in the first position."""
+"""Sixbars of Watt's and Stephenson's chains in answers, built from their joints in the first position."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from synthesis.model.linkage_answer import SixbarMechanism
 from synthesis.model.linkages import skeleton, to_point
 
 Links = Mapping[str, Sequence[str]]
-"""The joints on each link by its name; P is on the link that carries the body."""
+"""Joints on each link by name of the link; P is on the link that carries the body."""
 
 IN_WORDS: Mapping[str, str] = {
     "watt_1": "Watt I sixbar",
@@ -17,14 +17,14 @@ IN_WORDS: Mapping[str, str] = {
     "stephenson_2": "Stephenson II sixbar",
     "stephenson_3": "Stephenson III sixbar",
 }
-"""What each type is called, in sentences and on sheets."""
+"""Name of each type in sentences and on sheets."""
 
 
 def lengths_of(joints: Mapping[str, complex], links: Links, *, point: str | None = "P") -> dict[str, float]:
-    """Lengths between the first two joints of each link under its name.
+    """Return the distance of the first two pins of each link under its name.
 
-    Of a link with three pins also those from the first and from the second to the third, under its name with ``_arm``
-    and ``_side``. ``point`` is no pin; None where P is one.
+    A link with three pins also has the distances of its third pin from the first and the second, under its name with
+    ``_arm`` and ``_side``. The joint ``point`` is no pin; None if all joints are pins.
     """
     lengths: dict[str, float] = {}
     for name, listed in links.items():
@@ -39,7 +39,7 @@ def lengths_of(joints: Mapping[str, complex], links: Links, *, point: str | None
 def sixbar_mechanism(
     kind: str, joints: Mapping[str, complex], links: Links, *, body_angle: float | None = None
 ) -> SixbarMechanism:
-    """The sixbar whose joints stand as given, driven by the link ``input``."""
+    """Build the sixbar with the given joints, driven by the link ``input``."""
     return SixbarMechanism.model_validate(
         {
             "type": kind,

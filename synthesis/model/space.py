@@ -1,4 +1,4 @@
-"""The room that a linkage has: zones for its pivots, a box, obstacles, and how wide its links are."""
+"""Workspace of a linkage: zones for its pivots, a box, obstacles, and the width of its links."""
 
 from __future__ import annotations
 
@@ -23,26 +23,26 @@ MOST_ZONES = 20
 def _corners(box: tuple[Point, Point]) -> tuple[Point, Point]:
     (left, low), (right, high) = box
     if left >= right or low >= high:
-        raise ValueError("give the lower left corner and then the upper right one")
+        raise ValueError("give the lower left corner first, then the upper right corner")
     return box
 
 
 class FixedPivotZones(Statement):
-    """Where the fixed pivots may lie; any of several zones."""
+    """Permitted zones of the fixed pivots; a pivot may lie in any of several zones."""
 
     input: Zone | Annotated[list[Zone], Field(min_length=1, max_length=MOST_ZONES)] | None = None
     output: Zone | Annotated[list[Zone], Field(min_length=1, max_length=MOST_ZONES)] | None = None
 
 
 class MovingPivotZones(Statement):
-    """Where the moving pivots may lie in the first position; any of several zones."""
+    """Permitted zones of the moving pivots in the first position; a pivot may lie in any of several zones."""
 
     input: MovingZone | Annotated[list[MovingZone], Field(min_length=1, max_length=MOST_ZONES)] | None = None
     output: MovingZone | Annotated[list[MovingZone], Field(min_length=1, max_length=MOST_ZONES)] | None = None
 
 
 class Body(Statement):
-    """What is carried."""
+    """The carried body."""
 
     outline: Outline = Field(
         description="Corners of the body as it lies in the first position, in the coordinates of the plane."
@@ -50,55 +50,57 @@ class Body(Statement):
 
 
 class Space(Statement):
-    """What a linkage must fit into, over the whole motion; lengths and coordinates in length units.
+    """Workspace into which a linkage must fit over its whole motion; lengths and coordinates in length units.
 
-    A link is the hull of its joints, widened by half of ``link_width``; a coupler with the point P is the hull of A, B
-    and P, or, where an outline of the body is given, the bar A–B with the outline fixed to it.
+    A link is the hull of its joints, widened by half of ``link_width``. A coupler with the point P is the hull of A, B
+    and P; if an outline of the body is given, it is the bar A–B with the outline fixed to it.
     """
 
     fixed_pivots: FixedPivotZones | None = Field(
-        default=None, description="Zones of the input's fixed pivot, and of the output's."
+        default=None, description="Zones of the fixed pivots of input and output."
     )
     moving_pivots: MovingPivotZones | None = Field(
-        default=None, description="Zones of the input's moving pivot (A), and of the output's (B)."
+        default=None, description="Zones of the moving pivots of input (A) and output (B)."
     )
     box: Annotated[tuple[Point, Point], AfterValidator(_corners)] | None = Field(
-        default=None, description="Lower left and upper right corner; it holds every moving part, its width included."
+        default=None,
+        description="Lower left and upper right corner of a box that contains every moving part including its width.",
     )
     body: Body | None = None
     obstacles: Annotated[list[Zone], Field(max_length=MOST_OBSTACLES)] = Field(
-        default=[], description="What no link and no body may come near."
+        default=[], description="Obstacles that links and body must avoid."
     )
     clearance: Annotated[NonNegative, LENGTH] = Field(
-        default=0.0, description="Least distance of links and body from obstacles."
+        default=0.0, description="Minimum distance of links and body from obstacles."
     )
     link_width: Annotated[NonNegative, LENGTH] = 0.0
     over: Literal["used", "cycle"] = Field(
         default="used",
-        description="used: from the first target to the last; cycle: wherever the input can take the linkage.",
+        description="used: from the first target to the last; cycle: the whole range of the input.",
     )
 
     @property
     def swept(self) -> bool:
-        """Whether something is demanded of the motion, and not of the pivots alone."""
+        """Whether the motion is constrained, not only the pivots."""
         return self.box is not None or bool(self.obstacles)
 
     @property
     def demanding(self) -> bool:
-        """Whether something is demanded at all."""
+        """Whether the workspace contains any constraint."""
         sides = (self.fixed_pivots, self.moving_pivots)
         zoned = any(side is not None and (side.input or side.output) for side in sides)
         return self.swept or zoned
 
     @property
     def empty(self) -> bool:
-        """Whether there is nothing that a linkage would be held against."""
+        """Whether there is nothing to check."""
         return not self.swept and self.fixed_pivots is None and self.moving_pivots is None
 
     def box_of_joints(self, farther: float = 0.0) -> tuple[float, float, float, float] | None:
-        """The box for joints, half a link's width within that of parts: x from, to, y from, to; None without a box.
+        """Return the box for joints: minimum and maximum x, minimum and maximum y; None without a box.
 
-        It is drawn in by so much ``farther``. The clearance is one of obstacles: links may touch the sides of the box.
+        It is smaller than the box for parts by half a link's width plus ``farther`` on every side. The clearance
+        applies to obstacles only: links may touch the sides of the box.
         """
         if self.box is None:
             return None
@@ -107,9 +109,9 @@ class Space(Statement):
         return left + inward, right - inward, low + inward, high - inward
 
     def carried(self, first: complex, place: complex, turn: complex) -> Self:
-        """The same room where the body is elsewhere in its first position: what is drawn on the body goes with it.
+        """Return the workspace for another first position of the body; zones and outline on the body move with it.
 
-        ``first`` is P as it was, ``place`` as it is, ``turn`` the body's rotation e^{iα}.
+        ``first`` is the old position of P, ``place`` the new one, and ``turn`` the rotation e^{iα} of the body.
         """
 
         def moved(point: tuple[float, float]) -> tuple[float, float]:
@@ -129,9 +131,9 @@ class Space(Statement):
         return self.model_copy(update=update)
 
     def spared_at(self, points: Mapping[int, complex], turns: Mapping[int, complex]) -> float:
-        """By how much more than is demanded the body keeps clear of obstacles and sides, in length units.
+        """Compute the smallest excess of the body's distance from obstacles and sides over the required one.
 
-        Parameters are those of :meth:`without_room_at`.
+        In length units; parameters as for :meth:`without_room_at`.
         """
         spare = math.inf
         for k, point in points.items():
@@ -145,19 +147,19 @@ class Space(Statement):
         return spare
 
     def _body_at(self, point: complex, turn: complex, first: complex) -> tuple[Complex, float]:
-        """Corners of what is carried, P alone where no outline is given, and by how much they are widened."""
+        """Return the corners of the body (only P without an outline) and the radius by which they are widened."""
         if self.body is None:
             return np.array([point]), 0.5 * self.link_width
         outline = np.array([complex(*corner) for corner in self.body.outline])
         return point + turn * (outline - first), 0.0
 
     def without_room_at(self, points: Mapping[int, complex], turns: Mapping[int, complex]) -> list[Contradiction]:
-        """What the body meets where it has to be, whatever linkage carries it.
+        """Return collisions of the body at its required positions, which no linkage can avoid.
 
         Parameters
         ----------
         points : mapping of int to complex
-            P in the positions that are met exactly, by their numbers; the first one is position 0.
+            P in the positions that are required exactly, by their numbers; the first one is position 0.
         turns : mapping of int to complex
             Rotation e^{iα} of the body from the first position.
         """
@@ -173,6 +175,7 @@ class Space(Statement):
                     found.append(Contradiction("/space/box", f"position {k} lies outside the box"))
             for n, zone in enumerate(self.obstacles):
                 if zone.distance_from(corners) < self.clearance + width or zone.holds(corners):
-                    detail = f"position {k} comes nearer to it than the clearance allows"
+                    detail = f"the body in position {k} is closer to this obstacle than the clearance"
                     found.append(Contradiction(f"/space/obstacles/{n}", detail))
+        # One message per obstacle or box: the first position that collides.
         return list({fault.path: fault for fault in reversed(found)}.values())[::-1]

@@ -1,6 +1,6 @@
-"""What a client states of a linkage that there is: pivots, lines, lengths, and the skeleton. Data alone.
+"""Description of a given linkage: pivots, lines, lengths, and the skeleton. Data only.
 
-What the analysis core makes of it is in :mod:`synthesis.mechanisms`, which brings the core with it.
+:mod:`synthesis.mechanisms` converts it for the analysis core, which it imports.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from synthesis.model.dimension import LENGTH
 from synthesis.model.statement import Degrees, NonNegative, Number, Point, PositiveLength, Statement
 
 AGREES = 1e-6
-"""A dimension that others determine already (ground, offset) may differ from them by this share: printed digits."""
+"""Relative tolerance of redundant dimensions (ground, offset), for the rounding of printed digits."""
 
 ROUNDING = 1e-12
-"""Distances may differ by this share of the largest coordinate too: joints that coincide are not quite at one place."""
+"""Additional tolerance of distances, as a share of the largest coordinate: coinciding joints differ by rounding."""
 
-BODY = "Angle of the body that a design guides in the reference, degrees; not looked at."
-"""What a field of designs means that an analysis has no use for."""
+BODY = "Angle of the guided body in the reference configuration, degrees; ignored."
+"""Description of a field of designs that an analysis ignores."""
 
 Assembly = Literal["open", "crossed"]
 
@@ -83,7 +83,10 @@ class StatedGear(Statement):
 
 
 class StatedSkeleton(Statement):
-    """Joints in a reference configuration, and what joins them; the input is a link's name, or a slide's joint."""
+    """Joints in a reference configuration, and the links, slides and gears that connect them.
+
+    The input is the name of a link, or the joint of a slide.
+    """
 
     joints: dict[Annotated[str, Field(min_length=1, max_length=50)], Point] = Field(min_length=2, max_length=40)
     links: list[StatedLink] = Field(min_length=2, max_length=20)

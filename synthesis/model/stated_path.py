@@ -1,4 +1,4 @@
-"""Where in what a client stated a fault lies."""
+"""Location of a validation error in the client's document."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import Any
 
 
 def stated_steps(location: Sequence[str | int], stated: Any, missing: bool) -> list[str | int]:
-    """The steps of a validation error's location that exist in what was stated; of a missing field its name, too.
+    """Return the steps of a validation error's location that exist in the document, and the name of a missing field.
 
-    The location also names the member of a union that was tried, and marks keys of objects; these are left out.
+    The location also contains the tried member of a union and marks for keys of objects; these are dropped.
     """
     steps: list[str | int] = []
     value = stated

@@ -1,4 +1,4 @@
-"""What a client says that a given linkage is to do: targets of an analysis."""
+"""Requested targets for the analysis of a given linkage."""
 
 from __future__ import annotations
 
@@ -11,25 +11,26 @@ from synthesis.model.dimension import OUTPUT, Angle, Length, Output
 from synthesis.model.statement import Coordinate, Degrees, Number, Statement
 
 MOST_TARGETS = 200
+"""Maximum number of targets of one analysis."""
 
 
 class StatedTarget(Statement):
-    """A place of P with or without an angle of the body, or a place of the output at an input.
+    """Position of P with or without an angle of the body, or position of the output at a given input.
 
-    The body stands in the reference as the mechanism's `reference_body_angle` says, which is that of the first target
-    where it is left out.
+    The angle of the body in the reference is the mechanism's `reference_body_angle`, by default the angle of the first
+    target.
     """
 
-    x: Coordinate | None = Field(default=None, description="Of P.")
-    y: Coordinate | None = Field(default=None, description="Of P.")
+    x: Coordinate | None = Field(default=None, description="Coordinate x of P.")
+    y: Coordinate | None = Field(default=None, description="Coordinate y of P.")
     angle: Degrees | None = Field(default=None, description="Absolute angle of the body.")
     output: Annotated[Number, OUTPUT] | None = Field(
         default=None,
-        description="Absolute angle of the output link, degrees, or place of a slider along its line, from the foot of "
-        "the fixed pivot, length units; at an input that is stated.",
+        description="Absolute angle of the output link, degrees, or position of a slider along its line, from the foot "
+        "of the fixed pivot, length units; needs `input_angle`.",
     )
     input_angle: Degrees | None = Field(
-        default=None, description="Where the input stands; left out, where the linkage comes nearest."
+        default=None, description="Input angle of the target; by default the angle at which the linkage comes nearest."
     )
 
     @model_validator(mode="before")
@@ -39,7 +40,7 @@ class StatedTarget(Statement):
             return stated
         has = {name for name in ("x", "y", "angle", "output", "input_angle") if stated.get(name) is not None}
         if "output" in has and ({"x", "y", "angle"} & has or "input_angle" not in has):
-            raise ValueError("a target of the output has output and input_angle, and nothing of P or the body")
+            raise ValueError("a target of the output consists of output and input_angle, without x, y and angle")
         if "output" not in has and not {"x", "y"} <= has:
             raise ValueError("give x and y of P, or output and input_angle")
         return stated
@@ -51,10 +52,10 @@ class StatedTarget(Statement):
 
 
 class MetTarget(Answer):
-    """A target as the linkage meets it, as it is stated."""
+    """Input and errors of the given linkage at a target."""
 
     index: int
-    input_angle: Angle = Field(description="Absolute input angle, degrees, in one run from the first target.")
-    point_residual: Length | None = optional("Distance of P from its place.")
-    angle_residual: Angle | None = optional("Difference of the body's angle, degrees.")
-    error: Output | None = optional("Of the output: degrees, or length units.")
+    input_angle: Angle = Field(description="Absolute input angle, degrees, continuous from the first target.")
+    point_residual: Length | None = optional("Distance of P from the target.")
+    angle_residual: Angle | None = optional("Difference between the body's angle and that of the target, degrees.")
+    error: Output | None = optional("Error of the output, degrees or length units.")

@@ -1,8 +1,8 @@
-"""The field ``mechanisms`` of kinds that know sixbars: ``auto``, or a list of the types that are looked for.
+"""Field ``mechanisms`` of kinds that support sixbars: ``auto``, or a list of the types to search.
 
-A kind names its types by a literal of its own, and says what its sixbars cannot keep; left out, the field changes
-nothing. Under ``auto`` all can be stated that can be without it: sixbars are looked for where they can keep it. A list
-is refused at the field that its sixbars cannot keep.
+A kind defines its types by a literal, and lists the constraints that its sixbars do not support. Without the field
+nothing changes. ``auto`` accepts every statement and searches sixbars only if they support it. A list of types
+is refused, with a message at each field that its sixbars do not support.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from synthesis.model.statement import Contradiction
 Name = TypeVar("Name", bound=str)
 
 Auto = Literal["auto"]
-"""The simplest type that meets the demands; others beside it where they are clearly better."""
+"""The simplest type that satisfies the constraints, and other types if they are clearly better."""
 
 
 UNCLASSED: Literal["stephenson_2"] = "stephenson_2"
-"""The sixbar whose links make no fourbar O2 A B O4, and whose input is driven by no other closure than a triad."""
+"""The sixbar that contains no fourbar O2 A B O4, so that it has no Grashof class; its input drives a triad."""
 
 
 def named_among(stated: Auto | Sequence[str] | None, every: Sequence[Name]) -> tuple[Name, ...]:
-    """Of some types those that a statement wants: all under ``auto``, none where the field is left out."""
+    """Return the requested ones of all types: all for ``auto``, none if the field is left out."""
     if stated is None:
         return ()
     return tuple(name for name in every if stated == "auto" or name in stated)
@@ -33,36 +33,36 @@ def named_among(stated: Auto | Sequence[str] | None, every: Sequence[Name]) -> t
 def looked_for(
     stated: Auto | Sequence[str] | None, every: Sequence[Name], lacking: Iterable[Contradiction]
 ) -> tuple[Name, ...]:
-    """The sixbars that are looked for: those that are wanted, under ``auto`` only where they lack nothing."""
+    """Return the sixbars to search: the requested ones, and for ``auto`` all or none, if something is unsupported."""
     return () if stated == "auto" and any(True for _ in lacking) else named_among(stated, every)
 
 
 def refused(
     stated: Auto | Sequence[str] | None, every: Sequence[str], lacking: Iterable[Contradiction]
 ) -> list[Contradiction]:
-    """What a list with sixbars cannot be beside."""
+    """Return the fields that contradict an explicit list with sixbars."""
     return list(lacking) if isinstance(stated, list) and named_among(stated, every) else []
 
 
 def not_looked_for(lacking: Iterable[Contradiction]) -> str:
-    """What is said where ``auto`` has no sixbars, by the fields that they cannot keep."""
-    return f"Sixbars were not looked for: they cannot keep {_fields(lacking)}."
+    """Describe why ``auto`` searched no sixbars, by the fields that they do not support."""
+    return f"Sixbars were not searched: they do not support {_fields(lacking)}."
 
 
 def without_unclassed(named: Sequence[Name], beyond: Iterable[Contradiction]) -> tuple[Name, ...]:
-    """The sixbars that are looked for where :data:`UNCLASSED` is left out beside what is beyond it."""
+    """Return the sixbars to search, without :data:`UNCLASSED` if it does not support some fields."""
     left_out = any(True for _ in beyond)
     return tuple(name for name in named if not (left_out and name == UNCLASSED))
 
 
 def told_of_unclassed(named: Sequence[Name], beyond: Iterable[Contradiction]) -> str:
-    """What is said where :data:`UNCLASSED` is among the types and left out, by the fields; else nothing."""
+    """Describe why :data:`UNCLASSED` was requested but not searched, by the fields; empty if it was searched."""
     fields = _fields(beyond) if UNCLASSED in named else ""
-    return f"Stephenson II sixbars were not looked for beside {fields}." if fields else ""
+    return f"Stephenson II sixbars were not searched: they do not support {fields}." if fields else ""
 
 
 def no_class(limits: Constraints) -> list[Contradiction]:
-    """The refusal of a class of :data:`UNCLASSED`."""
+    """Return the contradiction of a Grashof class requested of :data:`UNCLASSED`, if there is one."""
     return limits.of_another_class((), "classifies the fourbar O2 A B O4, which a Stephenson II sixbar does not have")
 
 
@@ -71,11 +71,11 @@ def _fields(faults: Iterable[Contradiction]) -> str:
 
 
 def beside_sixbars(problem: LinkageProblem) -> Iterator[Contradiction]:
-    """What is stated of linkages and cannot be had of sixbars, whatever they are for."""
+    """Yield the fields that no sixbar supports, for all kinds of problems."""
     if problem.manufacture is not None:
-        yield Contradiction("/manufacture", "is not built for sixbars; leave it out, or take them out")
+        yield Contradiction("/manufacture", "sixbars do not support `manufacture`; leave it or the sixbars out")
     for name in ("fixed_pivots", "moving_pivots"):
         if problem.space is not None and getattr(problem.space, name) is not None:
             kind = name.removesuffix("s")
-            detail = f"names the sides of a fourbar; state constraints.{kind}_region, which all pivots of a sixbar keep"
+            detail = f"these zones are for the sides of a fourbar; for sixbars give constraints.{kind}_region instead"
             yield Contradiction(f"/space/{name}", detail)

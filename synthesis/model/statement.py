@@ -1,7 +1,7 @@
-"""What every statement of a problem is made of, whatever its kind.
+"""Parts of the statement of every problem, for all kinds.
 
-A statement can be well-formed and still contradict itself (two equal positions, more choices than there are
-freedoms). Each kind lists such faults by field in ``contradictions``, so that a client is told where to look.
+A statement can be well-formed and still contradict itself, for example by two equal positions, or by more choices than
+degrees of freedom. Each kind lists such contradictions by field in ``contradictions``.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, model_v
 from synthesis.model.dimension import ANGLE, LENGTH, Measured
 
 ABSURD = 1e9
-"""Numbers beyond this are typing errors or attacks, never mechanisms; they are refused."""
+"""Maximum magnitude of a number; larger ones are typing errors or attacks and are refused."""
 
 ROUNDED_OFF = 1e-10
-"""Lengths below this share of the coordinates that they lie at have lost most of their digits there."""
+"""Share of the coordinates below which a length has lost most of its digits to cancellation."""
 
 TINY = 1e-30
-"""Numbers nearer to 0 are read as 0: they are what rounding has left of it, and a few of them multiplied are 0."""
+"""Magnitude below which a number is read as 0: it is rounding noise, and products of a few such numbers underflow."""
 
 
 def _sizable(number: Any) -> Any:
@@ -27,7 +27,7 @@ def _sizable(number: Any) -> Any:
 
 
 Sizable = BeforeValidator(_sizable)
-"""Of numbers that have bounds of their own: what is so near to 0 that it makes no difference is 0."""
+"""Validator for numbers with bounds of their own that replaces negligible values by 0."""
 
 Number = Annotated[float, Field(strict=True, ge=-ABSURD, le=ABSURD, allow_inf_nan=False), Sizable]
 NonNegative = Annotated[float, Field(strict=True, ge=0.0, le=ABSURD, allow_inf_nan=False), Sizable]
@@ -41,14 +41,14 @@ Point = Annotated[tuple[Number, Number], LENGTH]
 
 
 class Contradiction(NamedTuple):
-    """A fault of a well-formed statement: the field (JSON pointer below the problem) and what is wrong with it."""
+    """An error in a well-formed statement: the field (JSON pointer below the problem) and a message."""
 
     path: str
     detail: str
 
 
 class ContradictionError(ValueError):
-    """A problem that contradicts itself was given to a solver; carries the :class:`Contradiction`."""
+    """Raised if a solver gets a problem that contradicts itself; carries the :class:`Contradiction`."""
 
     def __init__(self, contradiction: Contradiction) -> None:
         self.contradiction = contradiction
@@ -56,13 +56,13 @@ class ContradictionError(ValueError):
 
 
 class Statement(Measured):
-    """Base of every model that a client writes: unknown fields are refused, values cannot change."""
+    """Base of every model that a client writes: unknown fields are refused, and values are immutable."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class Range(Statement):
-    """Base of what has a least and a greatest value, `min` and `max`: equal to fix it, and one of them may be open."""
+    """Base of ranges with a minimum, `min`, and a maximum, `max`: equal values fix a number; one may be left out."""
 
     @model_validator(mode="after")
     def _min_to_max(self) -> Self:
@@ -70,7 +70,7 @@ class Range(Statement):
         if least is None and most is None:
             raise ValueError("give min, max or both")
         if least is not None and most is not None and least > most:
-            raise ValueError("min must not be above max")
+            raise ValueError("min must not exceed max")
         return self
 
 
@@ -82,7 +82,7 @@ def _ordered(interval: tuple[float, float]) -> tuple[float, float]:
 
 def _somewhere(point: tuple[float | None, float | None]) -> tuple[float | None, float | None]:
     if point == (None, None):
-        raise ValueError("state one coordinate at least, or leave the point out")
+        raise ValueError("give at least one coordinate, or leave the point out")
     return point
 
 
@@ -103,21 +103,21 @@ class StatedProblem(Statement):
 
     @property
     def slides(self) -> bool:
-        """Whether the output is a slider: what measures an output is a length then, otherwise an angle."""
+        """Whether the output is a slider, so that outputs are lengths; otherwise they are angles."""
         return False
 
     @property
     def force_units(self) -> Literal["si", "consistent"] | None:
-        """What forces are in where the statement has units for them: N, N·m and W, or any consistent set."""
+        """Units of forces, if the statement has any: N, N·m and W, or any consistent set."""
         return None
 
     @property
     def oscillating(self) -> bool:
-        """Whether a displacement is that of an arm, in degrees, with rates in radians; otherwise it is a length."""
+        """Whether displacements are angles of an arm, in degrees with rates in radians; otherwise they are lengths."""
         return False
 
     def contradictions(self) -> list[Contradiction]:
-        """Faults that no single field shows."""
+        """Return contradictions that no single field shows."""
         return []
 
     def require_consistent(self) -> None:

@@ -1,4 +1,4 @@
-"""Outlines as triangles between their own corners."""
+"""Triangulation of outlines."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 Complex = NDArray[np.complex128]
 
 TURNS = (0.0, 0.37, 0.81, 1.3, 2.1, 2.9)
-"""Radians by which an outline is turned, one after the other, until it is triangulated: GEOS gives up on sound outlines
-now and then, by the last digits of their corners."""
+"""Rotations (radians) to try in turn until an outline is triangulated: GEOS occasionally fails on valid outlines,
+depending on the last digits of their corners."""
 
 
 def triangles_of(corners: Complex) -> Complex:
-    """Triangles that make up a polygon, shape (k, 3).
+    """Triangulate a polygon between its own corners; complex, shape (k, 3).
 
-    What touches itself by rounding is taken apart there. An outline that cannot be triangulated is its convex hull.
+    An outline that touches itself by rounding is split there. If the triangulation fails, the convex hull is used.
     """
     from shapely import Polygon, constrained_delaunay_triangles, get_coordinates, get_parts
     from shapely.errors import GEOSException
@@ -28,6 +28,7 @@ def triangles_of(corners: Complex) -> Complex:
             parts = get_parts(constrained_delaunay_triangles(shape))
         except GEOSException:
             continue
+        # Map each vertex back to the nearest original corner: the rotation must not change the coordinates.
         places = np.array([get_coordinates(part).view(np.complex128).ravel()[:3] for part in parts])
         return np.asarray(corners[np.abs(places[..., None] - turned).argmin(axis=-1)])
     hull = get_coordinates(shape.convex_hull).view(np.complex128).ravel()[:-1] * np.exp(-1j * turn)

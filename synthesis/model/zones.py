@@ -1,4 +1,4 @@
-"""Shapes in the plane that statements speak of: where pivots may lie, and what stands in the way."""
+"""Shapes in the plane: permitted zones of pivots, and obstacles."""
 
 from __future__ import annotations
 
@@ -20,27 +20,28 @@ Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
 
 MOST_VERTICES = 1000
-"""Of one outline: a curve drawn in steps of a third of a degree. Every pair of edges counts in a sweep."""
+"""Maximum number of vertices of an outline, as of a circle in steps of a third of a degree. The cost of a sweep grows
+with the pairs of edges."""
 
 ON_EDGE = 1e-9
-"""Points this share of the greatest coordinate outside an area count as inside: they were meant to lie on its edge."""
+"""Distance outside an area, as a share of the largest coordinate, up to which points count as lying on its edge."""
 
 FLAT = 1e-9
-"""Area of a polygon, as a share of the square of its extent, that is none."""
+"""Area of a polygon, as a share of the square of its extent, up to which it counts as degenerate."""
 
 
 class Area(Protocol):
-    """Where points may lie."""
+    """An area in which points may lie."""
 
     def distance_each(self, points: Complex) -> Real:
-        """How far points, of any shape, lie outside, in length units; 0 within and, to rounding, on the edge."""
+        """Compute distances of points (any shape) from the area, length units; 0 inside and on the edge."""
 
     def sampled(self, rng: np.random.Generator, count: int) -> Complex:
-        """Points spread evenly over the area, shape (count,)."""
+        """Sample points uniformly from the area, complex, shape (count,)."""
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
-        """The box around it: x from, to, y from, to."""
+        """Bounding box: minimum and maximum x, minimum and maximum y."""
 
 
 def _simple(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
@@ -51,7 +52,7 @@ def _simple(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
         raise ValueError("the corners enclose no area")
     if not Polygon(points).is_valid:
         reason = is_valid_reason(Polygon(points))
-        raise ValueError(f"the outline must not meet itself ({reason})")
+        raise ValueError(f"the outline must not intersect itself ({reason})")
     return points
 
 
@@ -60,14 +61,14 @@ Outline = Annotated[list[Point], Field(min_length=3, max_length=MOST_VERTICES), 
 
 
 class Circle(Statement):
-    """A circle with what it encloses."""
+    """A circle with its interior."""
 
     center: Point
     radius: PositiveLength
 
 
 def _shaped(corners: Complex) -> Any:
-    """The geometry of a point, a line or a polygon."""
+    """Build the Shapely geometry of a point, a line or a polygon from its corners."""
     from shapely import LineString, Point, Polygon
 
     pairs = np.stack([corners.real, corners.imag], axis=1)
@@ -109,7 +110,7 @@ class Zone(Statement):
         return np.asarray(np.where(away > slack, away, 0.0))
 
     def distance_from(self, corners: Complex) -> float:
-        """Distance from a point, a line or a polygon by its corners; 0 where they meet."""
+        """Compute the distance from a point, a line or a polygon given by its corners; 0 if they touch."""
         from shapely import Point
 
         other = _shaped(corners)
@@ -118,7 +119,7 @@ class Zone(Statement):
         return float(other.distance(self._shape))
 
     def holds(self, corners: Complex) -> bool:
-        """Whether a point, a line or a polygon reaches inside, and does not only touch."""
+        """Return whether a point, a line or a polygon reaches the interior instead of only touching the edge."""
         from shapely import Point
 
         other = _shaped(corners)
@@ -136,6 +137,7 @@ class Zone(Statement):
         weights = np.abs(((corners[:, 1] - corners[:, 0]).conj() * (corners[:, 2] - corners[:, 0])).imag)
         chosen = corners[rng.choice(len(corners), count, p=weights / weights.sum())]
         first, second = rng.uniform(0.0, 1.0, (2, count))
+        # Reflect samples beyond the diagonal, so that the parallelogram folds onto the triangle.
         beyond = first + second > 1.0
         first, second = np.where(beyond, 1.0 - first, first), np.where(beyond, 1.0 - second, second)
         sides = chosen[:, 1:] - chosen[:, :1]
@@ -155,7 +157,7 @@ class Zone(Statement):
 
     @property
     def outline(self) -> tuple[Complex, float]:
-        """Corners, or the centre alone, and the radius by which they are widened."""
+        """Corners, or the centre of a circle, and the radius by which they are widened."""
         if self.circle is not None:
             return np.array([complex(*self.circle.center)]), self.circle.radius
         assert self.polygon is not None
@@ -168,13 +170,13 @@ class MovingZone(Zone):
     frame: Annotated[
         Literal["plane", "body"],
         Field(
-            description="plane: where the pivot is in the first position, as it is met. body: where it is on the body, "
-            "drawn as the body lies in the first position."
+            description="plane: position of the pivot in the plane in the first position. body: position on the body, "
+            "drawn with the body in its first position."
         ),
     ] = "plane"
 
     def carried(self, moved: Callable[[tuple[float, float]], tuple[float, float]]) -> Self:
-        """A zone of the body that goes with it, by where its points go; one of the plane stays."""
+        """Return the zone after moving the body; ``moved`` maps points of the body. Zones of the plane do not move."""
         if self.frame == "plane":
             return self
         if self.circle is not None:
@@ -185,7 +187,7 @@ class MovingZone(Zone):
 
 
 class AnyOf:
-    """Any of several zones."""
+    """Union of several zones."""
 
     def __init__(self, zones: Sequence[Zone]) -> None:
         self.zones = tuple(zones)
@@ -197,18 +199,18 @@ class AnyOf:
         return hash(len(self.zones))
 
     def distance_each(self, points: Complex) -> Real:
-        """How far points lie outside all of them."""
+        """Compute the distances of points (any shape) from the nearest zone, length units."""
         return np.asarray(np.min([zone.distance_each(points) for zone in self.zones], axis=0))
 
     def sampled(self, rng: np.random.Generator, count: int) -> Complex:
-        """Points spread evenly over all of them, shape (count,)."""
+        """Sample points from the zones in proportion to their areas, complex, shape (count,)."""
         sizes = np.array([zone.size for zone in self.zones])
         drawn = np.stack([zone.sampled(rng, count) for zone in self.zones])
         return np.asarray(drawn[rng.choice(len(sizes), count, p=sizes / sizes.sum()), np.arange(count)])
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
-        """The box around all of them."""
+        """Bounding box of all zones."""
         boxes = np.array([zone.bounds for zone in self.zones])
         least, greatest = boxes.min(axis=0), boxes.max(axis=0)
         return float(least[0]), float(greatest[1]), float(least[2]), float(greatest[3])

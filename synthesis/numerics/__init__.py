@@ -1,1 +1,1 @@
-"""Numerical tools that several tasks share."""
+"""Numerical methods that several kinds of problems share."""

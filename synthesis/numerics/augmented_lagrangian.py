@@ -1,16 +1,16 @@
-"""Limits of least squares, met by multipliers: descents that are repeated until the limits hold to rounding.
+"""Constrained least squares by the augmented Lagrangian: descents are repeated until the limits hold to rounding.
 
-Half the sum of squared residuals is made least under inequalities g(x) ≥ 0 and equations h(x) = 0 by the augmented
-Lagrangian (Nocedal & Wright, *Numerical Optimization*, 2nd ed., secs. 10.3, 17.3). With multipliers λ and a weight w a
-limit is one more residual of :mod:`synthesis.numerics.levenberg`,
+The method minimizes half the sum of squared residuals under inequalities g(x) ≥ 0 and equations h(x) = 0 (Nocedal &
+Wright, *Numerical Optimization*, 2nd ed., secs. 10.3, 17.3). With multipliers λ and a weight w each limit adds one
+residual to the problem of :mod:`synthesis.numerics.levenberg`,
 
     √w (λ/w − g)   where it is positive,        √w (λ/w − h),
 
-and between descents λ becomes max(0, λ − w g), or λ − w h. The cost stays a sum of squares, and limits hold to rounding
-in the end although w stays moderate, since the multipliers converge to the limits' forces.
+and between descents λ becomes max(0, λ − w g), or λ − w h. The cost stays a sum of squares. The multipliers converge
+to the forces of the limits, so that the limits hold to rounding in the end although w stays moderate.
 
-The values g and h are *margins*. A problem keeps them at the end of its ``state``, one for each multiplier, and appends
-their rows by :func:`limit_rows`. An infinite margin is that of a limit that is not stated.
+The values g and h are called *margins*. A problem keeps them at the end of its ``state``, one for each multiplier, and
+appends their rows by :func:`limit_rows`. A limit that was not given has an infinite margin.
 """
 
 from __future__ import annotations
@@ -29,26 +29,26 @@ from synthesis.numerics.status import Status
 Real = NDArray[np.float64]
 
 VIOLATION_TOLERANCE = 1e-11
-"""Violation of a limit (task sizes; shares of a length) that counts as rounding."""
+"""Violation of a limit (in task sizes, or as a share of a length) that counts as rounding."""
 
 MAX_ROUNDS, MAX_STEPS = 20, 300
-"""Number of descents, and of steps of each, after which a problem of a few unknowns has no minimum."""
+"""Maximum number of descents, and of steps of each: a problem of a few unknowns that needs more has no minimum."""
 
 TOLERANCE = 1e-14
-"""Of a descent: see :func:`synthesis.numerics.levenberg.descend`."""
+"""Relative decrease of the cost at which a descent ends: see :func:`synthesis.numerics.levenberg.descend`."""
 
 SLOW_DECREASE, WEIGHT_INCREASE = 0.25, 10.0
-"""Where a descent leaves more than the first share of the violation, the weight is multiplied by the second."""
+"""Share of the violation above which a descent counts as slow, and the factor that the weight then grows by."""
 
 MIN_WEIGHT = 1e-300
-"""A weight w with which limits add nothing to the sum of squares; w divides, so that it cannot be 0."""
+"""Weight w with which limits add nothing to the sum of squares. It cannot be 0 because the rows divide by it."""
 
 _IMPOSSIBLE, _INFEASIBLE = int(Status.IMPOSSIBLE), int(Status.INFEASIBLE)
 
 
 @njit(cache=True, nogil=True)
 def load_of(margin: float, multiplier: float, weight: float, equation: bool) -> float:
-    """λ/w − g where the limit bears a load, else 0."""
+    """Return λ/w − g if the limit bears a load, otherwise 0."""
     load: float = multiplier / weight - margin
     return load if equation or load > 0.0 else 0.0
 
@@ -57,16 +57,16 @@ def load_of(margin: float, multiplier: float, weight: float, equation: bool) -> 
 def limit_rows(
     margins: Real, gradients: Real, equations: int, multipliers: Real, residuals: Real, jacobian: Real, m: int
 ) -> int:
-    """Append the residuals of limits that bear a load from row m on; returns the number of rows.
+    """Append the residuals of the limits that bear a load, from row m on, and return the new number of rows.
 
     Parameters
     ----------
     margins, gradients : float64, shapes (limits,) and (limits, n)
-        Values g, and h for the last ``equations`` of them, and their derivatives by the unknowns.
+        Values g, the last ``equations`` of them h, and their derivatives by the unknowns.
     multipliers : float64, shape (limits + 1,)
-        λ of each, and w.
+        λ of each limit, then w.
     residuals, jacobian : float64, shapes (most,) and (most, n)
-        Written.
+        Output: rows from m on are overwritten.
     """
     limits = margins.size
     weight = multipliers[limits]
@@ -75,6 +75,7 @@ def limit_rows(
         if margins[k] == np.inf:
             continue
         load = load_of(margins[k], multipliers[k], weight, k >= limits - equations)
+        # A limit without load adds no row, so that the number of rows changes from step to step.
         if load != 0.0:
             residuals[m] = root * load
             for i in range(gradients.shape[1]):
@@ -85,12 +86,13 @@ def limit_rows(
 
 @njit(cache=True, nogil=True)
 def _renew(margins: Real, equations: int, multipliers: Real) -> float:
-    """Multipliers for the next descent from the margins at the end of the last; the largest violation."""
+    """Update the multipliers for the next descent from the margins of the last one; return the largest violation."""
     limits = margins.size
     weight, worst = multipliers[limits], 0.0
     for k in range(limits):
         if margins[k] < np.inf:
             equation = k >= limits - equations
+            # An inequality is violated on one side only, an equation on both.
             worst = max(worst, abs(margins[k]) if equation else -margins[k])
             multipliers[k] = weight * load_of(margins[k], multipliers[k], weight, equation)
     return worst
@@ -118,10 +120,10 @@ def hold(
     steps: int,
     ended: Real,
 ) -> int:
-    """Descend in place to a minimum at which all limits hold; returns the status of the last descent.
+    """Descend in place to a minimum at which all limits hold, and return the status of the last descent.
 
-    Limits with kinks, such as least distances have, may be left violated: where several sides of one bear a load the
-    multipliers do not converge, and the violation falls only as the weight grows.
+    Limits with kinks, such as minimum distances, may stay violated: if several sides of a kink bear a load, the
+    multipliers do not converge, and the violation decreases only as the weight grows.
 
     Parameters
     ----------
@@ -130,12 +132,12 @@ def hold(
     limits, equations : int
         Number of limits, and how many of them, the last, are equations.
     weight : float
-        w at first.
+        Initial w.
     rounds, steps : int
-        Greatest number of descents, with the multipliers renewed after each, and of steps of each:
-        :data:`MAX_ROUNDS`, :data:`MAX_STEPS`, or fewer where they are expensive.
+        Maximum number of descents (the multipliers are updated after each) and of steps per descent:
+        :data:`MAX_ROUNDS` and :data:`MAX_STEPS`, or fewer if steps are expensive.
     ended : float64, shape (1,)
-        Gets half the sum of squares there, without that of the limits; infinite where there is no minimum.
+        Output: half the sum of squares at the minimum without the rows of the limits; infinite without a minimum.
     """
     multipliers = np.zeros(limits + 1)
     multipliers[limits] = weight
@@ -155,10 +157,12 @@ def hold(
             # Multipliers are forces: they are kept when the weight changes.
             multipliers[limits] *= WEIGHT_INCREASE
         before = worst
+    # Evaluate once more with the limits switched off: the reported cost must not contain their penalty.
     multipliers[:limits], multipliers[limits] = 0.0, MIN_WEIGHT
     m = rows(x, points, setting, multipliers, state, residuals, jacobian)
     if m < 0:
         return _IMPOSSIBLE
     ended[0] = half_square(residuals, m)
+    # The last decade is forgiven: an update in the last round may have come close without reaching the tolerance.
     end: int = status if worst <= 10.0 * VIOLATION_TOLERANCE else _INFEASIBLE
     return end

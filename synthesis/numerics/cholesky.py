@@ -1,4 +1,4 @@
-"""Cholesky's method in place, for the small positive definite systems that descents solve by the thousand."""
+"""In-place Cholesky solver for the thousands of small positive definite systems of a descent."""
 
 from __future__ import annotations
 
@@ -19,20 +19,21 @@ def solve_positive(matrix: Real, right: Real) -> bool:
     Parameters
     ----------
     matrix : float64, shape (n, n)
-        A; its lower triangle alone is read.
+        A; only its lower triangle is read.
     right : float64, shape (n,)
         r.
 
     Returns
     -------
     bool
-        False where A is not positive definite; both arrays are then worthless.
+        False if A is not positive definite; both arrays are then invalid.
     """
     n = right.size
     for j in range(n):
         pivot = matrix[j, j]
         for k in range(j):
             pivot -= matrix[j, k] * matrix[j, k]
+        # Written so that NaN, too, counts as not positive.
         if not pivot > 0.0:
             return False
         pivot = math.sqrt(pivot)

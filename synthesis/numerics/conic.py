@@ -1,10 +1,11 @@
-"""Conic programs in the form that Clarabel takes, without a modelling layer: building one costs as good as nothing.
+"""Conic programs in Clarabel's own form, without a modelling layer, so that building one costs almost nothing.
 
     minimize  c·x   subject to   b − A x ∈ K,
 
-K the product of zero cones, nonnegative orthants and second-order cones {(t, v): t ≥ |v|}. The dual objective is told
-too: of any program of this form it is a lower bound of the least value. What the solver reaches to its reduced accuracy
-alone (5·10⁻⁵ instead of 10⁻⁸), on every route, is a minimizer, but no proof: neither a bound nor that there is none.
+with K a product of zero cones, nonnegative orthants and second-order cones {(t, v): t ≥ |v|}. The solution includes the
+dual objective, which is a lower bound of the minimum for any program of this form. If the solver reaches only its
+reduced accuracy (5·10⁻⁵ instead of 10⁻⁸) with all settings, the result is a usable minimizer but proves nothing: it
+gives no lower bound, and it does not show that a program is infeasible or unbounded.
 """
 
 from __future__ import annotations
@@ -27,11 +28,11 @@ STATUSES: dict[str, Status] = {
     "PrimalInfeasible": "infeasible",
     "DualInfeasible": "unbounded",
 }
-"""What is known by what Clarabel says of a program; all else has failed."""
+"""Status of a program by Clarabel's name for it; every other name counts as failed."""
 
 
 class Rows(NamedTuple):
-    """Rows b − A x in one cone, or of second-order cones in many of ``size`` rows each."""
+    """Rows b − A x in one cone, or in several second-order cones of ``size`` rows each."""
 
     cone: Literal["zero", "nonnegative", "second_order"]
     matrix: Real
@@ -40,9 +41,9 @@ class Rows(NamedTuple):
 
 
 class Solution(NamedTuple):
-    """The minimizer, its value and a lower bound of it by the dual; ``status`` tells whether there is one.
+    """Minimizer, its value, and a lower bound of the value from the dual; valid if ``status`` is "solved".
 
-    At reduced accuracy the bound is −∞; what seems to be infeasible or unbounded has failed.
+    At reduced accuracy the bound is −∞, and a program that seems infeasible or unbounded counts as failed.
     """
 
     x: Real
@@ -52,7 +53,8 @@ class Solution(NamedTuple):
 
 
 ROUTES: tuple[dict[str, float | bool], ...] = ({}, {"equilibrate_enable": False}, {"max_step_fraction": 0.95})
-"""Settings that are tried in turn until the solver reaches its accuracy: some programs stall with one, not with all."""
+"""Settings to try in turn until the solver reaches full accuracy: some programs stall with one of them, none with all.
+"""
 
 
 def minimized(cost: Real, rows: Sequence[Rows]) -> Solution:
@@ -70,6 +72,7 @@ def minimized(cost: Real, rows: Sequence[Rows]) -> Solution:
     none = sparse.csc_matrix((len(cost), len(cost)))
     nearly = None
     for route in ROUTES:
+        # One thread: the programs are small, and callers run several at a time.
         settings = clarabel.DefaultSettings()
         settings.verbose = False
         settings.max_threads = 1
@@ -77,10 +80,12 @@ def minimized(cost: Real, rows: Sequence[Rows]) -> Solution:
             setattr(settings, name, value)
         found = clarabel.DefaultSolver(none, cost, matrix, offset, cones, settings).solve()
         reached = str(found.status)
+        # Only a solution of full accuracy has a dual value that bounds the minimum.
         dual = float(found.obj_val_dual) if reached == "Solved" else -np.inf
         solution = Solution(np.array(found.x), float(found.obj_val), dual, STATUSES.get(reached, "failed"))
         if reached in STATUSES and reached != "AlmostSolved":
             return solution
+        # Remember the best inaccurate result: an almost solved program is better than a failed one.
         if nearly is None or (nearly.status == "failed" and solution.status == "solved"):
             nearly = solution
     assert nearly is not None

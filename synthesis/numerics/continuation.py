@@ -1,23 +1,23 @@
 """Parameter homotopy: follow solutions of a square polynomial system while its parameters move.
 
 A system f(y; p) = 0 with n unknowns has, for almost all complex parameters p, the same number of isolated solutions.
-Solutions that are known at parameters p₀ are followed to p₁ along
+Known solutions at parameters p₀ are followed to p₁ along
 
     p(t) = (1 − t) p₀ + t p₁ + t (1 − t) b,    0 ≤ t ≤ 1,
 
-where b bends the way: with a random complex b (or generic p₀) no solution meets another one before t = 1, except on a
-set of probability zero (Morgan & Sommese 1989, doi:10.1016/0096-3003(89)90099-4). Every path is followed by itself:
-Runge-Kutta's fourth-order step of dy/dt = −J⁻¹ f_p ṗ predicts, Newton corrects, and the first Newton step, which shows
-the error of the prediction (∝ h⁵), sets the next step h.
+where b bends the path: with a random complex b (or generic p₀) no solution meets another one before t = 1, except on a
+set of probability zero (Morgan & Sommese 1989, doi:10.1016/0096-3003(89)90099-4). Every path is followed separately.
+A fourth-order Runge–Kutta step of dy/dt = −J⁻¹ f_p ṗ predicts and Newton's method corrects. The first Newton step
+shows the error of the prediction (∝ h⁵) and so sets the next step h.
 
-The system is one compiled function that does the linear algebra, because that is where its structure saves time:
+The system is one compiled function, which also does the linear algebra because the structure of J saves time there:
 
     system(y, low, p, p_low, dp, newton, tangent, work) -> solvable
 
 writes ``newton`` = −J⁻¹ f and ``tangent`` = −J⁻¹ f_p dp, and returns 0 where J is singular; ``work`` is scratch.
-``low`` and ``p_low`` are what y and p have rounded off: a system that computes f at y + low and p + p_low in higher
-precision is followed in higher precision, since Newton's steps go into y and low together. Near a solution that is
-nearly singular the way itself must be as precise: there a change of p by 1e-16 moves y by more than a step does.
+``low`` and ``p_low`` are the rounding errors of y and p. A system that computes f at y + low and p + p_low in higher
+precision is followed in higher precision, since Newton's steps are added to y and low together. Near an almost
+singular solution the parameters need the same precision: there a change of p by 1e-16 moves y by more than a step.
 :mod:`synthesis.numerics.elimination` has a dense solver. The type of a system is :data:`SYSTEM`, so that one compiled
 tracker serves every system and both are cached on disk.
 """
@@ -44,33 +44,33 @@ SYSTEM = types.int64(_VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECT
 """The type of a compiled system: y, low, p, p_low, dp, newton, tangent, work."""
 
 REACHED, TOO_MANY_STEPS, STEP_TOO_SMALL, NOT_CONVERGED = range(4)
-"""How a path ended; only ``REACHED`` gives a solution."""
+"""Status of a path's end; only ``REACHED`` is a solution."""
 
 CLOSE, PRECISELY_CLOSE = 1e-6, 1e-9
-"""Newton's relative step at which a point on the way is near enough to its path, and where the way has twice the
-precision; the next one would be its square."""
+"""Relative Newton step at which a point is close enough to its path, in ordinary and in double-double precision. The
+error that remains is the square of it."""
 
 CORRECTIONS, PRECISE_CORRECTIONS = 3, 6
-"""Newton's steps at most after a prediction, and where the way has twice the precision."""
+"""Maximum number of Newton steps after a prediction, in ordinary and in double-double precision."""
 
 SHARP = 1e-13
-"""Newton's relative step that an end point is refined to, if rounding lets it."""
+"""Relative Newton step to which an end point is refined, if rounding permits."""
 
 CONVERGED = 1e-7
-"""A last Newton step above this, relative, is no convergence: the end point is singular or a path was lost."""
+"""Relative last Newton step above which a path has not converged: its end is singular, or the path was lost."""
 
 FIRST_STEP, LEAST_STEP, LEAST_SHARE = 0.02, 1e-12, 1e-7
-"""Step of t at first, and that below which a path is given up: it runs into a singularity. Where the way has twice the
-precision the last one is a share of what is left of the way: nearly singular ends are neared by ever smaller steps."""
+"""First step of t, and the step below which a path is abandoned because it runs into a singularity. In double-double
+precision the minimum is a share of the remaining path, since nearly singular ends need ever smaller steps."""
 
 OVERFLOW, UNDERFLOW = 1e300, 1e-300
-"""Squared sizes beyond the first are not finite enough to go on with; the second keeps a quotient by zero defined."""
+"""Squared size above which a path has diverged, and a number that keeps quotients by zero defined."""
 
 LEFT = 0.2
-"""Share of the progress that is left for ways after one, which are seldom needed."""
+"""Share of the progress that each further run of all paths leaves to the runs after it, which are seldom needed."""
 
 CHUNK = 16
-"""Number of paths that a thread takes at a time: some milliseconds of work."""
+"""Number of paths that a thread takes at a time: a few milliseconds of work."""
 
 
 class Ends(NamedTuple):
@@ -79,11 +79,11 @@ class Ends(NamedTuple):
     Attributes
     ----------
     y, low : complex, shape (paths, n)
-        End points, and what they have rounded off.
+        End points and their rounding errors.
     status : int, shape (paths,)
-        :data:`REACHED`, or why there is no solution.
+        :data:`REACHED`, or the reason why there is no solution.
     steps : int, shape (paths,)
-        Steps taken and tried.
+        Number of steps, refused ones included.
     """
 
     y: Complex
@@ -94,7 +94,7 @@ class Ends(NamedTuple):
 
 @njit(cache=True, nogil=True)
 def _relative(step: Complex, y: Complex, groups: Any) -> float:
-    """Size of a step relative to the point, the largest over the groups of unknowns that share a scale."""
+    """Return the size of a step relative to the point: the maximum over the groups of unknowns that share a scale."""
     largest = 0.0
     n = 0
     while n < y.size:
@@ -104,6 +104,7 @@ def _relative(step: Complex, y: Complex, groups: Any) -> float:
             size = max(size, y[n].real ** 2 + y[n].imag ** 2)
             moved = max(moved, step[n].real ** 2 + step[n].imag ** 2)
             n += 1
+        # Written so that NaN counts as overflow, too.
         if not moved <= OVERFLOW:
             return np.inf
         largest = max(largest, moved / (size + UNDERFLOW))
@@ -112,7 +113,7 @@ def _relative(step: Complex, y: Complex, groups: Any) -> float:
 
 @njit(cache=True, nogil=True)
 def _parameters(left: float, start: Complex, end: Complex, bend: Complex, p: Complex, dp: Complex) -> None:
-    """The parameters at t = 1 − ``left``, and their derivatives by t."""
+    """Write the parameters at t = 1 − ``left`` and their derivatives by t."""
     t = 1.0 - left
     for k in range(p.size):
         p[k] = left * start[k] + t * end[k] + t * left * bend[k]
@@ -123,7 +124,7 @@ def _parameters(left: float, start: Complex, end: Complex, bend: Complex, p: Com
 def _precise_parameters(
     left: float, start: Complex, end: Complex, bend: Complex, p: Complex, p_low: Complex, dp: Complex
 ) -> None:
-    """The same in twice the precision, as p₁ + (1 − t) (p₀ − p₁ + t b)."""
+    """Write the parameters in double-double precision, as p₁ + (1 − t) (p₀ − p₁ + t b)."""
     t, t_low = add(1.0 + 0j, 0j, complex(-left), 0j)
     for k in range(p.size):
         away, away_low = multiply(t, t_low, bend[k], 0j)
@@ -153,8 +154,9 @@ def _refine(
     tangent: Complex,
     work: Complex,
 ) -> float:
-    """Newton's method in place until its steps are at rounding level; returns the last step's relative size."""
+    """Run Newton's method in place until its steps are at rounding level; return the relative size of the last step."""
     moved = np.inf
+    # Steps shrink quadratically, so that eight suffice; a step that does not shrink has reached rounding level.
     for _ in range(8):
         if system(y, low, p, p_low, dp, newton, tangent, work) == 0:
             break
@@ -190,7 +192,7 @@ def _follow(
     scratch: int,
     precise: bool,
 ) -> tuple[int, int]:
-    """Follow one path; ``y`` is its start and becomes its end. Returns status and steps."""
+    """Follow one path in place, from the start ``y`` to the end; return status and number of steps."""
     n = y.size
     work = np.empty(scratch, np.complex128)
     p, dp = np.empty(start.size, np.complex128), np.empty(start.size, np.complex128)
@@ -210,6 +212,7 @@ def _follow(
             return STEP_TOO_SMALL, tried
         tried += 1
         h = min(h, left)
+        # Runge–Kutta's classical stages; stages 1 and 2 share the parameters at the middle of the step.
         for stage in range(1, 4):
             reach = h if stage == 3 else 0.5 * h
             if stage != 2 and precise:
@@ -230,6 +233,7 @@ def _follow(
             moved = _relative(newton, at, groups)
             if correction == 0:
                 missed = moved
+            # A large correction may lead to a neighbouring path: refuse the step.
             if not moved <= tolerance:
                 break
             for k in range(n):
@@ -237,6 +241,7 @@ def _follow(
             if moved < close:
                 accepted = True
                 break
+        # The prediction error is of order h⁵; aim at 0.4 of the tolerance.
         scale = (0.4 * tolerance / (missed + UNDERFLOW)) ** 0.2 if missed < OVERFLOW else 0.2
         if accepted:
             left -= h
@@ -246,6 +251,7 @@ def _follow(
             h *= min(max(scale, 0.5), grown)
             grown = 2.5
         else:
+            # After a refused step the next accepted one must not grow, or it would fail at the same place.
             h *= min(max(scale, 0.2), 0.6)
             grown = 1.0
     moved = _refine(system, groups, y, low, p, p_low, dp, newton, tangent, work)
@@ -261,6 +267,7 @@ def _follow(
     nogil=True,
 )  # fmt: skip
 def _refine_all(system: Any, groups: Any, y: Complex, low: Complex, p: Complex, scratch: int, moved: Any) -> None:
+    """Refine all solutions in place; ``moved`` receives the relative size of each one's last step."""
     work, still = np.empty(scratch, np.complex128), np.zeros(p.size, np.complex128)
     newton, tangent = np.empty(y.shape[1], np.complex128), np.empty(y.shape[1], np.complex128)
     for n in range(y.shape[0]):
@@ -291,6 +298,7 @@ def _follow_all(
     status: Any,
     steps: Any,
 ) -> None:
+    """Follow all paths in place; ``status`` and ``steps`` receive the outcome of each."""
     for path in range(y.shape[0]):
         status[path], steps[path] = _follow(
             system, groups, y[path], low[path], start, end, bend, tolerance, most_steps, scratch, precise
@@ -316,23 +324,23 @@ def follow(
     Parameters
     ----------
     system : compiled function of type :data:`SYSTEM`
-        The system, see the module.
+        The system; see the module's description.
     groups : int, shape (n,)
-        Unknowns that stand side by side with the same number share a scale, by which steps are measured.
+        Group number of each unknown; adjacent unknowns of one group share a scale, by which steps are measured.
     scratch : int
-        Complex numbers that ``system`` needs as ``work``.
+        Number of complex numbers that ``system`` needs as ``work``.
     y : complex, shape (paths, n)
         Solutions at ``start``.
     start, end, bend : complex, shape (parameters,)
         p₀, p₁ and b.
     tolerance : float
-        Largest error of a prediction, relative; smaller ones take more steps and seldom jump to another path.
+        Maximum relative error of a prediction. A smaller one takes more steps but seldom jumps to another path.
     most_steps : int
-        A path that is not at its end by then is given up.
+        Number of steps after which an unfinished path is abandoned.
     threads : int
-        Paths are independent; the kernel releases the interpreter.
+        Number of threads. Paths are independent, and the kernel releases the interpreter's lock.
     precise : bool
-        Whether the parameters on the way have twice the precision, for a system that uses it.
+        Whether to compute the parameters in double-double precision, for a system that uses it.
 
     Returns
     -------
@@ -364,14 +372,14 @@ def follow(
 def refine(
     system: Any, groups: NDArray[np.int64], scratch: int, y: Complex, low: Complex, p: Complex
 ) -> tuple[Complex, Complex, NDArray[np.float64]]:
-    """Newton's method from approximate solutions at the parameters ``p``.
+    """Refine approximate solutions at the parameters ``p`` by Newton's method.
 
     Returns
     -------
     y, low : complex, shape (solutions, n)
-        The refined solutions.
+        The refined solutions and their rounding errors.
     moved : float, shape (solutions,)
-        Relative size of the last step; at rounding level, times the condition, where it has converged.
+        Relative size of the last step. If it has converged, this is at rounding level times the condition number.
     """
     y, low = np.array(y, np.complex128, order="C"), np.array(low, np.complex128, order="C")
     moved = np.empty(len(y))
@@ -381,7 +389,10 @@ def refine(
 
 
 def further(way: int, share: float) -> float:
-    """How far a search is that may follow all paths along several ways, with a share of one done: it never goes back.
+    """Return the progress of a search that may follow all paths several times, with ``share`` of run ``way`` done.
+
+    The number of runs is not known in advance, so that each run takes a fixed share of the remaining progress; the
+    progress therefore never decreases.
 
     >>> further(0, 0.0), further(0, 1.0), further(1, 0.0), round(further(1, 1.0), 2)
     (0.0, 0.8, 0.8, 0.96)

@@ -1,4 +1,4 @@
-"""Convex programs by cvxpy and Clarabel: the library where it is needed, and the solution of one program."""
+"""Convex programs in cvxpy, solved by Clarabel."""
 
 from __future__ import annotations
 
@@ -8,12 +8,15 @@ from typing import Any
 
 
 def modeling() -> Any:
-    """cvxpy, imported where it is first needed: that takes a second, and only those who solve need it."""
+    """Import cvxpy and return it. The import takes a second, so that only callers that solve a program pay for it."""
     return import_module("cvxpy")
 
 
 def minimized(cost: Any, constraints: list[Any]) -> bool:
-    """Solve a program of cvxpy; whether it has a solution. One of reduced accuracy counts: whoever asks measures it."""
+    """Solve a cvxpy program and return whether it has a solution.
+
+    A solution of reduced accuracy counts, since callers measure the result themselves.
+    """
     cp = modeling()
     problem = cp.Problem(cp.Minimize(cost), constraints)
     try:

@@ -1,7 +1,8 @@
-"""Complex numbers of twice the usual precision, each the unevaluated sum of two: about 31 digits, in compiled kernels.
+"""Complex arithmetic in double-double precision (about 31 digits) for compiled kernels.
 
-Error-free transformations of Dekker and Knuth (Dekker 1971, doi:10.1007/BF01397083). A number is a pair (high, low)
-of complex numbers, ``low`` being what ``high`` rounded off. What is far smaller than ``low`` is dropped.
+Error-free transformations of Dekker and Knuth (Dekker 1971, doi:10.1007/BF01397083). A number is the unevaluated sum
+of a pair (high, low) of complex numbers; ``low`` is the rounding error of ``high``. Terms far smaller than ``low`` are
+dropped.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ _SPLITTER = 134217729.0
 
 @njit(cache=True, nogil=True, inline="always")
 def two_sum(a: complex, b: complex) -> tuple[complex, complex]:
-    """a + b without error."""
+    """Return the rounded sum a + b and its exact rounding error (Knuth)."""
     total = a + b
     part = total - a
     return total, (a - (total - part)) + (b - part)
@@ -22,8 +23,9 @@ def two_sum(a: complex, b: complex) -> tuple[complex, complex]:
 
 @njit(cache=True, nogil=True)
 def _two_product(a: float, b: float) -> tuple[float, float]:
-    """a b of real numbers without error."""
+    """Return the rounded product a b of real numbers and its exact rounding error (Dekker)."""
     product = a * b
+    # Split both factors into halves of 26 bits, whose partial products are exact.
     t = _SPLITTER * a
     a_high = t - (t - a)
     t = _SPLITTER * b
@@ -34,7 +36,7 @@ def _two_product(a: float, b: float) -> tuple[float, float]:
 
 @njit(cache=True, nogil=True)
 def add(a: complex, a_low: complex, b: complex, b_low: complex) -> tuple[complex, complex]:
-    """a + b."""
+    """Return a + b as a pair (high, low)."""
     total, rest = two_sum(a, b)
     rest += a_low + b_low
     high = total + rest
@@ -43,7 +45,7 @@ def add(a: complex, a_low: complex, b: complex, b_low: complex) -> tuple[complex
 
 @njit(cache=True, nogil=True)
 def multiply(a: complex, a_low: complex, b: complex, b_low: complex) -> tuple[complex, complex]:
-    """a b."""
+    """Return a b as a pair (high, low)."""
     p, p_low = _two_product(a.real, b.real)
     q, q_low = _two_product(-a.imag, b.imag)
     u, u_low = _two_product(a.real, b.imag)
@@ -56,7 +58,7 @@ def multiply(a: complex, a_low: complex, b: complex, b_low: complex) -> tuple[co
 
 @njit(cache=True, nogil=True)
 def reciprocal(a: complex, a_low: complex) -> tuple[complex, complex]:
-    """1 / a, by a Newton step from the ordinary quotient."""
+    """Return 1 / a as a pair (high, low), by one Newton step from the quotient in ordinary precision."""
     first = 1.0 / a
     product, product_low = multiply(a, a_low, first, 0j)
     gap = (1.0 - product) - product_low

@@ -1,6 +1,6 @@
-"""Gaussian elimination for small dense systems inside compiled kernels: complex ones, `factor` and `solve` real too.
+"""Gaussian elimination for small dense systems in compiled kernels: complex ones; `factor` and `solve` take real ones.
 
-LAPACK's calls cost more than the arithmetic of a system of ten unknowns, and allocate.
+A call of LAPACK costs more than the arithmetic of a system of ten unknowns, and it allocates memory.
 """
 
 from __future__ import annotations
@@ -17,13 +17,14 @@ Complex = NDArray[np.complex128]
 
 @njit(cache=True, nogil=True)
 def factor(matrix: NDArray[Any], pivots: Any) -> bool:
-    """LU decomposition with partial pivoting in place.
+    """Decompose a matrix into L and U in place, with partial pivoting, and return whether the matrix is regular.
 
-    ``matrix``, shape (n, n), becomes L below the diagonal, U above it and the reciprocals of U's diagonal on it;
-    ``pivots``, shape (n,), the rows exchanged. Returns whether the matrix is regular.
+    Afterwards ``matrix``, shape (n, n), holds L below the diagonal, U above it, and the reciprocals of U's diagonal on
+    the diagonal. ``pivots``, shape (n,), holds the row exchanged with each row.
     """
     n = matrix.shape[0]
     for k in range(n):
+        # |Re| + |Im| orders pivots well enough and needs no square root.
         best, row = -1.0, k
         for i in range(k, n):
             size = abs(matrix[i, k].real) + abs(matrix[i, k].imag)
@@ -47,7 +48,7 @@ def factor(matrix: NDArray[Any], pivots: Any) -> bool:
 
 @njit(cache=True, nogil=True)
 def solve(factors: NDArray[Any], pivots: Any, b: NDArray[Any]) -> None:
-    """Replace ``b``, shape (n,), by the solution of the system that :func:`factor` has decomposed."""
+    """Replace ``b``, shape (n,), by the solution of the system decomposed by :func:`factor`."""
     n = factors.shape[0]
     for k in range(n):
         row = pivots[k]
@@ -67,10 +68,10 @@ def solve(factors: NDArray[Any], pivots: Any, b: NDArray[Any]) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def reduce(matrix: Complex) -> bool:
-    """Solve a system with its right sides, which stand as further columns and are replaced by the solutions.
+    """Solve a system for several right sides in place, and return whether the matrix is regular.
 
-    ``matrix`` has shape (n, n + right sides); what is left of its first n columns has no meaning. Returns whether the
-    matrix is regular.
+    ``matrix`` has shape (n, n + right sides). The right sides are its last columns and are replaced by the solutions;
+    the first n columns are overwritten and have no meaning afterwards.
     """
     n, width = matrix.shape
     for k in range(n):
@@ -85,6 +86,7 @@ def reduce(matrix: Complex) -> bool:
             for c in range(k, width):
                 matrix[k, c], matrix[row, c] = matrix[row, c], matrix[k, c]
         pivot = matrix[k, k]
+        # The reciprocal by hand: a complex division guards against overflow and is several times slower.
         size = 1.0 / (pivot.real * pivot.real + pivot.imag * pivot.imag)
         inverse = complex(pivot.real * size, -pivot.imag * size)
         matrix[k, k] = inverse

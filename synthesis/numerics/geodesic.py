@@ -1,16 +1,16 @@
-"""Levenberg and Marquardt's method with geodesic acceleration, compiled: for minima at the end of curved valleys.
+"""Compiled Levenberg–Marquardt method with geodesic acceleration, for minima at the end of curved valleys.
 
-Where many combinations of the unknowns hardly change the residuals r, the least squares lie in a valley that is curved
-and far longer than wide. Steps along its tangent v leave it and are refused. With the second derivative of the
-residuals along v a step follows it round (Transtrum & Sethna, arXiv:1201.5885, 2012):
+If many combinations of the unknowns hardly change the residuals r, the minimum lies in a curved valley that is far
+longer than it is wide. A step along its tangent v leaves the valley and is refused. With the second derivative of the
+residuals along v a step follows the bend (Transtrum & Sethna, arXiv:1201.5885, 2012):
 
     [J; √μ D] v = −[r; 0],     [J; √μ D] a = −[r_vv; 0],     δ = v + a/2,
 
     r_vv = 2 ((r(x + h v) − r)/h − J v)/h,
 
-accepted where |D a| ≤ α |D v| and the squares are less. D is the greatest norm of each column of J so far. Both systems
-are solved by one QR decomposition, as normal equations lose the directions that are looked for. Problems are those of
-:mod:`synthesis.numerics.levenberg`; their rows are as many, and in the same order, wherever they are asked for.
+A step is accepted if |D a| ≤ α |D v| and the sum of squares decreases. D holds the maximum norm of each column of J so
+far. One QR decomposition solves both systems; normal equations would lose the flat directions that matter here.
+Problems have the form of :mod:`synthesis.numerics.levenberg`, with the same rows in the same order at every point.
 """
 
 from __future__ import annotations
@@ -28,36 +28,42 @@ from synthesis.numerics.levenberg import MATRIX, ROWS, VECTOR, half_square
 Real = NDArray[np.float64]
 
 FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-20, 1e8
-"""Damping μ: at first, least, and that above which the descent has stalled."""
+"""Damping μ: initial value, minimum, and the value above which the descent has stalled."""
 
 LOWERED, RAISED = 5.0, 2.0
-"""By what it falls with a step that is accepted, and rises with one that is refused."""
+"""Factors by which the damping falls after an accepted step and rises after a refused one."""
 
 ALPHA = 0.75
-"""Greatest acceleration beside the velocity."""
+"""Maximum ratio α of acceleration to velocity, both scaled by D."""
 
 DIFFERENCE = 0.1
-"""Step h of the second derivative, in velocities."""
+"""Step h of the finite difference for the second derivative, as a multiple of the velocity."""
 
 LONGEST = 1.0
-"""Greatest change of an unknown in one step."""
+"""Maximum change of an unknown in one step."""
 
 ROUNDING = 1e-29
-"""Cost that is rounding alone; residuals are scaled to the task."""
+"""Cost that is pure rounding, as residuals are scaled to the size of the task."""
 
 SMALL_GAIN, PATIENCE = 1e-9, 5
-"""Relative gain with which a step counts as none, and how many such in turn end the descent."""
+"""Relative gain at or below which a step counts as idle, and the number of consecutive idle steps that end the descent.
+"""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _decomposed(matrix: Real, rows: int, columns: int, heads: Real) -> bool:
-    """Householder's decomposition in place: R above, the vectors below and on the diagonal with ``heads`` for R's."""
+    """Decompose a matrix in place by Householder reflections; return whether it has full rank.
+
+    Afterwards R stands above the diagonal and its diagonal in ``heads``; the reflection vectors stand on and below the
+    diagonal.
+    """
     for j in range(columns):
         square = 0.0
         for i in range(j, rows):
             square += matrix[i, j] * matrix[i, j]
         if not square > 0.0:
             return False
+        # The sign opposite to the head avoids cancellation in the reflection vector.
         norm = -math.copysign(math.sqrt(square), matrix[j, j])
         heads[j] = norm
         matrix[j, j] -= norm
@@ -74,7 +80,8 @@ def _decomposed(matrix: Real, rows: int, columns: int, heads: Real) -> bool:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _solved(matrix: Real, rows: int, columns: int, heads: Real, right: Real, step: Real) -> None:
-    """Least squares of a decomposed system; ``right`` is used up."""
+    """Solve the least-squares problem of a decomposed system for ``step``; ``right`` is overwritten."""
+    # Apply the reflections to the right side, then substitute backward in R.
     for j in range(columns):
         scale = -heads[j] * matrix[j, j]
         product = 0.0
@@ -107,14 +114,14 @@ def _scaled_norm(scale: Real, step: Real) -> float:
 def follow_valley(
     rows: Any, x: Real, points: Real, setting: Real, multipliers: Real, state: Real, most: int, steps: int
 ) -> float:
-    """Descend from x, in place; returns half the sum of squares there, infinite where the start is impossible.
+    """Descend from x in place, and return half the sum of squares at the end; infinite if the start is impossible.
 
     Parameters
     ----------
     rows, x, points, setting, multipliers, state, most
         As for :func:`synthesis.numerics.levenberg.descend`.
     steps : int
-        Greatest number of velocities that are tried, refused ones included.
+        Maximum number of steps to try, refused ones included.
     """
     n = x.size
     residuals, jacobian = np.zeros(most), np.zeros((most, n))
@@ -125,6 +132,7 @@ def follow_valley(
     cost = half_square(residuals, m)
     trial, trial_state = np.empty(n), np.empty(state.size)
     open_, scale = np.zeros(n, np.int64), np.zeros(n)
+    # Columns of zeros belong to unknowns that the problem holds fixed; the QR decomposition must not contain them.
     free = 0
     for j in range(n):
         norm = 0.0
@@ -157,7 +165,7 @@ def follow_valley(
         longest = np.abs(velocity).max()
         if not longest < math.inf:
             break
-        # A long step is no direction of the valley at x.
+        # A long step says nothing about the direction of the valley at x: damp it instead of shortening it.
         if longest > LONGEST:
             damping *= RAISED
             continue
@@ -168,6 +176,7 @@ def follow_valley(
         if rows(trial, points, setting, multipliers, trial_state, tried, unused) != m:
             damping *= RAISED
             continue
+        # Second derivative of the residuals along the velocity, by a one-sided difference with the known slope.
         right[: m + free] = 0.0
         for i in range(m):
             along = 0.0
@@ -179,6 +188,7 @@ def follow_valley(
             damping *= RAISED
             continue
         trial[:] = x
+        # Second-order Taylor step x(1) = x + v + a/2 along the geodesic.
         for j in range(free):
             trial[open_[j]] += velocity[j] + 0.5 * acceleration[j]
         trial_state[:] = state

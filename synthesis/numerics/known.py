@@ -1,4 +1,4 @@
-"""Points of several complex numbers that are known, each once: two are the same that agree to a share of their size."""
+"""Sets of distinct points of several complex numbers; points are the same if they agree to a share of their size."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ Mask = NDArray[np.bool_]
 
 
 def crowded(points: Complex, share: float) -> Mask:
-    """Which of some points, shape (k, numbers), are the same as another one of them."""
+    """Return a mask of the points, shape (k, numbers), that equal another point of the same array."""
     return np.asarray(_near(points, points, share) > 1)
 
 
 def _near(known: Complex, points: Complex, share: float) -> NDArray[np.int64]:
-    """How many known points are the same as each of some."""
+    """Count the known points that equal each of ``points``."""
     radius = share * np.abs(points).max(axis=-1)
     tree = cKDTree(np.ascontiguousarray(known).view(np.float64))
     near = tree.query_ball_point(np.ascontiguousarray(points).view(np.float64), radius, p=np.inf, return_length=True)
@@ -24,14 +24,14 @@ def _near(known: Complex, points: Complex, share: float) -> NDArray[np.int64]:
 
 
 class Known:
-    """What has been met so far.
+    """Set of the points found so far.
 
     Parameters
     ----------
     numbers : int
-        Of a point.
+        Complex numbers per point.
     share : float
-        Of the size of a point, its largest number, to which the same ones agree in every number.
+        Relative tolerance: two points are the same if all their numbers agree to this share of the largest number.
     """
 
     def __init__(self, numbers: int, share: float) -> None:
@@ -39,18 +39,19 @@ class Known:
         self._share = share
 
     def holds(self, points: Complex) -> Mask:
-        """Which of some points, shape (k, numbers), are known."""
+        """Return a mask of the points, shape (k, numbers), that are known."""
         if not len(self._points) or not len(points):
             return np.zeros(len(points), np.bool_)
         return np.asarray(_near(self._points, points, self._share) > 0)
 
     def add(self, points: Complex) -> Mask:
-        """Add some points, shape (k, numbers); tells which of them were new, of several that are the same the first."""
+        """Add points, shape (k, numbers), and return a mask of the new ones; of equal points only the first is new."""
         new = ~self.holds(points)
         own = points[new]
         if len(own):
             radius = self._share * np.abs(own).max(axis=-1)
             tree = cKDTree(np.ascontiguousarray(own).view(np.float64))
+            # A point is kept if no equal one precedes it.
             groups = tree.query_ball_point(tree.data, radius, p=np.inf)
             new[new] = [min(group) == n for n, group in enumerate(groups)]
         self._points = np.concatenate([self._points, points[new]])

@@ -1,22 +1,23 @@
-"""Levenberg and Marquardt's method, compiled: thousands of small descents in a second.
+"""Compiled Levenberg–Marquardt method for thousands of small descents per second.
 
-Half the sum of squared residuals is made least from a start. Limits are residuals too; they are made to hold by
-:mod:`synthesis.numerics.augmented_lagrangian`.
+The method minimizes half the sum of squared residuals from a starting point. Limits are residuals, too;
+:mod:`synthesis.numerics.augmented_lagrangian` enforces them.
 
-A problem is one compiled function that writes residuals and their Jacobian:
+A problem is one compiled function that writes the residuals and their Jacobian:
 
-    rows(x, points, setting, multipliers, state, residuals, jacobian) -> number of rows m, or −1 where x is impossible
+    rows(x, points, setting, multipliers, state, residuals, jacobian) -> number of rows m, or −1 if x is impossible
 
-``points`` and ``setting`` are the problem's data. ``multipliers`` has one number for each limit, and their weight as
-the last. ``state`` belongs to the problem: it holds what the function eliminates itself, such as crank angles, and is
-kept only with steps that are accepted. All functions have the type :data:`ROWS`, so that the method is compiled once.
+``points`` and ``setting`` are the data of the problem. ``multipliers`` has one number for each limit, followed by
+their weight. ``state`` holds unknowns that the function eliminates itself, such as crank angles; it is kept only for
+accepted steps. All functions have the type :data:`ROWS`, so that the method is compiled once.
 
 With r the residuals, J their Jacobian, A = JᵀJ and g = Jᵀr, a step solves
 
     (A + μ D) δ = −g,        D = the greatest diagonal of A so far (Moré 1978, doi:10.1007/BFb0067700),
 
-and is expected to gain −δᵀ(g + A δ/2). The damping μ falls with the ratio ρ of the gain to what was expected, by
-max(1/3, 1 − (2ρ − 1)³), and rises by 2, 4, 8 … while steps are refused (Nielsen 1999, IMM-REP-1999-05, sec. 3).
+and its predicted gain is −δᵀ(g + A δ/2). With ρ the ratio of the actual to the predicted gain, an accepted step
+multiplies the damping μ by max(1/3, 1 − (2ρ − 1)³); refused steps multiply it by 2, 4, 8 … in turn (Nielsen 1999,
+IMM-REP-1999-05, sec. 3).
 """
 
 from __future__ import annotations
@@ -40,31 +41,31 @@ ROWS = types.int64(VECTOR, MATRIX, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX)
 """The type of a problem: x, points, setting, multipliers, state, residuals, jacobian."""
 
 MIN_DAMPING, FIRST_DAMPING, MAX_DAMPING = 1e-15, 1e-3, 1e12
-"""Damping μ: least, at first, and that above which the descent has stalled."""
+"""Damping μ: minimum, initial value, and the value above which the descent has stalled."""
 
 MAX_STEP = 1.0
-"""Greatest change of an unknown in one step; problems scale their unknowns so that this is far."""
+"""Maximum change of an unknown in one step; problems scale their unknowns so that this is a long step."""
 
 ZERO_COST = 1e-30
-"""Cost that is rounding alone; residuals are scaled to the task."""
+"""Cost that is pure rounding, as residuals are scaled to the size of the task."""
 
 MIN_SCALE = 1e-12
-"""Least entry of D: an unknown on which no residual depends stays where it is."""
+"""Minimum entry of D: an unknown that no residual depends on keeps its value."""
 
 STEP_TOLERANCE = 1e-15
-"""A step of this length, or an expected gain of this share of the cost, is rounding."""
+"""Length of a step, or ratio of the predicted gain to the cost, below which it is rounding."""
 
 _STALLED, _SINGULAR, _IMPOSSIBLE = int(Status.STALLED), int(Status.SINGULAR), int(Status.IMPOSSIBLE)
 _STEP_LIMIT, _GRADIENT, _COST = int(Status.STEP_LIMIT), int(Status.GRADIENT), int(Status.COST)
 _STEP, _ZERO = int(Status.STEP), int(Status.ZERO)
 
 ENDED: Any = types.Tuple((types.float64, types.int64))
-"""The type of an end: half the sum of squares, and the :class:`~synthesis.numerics.status.Status`."""
+"""Compiled type of a descent's result: half the sum of squares and the :class:`~synthesis.numerics.status.Status`."""
 
 
 @njit(cache=True, nogil=True)
 def half_square(residuals: Real, m: int) -> float:
-    """Half the sum of the first m residuals' squares."""
+    """Return half the sum of squares of the first m residuals."""
     cost = 0.0
     for k in range(m):
         cost += 0.5 * residuals[k] * residuals[k]
@@ -73,13 +74,14 @@ def half_square(residuals: Real, m: int) -> float:
 
 @njit(cache=True, nogil=True)
 def _normal(residuals: Real, jacobian: Real, m: int, n: int, matrix: Real, gradient: Real) -> None:
-    """A (its lower triangle) and g of the first m rows."""
+    """Write g and the lower triangle of A for the first m rows."""
     for i in range(n):
         gradient[i] = 0.0
         for j in range(i + 1):
             matrix[i, j] = 0.0
     for k in range(m):
         row, value = jacobian[k], residuals[k]
+        # Many rows depend on few unknowns: skipping zeros saves most of the products.
         for i in range(n):
             if row[i] != 0.0:
                 gradient[i] += row[i] * value
@@ -89,7 +91,7 @@ def _normal(residuals: Real, jacobian: Real, m: int, n: int, matrix: Real, gradi
 
 @njit(cache=True, nogil=True)
 def _expected_gain(matrix: Real, gradient: Real, step: Real) -> float:
-    """−δᵀ(g + A δ/2), from the lower triangle of A."""
+    """Return the predicted gain −δᵀ(g + A δ/2), from the lower triangle of A."""
     gain = 0.0
     for i in range(step.size):
         curved = 0.0
@@ -115,7 +117,7 @@ def descend(
     steps: int,
     tolerance: float,
 ) -> tuple[float, int]:
-    """Descend from x, in place, to a local minimum; returns half the sum of squares there, and the status.
+    """Descend from x in place to a local minimum, and return half the sum of squares there and the status.
 
     Parameters
     ----------
@@ -124,16 +126,16 @@ def descend(
     x, points, setting, multipliers, state : float64
         Arguments of the function; ``x`` and ``state`` are changed in place.
     most : int
-        Greatest number of rows.
+        Maximum number of rows.
     steps : int
-        Greatest number of steps, refused ones included.
+        Maximum number of steps, refused ones included.
     tolerance : float
-        The descent has converged when the relative decrease of the cost is below this in two steps in turn.
+        The descent has converged when the cost decreases by less than this share in two consecutive steps.
 
     Returns
     -------
     cost : float
-        Infinite where the start is impossible.
+        Infinite if the start is impossible.
     status : int
         A :class:`~synthesis.numerics.status.Status`.
     """
@@ -160,6 +162,7 @@ def descend(
             for j in range(i + 1):
                 factor[i, j] = matrix[i, j]
             factor[i, i] += damping * scale[i]
+        # A matrix that is not positive definite to rounding needs much more damping: leave it in big steps.
         if not solve_positive(factor, step):
             damping *= 10.0
             if damping > MAX_DAMPING:
@@ -168,6 +171,7 @@ def descend(
         longest = np.abs(step).max()
         if not longest < np.inf:
             return cost, _SINGULAR
+        # Shorten, but keep the direction; the predicted gain is then computed for the shortened step.
         step *= MAX_STEP / longest if longest > MAX_STEP else 1.0
         expected = _expected_gain(matrix, gradient, step)
         trial[:] = x + step
@@ -188,7 +192,7 @@ def descend(
             if small >= 2:
                 return cost, _COST
             continue
-        # Refused although the model expects no more than rounding: the point is stationary as far as can be computed.
+        # The step was refused, but the predicted gain is mere rounding: the point is stationary to working precision.
         if expected <= STEP_TOLERANCE * cost:
             return cost, _GRADIENT
         if longest < STEP_TOLERANCE:
@@ -221,7 +225,7 @@ def descend_each(
     costs: Real,
     statuses: NDArray[np.int64],
 ) -> None:
-    """Descend from each start in place; ``costs`` and ``statuses`` get how each has ended. See :func:`descend`."""
+    """Descend from each start in place; ``costs`` and ``statuses`` receive the results. See :func:`descend`."""
     for k in range(len(starts)):
         costs[k], statuses[k] = descend(
             rows, starts[k], points, setting, multipliers, states[k], most, steps, tolerance

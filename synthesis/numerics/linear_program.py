@@ -1,8 +1,8 @@
-"""One small dense linear program, solved by HiGHS (Huangfu & Hall 2018, doi:10.1007/s12532-017-0130-5).
+"""Small dense linear programs, solved by HiGHS (Huangfu & Hall 2018, doi:10.1007/s12532-017-0130-5).
 
-Sequences of linear programs solve hundreds of them, each with some ten unknowns and up to three hundred rows. The
-simplex method takes half a millisecond for one. ``scipy.optimize.linprog`` spends six times as long on checking and
-presolving it, so that HiGHS is called directly.
+Sequential linear programming solves hundreds of programs with about ten unknowns and up to three hundred rows. The
+simplex method takes half a millisecond for each. ``scipy.optimize.linprog`` spends six times as long on checks and
+presolving, so that this module calls HiGHS directly.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Real = NDArray[np.float64]
 
 
 class Least(NamedTuple):
-    """Where a linear program is least, and its value there."""
+    """Minimizer of a linear program and the minimum."""
 
     at: Real
     value: float
@@ -36,12 +36,13 @@ def least(cost: Real, rows: Real, limits: Real, low: Real, high: Real) -> Least 
     Returns
     -------
     Least or None
-        None where nothing fulfils the rows, where the cost falls without end, and where a number is not finite.
+        None if the program is infeasible or unbounded, or if a number is not finite.
     """
     if not all(np.isfinite(given).all() for given in (cost, rows, limits)):
         return None
     program = highspy.Highs()
     program.setOptionValue("output_flag", False)
+    # Presolving takes longer than the simplex method on programs of this size.
     program.setOptionValue("presolve", "off")
     m, n = rows.shape
     program.passModel(

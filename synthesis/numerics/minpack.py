@@ -1,8 +1,8 @@
-"""Nonlinear least squares of a Python function: Levenberg and Marquardt's method of MINPACK, through scipy.
+"""Nonlinear least squares of Python functions, by MINPACK's Levenberg–Marquardt method through SciPy.
 
-For problems whose unknowns are solved for on the way; those that are one compiled function go to
-:mod:`synthesis.numerics.levenberg`. Failure to converge is a status of a fit, never an exception, as a single bad start
-says nothing about the others.
+Use it for residuals that are Python functions; :mod:`synthesis.numerics.levenberg` solves problems that are one
+compiled function. Failure to converge is a status, never an exception, because one bad start says nothing about the
+others.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ Function = Callable[[Real], Real]
 """Residuals of shape (m,), or their Jacobian of shape (m, n), at a point of shape (n,)."""
 
 TIGHT = 1e-13
-"""Relative change of cost or point below which a fit has arrived: some hundred roundings."""
+"""Relative change of cost or point below which a fit has converged: a few hundred rounding errors."""
 
 EVALUATIONS = 200
-"""Evaluations at most; a start near a minimum takes ten or twenty."""
+"""Maximum number of evaluations; a start near a minimum takes ten or twenty."""
 
 _STATUS = {
     -1: Status.IMPOSSIBLE,
@@ -35,11 +35,11 @@ _STATUS = {
     3: Status.STEP,
     4: Status.COST,
 }
-"""Scipy's statuses; its 4 is 2 and 3 together."""
+"""Status by SciPy's code; its code 4 means 2 and 3 together."""
 
 
 class Fit(NamedTuple):
-    """Where one start has led: the point, half the sum of squares there, and how the method has ended."""
+    """Result of a fit from one start: final point, half the sum of squares there, and status."""
 
     point: Real
     cost: float
@@ -56,16 +56,16 @@ def fit(
     residuals, jacobian : callable
         Residuals (m,) and Jacobian (m, n), finite everywhere; m may be less than n.
     start : float, shape (n,)
-        Where to begin.
+        Starting point.
     tolerance : float
         Relative change of cost and point at which to stop.
     evaluations : int
-        Evaluations of the residuals at most.
+        Maximum number of evaluations of the residuals.
     """
     values = residuals(start)
     if not len(start):
         return Fit(start, 0.5 * float(values @ values), Status.STEP)
-    # MINPACK wants at least as many residuals as unknowns.
+    # MINPACK requires at least as many residuals as unknowns.
     method = "lm" if len(values) >= len(start) else "trf"
     done = least_squares(
         residuals,

@@ -1,15 +1,14 @@
-"""The narrowest band: minimax by a sequence of linear programs with a trust region.
+"""Minimax fitting of the narrowest band, by sequential linear programming with a trust region.
 
-A shape x gives values e(x) at samples of a motion. Wanted is the x for which the band from the least to the greatest of
-them is narrowest, where other values h(x) have to stay in a band of stated width, and others, g(x), must not be
-negative:
+A shape x gives values e(x) at samples of a motion. The method finds the x for which the band from their minimum to
+their maximum is narrowest, while other values h(x) stay in a band of given width and others, g(x), are not negative:
 
     minimise t  subject to  |e_i(x) − m| ≤ t,  |h_j(x) − n| ≤ w,  g_k(x) ≥ 0,  low ≤ x ≤ high.
 
 Each step replaces e, h, g by their tangents and bounds the step (Madsen, "An algorithm for minimax solution of
-overdetermined systems of non-linear equations", J. Inst. Math. Appl. 16 (1975) 321, doi:10.1093/imamat/16.3.321). Where
-as many values are at the band's edges as there are unknowns, which is what Chebyshev's theory gives for smooth motions,
-the steps are Newton's and converge quadratically. Constraints are elastic, so that a start need not meet them.
+overdetermined systems of non-linear equations", J. Inst. Math. Appl. 16 (1975) 321, doi:10.1093/imamat/16.3.321). For
+smooth motions as many values touch the edges of the band as there are unknowns (Chebyshev). The steps are then Newton
+steps and converge quadratically. Constraints are elastic, so that a start need not satisfy them.
 """
 
 from __future__ import annotations
@@ -25,38 +24,38 @@ from synthesis.numerics.linear_program import least
 Real = NDArray[np.float64]
 
 PENALTIES = (10.0, 1000.0)
-"""Prices of a violated constraint, in units of the values e. The first lets steps cut corners; the second is for what
-then still breaks a constraint, and above the multipliers of useful designs: a line that must be straight to 1e-4 pays
-some 50 times that in the evenness of its velocity."""
+"""Penalties per unit of violation, in units of the values e. The first one lets steps cut corners. The second one is
+for shapes that then still violate a constraint; it exceeds the multipliers of useful designs: straightness to 1e-4
+costs about 50 times as much in the evenness of the velocity."""
 
 MET = 1e-6
-"""Violation with which a constraint counts as met."""
+"""Violation up to which a constraint counts as satisfied."""
 
 STEP = 1e-5
-"""Relative step of the central differences: their error, some 1e-10, only slows the last steps."""
+"""Relative step of the central differences. Their error, about 1e-10, only slows the last steps."""
 
 FIRST_TRUST, LARGEST_TRUST, LEAST_TRUST = 0.1, 0.5, 1e-10
-"""Bounds of a step, as a share of 1 + |x|: at first, at most, and where the search ends."""
+"""Trust radius as a share of 1 + |x|: initial, maximum, and the minimum at which the descent ends."""
 
 ARRIVED = 1e-6
-"""Relative gain below which the band is the narrowest."""
+"""Relative gain below which the band counts as narrowest."""
 
 LEAST_BAND = 1e-15
-"""Bands this narrow are rounding."""
+"""Half width of a band that is pure rounding."""
 
 STEPS = 40
-"""Linear programs at most; ten to twenty are usual."""
+"""Maximum number of accepted steps, each a linear program or several; ten to twenty are usual."""
 
 
 class Values(NamedTuple):
-    """What shapes give; the first axis are the shapes. NaN where there is no such linkage.
+    """Values of m shapes, the first axis; NaN for a shape that is no linkage.
 
     Attributes
     ----------
     banded : float, shape (m, k)
-        The values whose band shall be narrow.
+        Values whose band is minimized.
     limited : float, shape (m, j)
-        Values that have to stay in a band of stated half width; j may be 0.
+        Values that have to stay in a band of given half width; j may be 0.
     positive : float, shape (m, q)
         Values that must not be negative; q may be 0.
     """
@@ -67,7 +66,7 @@ class Values(NamedTuple):
 
 
 class Narrowest(NamedTuple):
-    """A shape, half the width of its band, and by how much it breaks its constraints."""
+    """Shape, half the width of its band, and its largest violation of a constraint."""
 
     shape: Real
     half_width: float
@@ -88,9 +87,9 @@ def narrowest(
     Parameters
     ----------
     values : callable
-        Takes shapes (m, n) and gives their values.
+        Computes the values of shapes (m, n).
     start, low, high : float, shape (n,)
-        Where to begin, and bounds.
+        Starting point and bounds.
     half_limit : float
         Half the width of the band in which ``limited`` has to stay.
     arrived : float
@@ -99,7 +98,7 @@ def narrowest(
     Returns
     -------
     Narrowest or None
-        None where the start is no linkage.
+        None if the start is no linkage.
     """
     narrowest: Narrowest | None = None
     for penalty in PENALTIES:
@@ -119,7 +118,7 @@ def _descent(
     arrived: float,
     penalty: float,
 ) -> Narrowest | None:
-    """The descent at one price of violations."""
+    """Descend with one penalty of violations."""
     x = np.clip(start, low, high)
     here = values(x[None])
     merit, half_width, violation = _merit(here, half_limit, penalty)
@@ -139,11 +138,13 @@ def _descent(
             tried = values((x + step)[None])
             tried_merit = _merit(tried, half_limit, penalty)
             gain, hoped = merit - tried_merit[0], merit - predicted
+            # A tenth of the predicted gain is enough to accept a step; otherwise the trust region shrinks around it.
             if np.isfinite(tried_merit[0]) and gain > 0.1 * hoped and hoped > 0.0:
                 break
             trust = 0.25 * float(np.max(np.abs(step) / (1.0 + np.abs(x)))) if hoped > arrived * merit else 0.0
         else:
             break
+        # Enlarge the trust region only if the tangents predicted the gain well.
         trust = min(LARGEST_TRUST, 2.0 * trust) if gain > 0.75 * hoped else trust
         x, here = x + step, tried
         merit, half_width, violation = tried_merit
@@ -153,7 +154,10 @@ def _descent(
 
 
 def merits(values: Values, half_limit: float = np.inf, penalty: float = PENALTIES[0]) -> Real:
-    """Half width, largest violation and their weighted sum, shape (3, m); infinite where a shape is no linkage."""
+    """Return half width, largest violation and merit of m shapes, shape (3, m); infinite if a shape is no linkage.
+
+    The merit is the half width plus the penalty times the violation.
+    """
     half_width = 0.5 * np.ptp(values.banded, axis=1)
     violation = np.maximum(0.0, -values.positive.min(axis=1, initial=0.0))
     if values.limited.size and np.isfinite(half_limit):
@@ -168,7 +172,7 @@ def _merit(values: Values, half_limit: float, penalty: float) -> tuple[float, fl
 
 
 def _tangents(values: Callable[[Real], Values], x: Real) -> Values | None:
-    """Derivatives by each coordinate, shapes (n, k), (n, j), (n, q); None at the edge of where linkages exist."""
+    """Differentiate the values by each coordinate: shapes (n, k), (n, j), (n, q); None at the edge of the linkages."""
     h = STEP * (1.0 + np.abs(x))
     around = values(np.concatenate([x + np.diag(h), x - np.diag(h)]))
     n = len(x)
@@ -179,15 +183,15 @@ def _tangents(values: Callable[[Real], Values], x: Real) -> Values | None:
 def _step(
     here: Values, tangents: Values, low: Real, high: Real, half_limit: float, penalty: float
 ) -> tuple[Real | None, float]:
-    """The step to the best shape of the tangents within bounds, and the merit that they predict there.
+    """Return the best step within bounds by the tangents, and the merit that they predict there.
 
-    Unknowns of the linear program: the step, the middles of both bands, the half width, the violation.
+    Unknowns of the linear program: the step, the middles m and n of both bands, the half width t, the violation.
     """
     limited = bool(np.isfinite(half_limit)) and here.limited.size > 0
     n, k, q = len(low), here.banded.shape[1], here.positive.shape[1]
     j = here.limited.shape[1] if limited else 0
-    # Steps in units of their bounds and values in units of the present band, from its middle: values of 1e-9 beside
-    # others of 100 are then told apart.
+    # Scale steps by their bounds, and values by the present band around its middle: differences of 1e-9 between values
+    # near 100 then survive the tolerances of the linear program.
     unit = max(0.5 * float(np.ptp(here.banded)), LEAST_BAND)
     reach = np.maximum(high - low, LEAST_BAND)
     matrix = np.zeros((2 * k + 2 * j + q, n + 4))
@@ -210,7 +214,7 @@ def _step(
     cost[n + 2], cost[n + 3] = 1.0, penalty
     floors = np.array([*(low / reach), -np.inf, -np.inf, 0.0, 0.0])
     ceilings = np.array([*(high / reach), np.inf, np.inf, np.inf, np.inf])
-    # Rows that no step within the bounds can break, whatever the unknowns beside it are, only cost time.
+    # Drop rows that no step within the bounds can violate; they only cost time.
     slack = limit - np.where(matrix[:, :n] > 0.0, matrix[:, :n] * ceilings[:n], matrix[:, :n] * floors[:n]).sum(axis=1)
     needed = (matrix[:, n : n + 2] != 0.0).any(axis=1) | ~(slack >= 0.0)
     done = least(cost, matrix[needed], limit[needed], floors, ceilings)

@@ -1,17 +1,18 @@
-"""A linkage whose place, direction and size are free, put where its joints lie in boxes: exact, by half-planes.
+"""Exact placement of a linkage with free position, direction and size so that its joints lie in boxes.
 
-A similarity z → o + w z moves joints p_j, with w the size and the direction as one complex number. Joint j lies in the
-box [l_j, r_j] × [d_j, u_j] where
+A similarity z → o + w z moves joints p_j; the complex number w holds the size and the direction. Joint j lies in the
+box [l_j, r_j] × [d_j, u_j] if
 
     l_j ≤ Re o + Re(w p_j) ≤ r_j,        d_j ≤ Im o + Im(w p_j) ≤ u_j.
 
-There is such an o if and only if no two joints are farther apart than their boxes allow (Helly's theorem on a line),
+By Helly's theorem on a line such an o exists if and only if no two joints are farther from each other than their boxes
+permit,
 
     Re(w (p_j − p_k)) ≤ r_j − l_k,       Im(w (p_j − p_k)) ≤ u_j − d_k        for all j and k,
 
-which are half-planes of w. What they leave is a convex polygon. It is connected, so that its members have all sizes
-|w| between that of its nearest point and that of its farthest corner: with limits of the size the linkage fits if and
-only if these ranges overlap. At a size the directions that fit are arcs of a circle, cut by the same half-planes.
+These are half-planes of w, and their intersection is a convex polygon. It is connected, so that it contains all sizes
+|w| between the size of its nearest point and that of its farthest corner. A linkage with limited size fits if and only
+if that range overlaps the limits. For a given size the fitting directions are arcs of a circle, cut by the half-planes.
 """
 
 from __future__ import annotations
@@ -26,20 +27,21 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 ROUNDING = 1e-12
-"""Share of the boxes' and the linkage's size by which a half-plane may be overstepped: rounding of its corners."""
+"""Tolerance of a half-plane for the rounding of its corners, as a share of the size of boxes and linkage."""
 
 FROM_END = 0.1
-"""Where the preferred size does not fit, how far from the nearer end one is taken: share of the logarithms' range."""
+"""If the preferred size does not fit: distance of the chosen size from the nearer end, as a share of the range of
+logarithms."""
 
 LEAST_SHARE = 0.8
-"""Share of the greatest size that fits above which such a size is looked for: a linkage needs not be smaller."""
+"""Minimum size to choose, as a share of the maximum size that fits: there is no reason to make a linkage smaller."""
 
 WIDENED = 1e-6
-"""Share of itself to which the least widening of the boxes is known."""
+"""Relative accuracy of the smallest widening of the boxes with which the linkage fits."""
 
 
 class Placing(NamedTuple):
-    """A similarity z → origin + along · z; ``fits`` where all joints then lie in their boxes, at a size allowed."""
+    """Similarity z → origin + along · z; ``fits`` if it brings all joints into their boxes at a permitted size."""
 
     origin: complex
     along: complex
@@ -47,7 +49,7 @@ class Placing(NamedTuple):
 
 
 class Boxes(NamedTuple):
-    """Left, right, lower and upper limits of joints, each of shape (n,); infinite where there is none."""
+    """Left, right, lower and upper limits of n joints, each of shape (n,); infinite for an open side."""
 
     left: Real
     right: Real
@@ -55,12 +57,12 @@ class Boxes(NamedTuple):
     high: Real
 
     def widened(self, margin: float) -> Boxes:
-        """All of them with a margin on all sides."""
+        """Return the boxes with a margin added on all sides."""
         return Boxes(self.left - margin, self.right + margin, self.low - margin, self.high + margin)
 
 
 class _Directions(NamedTuple):
-    """Half-planes normal · w ≤ limit, with unit normals as angles (radians) and limits over them: shape (m,)."""
+    """Half-planes normal · w ≤ limit: angles of the unit normals (radians) and limits, both of shape (m,)."""
 
     normals: Real
     limits: Real
@@ -69,26 +71,26 @@ class _Directions(NamedTuple):
 def placed(
     points: Complex, boxes: Boxes, least: float, most: float, preferred: complex, *, turned: bool = True
 ) -> Placing:
-    """Where a linkage is put: within its boxes if it fits, else where it is least outside of them.
+    """Place a linkage within its boxes if it fits, otherwise where it extends least beyond them.
 
     Parameters
     ----------
     points : complex, shape (n,)
         Joints in the linkage's own frame.
     boxes : Boxes
-        Where each is to lie.
+        Box of each joint.
     least, most : float
         Limits of the size |w|.
     preferred : complex
-        Size and direction that are taken where they fit.
+        Size and direction to use if they fit.
     turned : bool
-        Whether another direction than the preferred one is allowed.
+        Whether other directions than the preferred one are permitted.
 
     Returns
     -------
     Placing
-        In the middle of the places that there are. Where ``least`` is above ``most`` no size fits, and the linkage has
-        the one between them.
+        In the middle of the possible positions. If ``least`` exceeds ``most``, no size fits and the linkage gets the
+        geometric mean of both.
     """
     if least > most:
         between = math.sqrt(least * most) if most > 0.0 else least
@@ -96,6 +98,7 @@ def placed(
     found = _along(points, boxes, least, most, preferred, turned)
     if found is not None:
         return Placing(_origin(points, boxes, found), found, True)
+    # Nothing fits: widen all boxes equally, first by doubling until the linkage fits, then by bisection.
     inner, outer = 0.0, max(abs(points).max() * least, _extent(boxes), abs(preferred))
     found = _along(points, boxes.widened(outer), least, most, preferred, turned)
     while found is None:
@@ -112,7 +115,7 @@ def placed(
 
 
 def _extent(boxes: Boxes) -> float:
-    """The greatest side of a box, or distance between two."""
+    """Return the larger side of the rectangle around all boxes; 0 if no side is bounded."""
     x, y = np.concatenate([boxes.left, boxes.right]), np.concatenate([boxes.low, boxes.high])
     x, y = x[np.isfinite(x)], y[np.isfinite(y)]
     return float(max(np.ptp(x), np.ptp(y))) if x.size else 0.0
@@ -121,7 +124,7 @@ def _extent(boxes: Boxes) -> float:
 def _along(
     points: Complex, boxes: Boxes, least: float, most: float, preferred: complex, turned: bool
 ) -> complex | None:
-    """Size and direction with which there is a place; None where there is none."""
+    """Return a size and direction (as one complex number) that fit, or None."""
     apart = (points[:, None] - points).ravel()
     across = (boxes.right[:, None] - boxes.left).ravel()
     upward = (boxes.high[:, None] - boxes.low).ravel()
@@ -129,7 +132,7 @@ def _along(
     normals = np.concatenate([apart.conj(), 1j * apart.conj()])
     limits = np.concatenate([across, upward])
     if not turned:
-        # Nothing square to the preferred direction, and nothing against it.
+        # Confine w to the preferred ray: no component across it, none backward.
         ahead = preferred / abs(preferred)
         normals = np.concatenate([normals, [1j * ahead, -1j * ahead, -ahead]])
         limits = np.concatenate([limits, np.zeros(3)])
@@ -137,6 +140,7 @@ def _along(
     bounded = np.isfinite(limits)
     normals, limits = normals[bounded], limits[bounded] + slack
     lengths = np.abs(normals)
+    # Two coinciding joints bound nothing, but their boxes must overlap.
     still = lengths <= ROUNDING * float(lengths.max(initial=0.0))
     if (limits[still] < 0.0).any():
         return None
@@ -154,13 +158,13 @@ def _along(
 
 
 def _within(planes: _Directions, w: Complex, slack: float) -> NDArray[np.bool_]:
-    """Which of many w lie in all half-planes."""
+    """Return a mask of the w that lie in all half-planes."""
     reach = (w[:, None] * np.exp(-1j * planes.normals)).real
     return np.asarray((reach <= planes.limits + slack).all(axis=1))
 
 
 def _sizes(planes: _Directions) -> tuple[float, float] | None:
-    """Least and greatest |w| of the polygon; None where it is empty."""
+    """Return the minimum and maximum |w| of the polygon, or None if it is empty."""
     if not len(planes.normals):
         return 0.0, math.inf
     first, second = np.triu_indices(len(planes.normals), 1)
@@ -176,6 +180,7 @@ def _sizes(planes: _Directions) -> tuple[float, float] | None:
         )
         / turn
     )
+    # The nearest point of the polygon is the origin, a corner, or the foot of the perpendicular to a side.
     feet = planes.limits * np.exp(1j * planes.normals)
     slack = ROUNDING * float(np.abs(planes.limits).max())
     corners = corners[_within(planes, corners, slack)]
@@ -187,7 +192,7 @@ def _sizes(planes: _Directions) -> tuple[float, float] | None:
 
 
 def _chosen(low: float, high: float, preferred: float) -> float:
-    """The preferred size if it fits, else one near the end that is nearer to it."""
+    """Return the preferred size if it fits, otherwise a size near the closer end of the range."""
     if low <= preferred <= high:
         return preferred
     if preferred > high:
@@ -198,7 +203,8 @@ def _chosen(low: float, high: float, preferred: float) -> float:
 
 
 def _direction(planes: _Directions, size: float, preferred: float, slack: float) -> float | None:
-    """The preferred direction, radians, if it fits at a size, else the middle of the widest arc of those that do."""
+    """Return the preferred direction (radians) if it fits at this size, else the middle of the widest fitting arc."""
+    # Each half-plane that cuts the circle of this size ends an arc; between two ends all directions fit or none.
     share = planes.limits / size
     cut = np.abs(share) < 1.0
     half = np.arccos(share[cut])
@@ -213,7 +219,7 @@ def _direction(planes: _Directions, size: float, preferred: float, slack: float)
 
 
 def _origin(points: Complex, boxes: Boxes, along: complex) -> complex:
-    """The middle of the places that fit; 0 where nothing is boxed."""
+    """Return the middle of the fitting origins; 0 along an axis without any box."""
     moved = along * points
     ranges = (
         (boxes.left - moved.real, boxes.right - moved.real),

@@ -1,6 +1,6 @@
-"""Rows that do not hang on one another, worked off in portions, two at a time.
+"""Processing of independent rows in portions on two threads.
 
-Compiled kernels leave the interpreter free, and most machines have a second core. What is computed does not hang on
+Compiled kernels release the interpreter's lock, and most machines have a second core. The result does not depend on
 which thread takes which portion.
 """
 
@@ -10,15 +10,17 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 THREADS = 2
+"""Number of threads: most machines have a second core."""
 
 
 def in_portions(work: Callable[[slice], None], count: int, portion: int) -> None:
-    """Call ``work`` with all slices of ``count`` rows, ``portion`` rows each; what it raises is raised here."""
+    """Call ``work`` with consecutive slices of ``portion`` of the ``count`` rows, and re-raise its errors."""
     slices = [slice(first, first + portion) for first in range(0, count, portion)]
     if len(slices) < THREADS:
         for some in slices:
             work(some)
         return
     with ThreadPoolExecutor(THREADS) as pool:
+        # Consume the results: that re-raises an exception of a worker here.
         for _ in pool.map(work, slices):
             pass

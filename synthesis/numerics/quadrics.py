@@ -1,13 +1,13 @@
-"""The common points of m − 1 quadrics in projective space of m coordinates: all 2^(m−1), with a proof of their number.
+"""Common points of m − 1 quadrics in projective space of m coordinates: all 2^(m−1), with a proof of completeness.
 
 Multiplied by all monomials of degree m − 2, the quadrics are linear equations for the monomials of degree m (Macaulay).
-Where the quadrics meet in points only, the solutions have dimension 2^(m−1) (Bézout), and are spanned by the monomials
-at the common points. Shifting by two linear forms, l₁ · monomial and l₂ · monomial for those of degree m − 1, is then
-an eigenvalue problem whose eigenvectors are the common points (Cox, Little & O'Shea, Using Algebraic Geometry, 2.4).
-No coordinate is singled out, so that points at infinity are like any other.
+If the quadrics meet in points only, the solutions have dimension 2^(m−1) (Bézout) and are spanned by the monomials at
+the common points. Multiplication by two linear forms, l₁ · monomial and l₂ · monomial for those of degree m − 1, is
+then an eigenvalue problem whose eigenvectors are the common points (Cox, Little & O'Shea, Using Algebraic Geometry,
+2.4). No coordinate is singled out, so that points at infinity need no special case.
 
-Each point is refined by Newton's method, and the Newton–Kantorovich theorem tells whether it is a simple root in a ball
-that holds no other; 2^(m−1) such balls, apart from each other, are all the roots there are.
+Newton's method refines each point, and the Newton–Kantorovich theorem decides whether it is a simple root in a ball
+that contains no other. If 2^(m−1) such balls are disjoint, they contain all roots.
 """
 
 from __future__ import annotations
@@ -26,46 +26,46 @@ Numbers = NDArray[Any]
 """Real or complex: what is real stays so."""
 
 DEGENERATE = 1e-11
-"""Singular value of the monomial equations, relative to the largest, below which quadrics meet in more than points."""
+"""Relative singular value of the monomial equations below which the quadrics have a whole curve in common."""
 
 NEWTON_STEPS = 6
-"""Steps at most; eigenvectors carry ten digits or more where roots are simple."""
+"""Maximum number of Newton steps; eigenvectors of simple roots already have ten digits or more."""
 
 NEARLY_REAL = 1e-4
-"""Imaginary part of a unit vector below which a real root is looked for nearby; a double root of data with 16 digits
-shows half of them, and a triple one a third."""
+"""Imaginary part of a unit vector below which a real root is searched nearby. Of 16 digits in the data a double root
+keeps half, a triple root a third."""
 
 CLUSTER = 1e-5
-"""Radius in which the roots of a cluster are taken to lie, for none of which a proof is found."""
+"""Assumed radius of a cluster of roots that cannot be proved individually."""
 
 ROUNDING = 4e-15
-"""Error of a residual as computed: some tens of roundings of unit numbers."""
+"""Error of a computed residual: a few tens of rounding errors of numbers of size 1."""
 
 MET = 1e-13
-"""Residual at which a real point counts as common to all quadrics where it cannot be proved: a double root, which data
-a few roundings away would have or not have."""
+"""Residual up to which a real point counts as common to all quadrics without proof. Such a point is a double root,
+which data a few rounding errors away may or may not have."""
 
 NOTHING = 1e-150
-"""Stands for a singular value that is not known to differ from zero; its square does not underflow."""
+"""Substitute for a singular value that may be zero; its square does not underflow."""
 
 SAME_DIRECTION = 1e-14
-"""1 − |cos| of two unit vectors that are one point, met twice: some roundings."""
+"""Maximum 1 − |cos| between two unit vectors that are the same point, found twice: a few rounding errors."""
 
 
 class CommonPoints(NamedTuple):
-    """What quadrics have in common.
+    """Common points of quadrics.
 
     Attributes
     ----------
     real : float64, shape (k, m)
-        Real common points, unit vectors, each once.
+        Real common points as unit vectors, each once.
     double : bool, shape (k,)
-        Not proved to be simple: two or more common points lie here, to rounding.
+        Whether a point is not proved to be simple: to rounding two or more common points coincide there.
     finite : bool
-        The quadrics meet in points only. Where not, ``real`` is empty.
+        Whether the quadrics meet in points only. Otherwise ``real`` is empty.
     unproved : complex128, shape (j, m)
         Unit vectors near those of the 2^(m−1) common points, complex ones included, that could not be proved to be
-        simple, and apart from the others. Where there are none, ``real`` is complete.
+        simple and separate from the others. If it is empty, ``real`` is complete.
     """
 
     real: Real
@@ -75,14 +75,14 @@ class CommonPoints(NamedTuple):
 
 
 def common_points(forms: Real, error: float = 0.0) -> CommonPoints:
-    """Real common points of quadrics xᵀ Q x = 0.
+    """Compute the real common points of quadrics xᵀ Q x = 0.
 
     Parameters
     ----------
     forms : float64, shape (m − 1, m, m)
         Symmetric matrices Q of unit norm, 2 ≤ m ≤ 4.
     error : float
-        Norm of what the matrices may be off, beyond their rounding: what is proved then holds for all such quadrics.
+        Norm of the matrices' error beyond rounding. The proofs hold for all quadrics within this distance.
     """
     m = forms.shape[-1]
     frame = _frame(m)
@@ -93,6 +93,7 @@ def common_points(forms: Real, error: float = 0.0) -> CommonPoints:
             equations[j * len(frame.shift) + i, places] = coefficients
     _, s, vh = np.linalg.svd(equations)
     roots = 2 ** (m - 1)
+    # A null space larger than the number of roots means that the quadrics share a curve.
     if s[frame.monomials - roots - 1] <= DEGENERATE * s[0]:
         return CommonPoints(np.empty((0, m)), np.empty(0, np.bool_), False, np.empty((0, m), np.complex128))
     basis = vh[frame.monomials - roots :].T
@@ -100,13 +101,14 @@ def common_points(forms: Real, error: float = 0.0) -> CommonPoints:
     below = np.tensordot(frame.second, basis[frame.lift], (0, 1))
     _, vectors = np.linalg.eig(np.linalg.lstsq(below, above, rcond=None)[0])
     monomials = basis @ vectors
+    # Read each point from the monomials x_i^(m−1) x_j of its largest coordinate i, which cannot be 0.
     largest = np.abs(monomials[frame.powers]).argmax(axis=0)
     points = monomials[frame.lines[largest], np.arange(roots)[:, None]]
     return _refined(forms, points, error)
 
 
 class _Frame(NamedTuple):
-    """Where monomials stand: of degree m in a solution, of degree m − 2 as multipliers, and products between them."""
+    """Indices of monomials: of degree m in a solution, of degree m − 2 as multipliers, and of their products."""
 
     monomials: int
     rows: NDArray[np.intp]
@@ -146,9 +148,10 @@ def _frame(m: int) -> _Frame:
 
 
 def _refined(forms: Real, points: Numbers, error: float) -> CommonPoints:
-    """Newton's method from each point, real ones among the reals, and the proof of their number."""
+    """Refine each point by Newton's method, nearly real ones in real arithmetic, and prove which roots are simple."""
     m = forms.shape[-1]
     points = _newton(forms, points / np.linalg.norm(points, axis=1)[:, None])
+    # Rotate the phase so that the largest coordinate is real: a real point then has no imaginary part.
     pivot = np.take_along_axis(points, np.abs(points).argmax(axis=1)[:, None], axis=1)
     points = points * (np.conj(pivot) / np.abs(pivot))
     nearly = np.abs(points.imag).max(axis=1) <= NEARLY_REAL
@@ -159,6 +162,7 @@ def _refined(forms: Real, points: Numbers, error: float) -> CommonPoints:
     imaginary = np.abs(points[~nearly].imag).max(axis=1)
     everywhere = np.concatenate([reals, points[~nearly]])
     apart = _apart(everywhere, np.concatenate([real_radius, radius]))
+    # A complex root is proved complex if its imaginary part exceeds the radius of its ball.
     proved = apart & np.concatenate([real_alone, alone & (imaginary > radius)])
     kept: list[int] = []
     for k in np.flatnonzero(real_alone | (residual <= MET)):
@@ -170,7 +174,7 @@ def _refined(forms: Real, points: Numbers, error: float) -> CommonPoints:
 
 
 def _newton(forms: Real, points: Numbers) -> Numbers:
-    """Newton's method on the sphere: a step is perpendicular to the point; the best point on the way is kept."""
+    """Run Newton's method on the unit sphere, with steps perpendicular to the point; return the best iterates."""
     best, least = points, np.full(len(points), np.inf)
     for step in range(NEWTON_STEPS + 1):
         images = np.einsum("qij,kj->kqi", forms, points)
@@ -192,11 +196,12 @@ def _newton(forms: Real, points: Numbers) -> Numbers:
 
 
 def _certificate(forms: Real, points: Numbers, error: float) -> tuple[Real, NDArray[np.bool_], Real]:
-    """Newton–Kantorovich at unit vectors: radius in which a root lies, whether that is proved, and the residual.
+    """Apply the Newton–Kantorovich theorem at unit vectors: radius that contains a root, whether proved, and residual.
 
     With K a Lipschitz constant of the Jacobian J and η = |J⁻¹f|, a root lies within 2η where K|J⁻¹|η ≤ 1/2
     (Kantorovich; Ortega & Rheinboldt, 12.6.2).
     """
+    # The last row of the Jacobian keeps the point on the sphere.
     images = np.einsum("qij,kj->kqi", forms, points)
     values = np.einsum("kqi,ki->kq", images, points)
     jacobian = np.concatenate([2.0 * images, np.conj(points)[:, None, :]], axis=1)
@@ -211,10 +216,10 @@ def _certificate(forms: Real, points: Numbers, error: float) -> tuple[Real, NDAr
 
 
 def _apart(points: Complex, radius: Real) -> NDArray[np.bool_]:
-    """Which points are farther from every other than their radii together, as points of projective space."""
+    """Return a mask of the points whose projective distance from every other exceeds the sum of both radii."""
     closeness = np.minimum(np.abs(points.conj() @ points.T), 1.0)
     distance = np.sqrt(2.0 * (1.0 - closeness))
     np.fill_diagonal(distance, np.inf)
-    # The cosine of two unit vectors tells their distance to the root of a rounding only.
+    # The cosine of two unit vectors gives their distance only to the square root of a rounding error.
     needed = np.maximum(radius[:, None] + radius[None, :], 3e-8)
     return np.asarray((distance > needed).all(axis=1), np.bool_)

@@ -1,7 +1,7 @@
-"""How a descent has ended: not converging is a status, never an exception.
+"""Status of a descent; failure to converge is a status, never an exception.
 
-The same distinctions as in SciPy's ``optimize._lsq``. A descent that has not converged has still come to its best
-point, and may go on from there.
+The statuses are those of SciPy's ``optimize._lsq``. A descent that has not converged still returns its best point and
+may continue from there.
 """
 
 from __future__ import annotations
@@ -10,22 +10,22 @@ from enum import IntEnum
 
 
 class Status(IntEnum):
-    """Why a descent has ended; positive where it has converged."""
+    """Reason why a descent ended; positive if it converged."""
 
     INFEASIBLE = -4
-    """Limits do not hold at the end, though multipliers were renewed as often as is allowed."""
+    """Limits are violated at the end although the multipliers were updated as often as permitted."""
     STALLED = -3
-    """No step decreases the cost, however large the damping, though one should."""
+    """No step decreases the cost at any damping although the linear model predicts a decrease."""
     SINGULAR = -2
     """The normal equations have no finite solution."""
     IMPOSSIBLE = -1
     """The start itself is outside the problem's domain."""
     STEP_LIMIT = 0
-    """As many steps as are allowed have been tried."""
+    """The maximum number of steps was reached."""
     GRADIENT = 1
-    """The linear model expects a decrease below rounding."""
+    """The linear model predicts a decrease below rounding."""
     COST = 2
-    """Two steps in turn have changed the cost by less than the tolerance."""
+    """Two consecutive steps changed the cost by less than the tolerance."""
     STEP = 3
     """The step is below rounding."""
     ZERO = 4
@@ -33,5 +33,5 @@ class Status(IntEnum):
 
     @property
     def converged(self) -> bool:
-        """Whether the end is a stationary point, to the tolerance asked for."""
+        """Whether the end is a stationary point to the given tolerance."""
         return self > 0

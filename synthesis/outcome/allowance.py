@@ -1,8 +1,8 @@
-"""What may be spent on looking for what comes nearest: a search is begun while one as long as those before still fits.
+"""Time budget of the nearest-miss search: start another run only if one as long as the longest so far still fits.
 
-How long a search takes is known only afterwards, so the longest of its sort so far stands for the next. What is spent
-then exceeds the allowance by no more than a search that is longer than all before, and by the first, which is always
-made. Time is that of the processor: an answer does not get poorer because the machine is busy with others.
+The duration of a run is known only afterwards, so that the longest run of the same kind estimates the next one. The
+budget is exceeded at most by one run that is longer than all before, and by the first run, which always happens. The
+budget is processor time, so that answers do not become poorer while the machine is busy.
 """
 
 from __future__ import annotations
@@ -12,19 +12,19 @@ from collections.abc import Callable
 from typing import Any
 
 MOST = 4.0
-"""Seconds of processor time. Most tasks are searched in less than one; with one search of a second more than the rest
-this leaves five."""
+"""Budget in seconds of processor time. Most searches take less than one second; one longer run may raise the total to
+about five seconds."""
 
 
 class Allowance:
-    """Processor time of which several sorts of searches spend.
+    """Budget of processor time that several kinds of searches share.
 
     Parameters
     ----------
     most : float
-        Seconds.
+        Budget, seconds.
     clock : callable, optional
-        Seconds that were spent until now.
+        Returns the processor time used so far, seconds.
     """
 
     def __init__(self, most: float = MOST, clock: Callable[[], float] = time.process_time) -> None:
@@ -32,11 +32,11 @@ class Allowance:
         self._spent = 0.0
 
     def sort(self, search: Callable[..., Any]) -> Metered:
-        """A sort of search that spends of this."""
+        """Return a search that charges its time to this budget."""
         return Metered(self, search)
 
     def measured(self, search: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, float]:
-        """What a search finds, and its time, which is spent."""
+        """Run a search, charge its time to the budget, and return its result and its time in seconds."""
         begun = self._clock()
         try:
             found = search(*arguments)
@@ -46,24 +46,24 @@ class Allowance:
         return found, taken
 
     def leaves(self, seconds: float) -> bool:
-        """Whether so much may still be spent."""
+        """Return whether this many seconds are left."""
         return self._spent + seconds <= self._most
 
 
 class Metered:
-    """A sort of search: called like the search itself."""
+    """A search that charges its time to a budget; called like the search itself."""
 
     def __init__(self, allowance: Allowance, search: Callable[..., Any]) -> None:
         self._allowance, self._search = allowance, search
         self._longest = 0.0
 
     def __call__(self, *arguments: Any) -> Any:
-        """Search, whatever is left."""
+        """Run the search even if the budget is used up."""
         found, taken = self._allowance.measured(self._search, arguments)
         self._longest = max(self._longest, taken)
         return found
 
     @property
     def fits(self) -> bool:
-        """Whether one more, as long as the longest so far, may be made."""
+        """Whether another run, as long as the longest so far, fits into the budget."""
         return self._allowance.leaves(self._longest)

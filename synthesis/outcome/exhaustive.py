@@ -1,7 +1,7 @@
-"""What an exhaustive search offers: the first within the tolerance, and the Pareto set of error against size.
+"""Selection from an exhaustive search: candidates within the tolerance, and the Pareto set of error against size.
 
-Errors are exact fractions and a tolerance is the decimal that was written, so that a candidate exactly at the tolerance
-is within it.
+Errors are exact fractions, and a tolerance is the decimal that was written, so that a candidate exactly at the
+tolerance is accepted.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ class Erring(Protocol):
 
     @property
     def error(self) -> Fraction:
-        """Relative error, exact."""
+        """Exact relative error."""
 
 
 Inexact = TypeVar("Inexact", bound=Erring)
@@ -26,17 +26,17 @@ Candidate = TypeVar("Candidate")
 
 
 def within_tolerance(error: Fraction, tolerance: float | None) -> bool:
-    """Whether an error is at most the tolerance; without one every error is."""
+    """Return whether an error is at most the tolerance; True without a tolerance."""
     return tolerance is None or error <= decimal(tolerance)
 
 
 def first_within(ranked: Iterable[Inexact], tolerance: float | None, count: int) -> list[Inexact]:
-    """The first ``count`` of the candidates whose error is within the tolerance."""
+    """Return the first ``count`` candidates whose error is within the tolerance."""
     return [candidate for candidate in ranked if within_tolerance(candidate.error, tolerance)][:count]
 
 
 def pareto(by_size: Iterable[Candidate], error: Callable[[Candidate], Any]) -> list[Candidate]:
-    """Of candidates by rising size those that have a smaller error than all before them."""
+    """Return the candidates, given in order of increasing size, that have a smaller error than all before them."""
     front: list[Candidate] = []
     for candidate in by_size:
         if not front or error(candidate) < error(front[-1]):

@@ -1,4 +1,4 @@
-"""Forces of designs: what the block ``dynamics`` of a statement adds to an answer, and what is demanded of them."""
+"""Forces of designs, for the block ``dynamics`` of a statement: results and checks."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from synthesis.proof.rebuilt import rebuilt
 Design = TypeVar("Design", bound=Any)
 
 STEPS = 72
-"""Steps of a motion, between which peaks are refined."""
+"""Number of steps of a motion, between which peaks are refined."""
 
 DIMENSIONS: Mapping[Force, Dimension | None] = {
     "drive_torque": TORQUE,
@@ -33,11 +33,11 @@ DIMENSIONS: Mapping[Force, Dimension | None] = {
     "power": POWER,
     "joint_force_index": None,
 }
-"""What each demand on a force measures."""
+"""Dimension of each limit on forces."""
 
 
 def held_to_forces(problem: StatedProblem, design: Design) -> Design:
-    """A design that passed every other check, with its forces and their checks, where the problem limits them."""
+    """Return a design with its forces and their checks, if it passed all other checks and forces are limited."""
     if not isinstance(problem, LinkageProblem) or not problem.constraints.of_forces or problem.dynamics is None:
         return design
     if not design.verification.passed:
@@ -46,7 +46,7 @@ def held_to_forces(problem: StatedProblem, design: Design) -> Design:
 
 
 def with_force_checks(constraints: Constraints, design: Design) -> Design:
-    """A design whose forces are known, with a check of each limit on them that is stated, in place of any it has."""
+    """Replace the force checks of a design with known forces by checks of the given limits."""
     limits = constraints.of_forces
     if not limits:
         return design
@@ -63,13 +63,13 @@ def with_force_checks(constraints: Constraints, design: Design) -> Design:
 
 
 def value_of(design: Any, name: str) -> float | None:
-    """The peak that a demand on ``name`` is about; None where it is not known."""
+    """Return the peak that the limit on ``name`` refers to; None if unknown."""
     found = None if design.forces is None else getattr(design.forces, name)
     return found if found is None or isinstance(found, float) else float(found.max)
 
 
 def all_with_forces(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
-    """An answer with the forces of all its designs, the nearest miss among them; as it is without `dynamics`."""
+    """Return an answer with the forces of all its designs and of the nearest miss; unchanged without `dynamics`."""
     if problem.dynamics is None:
         return result
     miss = result.nearest_miss
@@ -80,7 +80,7 @@ def all_with_forces(problem: LinkageProblem, result: Result[Any]) -> Result[Any]
 
 
 def unknown_told(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
-    """An answer whose summary says why the nearest miss has no forces, where they are limited."""
+    """Add the reason why the nearest miss has no forces to the summary, if forces are limited."""
     miss = result.nearest_miss
     forces = None if miss is None else miss.design.forces
     if not problem.constraints.of_forces or forces is None or forces.remark is None:
@@ -89,7 +89,7 @@ def unknown_told(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
 
 
 def with_forces(problem: LinkageProblem, design: Design) -> Design:
-    """A design with its forces; one that has them stays as it is."""
+    """Return a design with its forces; unchanged if it already has them."""
     if problem.dynamics is None or design.forces is not None:
         return design
     measured: Design = design.model_copy(update={"forces": _forces(problem, problem.dynamics, design)})
@@ -97,7 +97,7 @@ def with_forces(problem: LinkageProblem, design: Design) -> Design:
 
 
 class NoForces(ValueError):
-    """A design whose forces are not known; carries the field that is against it below the problem, if there is one."""
+    """Raised if the forces of a design are unknown; carries the responsible field below the problem, if any."""
 
     def __init__(self, path: str, detail: str) -> None:
         self.path = path
@@ -106,7 +106,7 @@ class NoForces(ValueError):
 
 
 class Run(NamedTuple):
-    """How a design is driven: what it weighs and carries, its inputs (degrees or length units) and their speed.
+    """Drive of a design: its masses and loads, its inputs (degrees or length units) and their speed.
 
     The speed is in rad/s, or length units a second.
     """
@@ -118,7 +118,7 @@ class Run(NamedTuple):
 
 
 def run_of(stated: DesignDynamics, design: Any, steps: int = STEPS) -> Run:
-    """A design over a whole cycle where its input turns through, else over the range that it was verified along.
+    """Prepare a design for a whole cycle if its input rotates fully, otherwise for its verified range.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def run_of(stated: DesignDynamics, design: Any, steps: int = STEPS) -> Run:
         raise NoForces("/dynamics/links", stated.laid_out(None) or "")
     mechanism = rebuilt(design.mechanism, from_skeleton=True)
     if mechanism is None:
-        raise NoForces("", "no mechanism can be built from the dimensions")
+        raise NoForces("", "no mechanism can be built from these dimensions")
     block = shaped(stated, mechanism.links)
     for path, detail in weight_faults(block, mechanism):
         raise NoForces(_as_written(stated, path), detail)
@@ -151,7 +151,7 @@ def run_of(stated: DesignDynamics, design: Any, steps: int = STEPS) -> Run:
         raise NoForces(f"/dynamics/{missing}", f"the input of this linkage {moves}; state it")
     at = _motion(block, mechanism, design.metrics, steps)
     if at is None:
-        raise NoForces("", "there is no motion that it was verified along")
+        raise NoForces("", "the design has no verified motion")
     return Run(mechanism, block, at, speed if slides else speed * math.tau / 60.0)
 
 
@@ -184,7 +184,7 @@ def _forces(problem: LinkageProblem, stated: DesignDynamics, design: Any) -> Des
 
 
 def forces_over_motion(stated: DesignDynamics, design: Any, unit: LengthUnit, steps: int) -> dict[str, Any]:
-    """The motion of a design with all its forces, as :class:`synthesis.analyses.linkage.LinkageAnalysis` has it.
+    """Analyze a design's motion with all forces, in the form of :class:`synthesis.analyses.linkage.LinkageAnalysis`.
 
     Parameters
     ----------
@@ -221,7 +221,7 @@ def forces_over_motion(stated: DesignDynamics, design: Any, unit: LengthUnit, st
 
 
 def _as_written(stated: DesignDynamics, path: str) -> str:
-    """The path of a fault, where it is one of the shape of all links: a link's own body was not written then."""
+    """Map the path of an error in a link's generated body to the shape of all links, which the client wrote."""
     parts = path.split("/")
     if parts[1:3] != ["dynamics", "bodies"] or stated.links is None or "shape" not in parts[4:5]:
         return path
@@ -230,7 +230,7 @@ def _as_written(stated: DesignDynamics, path: str) -> str:
 
 
 def shaped(stated: DesignDynamics, links: Mapping[str, Sequence[str]]) -> DesignDynamics:
-    """The block with the shape of all ``links`` given to those of a mechanism (by their joints) it does not name."""
+    """Return the block with the shape of all links assigned to the links of a mechanism that it does not name."""
     if stated.plate is None:
         return stated
     bodies = dict(stated.bodies)
@@ -241,7 +241,7 @@ def shaped(stated: DesignDynamics, links: Mapping[str, Sequence[str]]) -> Design
 
 
 def _shaped_for(shape: Shape, joints: Sequence[str]) -> Shape:
-    """A shape of all links for one of them: with the holes of its own joints, and ends where it is a bar."""
+    """Fit the shape of all links to one link: keep the holes of its own joints, and the ends only for a bar."""
     holes = {joint: diameter for joint, diameter in shape.holes.items() if joint in joints}
     update: dict[str, Any] = {"holes": holes}
     if len(joints) != 2:
@@ -250,7 +250,7 @@ def _shaped_for(shape: Shape, joints: Sequence[str]) -> Shape:
 
 
 def _motion(block: DesignDynamics, mechanism: Mechanism, metrics: Any, steps: int) -> NDArray[np.float64] | None:
-    """Inputs from end to end: a whole cycle of mechanism and loads where the input turns through, else as verified."""
+    """Return the inputs of a whole cycle of mechanism and loads if the input rotates fully, else as verified."""
     from synthesis.mechanisms.courses import repeated_after
 
     turns_through = getattr(metrics, "full_rotation", False)  # a steering linkage is not asked to

@@ -1,4 +1,4 @@
-"""The front of an answer: the designs that no other beats in all that they are weighed up by (Pareto)."""
+"""Pareto front of an answer: the designs that no other dominates."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ def _error_field(metrics: Any) -> str | None:
 
 
 def error_of(design: Any) -> float:
-    """How far a design is from its task, as its kind measures it; 0 where every design is exact."""
+    """Return the error of a design as measured by its kind; 0 if all designs of the kind are exact."""
     field = _error_field(design.metrics)
     return 0.0 if field is None else float(getattr(design.metrics, field))
 
 
 def front_of(designs: Sequence[Any]) -> Front | None:
-    """The designs of an answer that no other beats; those that break a check are not looked at.
+    """Return the Pareto front of the designs of an answer, ignoring designs that fail a check.
 
     Parameters
     ----------
     designs : sequence
-        Of linkages, as they are returned.
+        Linkage designs in the order of the answer.
 
     Returns
     -------
     Front or None
-        None where there are fewer than two sound designs: nothing is traded.
+        None for fewer than two sound designs.
     """
     sound = [n for n, design in enumerate(designs) if design.verification.passed]
     if len(sound) < 2:
@@ -43,6 +43,7 @@ def front_of(designs: Sequence[Any]) -> Front | None:
         "size": [float(measured.size) for measured in metrics],
     }
     error = _error_field(metrics[0])
+    # Errors at rounding level are equal: otherwise rounding noise would decide the front.
     if error is not None:
         columns = {ERRORS[error]: [max(float(getattr(measured, error)), ROUNDING) for measured in metrics], **columns}
     table = np.array(list(columns.values())).T

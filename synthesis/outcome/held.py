@@ -1,4 +1,4 @@
-"""Demands on finished linkages that are the same for every kind, in the order of what they take to be judged."""
+"""Constraints on finished linkages that all kinds share, checked in the order of their cost."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ Design = TypeVar("Design")
 
 
 def held_to_all(problem: StatedProblem, design: Design) -> Design | None:
-    """A verified design with the checks of its room, forces, planes and yield, as far as these are demanded.
+    """Return a verified design with the checks of its workspace, forces, planes and yield, as far as required.
 
-    One that breaks a check is not looked at further. None where no mechanism can be built from what it states.
+    The first failed check ends the verification. None if no mechanism can be built from the dimensions of the design.
     """
     judged = judged_by_room(problem, design)
     if judged is None:

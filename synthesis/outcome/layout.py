@@ -1,4 +1,4 @@
-"""Designs laid out in planes: what the block ``layout`` of a statement adds to an answer, and demands of it."""
+"""Arrangement of designs in planes, for the block ``layout`` of a statement: results and checks."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from synthesis.model.statement import StatedProblem
 Design = TypeVar("Design", bound=Any)
 
 PLANES = "planes"
-"""The check of the number of planes; of a design that cannot be built in any number it has no value."""
+"""Name of the check of the number of planes; it has no value for a design that cannot be built in any number."""
 
 
 def held_to_planes(problem: StatedProblem, design: Design) -> Design:
-    """A design that passed every other check, with that of its planes, where the problem limits them."""
+    """Return a design with the check of its planes, if it passed all other checks and the problem limits the planes."""
     if not isinstance(problem, LinkageProblem) or problem.layout is None or problem.layout.max_planes is None:
         return design
     return laid_out(problem.layout, design) if design.verification.passed else design
 
 
 def all_laid_out(stated: StatedLayout, result: Result[Any]) -> Result[Any]:
-    """An answer with the layouts of all its designs, the nearest miss among them."""
+    """Return an answer with the layouts of all its designs and of the nearest miss."""
     miss = result.nearest_miss
     if miss is not None:
         miss = miss.model_copy(update={"design": laid_out(stated, miss.design)})
@@ -34,18 +34,18 @@ def all_laid_out(stated: StatedLayout, result: Result[Any]) -> Result[Any]:
 
 
 def laid_out(stated: StatedLayout, design: Design) -> Design:
-    """A design of linkages with its layout, and with the check of its planes where these are limited.
+    """Return a linkage design with its layout, and with the check of its planes if these are limited.
 
     Parameters
     ----------
     stated : StatedLayout
         The block of the statement.
     design : a design of linkages
-        As verified; one that has its layout stays as it is.
+        The verified design; it is returned unchanged if it already has a layout.
     """
     if design.layout is not None:
         return design
-    # Only who states the block waits for the import.
+    # A local import: only problems with this block need the module.
     from synthesis.analyses.layout import layout_of
     from synthesis.mechanisms.skeleton import assembled_skeleton
 

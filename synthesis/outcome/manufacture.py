@@ -1,4 +1,4 @@
-"""Designs as a shop makes them: what the block ``manufacture`` of a statement adds to an answer, and demands of it."""
+"""Designs as manufactured, for the block ``manufacture`` of a statement: results and checks."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from synthesis.model.statement import StatedProblem
 Design = TypeVar("Design", bound=Any)
 
 YIELD = "yield"
-"""The check of the yield; of a design for which none could be sampled it has no value."""
+"""Name of the check of the yield; it has no value for a design whose yield could not be sampled."""
 
 
 def held_to_yield(problem: StatedProblem, design: Design) -> Design:
-    """A design that passed every other check, with that of its yield, where the problem demands one."""
+    """Return a design with the check of its yield, if it passed all other checks and the problem requires a yield."""
     if not isinstance(problem, LinkageProblem) or problem.manufacture is None:
         return design
     if problem.manufacture.demanded_yield is None or not design.verification.passed:
@@ -29,7 +29,7 @@ def held_to_yield(problem: StatedProblem, design: Design) -> Design:
 
 
 def all_made(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
-    """An answer with all of its designs as they are made, the nearest miss among them."""
+    """Return an answer with the manufacturing results of all its designs and of the nearest miss."""
     miss = result.nearest_miss
     if miss is not None:
         miss = miss.model_copy(update={"design": made(problem, miss.design)})
@@ -38,16 +38,16 @@ def all_made(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
 
 
 def made(problem: LinkageProblem, design: Design, *, allocate: bool = True) -> Design:
-    """A design of linkages as it is made, with the check of its yield where one is demanded.
+    """Return a linkage design with its manufacturing results, and with the check of its yield if one is required.
 
     Parameters
     ----------
     problem : LinkageProblem
-        Whose block ``manufacture`` is stated.
+        Problem with a block ``manufacture``.
     design : a design of linkages
-        As verified; one that has been looked at stays as it is.
+        The verified design; it is returned unchanged if it already has these results.
     allocate : bool
-        Whether the widest tolerances are looked for, where these are asked for: that takes many times as long.
+        Whether to find the widest tolerances, if requested; this takes many times as long.
     """
     stated = problem.manufacture
     if stated is None:
@@ -56,7 +56,7 @@ def made(problem: LinkageProblem, design: Design, *, allocate: bool = True) -> D
         stated = stated.model_copy(update={"widest": False})
     if design.manufacture is not None and (design.manufacture.widest or not stated.widest):
         return design
-    # Only who states the block waits for the import.
+    # A local import: only problems with this block need the module.
     from synthesis.manufacture.linkage import linkage_of
     from synthesis.manufacture.report import Reported, reported
 
@@ -67,7 +67,7 @@ def made(problem: LinkageProblem, design: Design, *, allocate: bool = True) -> D
     if design.exact is not None:
         linkage = linkage_of(design.mechanism)
         assert linkage is not None
-        # P is stated by distance and angle, from which its place on the grid comes with rounding.
+        # P is given by distance and angle, from which its grid coordinates follow only with rounding errors.
         digits = [float(f"{value:.12g}") for value in linkage.row]
         named = zip(linkage.names(guides=problem.guides_a_point), digits, strict=False)
         rounded = {"dimensions": dict(named), "cost": _cost(problem, design)}
@@ -85,7 +85,7 @@ def made(problem: LinkageProblem, design: Design, *, allocate: bool = True) -> D
 
 
 def branch_range(problem: LinkageProblem, design: Any) -> tuple[float, float] | None:
-    """The range of the input on which a design must stay on its branch as it is made, radians; None where on none."""
+    """Return the range of the input (radians) on which a manufactured design must stay on its branch, or None."""
     used = design.metrics.used_range
     if used is None or not problem.constraints.same_branch:
         return None
@@ -93,7 +93,7 @@ def branch_range(problem: LinkageProblem, design: Any) -> tuple[float, float] | 
 
 
 def errors_of(problem: LinkageProblem, design: Any) -> tuple[float | None, float | None]:
-    """The greatest distance and angle (degrees) by which a design misses its targets; None of what it has none of."""
+    """Return the maximum distance and angle (degrees) by which a design misses its targets; None if not applicable."""
     greatest = getattr(design.metrics, "max_structural_error", None)
     if greatest is not None:
         return (greatest, None) if problem.slides else (None, greatest)
@@ -102,7 +102,7 @@ def errors_of(problem: LinkageProblem, design: Any) -> tuple[float | None, float
 
 
 def exact_design(problem: LinkageProblem, design: Any) -> ExactDesign:
-    """A design as it is shown beside that on the grid."""
+    """Describe the exact design of which a design on the grid is the rounded version."""
     error, angle = errors_of(problem, design)
     return ExactDesign(
         mechanism=design.mechanism,

@@ -1,6 +1,6 @@
-"""Orders by what takes too long to be measured of every candidate: planes, yield, and forces.
+"""Orders by quantities that are too expensive to measure on every candidate: planes, yield, and forces.
 
-The search is in the usual order of its kind, for more designs than are wanted; they are measured, and then ordered.
+The search uses the default order of its kind and finds more designs than requested; these are measured and sorted.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ from synthesis.outcome.forces import value_of, with_force_checks
 Problem = TypeVar("Problem", bound=StatedProblem)
 
 SEARCHES, NARROWER, PATIENCE_S = 4, 0.8, 4.0
-"""Further searches at most where forces order, the share of the least force that each may have, and the processor time
-after which none is begun."""
+"""For orders by a force: maximum number of further searches, limit of each as a share of the smallest force so far, and
+processor time (seconds) after which none is started."""
 
 LOOKED_AT: Mapping[str, int] = {"planes": 40, "yield": 40} | dict.fromkeys(FORCES, 100)
-"""Designs at least that are measured, the first of the usual order, for each such order."""
+"""Minimum number of designs to measure for each such order: the first ones in the default order."""
 
 
 GRIDDED = 12
-"""Designs at least that are looked for where those near them on a grid are answered: some have none."""
+"""Minimum number of designs to search if they are then rounded to a grid, as some have no neighbour on it."""
 
 
 def searched_for(problem: Problem) -> Problem:
-    """The statement that is searched for: with the order of its kind, and :data:`LOOKED_AT` designs.
+    """Return the statement to search: with the default order of its kind and :data:`LOOKED_AT` designs.
 
-    The same order with :data:`GRIDDED` designs where these are put on a grid.
+    If designs are rounded to a grid, the order is kept and the number of designs is at least :data:`GRIDDED`.
     """
     if not isinstance(problem, LinkageProblem):
         return problem
@@ -45,19 +45,19 @@ def searched_for(problem: Problem) -> Problem:
 
 
 def searched_on(problem: LinkageProblem, result: Result[Any], solve: Callable[[Any], Result[Any]]) -> Result[Any]:
-    """An answer that is ordered by a force, with designs of less of it from further searches.
+    """Add designs with smaller forces to an answer that is ordered by a force, by further searches.
 
-    Each is for designs with no more than a share of the least so far: limits steer a search, an order does not. They
-    end where one finds nothing, after :data:`SEARCHES`, or where the time is up.
+    Each search limits the force to a share of the smallest one so far, because a limit guides a search and an order
+    does not. The searches end if one finds nothing, after :data:`SEARCHES` searches, or when the time is up.
 
     Parameters
     ----------
     problem : LinkageProblem
-        As stated.
+        The original problem.
     result : Result
-        Of :func:`searched_for`, with forces.
+        Answer to :func:`searched_for`, with forces.
     solve : callable
-        Designs with their forces for another statement.
+        Solves another statement and returns designs with their forces.
     """
     if problem.rank_by not in FORCES:
         return result
@@ -66,6 +66,7 @@ def searched_on(problem: LinkageProblem, result: Result[Any], solve: Callable[[A
     for _ in range(SEARCHES):
         known = [value_of(design, problem.rank_by) for design in found.designs if design.verification.passed]
         least = min((value for value in known if value is not None), default=0.0)
+        # Nothing can be smaller than 0, and NaN ends the search as well.
         if not least > 0.0 or time.process_time() - begun > PATIENCE_S:
             break
         narrowed = problem.constraints.model_copy(update={limit: NARROWER * least})
@@ -78,17 +79,17 @@ def searched_on(problem: LinkageProblem, result: Result[Any], solve: Callable[[A
 
 
 def _as_stated(problem: LinkageProblem, design: Any) -> Any:
-    """A design of a narrower search with the checks of the limits that were stated, and no others."""
+    """Replace the force checks of a design by those of the original limits."""
     checks = [check for check in design.verification.checks if check.name not in FORCES]
     bare = design.model_copy(update={"verification": Verification.of(checks)})
     return with_force_checks(problem.constraints, bare)
 
 
 def least_first(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
-    """As many designs as are wanted of an answer to :func:`searched_for`, measured, those with the least first.
+    """Sort the measured designs of an answer to :func:`searched_for`, and keep the requested number.
 
-    Of yields the greatest is first. Those with as much stay in their order. What could not be measured comes after what
-    could, and designs that break a check last.
+    Designs are sorted by increasing value, but by decreasing yield; equal ones keep their order. Designs without a
+    value follow, and designs that fail a check come last.
     """
     designs = in_order(problem, result.designs)[: problem.max_designs]
     told = _told(problem.rank_by, result.designs, _measure_of(problem)) if result.designs else ""
@@ -96,7 +97,7 @@ def least_first(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
 
 
 def in_order(problem: LinkageProblem, designs: Sequence[Any]) -> list[Any]:
-    """Designs, measured, in the order that :func:`least_first` gives them."""
+    """Return measured designs in the order of :func:`least_first`."""
     measure = _measure_of(problem)
     sense = -1.0 if problem.rank_by == "yield" else 1.0
 
@@ -120,24 +121,24 @@ def _yield(design: Any) -> float | None:
 
 
 _MEASURES: Mapping[str, Callable[[Any], float | None]] = {"planes": _planes, "yield": _yield}
-"""What is no force."""
+"""Measures of the orders that are not forces."""
 
 
 def _told(order: str, designs: list[Any], measure: Callable[[Any], float | None]) -> str:
-    """What the order was made of, as a sentence."""
+    """Describe the order and the range of its values in a sentence."""
     known = sorted({value for design in designs if (value := measure(design)) is not None})
     what = order.replace("_", " ")
     if order == "planes":
-        missing, done = "none of them can be built", "laid out"
+        missing, done = "none of them can be built", "arranged in planes"
     else:
         missing, done = f"none of them has a known {what}", "measured"
     match known:
         case []:
             found = missing
         case [only]:
-            found = f"every one that can be built takes {only:.0f}" if order == "planes" else f"it is {only:.4g}"
+            found = f"every buildable one needs {only:.0f}" if order == "planes" else f"{only:.4g}"
         case _:
-            found = "they take" if order == "planes" else "it is"
+            found = "they need" if order == "planes" else "from"
             found += f" {known[0]:.4g} to {known[-1]:.4g}"
     count = len(designs)
-    return f" Ordered by {what}, of {counted(count, 'design')} {done}; {found}."
+    return f" Ranked by {what} ({counted(count, 'design')} {done}): {found}."

@@ -1,4 +1,4 @@
-"""Where a linkage is put whose place is free: with its pivots in their regions and its links within their limits."""
+"""Placement of a linkage with free position: its pivots in their regions and its links within their limits."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from synthesis.numerics.placing import Boxes, Placing, placed
 
 
 class Linked(Protocol):
-    """What is asked of the mechanism of an answer with linkages, a model of its dimensions."""
+    """Required interface of a linkage mechanism in an answer, a model of its dimensions."""
 
     @property
     def skeleton(self) -> Skeleton:
-        """Its joints and links at the first target."""
+        """Joints and links at the first target."""
         ...
 
     def model_dump(self) -> dict[str, Any]:
-        """Its fields by name."""
+        """Return the fields by name."""
         ...
 
     @classmethod
     def model_validate(cls, obj: Any) -> Self:
-        """One of its type with such fields."""
+        """Build a mechanism of this type from its fields."""
         ...
 
 
@@ -45,7 +45,7 @@ def placement(
     *,
     turned: bool = True,
 ) -> Placing:
-    """The similarity that brings a linkage from its own frame to its place.
+    """Find the similarity that maps a linkage from its own frame to its position.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def placement(
 
 
 def boxes(regions: Sequence[Region | None]) -> Boxes:
-    """Regions of joints as numbers; infinite where there is none."""
+    """Convert the regions of joints to boxes; infinite for joints without a region."""
     table = np.array(
         [(-math.inf, math.inf) * 2 if region is None else (*region.x, *region.y) for region in regions]
     ).reshape(-1, 4)
@@ -85,7 +85,7 @@ def boxes(regions: Sequence[Region | None]) -> Boxes:
 def put(
     constraints: Constraints, mechanism: Mechanism, lengths: Sequence[float], *, sized: bool, turned: bool
 ) -> Mechanism:
-    """A finished mechanism where its pivots lie in their regions and its links within their limits.
+    """Place a finished mechanism so that its pivots lie in their regions and its links within their limits.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def put(
 def _fits(
     constraints: Constraints, fixed: Collection[complex], moving: Collection[complex], lengths: Sequence[float]
 ) -> bool:
-    """Whether nothing has to be moved."""
+    """Return whether the linkage already satisfies all regions and limits."""
     limits = constraints.link_length
     if limits is not None and min(lengths) < limits.min * (1.0 - ON_EDGE):
         return False
@@ -123,7 +123,7 @@ def _fits(
 
 
 def moved(mechanism: Mechanism, origin: complex, along: complex) -> Mechanism:
-    """A mechanism under the similarity z → origin + along · z: its places, lengths and directions."""
+    """Transform positions, lengths and directions of a mechanism by the similarity z → origin + along · z."""
     size, turn = abs(along), math.degrees(cmath.phase(along))
 
     def place(point: Sequence[float]) -> tuple[float, float]:

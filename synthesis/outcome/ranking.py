@@ -1,6 +1,6 @@
-"""Which of several sound designs to offer first, and which to leave out because they are nearly the same.
+"""Ranking of sound designs, and removal of designs that are nearly equal.
 
-docs/ranking.md explains the orders and what they are made of.
+docs/ranking.md explains the orders.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ Ranked = TypeVar("Ranked", bound=Verified)
 
 
 def distinct(joints: ArrayLike, count: int, apart: float) -> list[int]:
-    """Greedy choice of candidates that differ: each has some joint ``apart`` from where every one before has it.
+    """Choose different candidates greedily: each has some joint at least ``apart`` from every earlier one's.
 
     Parameters
     ----------
     joints : complex, shape (candidates, joints)
         Joints in the first position, best candidate first; there may be no candidates.
     count : int
-        How many to choose at most.
+        Maximum number of candidates to choose.
     apart : float
-        Least distance, in the unit of ``joints``.
+        Minimum distance, in the unit of ``joints``.
 
     Returns
     -------
@@ -40,7 +40,7 @@ def distinct(joints: ArrayLike, count: int, apart: float) -> list[int]:
 
 
 def widest_apart(joints: NDArray[np.complex128], count: int, aparts: Iterable[float]) -> list[int]:
-    """As :func:`distinct`, with the first of ``aparts`` at which there are ``count``, else with the last."""
+    """Choose as :func:`distinct` with the first distance of ``aparts`` that gives ``count``, else with the last."""
     chosen: list[int] = []
     for apart in aparts:
         chosen = distinct(joints, count, float(apart))
@@ -71,16 +71,16 @@ def _distinct(joints: NDArray[np.complex128], count: int, apart: float) -> NDArr
 
 
 ROUNDING = 1e-12
-"""Residuals below this, in task sizes, are rounding."""
+"""Residual, in task sizes, below which it is rounding."""
 
 
 def _decade(residual: float) -> float:
-    """The order of magnitude of a residual: within one, and at the level of rounding, residuals are alike."""
+    """Return the order of magnitude of a residual; residuals of one decade, or at rounding level, count as equal."""
     return math.floor(math.log10(max(residual, ROUNDING)))
 
 
 def by_quality(design: Any) -> float:
-    """The better of two designs first."""
+    """Return the sort key that puts designs of higher quality first."""
     return -float(design.metrics.quality)
 
 
@@ -92,8 +92,7 @@ KEYS: Mapping[str, Key] = {
     "size": lambda design: design.metrics.size,
     "transmission_angle": lambda design: -design.metrics.min_transmission_angle,
 }
-"""What designs are ordered by, least first, for each value of ``rank_by``; a kind states its own where it measures
-otherwise."""
+"""Sort keys for each value of ``rank_by``, smallest first; a kind has keys of its own if it measures differently."""
 
 
 def ranked(
@@ -104,7 +103,7 @@ def ranked(
     group: Callable[[Ranked], float] | None = None,
     ties: Callable[[Ranked], float] = by_quality,
 ) -> list[Ranked]:
-    """Designs in the order asked for, those that break a check after all others.
+    """Sort designs in the requested order, with designs that fail a check after all others.
 
     Parameters
     ----------
@@ -113,11 +112,11 @@ def ranked(
     rank_by : str
         Name of the key.
     own : mapping, optional
-        Keys of the kind, in place of those in :data:`KEYS`.
+        Keys of the kind that replace those in :data:`KEYS`.
     group : callable, optional
-        What goes before the key: designs of a lower value stand first whatever is asked for.
+        Key that precedes every order: designs with a lower value always come first.
     ties : callable
-        What decides among designs with the same key: the quality, where a kind has one.
+        Key that decides between equal designs; by default the quality.
     """
     key = {**KEYS, **(own or {})}[rank_by]
 

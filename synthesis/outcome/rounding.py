@@ -1,8 +1,8 @@
-"""Designs on the grid of a shop, or of links in stock: the best near each design, verified like any other.
+"""Rounding of designs to the grid of a shop, or to links in stock: the best linkage near each design, fully verified.
 
-A search finds exact designs; for each of them the linkages on the grid near it are driven, the nearest to the task
-first, until one keeps every demand. What was to be met exactly is met as nearly as can be by these, and within the
-quality where one is stated.
+A search finds exact designs. For each of them the neighbouring linkages on the grid are driven, the most accurate one
+first, until one satisfies every constraint. Targets that should be met exactly are then met approximately, within the
+quality if one is given.
 """
 
 from __future__ import annotations
@@ -27,36 +27,37 @@ from synthesis.proof.checks import at_most
 Nearly = Callable[[Any, Any, Any], Any]
 
 ON_GRID = "on_grid"
-"""Reason of a design near which no linkage on the grid could be driven at all."""
+"""Reason of rejection if no linkage on the grid near a design can be driven."""
 
 DRIVEN, JUDGED = 100, 40
-"""Linkages near a design, at most, that are verified, and that are held to the demands that come after that."""
+"""Maximum number of linkages near a design that are driven, and that are then checked for all other constraints."""
 
 FAR = 0.05
-"""Share of the task's size, and radians, by which a target may be missed where no quality is stated."""
+"""Permitted error at a target without a quality: share of the task's size, and radians."""
 
 WORSE = 2.0
-"""What an exact design misses may be missed so many times; of a fit that misses by more than :data:`FAR`."""
+"""Permitted error growth by rounding, as a multiple of the exact design's error, if that gives more than :data:`FAR`.
+"""
 
 
 class _Rounded(NamedTuple):
-    """The best linkage on the grid near a design, and why it is rejected; empty where it passed."""
+    """Best linkage on the grid near a design, and its reason of rejection; empty if it passed."""
 
     design: Any
     reason: str
 
 
 def on_grid(problem: LinkageProblem, result: Result[Any], nearly: Nearly | None) -> Result[Any]:
-    """An answer whose designs are those on the grid that the problem states, the exact ones beside them.
+    """Return an answer with designs on the requested grid, each with its exact design.
 
     Parameters
     ----------
     problem : LinkageProblem
-        What was asked, with as many designs as are wanted.
+        The problem with the requested number of designs.
     result : Result
-        Exact designs; those that break a check stay as they are, after the others.
+        Exact designs; those that fail a check are kept unchanged, after the others.
     nearly : callable
-        What the kind declares as :attr:`synthesis.model.kind.Kind.nearly`.
+        The kind's :attr:`synthesis.model.kind.Kind.nearly`.
     """
     stated = problem.manufacture
     if stated is None or not stated.gridded or nearly is None:
@@ -82,8 +83,8 @@ def on_grid(problem: LinkageProblem, result: Result[Any], nearly: Nearly | None)
         "accepted": search.accepted - len(missed),
         "rejected": dict(Counter(search.rejected) + lost),
     }
-    told = f" Rounded: near {len(found)} of {len(found) + len(missed)} of them"
-    told += " there is a linkage on the grid that keeps all demands."
+    told = f" Rounded to the grid: {len(found)} of {len(found) + len(missed)} designs"
+    told += " still satisfy every constraint."
     if problem.include_failed:
         failed = [rounded.design for rounded in missed if rounded.design is not None] + failed
     return result.model_copy(
@@ -97,8 +98,8 @@ def on_grid(problem: LinkageProblem, result: Result[Any], nearly: Nearly | None)
 
 
 def _rounded(problem: LinkageProblem, design: Any, nearly: Nearly) -> _Rounded:
-    """The best linkage on the grid near a design."""
-    # Only who states the block waits for the import.
+    """Find the best linkage on the grid near a design."""
+    # A local import: only problems with this block need the module.
     from synthesis.manufacture.grid import mechanism_of, nearest_on_grid, with_dimensions
     from synthesis.manufacture.linkage import linkage_of
 
@@ -140,7 +141,7 @@ def _rounded(problem: LinkageProblem, design: Any, nearly: Nearly) -> _Rounded:
 
 
 def _quality_checks(problem: LinkageProblem, design: Any, exact: ExactDesign) -> list[Check]:
-    """How far targets without a tolerance of their own are missed: against the quality, or what is still an answer."""
+    """Check the errors at targets without a tolerance of their own against the permitted errors."""
     error, angle = errors_of(problem, design)
     held = problem.held_to(design)
     own = _own_limits(held)
@@ -158,7 +159,7 @@ def _quality_checks(problem: LinkageProblem, design: Any, exact: ExactDesign) ->
 
 
 def _limits(problem: LinkageProblem, held: Held, exact: ExactDesign) -> tuple[float, float]:
-    """Distance and angle (radians) by which targets may be missed: the quality, or what is still an answer."""
+    """Return the permitted distance and angle (radians) at targets: the quality if given, otherwise the defaults."""
     quality = None if problem.manufacture is None else problem.manufacture.quality
     distance = max(FAR * held.size, WORSE * (exact.max_error or 0.0))
     angle = max(FAR, WORSE * math.radians(exact.max_angle_error or 0.0))
@@ -170,7 +171,7 @@ def _limits(problem: LinkageProblem, held: Held, exact: ExactDesign) -> tuple[fl
 
 
 def _own_limits(held: Held) -> NDArray[np.bool_] | None:
-    """Which targets have a tolerance of their own; None where none has."""
+    """Return a mask of the targets with a tolerance of their own; None if there are none."""
     limits = held.limits
     if limits is None:
         return None
@@ -179,7 +180,7 @@ def _own_limits(held: Held) -> NDArray[np.bool_] | None:
 
 
 def _nearest_miss(missed: list[_Rounded]) -> NearestMiss[Any] | None:
-    """The linkage on the grid that breaks the fewest checks, the nearest to the task of those."""
+    """Return the linkage on the grid that fails the fewest checks; among equals the one with the smallest error."""
     known = [rounded.design for rounded in missed if rounded.design is not None]
     if not known:
         return None

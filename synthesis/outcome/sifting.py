@@ -1,7 +1,7 @@
-"""What becomes of candidates: each verified once, those that pass kept, and every other counted by its reason.
+"""Log of the candidates of a search: each is verified once and either accepted or counted by its reason of rejection.
 
-Every search has the same account: ``candidates = accepted + all rejected``. Here it holds by construction: nothing
-counts a candidate but its acceptance or a reason against it.
+All searches report ``candidates = accepted + all rejected``. Here this holds by construction, since a candidate is
+counted only when it is accepted or rejected.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ DEFECTS = {
     "same_branch": "branch_defect",
     "visits_in_order": "order_defect",
 }
-"""Reasons of rejection by the check of the motion that is broken."""
+"""Reasons of rejection by the failed check of the motion."""
 
 LENGTHS = {"shortest_link": "link_length", "longest_link": "link_length"}
-"""Reasons of rejection by the check of lengths that is broken."""
+"""Reasons of rejection by the failed check of lengths."""
 
 NUMERICAL = {"degenerate", "residual", "cannot_be_driven"}
-"""Reasons that say what could not be shown, not what cannot be: a search with one of them proves nothing."""
+"""Reasons of numerical failure: a search that rejects candidates for one of them proves nothing."""
 
 OUTRANKED = "outranked"
-"""Reason of the sound candidates that are not driven, or not offered, because better ones are."""
+"""Reason of sound candidates that are not driven or not listed because better ones are."""
 
 
 class Verified(Protocol):
@@ -40,7 +40,7 @@ class Verified(Protocol):
 
     @property
     def verification(self) -> Verification:
-        """The checks."""
+        """Checks of the design."""
 
 
 Candidate = TypeVar("Candidate")
@@ -48,25 +48,25 @@ Design = TypeVar("Design", bound=Verified)
 
 
 class Sifting(Generic[Design]):
-    """The account of a search.
+    """Log of the candidates of a search.
 
     Parameters
     ----------
     problem : StatedProblem
-        What was asked: how many designs, whether with those that fail, and the seed.
+        The problem, with the number of designs, whether to include failed ones, and the seed.
     reasons : mapping, optional
-        Reasons of rejection by the first check that a design breaks; other checks go by their own name.
+        Reasons of rejection by the first failed check; the reason of other checks is their own name.
     undriven : str
         Reason of a candidate that cannot be driven at all.
 
     Attributes
     ----------
     passed, failed : list
-        Verified designs, in the order in which they were met.
+        Verified designs, in the order in which they were found.
     accepted : int
-        Candidates that passed. A candidate that may be driven in several ways can be several designs.
+        Number of accepted candidates. A candidate that can be driven in several ways may become several designs.
     rejected : Counter
-        The other candidates by reason.
+        Number of other candidates by reason.
     """
 
     def __init__(
@@ -82,11 +82,11 @@ class Sifting(Generic[Design]):
 
     @property
     def candidates(self) -> int:
-        """How many the search had."""
+        """Number of candidates of the search."""
         return self.accepted + self.rejected.total()
 
     def reject(self, reason: str, count: int = 1) -> None:
-        """Count candidates that are not verified, for ``reason``; none leaves no trace."""
+        """Count candidates that are rejected for ``reason`` without verification; a count of 0 adds no entry."""
         if count:
             self.rejected[reason] += count
 
@@ -96,9 +96,9 @@ class Sifting(Generic[Design]):
         verify: Callable[[Candidate], Design | str | None],
         enough: int | None = None,
     ) -> int:
-        """Verify candidates, the first first, until ``enough`` designs have passed; return how many were verified.
+        """Verify candidates in order until ``enough`` designs have passed; return the number of verified candidates.
 
-        ``verify`` answers as :meth:`keep` wants it.
+        ``verify`` returns a verdict as described at :meth:`keep`.
         """
         verified = 0
         for candidate in candidates:
@@ -116,26 +116,27 @@ class Sifting(Generic[Design]):
         self.sift(best, verify)
 
     def add(self, verdict: Design | str | None) -> None:
-        """Keep and count one candidate."""
+        """Store and count one candidate."""
         self.count(self.keep(verdict))
 
     def keep(self, verdict: Design | str | None) -> str:
-        """Put a design with those that passed or failed, without counting it.
+        """Store a design with those that passed or failed, without counting it.
 
         Parameters
         ----------
         verdict : Design, str or None
-            The verified design; the reason why there is none; None where it cannot be driven.
+            The verified design, or the reason of rejection, or None if the candidate cannot be driven.
 
         Returns
         -------
         str
-            Why it is rejected; empty where it passed.
+            Reason of rejection; empty if the design passed.
         """
         if verdict is None:
             return self._undriven
         if isinstance(verdict, str):
             return verdict
+        # Common constraints are expensive (forces, planes, yield): only designs that passed everything else pay.
         if verdict.verification.passed:
             judged = held_to_all(self.stated, verdict)
             if judged is None:
@@ -148,36 +149,36 @@ class Sifting(Generic[Design]):
         return self.reason_of([check.name for check in verdict.verification.checks if not check.passed])
 
     def count(self, reason: str) -> None:
-        """Count a candidate by the reason against it; by none it is accepted."""
+        """Count a candidate by its reason of rejection; an empty reason counts it as accepted."""
         if reason:
             self.rejected[reason] += 1
         else:
             self.accepted += 1
 
     def reason_of(self, broken: Sequence[str]) -> str:
-        """Why a design that breaks these checks is rejected."""
+        """Return the reason of rejection of a design with these failed checks."""
         return self._reasons.get(broken[0], broken[0])
 
     def withdraw(self, kept: list[Design], reason: str) -> None:
-        """Offer only ``kept`` of the designs that passed; the others count as rejected for ``reason``."""
+        """Keep only ``kept`` of the passed designs; count the others as rejected for ``reason``."""
         withdrawn = len(self.passed) - len(kept)
         self.passed = kept
         self.accepted -= withdrawn
         self.reject(reason, withdrawn)
 
     def join(self, search: Search) -> None:
-        """Take the account of a search into this one."""
+        """Add the counts of another search."""
         self.accepted += search.accepted
         self.rejected.update(search.rejected)
 
     def listed(self, *left_out: str) -> str:
-        """The reasons in words with their numbers, but for those that are left out; empty where there is none."""
+        """Format the reasons of rejection with their counts, except ``left_out``; empty if there are none."""
         return ", ".join(
             f"{name.replace('_', ' ')} {grouped(n)}" for name, n in self.rejected.items() if name not in left_out
         )
 
     def reasons(self) -> str:
-        """The reasons as a sentence that is added to a summary."""
+        """Describe the reasons of rejection in a sentence for a summary."""
         return f" Rejected: {self.listed()}." if self.rejected else ""
 
     def designs(
@@ -185,9 +186,9 @@ class Sifting(Generic[Design]):
         ordered: Callable[[list[Design]], list[Design]],
         different: Callable[[list[Design]], list[Design]] | None = None,
     ) -> list[Design]:
-        """The designs to return: in order, those that failed last and only if asked for, as many as are wanted.
+        """Return the requested number of designs in order; failed designs come last, and only if requested.
 
-        ``different`` leaves out of them what is nearly the same as one before.
+        ``different`` drops designs that are nearly equal to an earlier one.
         """
         shown = ordered(self.passed)
         if self.stated.include_failed:
@@ -195,11 +196,11 @@ class Sifting(Generic[Design]):
         return (different(shown) if different else shown)[: self.stated.max_designs]
 
     def _in_full(self, failed: Design) -> Design:
-        """A design that broke a check of its own, with what it has of the demands that are judged after these."""
+        """Return a failed design with the checks of its workspace, too."""
         return judged_by_room(self.stated, failed) or failed
 
     def search(self, method: str, *, complete: bool = False) -> Search:
-        """The account in the answer."""
+        """Return the counts in the form of the answer."""
         return Search(
             method=method,
             complete=complete,
@@ -213,9 +214,10 @@ class Sifting(Generic[Design]):
 def reported(
     candidates: Sequence[Candidate], progress: Progress, span: tuple[float, float], message: str
 ) -> Iterator[Candidate]:
-    """Candidates one by one, each after a report of progress between the shares of ``span``.
+    """Yield candidates one by one and report progress between the shares of ``span`` before each.
 
-    ``message`` may name ``{done}``, ``{next}`` and ``{all}``: candidates before this one, with it, and in all.
+    ``message`` may contain ``{done}``, ``{next}`` and ``{all}``: the number of candidates before this one, including
+    it, and in total.
     """
     begin, end = span
     count = len(candidates)

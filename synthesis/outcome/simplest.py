@@ -1,6 +1,7 @@
-"""The simplest type of linkage that is sound stands alone; others are offered beside it where they are better.
+"""Preference for the simplest sound type of linkage; other types are added only if they are clearly better.
 
-Rules of the field ``mechanisms``, for all kinds that have it. What is better, and how it is told, is the kind's.
+These are the rules of the field ``mechanisms``, for all kinds that have it. Each kind defines and describes what is
+better.
 """
 
 from __future__ import annotations
@@ -18,10 +19,10 @@ Design = TypeVar("Design", bound=Verified)
 Answer = TypeVar("Answer", bound=Result[Any])
 
 SOUND = 20.0
-"""Degrees of transmission angle that a linkage is to have where the client demands none."""
+"""Minimum transmission angle (degrees) with which a linkage counts as sound if the client requires none."""
 
 HALF = 0.5
-"""Share of a simpler linkage's error that one of more links may have at most to be offered beside it."""
+"""Maximum error of a linkage with more links, as a share of the simpler linkage's error, to be listed as well."""
 
 
 def simplest_first(
@@ -32,20 +33,20 @@ def simplest_first(
     progress: Progress,
     unlooked: str = "",
 ) -> Answer:
-    """The answer of the simpler types where one of its designs stands alone, else that of both sorts as one.
+    """Return the answer of the simpler types if one of its designs is good enough, otherwise both answers merged.
 
     Parameters
     ----------
     simple, sixbars : callable or None
-        Solve for each sort; None where it is not looked for, not both.
+        Solvers of the simpler types and of sixbars; at most one is None, for types that are not searched.
     alone : callable
-        Whether a design that keeps all demands is so good that nothing else is looked for.
+        Whether a design that satisfies all constraints is good enough to search no other types.
     joined : callable
-        Both answers as one.
+        Merges both answers.
     progress : callable
-        Told how far the work is.
+        Progress callback.
     unlooked : str
-        What the summary says where sixbars are not looked for.
+        Sentence for the summary if sixbars are not searched.
     """
     if simple is None:
         assert sixbars is not None
@@ -53,6 +54,7 @@ def simplest_first(
     if sixbars is None:
         result = simple(progress)
         return result.model_copy(update={"summary": f"{result.summary} {unlooked}".rstrip()})
+    # Search the simple types first: if one of them is good enough, the expensive search of sixbars is skipped.
     plain = simple(part_of(progress, 0.0, 0.4))
     if any(alone(design) for design in passing(plain.designs)):
         return plain
@@ -60,12 +62,12 @@ def simplest_first(
 
 
 def passing(designs: Sequence[Design]) -> list[Design]:
-    """Those that keep all demands."""
+    """Return the designs that pass all checks."""
     return [design for design in designs if design.verification.passed]
 
 
 def transmits(problem: LinkageProblem, design: Any) -> bool:
-    """Whether a linkage that meets all demands transmits force well enough to stand alone."""
+    """Return whether a linkage that passes all checks transmits force well enough to search no other types."""
     demanded = problem.constraints.min_transmission_angle
     return demanded is not None or bool(design.metrics.min_transmission_angle >= SOUND)
 
@@ -73,7 +75,7 @@ def transmits(problem: LinkageProblem, design: Any) -> bool:
 def offered_beside(
     most: int, plain: Sequence[Design], better: Sequence[Design], ordered: Callable[[list[Design]], list[Design]]
 ) -> list[Design]:
-    """As many as are wanted, the best first; where two are, the best of both sorts."""
+    """Return the best ``most`` designs of both types in order; if there are two or more, at least one of each type."""
     order = ordered([*plain, *better])
     kept = order[:most]
     for sort in (plain, better):
@@ -83,22 +85,22 @@ def offered_beside(
 
 
 def told_of_offered(problem: LinkageProblem, offered: int, of_second: int) -> str:
-    """How a sentence ends that says what is better of other linkages than of the best simpler one.
+    """Return the end of a sentence that compares other types with the best simpler linkage.
 
-    Nothing is added where it is not yet known which designs are listed.
+    It is a plain full stop as long as the listed designs are not yet known.
 
     Parameters
     ----------
     problem : LinkageProblem
-        As it is searched for.
+        The problem as searched.
     offered, of_second : int
-        Designs that are offered, and how many of them are those others.
+        Number of listed designs, and how many of them are of the other types.
     """
     if problem.listed_later:
         return "."
     if not of_second:
-        return "; max_designs leaves no room for them."
-    return f" and are offered {'beside it' if of_second < offered else 'in its place'}."
+        return "; they are not listed because of max_designs."
+    return f" and are listed {'with it' if of_second < offered else 'in its place'}."
 
 
 def as_one(
@@ -109,22 +111,22 @@ def as_one(
     told: str,
     ordered: Callable[[list[Design]], list[Design]],
 ) -> Answer:
-    """Two answers as one; what passed and is not offered counts as outranked.
+    """Merge two answers; designs that passed but are not listed count as outranked.
 
     Parameters
     ----------
     most : int
-        Designs in the answer, at most; where there is room, those that failed follow the offered ones.
+        Maximum number of designs in the answer; failed designs follow the listed ones if there is space.
     answers : pair of results
-        Of the simpler types, whose other fields are kept, and of the others.
+        Answer of the simpler types, whose other fields are kept, and answer of the other types.
     offered : sequence of designs
-        Those of both that are offered, in their order.
+        Designs of both answers to list, in order.
     of_second : int
-        How many of them are of the second answer.
+        Number of them from the second answer.
     told : str
-        The sentence before both summaries.
+        Sentence before both summaries.
     ordered : callable
-        The order of designs.
+        Sorts designs.
     """
     simple, found = answers
     failed = [one for answer in answers for one in answer.designs if not one.verification.passed]
@@ -139,14 +141,14 @@ def as_one(
 
 
 def offering(search: Search, count: int) -> Search:
-    """The account of a search of which so many designs are offered at most; those that are not are outranked."""
+    """Return the counts of a search of which at most ``count`` designs are listed; the others count as outranked."""
     withdrawn = max(search.accepted - count, 0)
     rejected = Counter(search.rejected) + Counter({OUTRANKED: withdrawn})
     return search.model_copy(update={"accepted": search.accepted - withdrawn, "rejected": dict(rejected)})
 
 
 def both_searches(first: Search, second: Search) -> Search:
-    """The account of two searches as one."""
+    """Add the counts of two searches."""
     return second.model_copy(
         update={
             "method": f"{first.method}, {second.method}",

@@ -1,9 +1,8 @@
-"""Which design of an answer stands first where the client sets no limits: one that somebody would build.
+"""Preference for practical designs in answers to problems without limits of their own.
 
-Practice wants a transmission angle of 30 to 40 degrees at least and links of which none is more than about ten times
-as long as another (Norton, *Design of Machinery*, Sec. 3.3 and 4.10), and a link that is many times as long as the task
-is wide finds no room. What is a little nearer to the task and cannot be
-built is no better answer.
+Practice requires a minimum transmission angle of 30 to 40 degrees and a link ratio of at most about ten (Norton,
+*Design of Machinery*, Sec. 3.3 and 4.10). A link that is many times longer than the task rarely fits. A design that is
+slightly closer to the task but cannot be built is no better answer.
 """
 
 from __future__ import annotations
@@ -17,44 +16,45 @@ from synthesis.outcome.front import error_of
 from synthesis.outcome.ranking import ROUNDING
 
 TRANSMISSION_ANGLE = 30.0
-"""Degrees."""
+"""Minimum transmission angle of a practical design, degrees."""
 
 LINK_RATIO = 10.0
+"""Maximum ratio of the longest link to the shortest in a practical design."""
 
 REACH = 5.0
-"""Greatest distance between two joints of one link, in sizes of the task."""
+"""Maximum distance between two joints of one link in a practical design, in sizes of the task."""
 
 HELD = 1e-6
-"""Relative rounding of designs that a fit holds at one of these."""
+"""Relative tolerance for designs that a fit placed exactly at one of these limits."""
 
 BAND = 2.0
-"""Errors up to this many times the least are alike for who builds a linkage."""
+"""Factor of the smallest error up to which errors make no practical difference."""
 
 
 class Ordered(NamedTuple):
-    """Designs in their order, and what has to be said of it; empty where the first design is usable as it is."""
+    """Sorted designs and a remark on their order; empty if the first design is practical anyway."""
 
     designs: list[Any]
     remark: str
 
 
 def even(design: Any) -> bool:
-    """Whether a design that passed transmits force well and has links of like lengths."""
+    """Return whether a passed design transmits force well and has a moderate link ratio."""
     measured = design.metrics
     transmits = measured.min_transmission_angle >= TRANSMISSION_ANGLE * (1.0 - HELD)
     return bool(transmits and measured.link_ratio <= LINK_RATIO * (1.0 + HELD))
 
 
 def usable(design: Any) -> bool:
-    """Whether it is, and has no link that is far longer than its task is wide."""
+    """Return whether a design is practical: also without a link that is far longer than the task."""
     reach = getattr(design.metrics, "reach", None)
     return even(design) and (reach is None or reach <= REACH * (1.0 + HELD))
 
 
 def usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> Ordered:
-    """The designs of an answer, the usable ones that are nearly as near to the task as the nearest before all others.
+    """Move the practical designs whose error is close to the smallest one before all others.
 
-    The order stays as it is where the client has stated a limit of transmission angle or link ratio, or another order.
+    The order is kept if the client gave a limit of transmission angle or link ratio, or another order.
     """
     limited = not all(_by_default(problem.constraints, name) for name in ("min_transmission_angle", "max_link_ratio"))
     passed = [design for design in designs if design.verification.passed]
@@ -66,28 +66,25 @@ def usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> Ordered:
         return error_of(design) if measure is None else float(getattr(design.metrics, measure))
 
     least = min(map(error, passed))
+    # Exact designs differ by rounding only: compare with at least the rounding level.
     near = [design for design in passed if error(design) <= BAND * max(least, ROUNDING)]
-    missing = (
-        "No design that was found" if len(near) == len(passed) else f"No design within {BAND:g} times the least error"
-    )
-    practice = f"a least transmission angle of {TRANSMISSION_ANGLE:.0f}° and a link ratio of {LINK_RATIO:.0f} or less"
+    missing = "No design found" if len(near) == len(passed) else f"No design within {BAND:g} times the smallest error"
+    practice = f"a transmission angle of {TRANSMISSION_ANGLE:.0f}° or more and a link ratio of {LINK_RATIO:.0f} or less"
     compact = f"no link longer than {REACH:.0f} times the task's size"
     first = [design for design in near if usable(design)]
     if first:
-        return Ordered(
-            _before(first, designs), f" First stand those that have {practice} and {compact}, then the others."
-        )
+        return Ordered(_before(first, designs), f" Designs with {practice} and {compact} are listed first.")
     told = f" {missing} has {practice} and {compact}"
     if even(passed[0]):
         return Ordered(list(designs), f"{told}.")
     first = [design for design in near if even(design)]
     if not first:
         return Ordered(list(designs), f" {missing} has {practice}.")
-    return Ordered(_before(first, designs), f"{told}; first stand those with such an angle and ratio.")
+    return Ordered(_before(first, designs), f"{told}; designs with such an angle and ratio are listed first.")
 
 
 def _before(first: Sequence[Any], designs: Sequence[Any]) -> list[Any]:
-    """Designs with some of them before all others."""
+    """Return the designs with ``first`` moved to the front."""
     chosen = {id(design) for design in first}
     return [*first, *(design for design in designs if id(design) not in chosen)]
 

@@ -1,7 +1,7 @@
-"""Which of many linkages of one make are likely to keep the limits on their forces: weighed by elimination.
+"""Pre-filter: evaluate force limits for many linkages of one topology at once, by elimination.
 
-For searches that choose among many candidates before any is driven. What is left out would fail where it was looked at;
-what passes is measured by the general equations before it is answered.
+It serves searches that choose among many candidates before any is driven. A rejected linkage violates a limit at one of
+the evaluated positions. A linkage that passes is measured later by the general equations.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ from synthesis.outcome.forces import STEPS, shaped
 Real = NDArray[np.float64]
 
 SEEN = ("drive_torque", "joint_force", "shaking_force", "shaking_moment", "power")
-"""Limits that are looked at; the joint force index is measured alone."""
+"""Forces whose limits are evaluated; the joint force index needs a computation of its own."""
 
 
 def bearable(problem: LinkageProblem, mechanism: Mechanism, moved: Real) -> NDArray[np.bool_]:
-    """Which linkages keep the limits on their forces at the positions that are looked at.
+    """Return a mask of the linkages that satisfy their force limits at the evaluated positions.
 
     Parameters
     ----------
     problem : LinkageProblem
-        That limits forces.
+        Problem with limits on forces.
     mechanism : Mechanism
-        Designs of shape (n,), as they stand at the first target.
+        Designs of shape (n,) at the first target.
     moved : float, shape (n,)
-        What the input turns by, radians, or slides by, to the last target. An input that turns through is looked at
-        over its whole turn.
+        Motion of the input from the first target to the last, radians or length units. An input that rotates fully is
+        evaluated over a whole turn.
 
     Returns
     -------
     bool, shape (n,)
-        All, where the elimination does not know what the linkages weigh and carry.
+        All True if the elimination does not support the masses and loads of the problem.
     """
     stated, limits = problem.dynamics, problem.constraints.of_forces
     every = np.ones(mechanism.shape, np.bool_)
@@ -67,6 +67,6 @@ def bearable(problem: LinkageProblem, mechanism: Mechanism, moved: Real) -> NDAr
     }
     for name, limit in limits.items():
         if name in peaks:
-            # What is not a number is no motion, and fails.
+            # NaN means that the linkage cannot move there: the comparison is False, and the linkage fails.
             every &= np.abs(peaks[name]).max(axis=1) <= limit
     return every

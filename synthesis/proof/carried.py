@@ -1,10 +1,10 @@
-"""What a body travels and turns between its positions, against what is needed: measured on the driven linkage.
+"""Path length and rotation of a carried body between its positions, compared with the minimum: measured when driven.
 
-Needed is the straight way of P from each position to the next, and the shorter turn. What the body does more than that
-is seldom wanted: it swings out on its way, or turns to and fro, and sweeps room that is needed otherwise.
+The minimum is the straight distance of P from each position to the next, and the shorter rotation. Excess motion is
+seldom useful: the body swings out or turns back and forth, and sweeps space that may be needed otherwise.
 
-The length of P's path is that of chords over ever finer grids, extrapolated (Richardson); the turning of the body is
-the sum of its turns between reversals, which lie on parabolas through three samples. Both are refined until two grids
+The length of P's path is extrapolated from chords over finer and finer grids (Richardson). The rotation of the body is
+summed between its reversals, which are located by parabolas through three samples. Both are refined until two grids
 agree.
 """
 
@@ -26,34 +26,34 @@ Pose = Callable[[Real], tuple[Complex, Real]]
 """P and the body's angle, radians, at inputs of shape (n,)."""
 
 STEPS, MOST_STEPS = 480, 15360
-"""Steps of the first grid over the used range, and of the finest."""
+"""Number of steps of the first grid over the used range, and of the finest."""
 
 SETTLED = 1e-8
-"""Relative change from one grid to the next at which what is measured has settled."""
+"""Relative change from one grid to the next at which a measured length has converged."""
 
 NOTHING = 1e-9
-"""Needed travel, in task sizes, and needed turn, in radians, up to which there is nothing to compare with."""
+"""Minimum required travel (task sizes) and rotation (radians) for which ratios are defined."""
 
 LONG_TURN = math.pi
-"""Turn of the input that halves the quality."""
+"""Rotation of the input, radians, that halves the quality."""
 
 LITTLE_TURN = math.radians(15.0)
-"""What a body turns more than is needed is weighed by the needed turn, or by this where less is needed."""
+"""Minimum reference, radians, for the excess rotation of a body if the required rotation is smaller."""
 
 
 class Carried(NamedTuple):
-    """How a linkage carries a body over the used range.
+    """Motion of a body that is carried over the used range.
 
     Attributes
     ----------
     input_turn : float
-        What the input turns, radians; 0 where it slides.
+        Rotation of the input, radians; 0 if it slides.
     travel_ratio, turn_ratio : float or None
-        Length of P's path over that of the straight ways between its positions, and all that the body turns over the
-        sum of the turns that are needed; None where none is needed, and where no motion leads through the positions.
+        Length of P's path over the sum of the straight distances between its positions, and total rotation of the body
+        over the sum of the required rotations; None if nothing is required or no motion passes through the positions.
     excess : float
-        The greater of what the body travels more than is needed, as a share of that, and what it turns more, as a share
-        of that or of :data:`LITTLE_TURN`.
+        Larger of two excesses: travel beyond the required travel, as a share of it, and rotation beyond the required
+        rotation, as a share of it or of :data:`LITTLE_TURN`.
     """
 
     input_turn: float = 0.0
@@ -64,7 +64,7 @@ class Carried(NamedTuple):
 
 @njit(cache=True, nogil=True)
 def ease(input_turn: float, excess: float) -> float:
-    """The factor of the quality, between 0 and 1, by which a long turn of the input and a body that wanders count.
+    """Compute the factor of the quality, between 0 and 1, that penalizes a long input turn and excess body motion.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def carried(
     span : pair of float
         First and last input of the used range.
     places, turns : complex and float, shape (positions,)
-        P and the body's rotation, radians, where the positions are met.
+        P and the body's rotation, radians, at the positions.
     size : float
         The size of the task, in length units.
     slides : bool
@@ -105,6 +105,7 @@ def carried(
         return Carried(input_turn)
     if needed > NOTHING * size:
         travel_ratio = travelled / needed
+        # Small required motions are compared with the size of the task, so that they do not exaggerate the excess.
         excess = max(excess, (travelled - needed) / max(needed, size))
     if needed_turn > NOTHING:
         turn_ratio = turned / needed_turn
@@ -113,7 +114,7 @@ def carried(
 
 
 def _ways(pose: Pose, start: float, end: float) -> tuple[float, float]:
-    """The length of P's path and all turning of the body between two inputs; NaN where the linkage does not close."""
+    """Measure the length of P's path and the total rotation of the body; NaN if the linkage does not close."""
     before = math.nan, math.nan
     count = STEPS
     while True:
@@ -122,6 +123,7 @@ def _ways(pose: Pose, start: float, end: float) -> tuple[float, float]:
             return math.nan, math.nan
         angles = np.unwrap(angles)
         ways = _path(places), _turning(angles)
+        # Every other point of the first grid serves as the coarser grid for the first comparison.
         if count == STEPS:
             before = _path(places[::2]), _turning(angles[::2])
         settled = all(abs(now - then) <= SETTLED * now for now, then in zip(ways, before, strict=True))
@@ -132,13 +134,14 @@ def _ways(pose: Pose, start: float, end: float) -> tuple[float, float]:
 
 
 def _path(places: Complex) -> float:
-    """The length of a path by its chords, extrapolated from those over two steps."""
+    """Extrapolate the length of a path from its chords over one and over two steps (Richardson)."""
     fine, coarse = float(np.abs(np.diff(places)).sum()), float(np.abs(np.diff(places[::2])).sum())
+    # The error of chords is of second order in the step.
     return fine + (fine - coarse) / 3.0
 
 
 def _turning(angles: Real) -> float:
-    """All turning of a body, to and fro."""
+    """Sum the rotation of a body in both directions."""
     steps = np.diff(angles)
     back = np.flatnonzero(steps[1:] * steps[:-1] < 0.0)
     slope, bend = 0.5 * (steps[back + 1] + steps[back]), steps[back + 1] - steps[back]

@@ -1,4 +1,4 @@
-"""Extremes of what a driven mechanism does: those of a grid, refined about them without derivatives."""
+"""Extremes of quantities of a driven mechanism: found on a grid, then refined without derivatives."""
 
 from __future__ import annotations
 
@@ -16,31 +16,31 @@ Real = NDArray[np.float64]
 Quantity = Callable[[MechanismMotion], Real]
 
 GRID = 1441
-"""Inputs of the first grid: a quarter of a degree of a full turn."""
+"""Number of inputs of the first grid: a quarter of a degree over a full turn."""
 
 SAMPLES, REFINEMENTS = 17, 6
-"""Inputs in each refinement of the grid about a low place, and their number: 8⁶ times finer than the grid."""
+"""Inputs in each refinement around a local minimum, and number of refinements: 8⁶ times finer than the grid."""
 
 VALLEYS = 8
-"""Low places that are refined: an error that is spread evenly is about as great at several."""
+"""Maximum number of local minima to refine: an evenly distributed error has several of nearly equal depth."""
 
 
 def least_near(of: Callable[[Real], Real], inputs: Real, values: Real) -> tuple[float, float]:
-    """The least of a quantity, by ever finer grids about the lowest places of a given one.
+    """Find the minimum of a quantity by finer and finer grids around the lowest points of a given grid.
 
     Parameters
     ----------
     of : callable
-        The quantity at inputs (n,), shape (n,); not finite where there is no position, as rounding may have it at a
-        toggle, or where it has no value.
+        The quantity at inputs (n,), shape (n,); not finite at inputs without a position (by rounding also at a toggle)
+        or without a value.
     inputs, values : ndarray, shape (m,), m >= 2
-        The grid, rising or falling, in the unit of the input (radians or a length), not looked beyond; and the quantity
-        there.
+        The grid, increasing or decreasing, in the unit of the input (radians or a length), whose ends limit the search;
+        and the quantity there.
 
     Returns
     -------
     tuple of float
-        The input and the least, of what is finite; both NaN where the grid has nothing finite.
+        The input and the minimum of the finite values; both NaN if the grid has none.
     """
     if not np.isfinite(values).any():
         return math.nan, math.nan
@@ -54,9 +54,10 @@ def least_near(of: Callable[[Real], Real], inputs: Real, values: Real) -> tuple[
 
 
 def _valleys(values: Real) -> NDArray[np.int64]:
-    """The places of a grid beside which the least may lie, the lowest first.
+    """Return the grid points near which the minimum may lie, lowest first.
 
-    Between the places beside it a smooth quantity falls below a low place by less than the higher of them lies above.
+    Between its neighbours a smooth quantity falls below a local minimum of the grid by less than the rise to the higher
+    neighbour.
     """
     left, right = np.append(values[:1], values[:-1]), np.append(values[1:], values[-1:])
     known = np.isfinite(values)
@@ -66,7 +67,7 @@ def _valleys(values: Real) -> NDArray[np.int64]:
 
 
 def _descended(of: Callable[[Real], Real], inputs: Real, places: NDArray[np.int64]) -> tuple[Real, Real]:
-    """The least about places of the grid, by ever finer grids, all at once; infinite where nothing is finite."""
+    """Refine the minima around several grid points at once; infinite for a point without finite values."""
     at, place, least = inputs[places], np.full(len(places), np.nan), np.full(len(places), np.inf)
     gaps = np.abs(np.diff(inputs))
     step = np.maximum(gaps[np.maximum(places - 1, 0)], gaps[np.minimum(places, len(gaps) - 1)])
@@ -81,17 +82,18 @@ def _descended(of: Callable[[Real], Real], inputs: Real, places: NDArray[np.int6
         at = np.where(np.isfinite(tried), closer[row, k], at)
         nearer = tried < least
         place, least = np.where(nearer, at, place), np.where(nearer, tried, least)
+        # The next grid spans the two neighbours of the best point.
         step = step * (2.0 / (SAMPLES - 1))
     return place, least
 
 
 def least_of(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) -> float:
-    """The least of a quantity between the first input and the last, of which the values on a grid are known."""
+    """Find the minimum of a quantity between the first and the last input, given its values on a grid."""
     return least_near(lambda closer: of(drive(mechanism, closer, order=1)), inputs, values)[1]
 
 
 def extremes_of(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) -> tuple[float, float]:
-    """The least and the greatest of a quantity."""
+    """Find the minimum and the maximum of a quantity."""
     least = least_of(mechanism, inputs, values, of)
     return least, -least_of(mechanism, inputs, -values, lambda motion: -of(motion))
 
@@ -99,16 +101,16 @@ def extremes_of(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) 
 def least_angles(
     at: Callable[[Real], MechanismMotion], inputs: Real, motion: MechanismMotion | None = None
 ) -> dict[str, float]:
-    """The least transmission angle at each closure between the first input and the last.
+    """Find the minimum transmission angle at each closure between the first and the last input.
 
-    It is 0 where nothing closes, and where the closure fails between places of the grid at which it closes.
+    It is 0 if the closure never closes, or if it fails between grid points at which it closes.
 
     Parameters
     ----------
     at : callable
         Drives the mechanism to inputs (n,).
     inputs : ndarray, shape (m,), m >= 2
-        A grid of them; :data:`GRID` of them are enough for a turn.
+        Grid of inputs; :data:`GRID` inputs suffice for a turn.
     motion : MechanismMotion, optional
         The motion there, from a caller that has it.
 
@@ -122,7 +124,7 @@ def least_angles(
 
         def sine(closer: Real, link: str = link) -> Real:
             there = at(closer)
-            # Beyond its limit a closure has no sine: it was nought on the way there. A triad has no margin of its own.
+            # Beyond its limit a closure has no sine; the sine was 0 at the limit. A triad has no margin of its own.
             beyond = there.margins[link][0] < 0.0 if link in there.margins else ~there.valid
             return np.where(beyond, 0.0, np.abs(there.sines[link]))
 
@@ -132,5 +134,5 @@ def least_angles(
 
 
 def turn_from(start: float) -> Real:
-    """Inputs of a whole turn, radians."""
+    """Return the grid of inputs of a whole turn, radians."""
     return np.asarray(start + np.linspace(0.0, 2.0 * np.pi, GRID))

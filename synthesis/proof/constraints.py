@@ -1,7 +1,7 @@
-"""The client's constraints as checks: one module for every kind of problem.
+"""Checks of the client's constraints, for every kind of problem.
 
-A constraint becomes a check of what was measured, or the statement is refused because no linkage of its kind could have
-such a property (``contradictions`` of each kind). There is no third way.
+Every constraint is either checked here on the measured properties, or refused in advance because no linkage of the kind
+can have such a property (``contradictions`` of each kind).
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ def constraint_checks(
     fixed_pivots: Sequence[complex],
     moving_pivots: Sequence[complex],
 ) -> list[Check]:
-    """A check for each constraint that is stated, or demanded by default.
+    """Check each constraint that is given or required by default.
 
     Parameters
     ----------
     constraints : Constraints
-        What the client demands.
+        The client's constraints.
     measures : Measures
-        What was measured of the driven linkage.
+        Measured properties of the driven linkage.
     fixed_pivots, moving_pivots : sequence of complex
-        Where they are at the first target, in length units.
+        Positions of the pivots at the first target, in length units.
     """
     checks = []
     if constraints.same_branch:
@@ -42,6 +42,7 @@ def constraint_checks(
             at_least("transmission_angle", measures.min_transmission_angle, constraints.min_transmission_angle, ANGLE)
         )
     if constraints.grashof != "any":
+        # The measured class of a non-Grashof linkage is named rocker_rocker.
         wanted = "rocker_rocker" if constraints.grashof == "non_grashof" else constraints.grashof
         checks.append(Check(name="grashof", passed=measures.grashof == wanted))
     if constraints.full_rotation:
@@ -63,6 +64,6 @@ def constraint_checks(
 
 
 def within_zone(name: str, region: Region, pivots: Sequence[complex]) -> Check:
-    """The check that pivots lie in a zone; its value is the distance of the farthest from it, in length units."""
+    """Check that pivots lie in a zone; the value is the maximum distance of a pivot from it, in length units."""
     outside = max(map(region.distance, pivots))
     return Check(name=name, passed=outside == 0.0, value=outside, limit=0.0, dimension=LENGTH)

@@ -1,10 +1,9 @@
-"""What an answer says of a driven linkage, whatever its kind: transmission, link ratio, size, and quality.
+"""Measured properties of every driven linkage: transmission angle, link ratio, size, and quality.
 
     quality = sin μ / ((1 + (reach/3)²) · (1 + (ratio/8)²))
 
-weighs what a designer looks at before anything else: how well force is transmitted, whether the linkage is small for
-its task, and whether its links can be built together. docs/ranking.md explains the numbers and lists what each kind of
-problem takes as the size of its task.
+combines the first concerns of a designer: good force transmission, a linkage that is small for its task, and links of
+similar lengths. docs/ranking.md explains the numbers and defines the size of the task for each kind of problem.
 """
 
 from __future__ import annotations
@@ -27,33 +26,33 @@ from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 Complex = NDArray[np.complex128]
 
 BULKY = 3.0
-"""A reach of this many task sizes halves the quality: such a linkage is large for what it does."""
+"""Reach, in task sizes, that halves the quality: such a linkage is large for its task."""
 
 UNEVEN = 8.0
-"""A link ratio of this halves the quality; practice keeps link ratios below about 10."""
+"""Link ratio that halves the quality; practice keeps link ratios below about 10."""
 
 TURNS_THROUGH = ("double_crank", "crank_rocker")
-"""Grashof's classes of fourbars whose input turns through."""
+"""Grashof classes of fourbars whose input rotates fully."""
 
 
 @njit(cache=True, nogil=True)
 def quality(transmission_sine: float, reach: float, link_ratio: float) -> float:
-    """Quality between 0 and 1.
+    """Compute the quality, between 0 and 1.
 
     Parameters
     ----------
     transmission_sine : float
-        Sine of the least transmission angle over the used range.
+        Sine of the minimum transmission angle over the used range.
     reach : float
-        Greatest distance between two joints of one link, in task sizes.
+        Maximum distance between two joints of one link, in task sizes.
     link_ratio : float
-        Longest link over shortest.
+        Longest link over shortest link.
     """
     return transmission_sine / ((1.0 + (reach / BULKY) ** 2) * (1.0 + (link_ratio / UNEVEN) ** 2))
 
 
 class Dimensioned(Protocol):
-    """A mechanism of any answer: its link lengths, by name or as a model of them."""
+    """A mechanism of any answer with link lengths, by name or as a model."""
 
     @property
     def links(self) -> Mapping[str, float] | BaseModel:
@@ -61,31 +60,31 @@ class Dimensioned(Protocol):
 
 
 class Measures(NamedTuple):
-    """What is measured of every driven linkage; the names are those of the fields of an answer's metrics.
+    """Measured properties of every driven linkage, named like the fields of an answer's metrics.
 
     Attributes
     ----------
     grashof, barker : str or None
         Class and code of the fourbar that the linkage is or contains; None for others.
     min_transmission_angle : float
-        Over the used range, degrees; the least of ``transmission_angles``.
+        Minimum over the used range, degrees; the minimum of ``transmission_angles``.
     transmission_angles : dict of str to float
-        The least at each closure by the name of its first link, and at each leg of a triad, degrees.
+        Minimum at each closure by the name of its first link, and at each leg of a triad, degrees.
     same_branch, visits_in_order, full_rotation : bool
-        Whether no toggle lies on the way, the way is gone through in order, and the input turns through.
+        Whether no toggle lies in the used range, targets are visited in order, and the input rotates fully.
     link_ratio : float
         Longest of ``lengths`` over shortest.
     reach : float or None
-        Greatest distance between two joints of one link, in task sizes; None where a task has none.
+        Maximum distance between two joints of one link, in task sizes; None if the task has no size.
     size : float
-        Diagonal of the box around all joints: at the targets, or over the motion of a kind that has none.
+        Diagonal of the box around all joints: at the targets, or over the motion for kinds without targets.
     quality : float
         Between 0 and 1.
     used_range, used_stroke : (float, float) or None
-        First and last input of the motion that is measured: absolute, degrees; or places along the line of an input
-        that slides, length units. None for the other kind of input, and where no motion leads through the targets.
+        First and last input of the measured motion: absolute angles, degrees, or positions of a sliding input along its
+        line, length units. None for the other type of input, and if no motion passes through the targets.
     lengths : list of float
-        Of the links; no field of an answer.
+        Link lengths; not part of an answer.
     """
 
     grashof: str | None
@@ -104,7 +103,7 @@ class Measures(NamedTuple):
     lengths: list[float]
 
     def within(self, metrics: type[BaseModel]) -> dict[str, Any]:
-        """Of the measures those that a model of metrics has a field for."""
+        """Return the measured properties for which a model of metrics has a field."""
         return {name: getattr(self, name) for name in _in_common(metrics)}
 
 
@@ -128,25 +127,25 @@ def measured(
     slides: bool = False,
     eased: float = 1.0,
 ) -> Measures:
-    """The measures of a driven linkage.
+    """Assemble the measured properties of a driven linkage.
 
     Parameters
     ----------
     lengths : list of float
-        Of the links, as :func:`link_lengths` or :func:`distances` lists them.
+        Link lengths, from :func:`link_lengths` or :func:`distances`.
     reach : float
-        Greatest distance between two joints of one link: of :func:`reach_of` or :func:`reach_of_fourbar`.
+        Maximum distance between two joints of one link, from :func:`reach_of` or :func:`reach_of_fourbar`.
     task : float
-        The size of the task, in length units; infinite where a task has none, so that reach does not count.
+        Size of the task, in length units; infinite for a task without size, so that reach does not count.
     transmission : mapping of str to float
-        The least transmission angle at each closure over the used range, radians; empty where there is no such range.
+        Minimum transmission angle at each closure over the used range, radians; empty without a used range.
     places : complex, shape (n,)
-        Where the joints stand: at the targets, or along the motion of a kind that has none.
+        Positions of the joints: at the targets, or along the motion for kinds without targets.
     barker, same_branch, visits_in_order, full_rotation
         As in :class:`Measures`.
     used : (float, float) or None
-        First and last input of the motion along which all this was measured, radians or length units; None where no
-        motion leads through the targets.
+        First and last input of the measured motion, radians or length units; None if no motion passes through the
+        targets.
     slides : bool
         Whether the input slides.
     eased : float
@@ -173,13 +172,13 @@ def measured(
 
 
 def link_lengths(mechanism: Dimensioned) -> list[float]:
-    """Lengths of the links as an answer states them; a block's arm of no length is no link."""
+    """Return the link lengths of an answer's mechanism; a block's arm of length 0 is no link."""
     links = mechanism.links.model_dump() if isinstance(mechanism.links, BaseModel) else mechanism.links
     return [length for length in links.values() if length > 0.0]
 
 
 def distances(mechanism: Mechanism) -> list[float]:
-    """Distances between two joints of one link, the ground and the coupler with its point among them."""
+    """Return all distances between two joints of one link, including the ground and the coupler with its point."""
     return [
         abs(complex(mechanism.joints[first] - mechanism.joints[second]))
         for joints in mechanism.links.values()
@@ -188,42 +187,42 @@ def distances(mechanism: Mechanism) -> list[float]:
 
 
 def reach_of(mechanism: Mechanism) -> float:
-    """The greatest of :func:`distances`."""
+    """Return the maximum distance between two joints of one link."""
     return max(distances(mechanism))
 
 
 def reach_of_fourbar(linkage: Fourbar) -> float:
-    """The same of a fourbar that is driven in closed form."""
+    """Return the maximum distance between two joints of one link, for a fourbar in closed form."""
     point, coupler = complex(linkage.coupler_point), float(linkage.coupler)
     ground = abs(complex(linkage.output_pivot - linkage.input_pivot))
     return max(ground, float(linkage.input), coupler, float(linkage.output), abs(point), abs(point - coupler))
 
 
 def diagonal(places: Complex) -> float:
-    """Diagonal of the box around places, those that are finite; 0 where there are none."""
+    """Return the diagonal of the box around the finite points; 0 if there are none."""
     known = places[np.isfinite(places)]
     return math.hypot(np.ptp(known.real), np.ptp(known.imag)) if known.size else 0.0
 
 
 def fixed_pivots(mechanism: Mechanism) -> list[complex]:
-    """Joints of the ground."""
+    """Return the positions of the joints of the ground."""
     return [complex(mechanism.joints[name]) for name in mechanism.links[GROUND]]
 
 
 def moving_pivots(mechanism: Mechanism) -> list[complex]:
-    """All other joints but P, in the reference configuration."""
+    """Return the reference positions of all joints except those of the ground and P."""
     still = {*mechanism.links[GROUND], "P"}
     return [complex(place) for name, place in mechanism.joints.items() if name not in still]
 
 
 def barker_of(mechanism: Mechanism, *joints: str) -> BarkerClass:
-    """Grashof's class and Barker's code of the fourbar with the joints O2, A, B, O4, or others in that order."""
+    """Classify (Grashof, Barker) the fourbar with the joints O2, A, B, O4, or with other joints in that order."""
     o2, a, b, o4 = (complex(mechanism.joints[name]) for name in joints or ("O2", "A", "B", "O4"))
     return barker_class(Fourbar(o2, o4, abs(a - o2), abs(b - a), abs(b - o4)))
 
 
 def barker_within(mechanism: Mechanism) -> BarkerClass | None:
-    """The class of the fourbar O2 A B O4 within a linkage; None where links do not join these, as of Stephenson II."""
+    """Classify the fourbar O2 A B O4 within a linkage; None if it contains none, as a Stephenson II sixbar."""
     sides = ({"O2", "A"}, {"A", "B"}, {"B", "O4"}, {"O4", "O2"})
     joined = all(any(side <= set(joints) for joints in mechanism.links.values()) for side in sides)
     return barker_of(mechanism) if joined else None

@@ -1,4 +1,4 @@
-"""A mechanism on one of its branches: driven in its assembly, over inputs that follow on from the reference."""
+"""A mechanism on one of its branches: driven in that assembly, over inputs continuous with the reference."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class OnBranch:
     mechanism : Mechanism
         With its reference configuration on any branch.
     branch : Branch
-        One of its branches; where that has no signs, those of the reference are taken.
+        One of its branches; if it has no signs, those of the reference are used.
     """
 
     def __init__(self, mechanism: Mechanism, branch: Branch) -> None:
@@ -35,7 +35,7 @@ class OnBranch:
 
     @property
     def range(self) -> tuple[float, float]:
-        """First and last input, the reference's between them; half a cycle to either side of it for full turns."""
+        """First and last input around the reference; half a cycle to either side of it for full turns."""
         low, high = self.branch.low, self.branch.high
         if self.mechanism.driven_by_slide:
             return low, high
@@ -43,15 +43,15 @@ class OnBranch:
         if self.branch.full:
             whole = cycle_on(self.mechanism, self.branch)
             return at - 0.5 * whole, at + 0.5 * whole
-        # Branches are known to full turns.
+        # Branches are defined up to full turns: shift to the turn that contains the reference.
         first = low + period * round((at - 0.5 * (low + high)) / period)
         return first, first + high - low
 
     def at(self, inputs: Real) -> MechanismMotion:
-        """The mechanism at inputs of shape (n,)."""
+        """Drive the mechanism to inputs of shape (n,)."""
         return drive(self.mechanism, inputs, signs=self._signs, order=0)
 
     def joint(self, name: str, inputs: Real) -> Complex:
-        """A joint at inputs of any shape; NaN where there is no position."""
+        """Return the positions of a joint at inputs of any shape; NaN without a position."""
         motion = self.at(inputs.ravel())
         return np.asarray(np.where(motion.valid, motion.joints[name][0], np.nan).reshape(inputs.shape))

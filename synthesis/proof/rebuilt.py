@@ -1,4 +1,4 @@
-"""The mechanism of an answer as the analysis core drives it, built from what the answer states and nothing else."""
+"""Reconstruction of an answer's mechanism for the analysis core, from the answer's dimensions alone."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ _GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 
 
 def rebuilt(mechanism: BaseModel, *, from_skeleton: bool = False) -> Mechanism | None:
-    """The mechanism of an answer in its reference configuration.
+    """Rebuild the mechanism of an answer in its reference configuration.
 
-    Where a type's dimensions say all, its skeleton is not looked at; every other type has its skeleton as its
-    dimensions, with which the lengths beside it must agree.
+    If the dimensions of a type are complete, its skeleton is ignored. Every other type is rebuilt from its skeleton,
+    with which its lengths must agree.
 
     Parameters
     ----------
     mechanism : BaseModel
         Any answer's mechanism.
     from_skeleton : bool
-        Drive the skeleton in any case, after a comparison with the dimensions: it has joints that dimensions do not
-        speak of, such as points of a body on a rocker.
+        Use the skeleton in any case, after a comparison with the dimensions: it has joints that the dimensions lack,
+        such as points of a body on a rocker.
 
     Returns
     -------
     Mechanism or None
-        None where the dimensions make no mechanism that can be assembled, or are beyond what any statement may hold.
+        None if the mechanism cannot be assembled, or if its dimensions exceed the limits of any statement.
     """
     stated = mechanism.model_dump()
     if known_by_dimensions(stated["type"]) and not from_skeleton:

@@ -1,4 +1,4 @@
-"""Demands on a finished linkage that are the same for every kind, judged in one place after its own checks."""
+"""Checks of the workspace on a finished linkage, common to all kinds and made after the kind's own checks."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ Design = TypeVar("Design")
 
 
 def judged_by_room(problem: StatedProblem, design: Design) -> Design | None:
-    """A verified design with the checks of the room that is demanded; as it is where none is, or where it has them.
+    """Return a verified design with the checks of its workspace; unchanged without a workspace or if it has them.
 
     Parameters
     ----------
     problem : StatedProblem
-        What was asked.
+        The problem.
     design : a design
-        With its mechanism, metrics and verification.
+        Design with its mechanism, metrics and verification.
 
     Returns
     -------
-    The design, or None where no mechanism can be built from what it states.
+    The design, or None if no mechanism can be built from its dimensions.
     """
     if not isinstance(problem, LinkageProblem) or problem.space is None or problem.space.empty:
         return design

@@ -1,6 +1,6 @@
 """The speed of a shaft under a torque, integrated over two cycles: I ω dω/dθ = T̄ − T(θ), by Runge and Kutta's method.
 
-The time is summed along with it; the speed at the start is found so that the mean over time is the stated one.
+Time is integrated along with it. The initial speed is found such that the mean over time is the required one.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from scipy.optimize import brentq
 Real = NDArray[np.float64]
 
 CYCLES = 2
-"""Cycles over which the speed is followed: after the first one it has to repeat."""
+"""Number of integrated cycles: after the first one the speed has to repeat."""
 
 SLOWEST, FASTEST = 1e-6, 4.0
-"""Speeds at the start, over the mean, between which it is looked for: coefficients are at most 1."""
+"""Minimum and maximum initial speed over mean speed in the search: coefficients of fluctuation are at most 1."""
 
 
 class Run(NamedTuple):
-    """Angles (radians), torque and speed (rad/s) over the cycles, and the extremes of the speed between them too."""
+    """Angle (radians), torque and speed (rad/s) over the cycles, and the refined extremes of the speed."""
 
     angle: Real
     demand: Real
@@ -32,7 +32,7 @@ class Run(NamedTuple):
 
 
 def integrated(angle: Real, middle: Real, ends: Real, inertia: float, mean_speed: float) -> Run | None:
-    """The speed over the cycles, whose mean over time is as stated; None where the shaft comes to a stand.
+    """Integrate the speed over the cycles with the required mean over time; None if the shaft comes to rest.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def integrated(angle: Real, middle: Real, ends: Real, inertia: float, mean_speed
     steps = np.tile(step, CYCLES).tolist()
 
     def off(start: float) -> float:
-        """By how much the mean over time is beyond the stated one."""
+        """Return the excess of the mean over time over the required one, for an initial speed."""
         speed = _followed(start, steps, first, half, last)
         if not speed:
             return -mean_speed
@@ -79,7 +79,7 @@ def integrated(angle: Real, middle: Real, ends: Real, inertia: float, mean_speed
 
 
 def _followed(start: float, h: list[float], first: list[float], half: list[float], last: list[float]) -> list[float]:
-    """The speed at the ends of all steps by dω/dθ = a/ω, a at three places of each; empty where it comes to rest."""
+    """Integrate dω/dθ = a/ω with a at three points of each step; return the speeds at the ends, empty at rest."""
     w, speed = start, [start]
     for step, a, b, c in zip(h, first, half, last, strict=True):
         one = a / w
@@ -102,7 +102,7 @@ def _followed(start: float, h: list[float], first: list[float], half: list[float
 
 
 def _between(w: Real, before: Real, after: Real, h: Real) -> Real:
-    """Speeds at the ends of all steps, and where the cubic by both ends and their slopes turns within a step."""
+    """Return the speeds at the steps' ends and at the extremes of the cubic Hermite interpolant within the steps."""
     turns = before * after < 0.0
     share = np.where(turns, before / np.where(turns, before - after, 1.0), 0.0)
     lead = (1.0 + 2.0 * share) * (1.0 - share) ** 2 * w[:-1] + share**2 * (3.0 - 2.0 * share) * w[1:]

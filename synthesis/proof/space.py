@@ -27,14 +27,14 @@ from synthesis.proof.on_branch import OnBranch
 Complex = NDArray[np.complex128]
 
 ROOM = ("fixed_pivot_zones", "moving_pivot_zones", "box", "obstacles")
-"""The checks of a room."""
+"""Names of the workspace checks."""
 
 BODY_POINT = "P"
-"""The joint that only the link that carries the body has."""
+"""Name of the body's point; only the link that carries the body has this joint."""
 
 
 class FirstPosition(NamedTuple):
-    """The body in its first position, as it is demanded and as the linkage has it.
+    """The body in its first position, as requested and as reached by the linkage.
 
     ``point`` and ``angle`` (radians) are demanded; ``met`` is where P is in the reference, and ``turned`` how far the
     body is turned there from the demanded angle.
@@ -45,18 +45,18 @@ class FirstPosition(NamedTuple):
     turned: float
 
     def on_body(self, places: Complex) -> Complex:
-        """Where places of the linkage in its reference lie on the body as it is demanded."""
+        """Map points of the linkage in its reference configuration to the body in its requested position."""
         return np.asarray(self.point + (places - self.met) * np.exp(-1j * self.turned))
 
     def off_body(self, places: Complex) -> Complex:
-        """Where places on the body as it is demanded lie in the reference."""
+        """Map points on the body in its requested position to the reference configuration."""
         return np.asarray(self.met + (places - self.point) * np.exp(1j * self.turned))
 
 
 def space_checks(
     space: Space, mechanism: Mechanism, used: UsedRange, first: FirstPosition | None = None
 ) -> list[Check]:
-    """A check for each demand on the room.
+    """Check each constraint of the workspace.
 
     Parameters
     ----------
@@ -84,14 +84,14 @@ def space_checks(
 
 
 class _Side(NamedTuple):
-    """The joints of a side by their names; None where it has no such pivot."""
+    """Names of the joints of a side; None for a missing pivot."""
 
     fixed: str | None
     moving: str | None
 
 
 def _sides(mechanism: Mechanism) -> tuple[_Side, _Side]:
-    """The input's side and the output's."""
+    """Return the sides of input and output."""
     ground = mechanism.links[GROUND]
     crank = _Side("O2" if "O2" in ground else None, "A" if "A" in mechanism.joints else None)
     other = next((joint for joint in ("O4", "O5") if joint in ground), None)
@@ -103,7 +103,7 @@ def _sides(mechanism: Mechanism) -> tuple[_Side, _Side]:
 def _outside(
     zones: Zone | Sequence[Zone], mechanism: Mechanism, joint: str | None, first: FirstPosition | None
 ) -> float:
-    """How far a pivot lies outside its zones; infinite for a linkage that has no such pivot."""
+    """Return the distance of a pivot from its zones; infinite for a linkage without this pivot."""
     if joint is None:
         return math.inf
     place = np.asarray(mechanism.joints[joint]).reshape(1)
@@ -116,7 +116,7 @@ def _outside(
 
 
 def _swept(space: Space, mechanism: Mechanism, used: UsedRange, first: FirstPosition | None) -> list[Check]:
-    """Whether links and body keep within the box and clear of the obstacles."""
+    """Check that links and body stay within the box and clear of the obstacles."""
     if not space.swept:
         return []
     span = _range(space, mechanism, used)
@@ -135,7 +135,7 @@ def _swept(space: Space, mechanism: Mechanism, used: UsedRange, first: FirstPosi
 
 
 def moving_parts(space: Space, mechanism: Mechanism, first: FirstPosition | None) -> list[Part]:
-    """Links by the hulls of their joints, and the body, in the reference."""
+    """Return the hulls of the links' joints, and the body, in the reference configuration."""
     body = space.body is not None and first is not None
     parts = []
     for link, joints in mechanism.links.items():
@@ -151,12 +151,12 @@ def moving_parts(space: Space, mechanism: Mechanism, first: FirstPosition | None
 
 
 def carrier(mechanism: Mechanism) -> str:
-    """The link that carries the body: the one with P."""
+    """Return the name of the link that carries the body: the one with P."""
     return next(link for link, joints in mechanism.links.items() if BODY_POINT in joints and link != GROUND)
 
 
 def _hull(points: Complex) -> Complex:
-    """Corners of the hull of a few points: one, two or more."""
+    """Return the corners of the convex hull of one or more points."""
     from shapely import MultiPoint, get_coordinates
 
     hull = MultiPoint(np.stack([points.real, points.imag], axis=1)).convex_hull
@@ -165,7 +165,7 @@ def _hull(points: Complex) -> Complex:
 
 
 def _range(space: Space, mechanism: Mechanism, used: UsedRange) -> tuple[float, float] | None:
-    """Least and greatest input of the motion that counts, radians or length units; None where there is none."""
+    """Return the minimum and maximum input of the motion to check, radians or length units; None without one."""
     if space.over == "used":
         ends = used.used_stroke
         if ends is None and used.used_range is not None:
@@ -181,7 +181,7 @@ def _range(space: Space, mechanism: Mechanism, used: UsedRange) -> tuple[float, 
 def _kept(
     mechanism: Mechanism, moving: list[Part], fixed: list[Part], span: tuple[float, float], wanted: float
 ) -> tuple[float, bool]:
-    """The least distance of moving parts from fixed ones, and whether it is as much as is wanted."""
+    """Return the minimum distance of moving parts from fixed ones, and whether it reaches the required one."""
     pairs = [(n, len(moving) + k) for n in range(len(moving)) for k in range(len(fixed))]
     found = swept(mechanism, [*moving, *fixed], pairs, *span, wanted, nearest="all")
     return min(pair.least for pair in found), all(pair.keeps for pair in found)
@@ -190,7 +190,7 @@ def _kept(
 def _walls(
     box: tuple[tuple[float, float], tuple[float, float]], mechanism: Mechanism, moving: list[Part]
 ) -> tuple[list[Part], float]:
-    """The four sides of a box, moved outward by so much that nothing reaches them: what is as far from them is inside.
+    """Build the four sides of a box, shifted outward beyond every part: a part as far from them as the shift is inside.
 
     So it is told how far a part is beyond a side, as its distance from the moved side falls short.
     """
